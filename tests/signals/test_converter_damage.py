@@ -58,6 +58,18 @@ def test_stuck_samples_are_found_and_no_other() -> None:
         np.testing.assert_array_equal(found, at)
 
 
+def test_no_level_sticks_where_a_part_is_not_rounded() -> None:
+    random = np.random.default_rng([SEED, 7])
+    for bits in (9, 10, 11, 12, 14):
+        turn = 2 * np.pi * float(random.uniform(0.1, 0.2)) * np.arange(10000)
+        x = np.cos(turn) + 0.1 * random.normal(size=turn.size)
+        step = 16.0 * 2.0**-bits
+        part = slice(3000, int(random.integers(3500, 9000)))
+        y = np.round(x / step) * step
+        y[part] = x[part]
+        assert stuck(y, everywhere(y)) == []
+
+
 @pytest.mark.parametrize("noise", [0.01, 0.05, 0.2])
 @pytest.mark.parametrize("pace", [0.0113, 0.1637, 0.297])
 def test_wrapped_samples_are_put_back(noise: float, pace: float) -> None:

@@ -17,6 +17,7 @@ _PILE = 8.0  # times as many samples at a code as at each level beside
 _BESIDE = 5  # levels on either side
 _NEAR = 200  # samples next in value
 _BENDS = 0.4  # of what those next in value bend
+_CODES = 2  # values that stick: where part of a record is not rounded, all levels seem to
 _IN_STEP = 0.2  # of the distances from one to the next that are equal
 _WRAPPED, _MOST_WRAPPED = 10, 0.25  # samples, and their largest share
 _BINS, _EVERYWHERE = 64, 0.7  # of the range; those that hold samples
@@ -40,8 +41,9 @@ def stuck(x: Floats, free: Mask) -> list[tuple[Mask, float]]:
     So are samples set to 0.0 one by one, or a code that sticks. Levels are those that occur, five
     on either side. The record bends there at least 0.4 times as much as at samples next in value,
     and less than a fifth of the distances from one to the next are equal: a record that rests has
-    samples there one after the other, lines in step with the rate at even distances. ``free``:
-    samples that count.
+    samples there one after the other, lines in step with the rate at even distances. Of more than
+    two such values none sticks: they are the levels of a record a part of which is not rounded.
+    ``free``: samples that count.
 
     >>> x = np.sin(0.1 * np.arange(4000.0) ** 1.1)
     >>> stuck(x, x < 9.0)
@@ -72,7 +74,7 @@ def stuck(x: Floats, free: Mask) -> list[tuple[Mask, float]]:
             continue
         if _median(bend[at]) >= _BENDS * _median(bend[near]) > 0.0:
             found.append((at, float(levels[place])))
-    return found
+    return found if len(found) <= _CODES else []
 
 
 def _median(values: Floats) -> float:
