@@ -99,6 +99,18 @@ def test_values_that_wrap_around_in_noise_are_told_and_hard_ends_alone_are_not()
     assert told >= 21
 
 
+def test_samples_set_to_a_value_near_an_end_are_told_and_wrap_around_nowhere() -> None:
+    random = np.random.default_rng([SEED, 8])
+    x = np.cos(0.37 * np.arange(8000)) + 0.1 * random.normal(size=8000)
+    at = random.random(x.size) < 0.08
+    for beyond in (1, 3):
+        value = float(np.sort(x)[-1 - beyond])
+        y = np.where(at & (x < value), value, x)
+        told = damages(y)
+        assert "wrapped" not in {one.kind for one in told}
+        assert sum(one.count for one in told) > 0.8 * np.count_nonzero(at)
+
+
 def test_two_states_are_no_amplitude() -> None:
     x = np.cos(0.37 * np.arange(8000)) + 0.05 * np.random.default_rng(SEED).normal(size=8000)
     assert coarse(np.where(x > 0.1, 1.0, 0.0), everywhere(x)) > 0.25

@@ -38,12 +38,12 @@ _WHOLE = 0.75  # of the samples count
 def stuck(x: Floats, free: Mask) -> list[tuple[Mask, float]]:
     """Samples at one exact value inside the range, eight times as many as at levels beside.
 
-    So are samples set to 0.0 one by one, or a code that sticks. Levels are those that occur, five
-    on either side. The record bends there at least 0.4 times as much as at samples next in value,
-    and less than a fifth of the distances from one to the next are equal: a record that rests has
-    samples there one after the other, lines in step with the rate at even distances. Of more than
-    two such values none sticks: they are the levels of a record a part of which is not rounded.
-    ``free``: samples that count.
+    So are samples set to 0.0 one by one, or a code that sticks. Levels are those that occur, up to
+    five on either side. The record bends there at least 0.4 times as much as at samples next in
+    value, and less than a fifth of the distances from one to the next are equal: a record that
+    rests has samples there one after the other, lines in step with the rate at even distances. Of
+    more than two such values none sticks: they are the levels of a record a part of which is not
+    rounded. ``free``: samples that count.
 
     >>> x = np.sin(0.1 * np.arange(4000.0) ** 1.1)
     >>> stuck(x, x < 9.0)
@@ -55,9 +55,11 @@ def stuck(x: Floats, free: Mask) -> list[tuple[Mask, float]]:
     levels, counts = np.unique(x[free], return_counts=True)
     until = np.concatenate([[0], np.cumsum(counts)])
     places = np.flatnonzero(counts > _PILE)
-    places = places[(places >= _BESIDE) & (places < levels.size - _BESIDE)]
-    below = (until[places] - until[places - _BESIDE]) / _BESIDE
-    above = (until[places + _BESIDE + 1] - until[places + 1]) / _BESIDE
+    places = places[(places > 0) & (places < levels.size - 1)]
+    lowest = np.maximum(places - _BESIDE, 0)
+    highest = np.minimum(places + _BESIDE, levels.size - 1)
+    below = (until[places] - until[lowest]) / (places - lowest)
+    above = (until[highest + 1] - until[places + 1]) / (highest - places)
     places = places[counts[places] > _PILE * np.maximum(below, above)]
     if not places.size:
         return []
@@ -93,8 +95,8 @@ def wrapped(x: Floats, free: Mask) -> list[tuple[Mask, float]]:
     samples are between the range's outer tenths: those of two states are not. Where the outermost
     of 64 bins both hold six samples, and 3 % of what a bin holds, the record ends hard on both
     sides, as what overflows does: a range of six times the usual error then does, and an error of
-    3.5 times or 0.36 of the range. A saw tooth is a ramp that wraps around, and is told.
-    ``free``: samples that count.
+    3.5 times or 0.36 of the range. Where most have one value they were set to it. A saw tooth is a
+    ramp that wraps around, and is told. ``free``: samples that count.
 
     >>> x = np.cos(0.37 * np.arange(2000.0)) + 0.3 * np.cos(0.1 * np.arange(2000.0))
     >>> wrapped(x, x < 9.0)
@@ -123,7 +125,8 @@ def wrapped(x: Floats, free: Mask) -> list[tuple[Mask, float]]:
     span = high - low + smallest_step(kept)
     turns, error = _turns(values, span, jumps)
     off = turns != 0
-    if not _WRAPPED <= np.count_nonzero(off) <= _MOST_WRAPPED * x.size:
+    count = int(np.count_nonzero(off))
+    if not _WRAPPED <= count <= _MOST_WRAPPED * x.size or _most_alike(values[off]) > 0.5 * count:
         return []
     edges = np.flatnonzero(np.diff(off))
     usual, right = _median(error[~off]), _median(error[np.concatenate([edges, edges + 1])])
@@ -135,6 +138,11 @@ def wrapped(x: Floats, free: Mask) -> list[tuple[Mask, float]]:
         return []
     sides = [(free & (turns == side), side * span) for side in (1, -1)]
     return [(where, put) for where, put in sides if where.any()]
+
+
+def _most_alike(values: Floats) -> int:
+    """How many of the values are one and the same."""
+    return int(np.max(np.unique(values, return_counts=True)[1]))
 
 
 def _turns(values: Floats, span: float, jumps: Mask) -> tuple[Whole, Floats]:
