@@ -65,3 +65,23 @@ def test_a_count_ends_where_the_shaft_stands_still() -> None:
     np.testing.assert_allclose(found.numbers, true - true[0], atol=1e-6)
     assert found.times.size > 200
     assert found.times[-1] < 20.0 or found.times[0] > 30.0
+
+
+@pytest.mark.parametrize(("change", "lost"), [(-0.1, 0.0), (0.1, 0.0), (-0.05, 0.1), (0.05, 0.1)])
+def test_pulses_of_a_fast_run_up_between_steady_speeds_are_counted(
+    change: float, lost: float
+) -> None:
+    """The speed changes by a tenth from one pulse to the next, with a corner at both ends."""
+    random = np.random.default_rng([26, 11, round(100 * lost), round(100 + 100 * change)])
+    time = np.arange(0.0, 12.0, 1e-4)
+    last = 1.0 / 30.0 if change > 0 else 1.0 / 5.0  # a period, of 1/10 s before
+    period = 0.1 - change * np.clip(time - 3.0, 0.0, abs(0.1 - last) / abs(change))
+    turns = np.cumsum(1.0 / period) * 1e-4
+    own = np.arange(1, int(turns[-1]))
+    for _ in range(5):
+        kept = own[random.random(own.size) >= lost]
+        times = np.interp(kept, turns, time) + 1e-4 * random.normal(size=kept.size)
+        found = numbered(times)
+        own_numbers = kept[np.searchsorted(times, found.times)]
+        np.testing.assert_array_equal(found.numbers, own_numbers - own_numbers[0])
+        assert found.times.size >= (0.9 if lost else 1.0) * kept.size

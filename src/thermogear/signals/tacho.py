@@ -19,6 +19,7 @@ _BACK = 4  # pulses among which the one before is looked for
 _MOST = 12  # whole periods between two pulses
 _STEP = 0.03  # standard deviation of the change of ln(period) from pulse to pulse
 _LOST, _EXTRA = 2.3, 3.5  # what a lost pulse and an extra one cost: -ln of their shares, 10 and 3 %
+_GOES_ON = 1.0  # what it costs at least that a period goes on changing as it did
 _JUMP = 60.0  # what any change costs at most: a period that jumps ends the count
 _BROKEN = 12.0  # standard deviations of a change that no shaft makes
 _STEEP = 2.0  # standard deviations of a change beside a rest: a lost pulse still shows
@@ -58,13 +59,16 @@ def numbered(times: ArrayLike) -> Pulses:
     ``times`` [s], rising. Of all ways to leave pulses aside and to put whole numbers of periods k
     between the others, the likeliest (Viterbi): minus log likelihood
 
-        sum 2.3 (k_i - 1) + 3.5 e_i + (ln(p_i/p_(i-1))/(0.03 m_i))^2/2,
+        sum 2.3 (k_i - 1) + 3.5 e_i + min(L(c_i/(0.03 m_i)), 1 + L((c_i - s_i m_i)/(0.03 m_i))),
 
-    e_i pulses left aside before pulse i, p_i = (t_i - t_(i-1))/k_i, m_i the mean of k_i and
-    k_(i-1): a lost pulse doubles an interval, an extra one splits it, and the speed changes
-    little from pulse to pulse. Then pulses that lie off the curve through their neighbours are
-    left aside as well. Up to 11 pulses in a row may be lost; where the period jumps all the same,
-    or the shaft may have stood still, the count ends, and the longest stretch is taken.
+    e_i pulses left aside before pulse i, c_i = ln(p_i/p_(i-1)), p_i = (t_i - t_(i-1))/k_i, m_i the
+    mean of k_i and k_(i-1), s_i half of c/m and half of s of the pulse before, L(x) = x^2/2 and
+    from 2 on 2|x| - 2: a lost pulse doubles an interval, an extra one splits it, and the speed
+    changes little from pulse to pulse or goes on changing. Then pulses that lie off the curve
+    through their neighbours are left aside as well. Up to 11 pulses in a row may be lost; where the
+    period jumps all the same, or the shaft may have stood still, the count ends, and the longest
+    stretch is taken. Speeds that change by up to a tenth a pulse are counted (a twentieth where
+    pulses are lost); at twice as much numbers may be wrong.
 
     Raises InputError where fewer than 8 pulses are left.
     Source: Viterbi 1967, IEEE Trans. Inf. Theory 13, 260-269.
@@ -108,18 +112,26 @@ def _likeliest(edges: Floats) -> tuple[Ints, Ints]:
     cost = np.full((count, _BACK, _MOST), np.inf)
     origin = np.zeros((count, _BACK, _MOST), dtype=np.int16)
     logs = np.zeros((count, _BACK, _MOST))
-    weight = 1.0 / (2.0 * (_STEP * 0.5 * (whole[:, None] + whole[None, :])) ** 2)
+    slopes = np.zeros((count, _BACK, _MOST))  # change of ln(period) a period, on the likeliest way
+    apart = 0.5 * (whole[:, None] + whole[None, :])
+    spread = _STEP * apart
     for j in range(1, count):
         most = min(_BACK, j)
         before = j - back[:most]
         log = np.log((edges[j] - edges[before])[:, None] / whole[None, :])
         logs[j, :most] = log
-        changes = (log[:, :, None, None] - logs[before][:, None]) ** 2 * weight[None, :, None, :]
+        change = log[:, :, None, None] - logs[before][:, None]
+        goes_on = change - slopes[before][:, None] * apart[:, None, :]
+        own_spread = spread[:, None, :]
+        changes = np.minimum(_rare(change / own_spread), _GOES_ON + _rare(goes_on / own_spread))
         total = cost[before][:, None] + np.minimum(changes, _JUMP)
         flat = total.reshape(most, _MOST, -1)
         best = np.argmin(flat, axis=-1)
+        slope = 0.5 * (slopes[before][:, None] + change / apart[:, None, :])
+        slope = np.take_along_axis(slope.reshape(flat.shape), best[..., None], axis=-1)[..., 0]
         least = np.take_along_axis(flat, best[..., None], axis=-1)[..., 0] + own[:most]
         free = own[:most] + _EXTRA * before[:, None]  # the first pair: all before it are extra
+        slopes[j, :most] = np.where(free < least, 0.0, slope)
         cost[j, :most] = np.minimum(free, least)
         origin[j, :most] = np.where(free < least, -1, best)
     left = _EXTRA * np.arange(count - 1, -1, -1.0)
@@ -135,6 +147,13 @@ def _likeliest(edges: Floats) -> tuple[Ints, Ints]:
             break
         b, k = divmod(came, _MOST)
     return np.asarray(places[::-1], dtype=np.int64), np.asarray(steps[::-1], dtype=np.int64)
+
+
+def _rare(off: Floats) -> Floats:
+    """Minus log likelihood of a value so many standard deviations off: normal, beyond two of them
+    exponential."""
+    size = np.abs(off)
+    return np.asarray(np.where(size < 2.0, 0.5 * size**2, 2.0 * size - 2.0))
 
 
 def _longest(times: Floats, steps: Ints) -> slice:
@@ -184,19 +203,15 @@ def _rests(times: Floats, steps: Ints) -> NDArray[np.bool_]:
 
 
 def _on_the_curve(times: Floats, numbers: Ints) -> NDArray[np.bool_]:
-    """Which pulses lie on the cubic through the two before and the two after them."""
+    """Which pulses lie on the cubic through the two before and the two after them, or on that
+    through four on one side: where a run-up begins, the speed has a corner."""
     kept = np.arange(times.size)
     while kept.size > _LEAST:
         t, n = times[kept], numbers[kept].astype(float)
-        at = t[2:-2]
-        beside = np.stack([t[:-4], t[1:-3], t[3:-1], t[4:]])
-        values = np.stack([n[:-4], n[1:-3], n[3:-1], n[4:]])
-        expected = np.zeros(at.size)
-        for one in range(4):
-            others = [x for x in range(4) if x != one]
-            share = np.prod([(at - beside[o]) / (beside[one] - beside[o]) for o in others], axis=0)
-            expected += values[one] * share
-        off = np.abs(n[2:-2] - expected)
+        off = _off_the_curve(t, n, (-2, -1, 1, 2))
+        for side in ((-4, -3, -2, -1), (1, 2, 3, 4)):
+            off = np.fmin(off, _off_the_curve(t, n, side))
+        off = off[2:-2]
         around = ndimage.median_filter(off, size=17, mode="nearest")
         limit = np.maximum(0.01, 8.0 * np.maximum(around, float(np.median(off))))
         # an outlier pulls its neighbours' curves by up to two thirds of what it is off itself
@@ -208,6 +223,22 @@ def _on_the_curve(times: Floats, numbers: Ints) -> NDArray[np.bool_]:
     found = np.zeros(times.size, dtype=np.bool_)
     found[kept] = True
     return found
+
+
+def _off_the_curve(t: Floats, n: Floats, places: tuple[int, ...]) -> Floats:
+    """How far each pulse is off the polynomial through those at ``places`` beside it; NaN where
+    there are none."""
+    off = np.full(t.size, np.nan)
+    inside = slice(max(0, -places[0]), t.size - max(0, places[-1]))
+    at = np.arange(t.size)[inside]
+    expected = np.zeros(at.size)
+    for one in places:
+        others = [t[at + other] for other in places if other != one]
+        expected += n[at + one] * np.prod(
+            [(t[at] - other) / (t[at + one] - other) for other in others], axis=0
+        )
+    off[inside] = np.abs(n[inside] - expected)
+    return off
 
 
 def pulse_turns(
