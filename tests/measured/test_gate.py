@@ -337,6 +337,31 @@ def test_a_burst_makes_no_sideband() -> None:
                 assert abs(line.reading - true) < 2.0 * line.half_width * line.reading
 
 
+def test_where_a_sensor_dies_the_record_ends() -> None:
+    x = channel()
+    x[6000:] = 1e-3 * np.random.default_rng(9).normal(size=COUNT - 6000)
+    found = measured(x)
+    assert len(found.findings) == 1
+    assert (found.start, found.start + found.samples) == (0, pytest.approx(6000, abs=COUNT // 200))
+    line = found.lines[0]
+    assert abs(line.reading - 1.0) < line.half_width < 0.03
+
+
+def test_a_gain_that_is_switched_is_told_with_its_place() -> None:
+    x = channel()
+    x[5000:] *= 3.0
+    (told,) = measured(x).findings
+    assert told.first == pytest.approx(5000, abs=COUNT // 200)
+    assert not told.withholds
+
+
+def test_a_bit_that_does_not_change_withholds() -> None:
+    codes = np.rint(channel() / 4.0 * 2047.0).astype(np.int64)
+    found = measured((codes | 64).astype(float) * 4.0 / 2047.0)
+    assert np.isnan(found.lines[0].reading)
+    assert any(one.withholds and one.share == 1.0 for one in found.findings)
+
+
 def test_a_blow_is_told_with_its_place() -> None:
     x = channel()
     x[3000:3100] += 12.0 * np.sin(1.1 * np.arange(100)) * np.exp(-np.arange(100) / 25.0)

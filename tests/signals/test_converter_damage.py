@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from thermogear.signals.bridged import evenly
-from thermogear.signals.converter import coarse, stuck, wrapped
+from thermogear.signals.converter import coarse, missing_codes, stuck, wrapped
 from thermogear.signals.lines import find_line
 from thermogear.signals.quality import damages
 
@@ -145,3 +145,16 @@ def test_samples_repeated_at_even_distances_are_another_grid() -> None:
     places = np.flatnonzero(repeats)
     x[places] = x[places - 1]
     assert not evenly(x, repeats)
+
+
+@pytest.mark.parametrize("bit", [2, 4, 6, 8])
+def test_a_bit_that_does_not_change_is_told_and_decimals_are_not(bit: int) -> None:
+    random = np.random.default_rng([SEED, 9, bit])
+    for _ in range(10):
+        turn = 2 * np.pi * float(random.uniform(0.02, 0.3)) * np.arange(12000)
+        x = np.cos(turn) + float(10 ** random.uniform(-2, -0.3)) * random.normal(size=turn.size)
+        codes = np.rint(x / float(np.max(np.abs(x))) * 1500.0).astype(np.int64)
+        assert missing_codes((codes | 1 << bit).astype(float), everywhere(x)) == 1 << bit
+        for step in (1.0, 0.00244140625, 9.80665e-3, 2.56):
+            written = np.round(codes * step, 5)
+            assert missing_codes(written, everywhere(x)) == 0

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
 from thermogear.measured.record import Channel, Notice, Record
-from thermogear.signals.events import short_event
+from thermogear.signals.events import Event, level_step, short_event
 from thermogear.signals.filters import without_trend
 from thermogear.signals.quality import Damage, damages, filled
 
@@ -263,8 +263,10 @@ class _Channel:
         withheld."""
         own, withholds = share, True
         if one.kind == "wrapped":
-            self.through.table[self.place][one.samples] += one.value or 0.0
-            own, withholds = _UNSURE * share, alike > FILLED
+            put = 0.0 if one.value is None else one.value
+            if np.isfinite(put):
+                self.through.table[self.place][one.samples] += put
+            own, withholds = _UNSURE * share, alike > FILLED or not np.isfinite(put)
         elif one.kind == "coarse":
             own = one.value or 0.0
             withholds = own > COARSE
@@ -342,13 +344,16 @@ _WORDS = {
     "wrapped": "values beyond the range that came back at its other end",
     "another grid": "samples repeated at even distances",
     "coarse": "coarse levels",
+    "missing codes": "codes that never occur",
+    "quiet": "no vibration",
 }
-_GONE = ("missing", "sentinel", "zeros", "bridged", "stuck")
-_AS_A_WHOLE = ("wrapped", "another grid", "coarse")
+_GONE = ("missing", "sentinel", "zeros", "bridged", "stuck", "quiet")
+_AS_A_WHOLE = ("wrapped", "another grid", "coarse", "missing codes")
 _DONE = {"wrapped": "put back by adding or taking the range", "coarse": "kept"}
 _TOO_MUCH = {
     "clipping": "lines are too small, and harmonics are made, by an unknown amount",
     "held": "a sample that repeats the one before weakens lines and makes images",
+    "missing codes": "a bit of the converter does not change, which falsifies every line (mend it)",
     "wrapped": "which samples were beyond the range is unsure where they are many (use a larger "
     "range)",
     "another grid": "the nearest samples taken at another rate weaken lines and make images of "
@@ -414,20 +419,30 @@ def events_of(through: Passed) -> list[Finding]:
     """Short events of a record at one speed; they are kept. A run passes resonances as short."""
     found = []
     for channel, values in zip(through.channels, through.table, strict=True):
-        event = short_event(values)
-        if event is None or channel.name in through.withheld:
+        if channel.name in through.withheld:
             continue
-        count = event.last - event.first + 1
-        found.append(
-            Finding(
-                kind=f"a short event, {event.times:.2g} times the usual range",
-                channel=channel.name,
-                first=through.start + event.first,
-                last=through.start + event.last,
-                count=count,
-                share=count / values.size,
-                done="kept",
-                effect="sidebands' intervals hold what it adds, a mesh line's do not (cut it out)",
-            )
-        )
+        event, step = short_event(values), level_step(values)
+        if event is not None:
+            kind = f"a short event, {event.times:.2g} times the usual range"
+            effect = "sidebands' intervals hold what it adds, a mesh line's do not (cut it out)"
+            found.append(_kept(through, channel, event, kind, effect))
+        if step is not None:
+            kind = f"from here on {step.times:.3g} times the level before"
+            effect = "readings are means over both levels (cut the record there)"
+            found.append(_kept(through, channel, step, kind, effect))
     return found
+
+
+def _kept(through: Passed, channel: Channel, event: Event, kind: str, effect: str) -> Finding:
+    """An event that is told and left as it is."""
+    count = event.last - event.first + 1
+    return Finding(
+        kind=kind,
+        channel=channel.name,
+        first=through.start + event.first,
+        last=through.start + event.last,
+        count=count,
+        share=count / through.table.shape[-1],
+        done="kept",
+        effect=effect,
+    )

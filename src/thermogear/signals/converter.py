@@ -28,9 +28,12 @@ _CLEAR, _CLEAR_ENDS = 9.0, 6.0  # times the usual error of that: the range; wher
 _HARD, _HELD = 0.03, 6  # share of what a bin holds, and samples, in each outermost one: a hard end
 _USUAL, _AT_ALL, _AT_MOST = 3.0, 0.05, 0.2  # error of those put back: times the usual; of the range
 _USUAL_ENDS, _AT_MOST_ENDS = 3.5, 0.36  # the same where the range ends hard
+_DENSE, _NO_DOUBT = 0.25, 8.0  # of what a bin holds, and times the error: sure, but not put back
 _PUT = 0.42  # of the range: error of those put back, half of it of those that need not be
 _MANY = 10.0  # levels in a standard deviation: fine
 _FOLDED = 0.53  # 2 zeta(3/2)/pi^2: see coarse
+_STATES, _OCCUR, _REGULAR = 8, 0.8, 0.75  # levels between; that occur; of the empty ones, in runs
+_LEAST_GAP, _EMPTY = 2, 32  # levels of a run of empty ones, and such runs; levels in all of them
 _OWN = 1.0 / 12.0  # of a squared level: the rounding's own noise
 _WHOLE = 0.75  # of the samples count
 
@@ -95,8 +98,10 @@ def wrapped(x: Floats, free: Mask) -> list[tuple[Mask, float]]:
     samples are between the range's outer tenths: those of two states are not. Where the outermost
     of 64 bins both hold six samples, and 3 % of what a bin holds, the record ends hard on both
     sides, as what overflows does: a range of six times the usual error then does, and an error of
-    3.5 times or 0.36 of the range. Where most have one value they were set to it. A saw tooth is a
-    ramp that wraps around, and is told. ``free``: samples that count.
+    3.5 times or 0.36 of the range; where bins there hold a quarter, and the range is eight times
+    that error, the samples are told with NaN: they came back, and which did is unsure. Where most
+    have one value they were set to it. A saw tooth is a ramp that wraps around, and is told.
+    ``free``: samples that count.
 
     >>> x = np.cos(0.37 * np.arange(2000.0)) + 0.3 * np.cos(0.1 * np.arange(2000.0))
     >>> wrapped(x, x < 9.0)
@@ -126,18 +131,28 @@ def wrapped(x: Floats, free: Mask) -> list[tuple[Mask, float]]:
     turns, error = _turns(values, span, jumps)
     off = turns != 0
     count = int(np.count_nonzero(off))
-    if not _WRAPPED <= count <= _MOST_WRAPPED * x.size or _most_alike(values[off]) > 0.5 * count:
+    if count < _WRAPPED or _most_alike(values[off]) > 0.5 * count:
         return []
+    ends = float(_BINS * min(held[0], held[-1])) / kept.size
+    hard = ends >= max(_HARD, _HELD * _BINS / kept.size)
+    if not _put_right(off, error, span, hard):
+        usual, wrong = _median(error[~off]), _median(error[off])
+        sure = ends >= _DENSE and span >= _NO_DOUBT * usual and wrong < span
+        return [(off & free, np.nan)] if sure else []
+    sides = [(free & (turns == side), side * span) for side in (1, -1)]
+    return [(where, put) for where, put in sides if where.any()]
+
+
+def _put_right(off: Mask, error: Floats, span: float, hard: bool) -> bool:
+    """Whether samples put back, ``off``, are then near to what their neighbours foretell."""
+    if np.count_nonzero(off) > _MOST_WRAPPED * off.size:
+        return False
     edges = np.flatnonzero(np.diff(off))
     usual, right = _median(error[~off]), _median(error[np.concatenate([edges, edges + 1])])
-    hard = min(held[0], held[-1]) >= max(_HELD, _HARD * kept.size / _BINS)
     times, most = (_USUAL_ENDS, _AT_MOST_ENDS) if hard else (_USUAL, _AT_MOST)
     allowed = min(max(times * usual, _AT_ALL * span), most * span)
     clear = span >= (_CLEAR_ENDS if hard else _CLEAR) * usual
-    if not clear or right > allowed or _median(error[off]) > _PUT * span:
-        return []
-    sides = [(free & (turns == side), side * span) for side in (1, -1)]
-    return [(where, put) for where, put in sides if where.any()]
+    return clear and right <= allowed and _median(error[off]) <= _PUT * span
 
 
 def _most_alike(values: Floats) -> int:
@@ -196,6 +211,38 @@ def _foretold(whole: Floats, calm: Mask) -> Floats:
         rows = np.arange(0, count, 1 + count // _FITTED)
     weights = np.linalg.lstsq(sums[:, rows].T, whole[rows] - middle, rcond=1e-8)[0]
     return np.asarray(middle + weights @ sums)
+
+
+def missing_codes(x: Floats, free: Mask) -> int:
+    """The number of levels in each run of levels that never occur, where a bit is stuck; 0: none.
+
+    With the bit of weight 2^b stuck, runs of 2^b levels that occur and runs of 2^b that do not
+    follow each other. Between the 5th and the 95th percentile three of four empty levels are in
+    runs of one length, a power of two from 2 on, two of them or more (32 over their length); three
+    of four of these begin whole periods of 2^(b+1) apart, and eight of ten other levels occur.
+    ``free``: samples that count.
+
+    >>> x = np.round(500.0 * np.sin(np.arange(20_000.0)))
+    >>> missing_codes(x, x < 1e9), missing_codes((x.astype(int) | 64).astype(float), x < 1e9)
+    (0, 64)
+    """
+    kept = x[free]
+    low, high = np.quantile(kept, [0.05, 0.95], method="nearest")
+    step = smallest_step(kept)
+    if not step > 0.0 or not _STATES < (high - low) / step < kept.size:
+        return 0
+    codes = np.rint((kept[(kept >= low) & (kept <= high)] - low) / step).astype(np.int64)
+    there = np.flatnonzero(np.bincount(codes))
+    gaps = np.diff(there) - 1
+    length = 1 << int(np.log2(max(1, int(np.max(gaps)))))
+    starts = there[:-1][gaps == length]
+    if length < _LEAST_GAP or starts.size < max(_LEAST_GAP, _EMPTY // length):
+        return 0
+    places = np.bincount(starts % (2 * length))
+    empty = length * starts.size
+    occur = there.size / (codes.max() + 1 - empty)
+    regular = min(empty / np.sum(gaps), np.max(places) / starts.size)
+    return length if regular >= _REGULAR and occur >= _OCCUR else 0
 
 
 def coarse(x: Floats, free: Mask) -> float:

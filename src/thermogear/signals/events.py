@@ -1,4 +1,4 @@
-"""A short event in a record that is steady otherwise: a burst, a blow, an offset that settles."""
+"""What changes in a record that is steady otherwise: a short event, a level, a sensor that dies."""
 
 from __future__ import annotations
 
@@ -8,11 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
 
 _PIECES, _SHORTEST = 200, 32  # of the record, and samples of one
 _TIMES = 5.0  # the usual range of a piece
 _CALM = 0.8  # of the pieces hold no event
 _MOST, _PLACES = 0.1, 2  # of the pieces, and runs of them
+_USUALLY = 0.9  # of the pieces have less than the usual rms: most may be without vibration
+_QUIET, _LIVELY = 0.03, 0.3  # of the usual rms: no vibration, and vibration beside it
+_STILL, _STRAY = 0.05, 1  # of the record, a stretch without any; quiet pieces elsewhere
+_STEP, _SURE, _ABRUPT, _SIDE = 1.4, 8.0, 0.7, 10  # times; spreads; of the step at once; pieces
 
 
 class Event(NamedTuple):
@@ -55,3 +60,77 @@ def short_event(x: Floats) -> Event | None:
     best = int(np.argmax([np.max(times[a:b]) for a, b in zip(starts, stops, strict=True)]))
     first, stop = int(starts[best]), int(stops[best])
     return Event(first * size, stop * size - 1, round(float(np.max(times[first:stop])), 1))
+
+
+def quiet(x: Floats, free: Mask) -> Mask:
+    """Samples of ``x`` in stretches where nothing vibrates, as of a sensor that dies: at once.
+
+    Of 200 pieces, the rms about its mean is below 3 % of what a tenth of them exceeds, over 5 % of the
+    record or more, in one or two stretches, and in one piece elsewhere at most: between impacts it
+    is so again and again. Next to the stretch it is above 30 % within two pieces: a machine that
+    starts takes longer. ``free``: samples that count.
+
+    >>> x = np.sin(np.arange(20_000.0))
+    >>> x[15_000:] *= 1e-3
+    >>> np.flatnonzero(quiet(x, x < 9.0))[[0, -1]]
+    array([15000, 19999])
+    """
+    still = np.zeros(x.size, dtype=bool)
+    size = max(_SHORTEST, x.size // _PIECES)
+    count = x.size // size
+    if count < 2 * _SHORTEST or np.mean(free) < 0.5:
+        return still
+    values = np.where(free, x, np.nan)[: count * size].reshape(count, size)
+    known = np.count_nonzero(np.isfinite(values), axis=1) >= _SHORTEST // 2
+    rms = np.full(count, np.nan)
+    rms[known] = np.nanstd(values[known], axis=1)
+    usual = float(np.nanquantile(rms, _USUALLY))
+    low = known & (rms < _QUIET * usual)
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], low.astype(np.int8), [0]])))
+    runs = list(zip(edges[::2], edges[1::2], strict=True))
+    long = [(a, b) for a, b in runs if b - a >= max(2.0, _STILL * count)]
+    if not 0 < len(long) <= _PLACES or sum(b - a for a, b in runs) > _STRAY + sum(
+        b - a for a, b in long
+    ):
+        return still
+    for a, b in long:
+        beside = [rms[max(0, a - 2) : a], rms[b : b + 2]]
+        if all(part.size == 0 or np.nanmax(part) > _LIVELY * usual for part in beside):
+            still[a * size : x.size if b == count else b * size] = True
+    return still
+
+
+def level_step(x: Floats) -> Event | None:
+    """Where the level of a record ``x`` changes at once and for good; None: nowhere.
+
+    The rms of 200 pieces, in logarithms, is parted in two where the squares about both means are
+    least. The means differ by a factor of 1.4 or more, by eight times the spread about them, and
+    seven tenths of it within three pieces: a gain that is switched, a load that is set.
+
+    >>> x = np.sin(np.arange(20_000.0))
+    >>> level_step(x)
+    >>> x[8_000:] *= 2.0
+    >>> level_step(x)
+    Event(first=8000, last=19999, times=2.0)
+    """
+    size = max(_SHORTEST, x.size // _PIECES)
+    count = x.size // size
+    if count < 4 * _SIDE:
+        return None
+    rms = np.std(x[: count * size].reshape(count, size), axis=1)
+    if not np.all(rms > 0.0):
+        return None
+    level = np.log(rms)
+    number = np.arange(1, count)
+    sums = np.cumsum(level)
+    left, right = sums[:-1] / number, (sums[-1] - sums[:-1]) / (count - number)
+    between = number * (count - number) * (right - left) ** 2
+    inner = slice(_SIDE - 1, count - _SIDE)
+    place = int(np.argmax(between[inner])) + _SIDE
+    step = float(right[place - 1] - left[place - 1])
+    rest = level - np.where(np.arange(count) < place, left[place - 1], right[place - 1])
+    at_once = float(np.median(level[place : place + 3]) - np.median(level[place - 3 : place]))
+    sure = abs(step) >= max(np.log(_STEP), _SURE * float(np.std(rest)))
+    if not sure or at_once * np.sign(step) < _ABRUPT * abs(step):
+        return None
+    return Event(place * size, x.size - 1, round(float(np.exp(step)), 3))

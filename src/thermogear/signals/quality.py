@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.signals.bridged import bridges, evenly, made_finer
-from thermogear.signals.converter import coarse, stuck, wrapped
+from thermogear.signals.converter import coarse, missing_codes, stuck, wrapped
+from thermogear.signals.events import quiet
 from thermogear.signals.lines import line_spectrum
 from thermogear.signals.strong import Strong, strong_lines
 
@@ -36,8 +37,9 @@ _FALSIFIED = 0.01  # of the strongest line: what levels may do untold
 class Damage:
     """``kind`` of damage, ``samples`` where it is, the ``value`` there where it is one.
 
-    Of wrapped samples the value is what, added, puts them right; of coarse levels, how far they may
-    falsify a line, as a share of the strongest.
+    Of wrapped samples the value is what, added, puts them right, NaN where that is unsure; of
+    coarse levels, how far they may falsify a line, as a share of the strongest; of missing codes,
+    how many levels are missing in a run.
     """
 
     kind: str
@@ -63,7 +65,8 @@ class Damage:
 def damages(x: ArrayLike) -> list[Damage]:
     """Every damage of one channel: missing, sentinels, values wrapped around, zeros, held or stuck
     samples, spikes, clipping, another grid, straight lines in place of samples or between all of
-    them; coarse levels, of which all samples are.
+    them; stretches without vibration; codes that never occur and coarse levels, of which all
+    samples are.
 
     ``x`` [any unit], NaN where a value is missing. No sample is in two others of them.
 
@@ -81,7 +84,15 @@ def damages(x: ArrayLike) -> list[Damage]:
         for damage in one(values, free):
             found.append(damage)
             free = free & ~damage.samples
-    share = coarse(values, free) if np.count_nonzero(free) >= 64 else 0.0
+    if np.count_nonzero(free) < 64:
+        return found
+    still = quiet(values, free)
+    if still.any():
+        found.append(Damage(kind="quiet", samples=still & free))
+        free = free & ~still
+    if run := missing_codes(values, free):
+        found.append(Damage(kind="missing codes", samples=free, value=float(run)))
+    share = coarse(values, free)
     if share > _FALSIFIED:
         found.append(Damage(kind="coarse", samples=free, value=share))
     return found
