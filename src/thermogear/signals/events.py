@@ -65,9 +65,9 @@ def short_event(x: Floats) -> Event | None:
 def quiet(x: Floats, free: Mask) -> Mask:
     """Samples of ``x`` in stretches where nothing vibrates, as of a sensor that dies: at once.
 
-    Of 200 pieces, the rms about its mean is below 3 % of what a tenth of them exceeds, over 5 % of the
-    record or more, in one or two stretches, and in one piece elsewhere at most: between impacts it
-    is so again and again. Next to the stretch it is above 30 % within two pieces: a machine that
+    Of 200 pieces, the rms about its mean is below 3 % of what a tenth of them exceeds, over 5 % of
+    the record or more, in one or two stretches, and in one piece elsewhere at most: between impacts
+    it is so again and again. Next to the stretch it is above 30 % within two pieces: a machine that
     starts takes longer. ``free``: samples that count.
 
     >>> x = np.sin(np.arange(20_000.0))
