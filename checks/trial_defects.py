@@ -112,6 +112,20 @@ def _wrapped(x: Floats, share: float) -> Floats:
     return np.asarray(np.mod(x - middle + limit, 2.0 * limit) - limit + middle)
 
 
+def _dead(x: Floats, random: Random, share: float) -> Floats:
+    """A thousandth of the noise of a live sensor at the end."""
+    y = x - float(np.mean(x))
+    size = int(share * x.size)
+    y[-size:] = 1e-3 * random.normal(size=size)
+    return y
+
+
+def _bit(x: Floats, random: Random) -> Floats:
+    """Bit 6 of a converter of 12 bits at 1."""
+    step = 16.0 * 2.0**-12
+    return (np.rint(x / step).astype(np.int64) | 64) * step
+
+
 def _nearest(x: Floats, times: float) -> Floats:
     """The nearest sample at so many times the rate, of a record that long."""
     return np.asarray(x[np.rint(np.arange(x.size) / times).astype(np.int64)])
@@ -149,6 +163,8 @@ DEFECTS: dict[str, Callable[[Floats, Random], Floats]] = {
     "the nearest at 1.03 times the rate": lambda x, r: _nearest(x, 1.03),
     "a mean of 200 amplitudes": lambda x, r: x + 200.0,
     "a trend of 200 amplitudes": lambda x, r: x + 200.0 * np.arange(x.size) / x.size,
+    "a sensor that dies, dead for 30 %": lambda x, r: _dead(x, r, 0.3),
+    "a bit of a quarter amplitude that does not change": _bit,
 }
 
 STRETCHED = {"the nearest at 1.03 times the rate": 1.03}
