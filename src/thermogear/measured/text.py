@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from thermogear.base.cells import MISSING, NUMBER, cells_of
 from thermogear.measured.choosing import is_time_column, time_column
 from thermogear.measured.clock import has_clocks, is_stamp_name, without_clocks
+from thermogear.measured.encodings import encoding_of
 from thermogear.measured.layout import Layout, find_layout
 from thermogear.measured.options import (
     A_TEXT,
@@ -129,17 +130,19 @@ def _encoding(path: Path) -> tuple[str, list[Notice]]:
         return name, [Notice("info", "the text is UTF-16 without its mark")]
     if b"\0" in head:
         raise refused(path, "text", "it is binary: it holds zero bytes", A_TEXT)
-    for name in ("utf-8", "gb18030", "latin-1"):
-        try:
-            # a character may be cut at the end of the head
-            head[: len(head) - 4 if len(head) == _HEAD else None].decode(name)
-        except UnicodeDecodeError:
-            continue
-        if name == "utf-8":
-            return name, []
-        said = "GBK" if name == "gb18030" else "Latin-1"
-        return name, [Notice("info", f"the text is not UTF-8; it is read as {said}")]
-    raise refused(path, "text", "unknown encoding")
+    # a character may be cut at the end of the head
+    whole = head[: len(head) - 4 if len(head) == _HEAD else None]
+    try:
+        whole.decode("utf-8")
+    except UnicodeDecodeError:
+        found = encoding_of(whole)
+    else:
+        return "utf-8", []
+    text = f"the text is not UTF-8; it is read as {found.name}"
+    if found.likely:
+        return found.codec, [Notice("info", text)]
+    text += ", whose letters hardly come so: names may be wrong (save it as UTF-8)"
+    return found.codec, [Notice("warning", text)]
 
 
 def _head(lines: io.TextIOWrapper) -> list[str]:
