@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -42,6 +43,109 @@ def test_labview_with_a_comment_column(tmp_path: Path, first: str) -> None:
     assert record.samples == 400
     assert record.rate == pytest.approx(10_000.0)
     np.testing.assert_allclose(record.channels[1].values()[:3], [-0.5, -1.5, -2.5])
+
+
+FINE = "1.0000000000000000E-4"
+SLOW = "1.0000000000000000E-3"
+
+
+def lvm(
+    folder: Path,
+    axis: str,
+    steps: Sequence[str],
+    *,
+    real: Sequence[float] = (1e-4, 1e-4),
+    start: str = "0.0000000000000000E+0",
+    dimension: str = "Time",
+    parted: str = "\t",
+    decimal: str = ".",
+) -> Path:
+    """A LabVIEW file: its X columns are ``axis`` No, One or Multi, samples ``real`` seconds apart
+    where they are written, ``steps`` in the header."""
+    count, wide = len(steps), 2 * parted if axis == "Multi" else parted
+    facts = {
+        "Channels": [str(count)],
+        "Y_Unit_Label": ["g"] * count,
+        "X_Dimension": [dimension] * count,
+        "X0": [start] * count,
+        "Delta_X": list(steps),
+    }
+    head = ["LabVIEW Measurement", f"X_Columns{parted}{axis}", "***End_of_Header***"]
+    head += [parted.join((key, wide.join(cells), "")) for key, cells in facts.items()]
+    names = [f"a{i + 1}" for i in range(count)]
+    between = f"{parted}X_Value{parted}" if axis == "Multi" else parted
+    head += ["***End_of_Header***", f"X_Value{parted}{between.join(names)}{parted}Comment"]
+    for i in range(400):
+        cells = [f"{(7 * i + k) % 13 - 6.25}" for k in range(count)]
+        stamps = [f"{i * real[k]:.9f}" for k in range(count)]
+        row = {"No": ["", *cells], "One": [stamps[0], *cells]}.get(
+            axis, [one for pair in zip(stamps, cells, strict=True) for one in pair]
+        )
+        head.append(parted.join(row))
+    text = "\n".join(head) + "\n"
+    path = folder / "rig.lvm"
+    path.write_text(text.replace(".", decimal), encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize("axis", ["No", "One", "Multi"])
+@pytest.mark.parametrize(("parted", "decimal"), [("\t", "."), ("\t", ","), (",", ".")])
+def test_labview_states_the_step_in_its_header(
+    tmp_path: Path, axis: str, parted: str, decimal: str
+) -> None:
+    record = read_record(lvm(tmp_path, axis, [FINE, FINE], parted=parted, decimal=decimal))
+    assert (record.names, record.samples) == (("a1", "a2"), 400)
+    assert (record.rate, record.rate_half_width, record.notices) == (10_000.0, 0.0, ())
+    assert [c.unit for c in record.channels] == ["g", "g"]
+    np.testing.assert_allclose(record.channels[1].values()[:3], [-5.25, 1.75, -4.25])
+
+
+@pytest.mark.parametrize("axis", ["No", "Multi"])
+def test_labview_channels_of_several_rates(tmp_path: Path, axis: str) -> None:
+    path = lvm(tmp_path, axis, [FINE, SLOW], real=(1e-4, 1e-3))
+    both = read_record(path)
+    assert both.rate is None
+    (note,) = both.notices
+    assert (note.level, numbers(note.text)[:2]) == ("important", [10_000.0, 1000.0])
+    assert "'a1'" in note.text
+    assert "--channel" in note.text
+    assert "--rate" in note.text
+    assert [read_record(path, channels=[k]).rate for k in ("a1", "a2")] == [10_000.0, 1000.0]
+    assert read_record(path, rate=500.0).rate == 500.0
+
+
+@pytest.mark.parametrize("axis", ["One", "Multi"])
+def test_labview_step_against_its_time_column(tmp_path: Path, axis: str) -> None:
+    record = read_record(lvm(tmp_path, axis, [SLOW, SLOW]))
+    assert record.rate is None
+    assert [numbers(n.text)[:2] for n in record.notices] == [[1000.0, 10_000.0]]
+    assert all("--rate" in n.text for n in record.notices)
+    # a step of few decimals contradicts no rate that rounds to it: the time column is finer
+    rounded = read_record(lvm(tmp_path, axis, ["0.000078"] * 2, real=(1 / 12800, 1 / 12800)))
+    assert (rounded.rate, rounded.notices) == (12_800.0, ())
+
+
+@pytest.mark.parametrize("rate", [4096.0, 10_000.0, 12_800.0, 51_200.0])
+@pytest.mark.parametrize("decimals", [6, 9, 12])
+def test_labview_step_of_few_decimals(tmp_path: Path, rate: float, decimals: int) -> None:
+    path = lvm(tmp_path, "No", [f"{1.0 / rate:.{decimals}f}"])
+    record = read_record(path)
+    assert record.rate is not None
+    assert abs(record.rate - rate) <= record.rate_half_width + 1e-9 * rate
+    assert record.rate_half_width <= 0.6 * 10.0**-decimals * rate**2
+    given = read_record(path, rate=rate)
+    assert (given.rate, given.rate_half_width, given.rate_doubt) == (rate, 0.0, "")
+
+
+def test_labview_start_and_steps_that_are_none(tmp_path: Path) -> None:
+    assert read_record(lvm(tmp_path, "No", [FINE], start="1.5")).start == 1.5
+    for step in ("0.000000", "-1E-4", "NaN", "1E-300"):
+        record = read_record(lvm(tmp_path, "No", [step]))
+        assert record.rate is None
+        assert [("Delta_X" in n.text, n.level) for n in record.notices] == [(True, "important")]
+    record = read_record(lvm(tmp_path, "No", [FINE], dimension="Frequency"))
+    assert record.rate is None
+    assert any("'Frequency'" in n.text for n in record.notices)
 
 
 @pytest.mark.parametrize("stamp", ["2024-01-05 12:00:{:09.6f}", "12:00:{:09.6f}"])

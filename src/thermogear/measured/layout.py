@@ -10,6 +10,7 @@ from pathlib import Path
 from thermogear.base.cells import MISSING, NUMBER, cells_of
 from thermogear.measured.choosing import is_time_column
 from thermogear.measured.clock import comment_column, labelled
+from thermogear.measured.labview import Waves, waves_of
 from thermogear.measured.options import A_TEXT, ReadOptions, refused
 from thermogear.measured.record import Notice
 from thermogear.measured.traps import is_possible_rate, is_rate_name, split_unit
@@ -26,7 +27,8 @@ class Layout:
 
     ``separator`` None: runs of blanks. ``paired``: commas part both numbers and decimals, two
     fields make one number. ``skip``: lines before the first row. ``commented``: what follows the
-    columns is a comment; ``clocks``: clock stamps are turned to seconds.
+    columns is a comment; ``clocks``: clock stamps are turned to seconds; ``waves``: what a LabVIEW
+    header says.
     """
 
     separator: str | None
@@ -39,6 +41,7 @@ class Layout:
     rate: float | None = None
     commented: bool = field(default=False, kw_only=True)
     clocks: bool = field(default=False, kw_only=True)
+    waves: Waves | None = field(default=None, kw_only=True)
     notices: list[Notice] = field(default_factory=list)
 
 
@@ -88,9 +91,7 @@ def find_layout(head: list[str], path: Path, options: ReadOptions) -> Layout:
         raise refused(path, "text", why)
     layout = Layout(separator, decimal, paired, columns, names, units, start)
     layout.commented = comment is not None
-    said = [unit(text) for text in labelled(above)]
-    if said and len(names) == columns == len(said) + 1:
-        layout.units = ["s", *said]  # LabVIEW counts X in seconds
+    _of_labview(layout, above)
     if paired:
         layout.notices.append(
             Notice("warning", "commas part both numbers and decimals: two fields make one number")
@@ -108,6 +109,20 @@ def find_layout(head: list[str], path: Path, options: ReadOptions) -> Layout:
         layout.units = [None] * columns
     _facts(layout, above)
     return layout
+
+
+def _of_labview(layout: Layout, above: list[str]) -> None:
+    """Units, steps and starts that a LabVIEW header states for its channels."""
+    said = [unit(text) for text in labelled(above, layout.separator)]
+    waves = waves_of(above, layout.separator)
+    axis = None if waves is not None and not waves.of_time else "s"  # LabVIEW counts X in seconds
+    if said and len(layout.names) == layout.columns:
+        if layout.columns == len(said) + 1:
+            layout.units = [axis, *said]
+        elif layout.columns == 2 * len(said):
+            layout.units = [one for own in said for one in (axis, own)]
+    if waves is not None:
+        layout.waves = waves.placed(layout.columns)
 
 
 def _separator(body: list[str], options: ReadOptions, path: Path) -> tuple[str | None, str]:

@@ -198,7 +198,7 @@ class Record:
             record = record._with_tacho(tacho)
         if rate is not None:
             RATE.require("rate", rate)
-            if self.rate is not None and abs(rate / self.rate - 1.0) > 1e-3:
+            if self.rate is not None and abs(rate / self.rate - 1.0) > 1e-3 + self.rate_share:
                 record = record.noting(
                     "important",
                     f"the rate given, {rate:g}/s, is not the file's, {self.rate:g}/s "

@@ -16,6 +16,7 @@ from thermogear.base.cells import MISSING, NUMBER, cells_of
 from thermogear.measured.choosing import is_time_column, time_column
 from thermogear.measured.clock import has_clocks, is_stamp_name, without_clocks
 from thermogear.measured.encodings import encoding_of
+from thermogear.measured.labview import Stated
 from thermogear.measured.layout import Layout, find_layout
 from thermogear.measured.options import (
     A_TEXT,
@@ -162,6 +163,7 @@ def _kept(layout: Layout, options: ReadOptions) -> list[int]:
         return list(range(layout.columns))
     columns = list(zip(layout.names, layout.units, strict=True))
     times = {i for i, column in enumerate(columns) if is_time_column(*column)}
+    waves = layout.waves.columns if layout.waves is not None else {}
     channels = [i for i in range(layout.columns) if i not in times]
     names = [layout.names[i] for i in channels]
     wanted = set()
@@ -175,6 +177,10 @@ def _kept(layout: Layout, options: ReadOptions) -> list[int]:
     special = {
         i for i, (name, unit) in enumerate(columns) if is_tacho_name(name) or counts_turns(unit)
     }
+    if layout.waves is not None:  # a LabVIEW file may hold channels of several rates
+        times &= {layout.waves.own_time(i) for i in wanted}
+        steps = {waves[i].seconds for i in wanted if i in waves}
+        special = {i for i in special if i not in waves or waves[i].seconds in steps}
     return sorted(wanted | times | special)
 
 
@@ -294,15 +300,21 @@ def _value(cell: str) -> float:
 def _record(
     path: Path, layout: Layout, keep: list[int], columns: Sequence[Floats | StoredColumn]
 ) -> Record:
-    notes = list(layout.notices)
-    gaps: tuple[tuple[int, int], ...] = ()
-    half, note, jitter = 0.0, "", 0.0
     names = [layout.names[i] for i in keep]
     units = [layout.units[i] for i in keep]
-    rate, origin, start = layout.rate, "header" if layout.rate else "", 0.0
+    stated = _stated(layout, keep)
+    notes = [*layout.notices, *stated.notices]
+    gaps: tuple[tuple[int, int], ...] = ()
+    half, note, jitter = stated.half_width, stated.note, 0.0
+    rate, start = stated.rate, stated.start
+    origin = "" if rate is None else "header" if layout.rate is not None else "Delta_X"
     table = list(zip(names, units, columns, strict=True))
     times = [i for i, (name, unit_name, _) in enumerate(table) if is_time_column(name, unit_name)]
     best = time_column([table[i] for i in times])
+    if layout.waves is not None and (
+        stated.several or (best is not None and _empty(columns[times[best]]))
+    ):
+        best = None  # X_Columns No: the X column is empty
     if best is not None:
         place = times[best]
         t = np.asarray(columns[place][:MOST_STAMPS])
@@ -315,7 +327,11 @@ def _record(
         start, gaps, jitter = base.start, base.gaps, base.jitter
         if base.drop:
             columns = _without(columns, base.drop)
-        if base.rate is not None and rate is not None and abs(base.rate / rate - 1) > 1e-3:
+        if (
+            base.rate is not None
+            and rate is not None
+            and abs(base.rate / rate - 1) > 1e-3 + half / rate
+        ):
             notes.append(
                 Notice(
                     "important",
@@ -323,11 +339,13 @@ def _record(
                     f"(factor {rate / base.rate:.4g}): neither is used (give --rate)",
                 )
             )
-            rate, origin = None, ""
-        elif base.rate is not None and (rate is None or abs(base.rate - rate) > base.half_width):
+            rate, origin, half, note = None, "", 0.0, ""
+        elif base.rate is not None and (
+            rate is None or max(half, abs(base.rate - rate)) > base.half_width
+        ):
             rate, origin = base.rate, base.origin
             half, note = base.half_width, base.note
-        if len(times) > 1:
+        if len(times) > 1 and layout.waves is None:
             text = f"{len(times)} time columns; {names[place]!r} is used"
             notes.append(Notice("warning", text))
     channels = [
@@ -350,6 +368,18 @@ def _record(
         rate_note=note,
         jitter=jitter,
     )
+
+
+def _stated(layout: Layout, keep: list[int]) -> Stated:
+    """The rate that the header states for the columns ``keep``."""
+    if layout.rate is not None or layout.waves is None:
+        return Stated(rate=layout.rate)
+    return layout.waves.stated({i: layout.names[i] for i in keep})
+
+
+def _empty(column: Floats | StoredColumn) -> bool:
+    """Whether a column holds no number."""
+    return not np.any(np.isfinite(column[:MOST_STAMPS]))
 
 
 def _repeats(columns: Sequence[Floats | StoredColumn], count: int) -> NDArray[np.bool_]:
