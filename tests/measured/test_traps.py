@@ -189,6 +189,57 @@ def test_both_decimals_in_one_file_are_refused(tmp_path: Path) -> None:
         read(tmp_path, lines(body))
 
 
+@pytest.mark.parametrize("empty", ["", '""', "nan", "-"])
+@pytest.mark.parametrize(("column", "width"), [(0, 2), (1, 2), (0, 3), (1, 3), (2, 3)])
+@pytest.mark.parametrize(("parted", "decimal"), [(",", "."), (";", ","), ("\t", ".")])
+@pytest.mark.parametrize("first", [[0], [1], [0, 1, 2], list(range(0, 450, 3)), list(range(440))])
+def test_an_empty_cell_is_one_in_the_first_row_as_in_any_other(
+    tmp_path: Path,
+    empty: str,
+    column: int,
+    width: int,
+    parted: str,
+    decimal: str,
+    first: list[int],
+) -> None:
+    table = np.column_stack([np.arange(450) / 1000.0, np.cos(np.arange(450.0)), np.ones(450)])
+    body = [[f"{v:.6f}".replace(".", decimal) for v in row[:width]] for row in table]
+    for row in first:
+        body[row][column] = empty
+    text = [parted.join(one) for one in [["time [s]", "a [g]", "b [g]"][:width], *body]]
+    found = read(tmp_path, lines(text))
+    assert found.names == ("a", "b")[: width - 1]
+    assert {c.unit for c in found.channels} == {"g"}
+    assert found.samples == 450
+    assert (found.rate is None) == (column == 0)
+    for k, channel in enumerate(found.channels, start=1):
+        missing = first if k == column else []
+        assert list(np.flatnonzero(np.isnan(channel.values()))) == missing
+
+
+def test_rows_without_a_number_are_rows(tmp_path: Path) -> None:
+    body = [f"{j}.5,{j % 7}.25" for j in range(40)]
+    found = read(tmp_path, lines(["a [g],b [g]", "nan,NaN", *body]))
+    assert (found.names, found.samples) == (("a", "b"), 41)
+    # a line of separators is none, wherever it is
+    for place in (0, 3):
+        split = [*body[:place], ",", *body[place:]]
+        found = read(tmp_path, lines(["a [g],b [g]", *split]))
+        assert (found.names, found.samples) == (("a", "b"), 40)
+
+
+def test_a_separator_at_the_end_of_every_line_parts_nothing(tmp_path: Path) -> None:
+    for head in ("time [s];a [g];", "time [s];a [g]"):
+        found = read(tmp_path, lines([head, *(f"{j / 100:.2f};{j % 7}.5;" for j in range(40))]))
+        assert (found.names, found.rate, found.notices) == (("a",), pytest.approx(100.0), ())
+
+
+def test_points_are_named_where_commas_are_asked_for(tmp_path: Path) -> None:
+    body = [f"{j}.5,{j % 7}.25" for j in range(40)]
+    with pytest.raises(InputError, match=r"decimal comma: '0\.5' holds a point; --decimal \.$"):
+        read(tmp_path, lines(["a,b", *body]), decimal=",")
+
+
 @pytest.mark.parametrize(
     ("encoding", "said"),
     [

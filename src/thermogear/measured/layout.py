@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import re
+import statistics
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -64,6 +65,7 @@ def find_layout(head: list[str], path: Path, options: ReadOptions) -> Layout:
     if comment is not None:
         table = [c if i < comment[0] else c[: comment[1]] for i, c in enumerate(table)]
     rows = [i for i, cells in enumerate(table) if _is_row(cells)]
+    _fill(table, head, rows, separator)
     # the table starts at the first row that another one of equal width follows at once
     follows = dict(itertools.pairwise(rows))
     start = next(
@@ -77,7 +79,8 @@ def find_layout(head: list[str], path: Path, options: ReadOptions) -> Layout:
     if start is None:
         raise refused(path, "text", "no row of numbers in its first lines", A_TEXT)
     width = len(table[start])
-    above = [line for line in head[:start] if line.strip()]
+    start = _empty_first(table, start)
+    above = [line for line in head[:start] if line.strip().strip(separator)]
     if comment is not None and comment[0] < start:
         above = [line for line in head[: comment[0]] if line.strip()]
         above.append((separator or " ").join(table[comment[0]]))
@@ -109,6 +112,34 @@ def find_layout(head: list[str], path: Path, options: ReadOptions) -> Layout:
         layout.units = [None] * columns
     _facts(layout, above)
     return layout
+
+
+def _fill(table: list[list[str]], head: list[str], rows: list[int], separator: str | None) -> None:
+    """Give back the empty last cell to rows that lack it, where others or the names have one.
+
+    A separator at the end of every line, names and all, parts nothing.
+    """
+    if separator is None or not rows:
+        return
+    counts = [head[i].rstrip("\r\n").count(separator) + 1 for i in rows]
+    width = statistics.mode(counts)
+    named = [i for i in range(rows[0]) if any(table[i])][-1:]
+    if width == 1 or all(len(table[i]) != width for i in (*rows, *named)):
+        return
+    for i, count in zip(rows, counts, strict=True):
+        if count == width == len(table[i]) + 1:
+            table[i] = [*table[i], ""]
+
+
+def _empty_first(table: list[list[str]], start: int) -> int:
+    """The first row, at ``start`` or before it, if rows before hold nothing but "NaN"."""
+    width = len(table[start])
+    while start > 0 and len(table[start - 1]) == width:
+        words = [cell.lower().strip("-") for cell in table[start - 1]]
+        if not any(words) or not all(word in MISSING for word in words):
+            break
+        start -= 1
+    return start
 
 
 def _of_labview(layout: Layout, above: list[str]) -> None:
@@ -185,7 +216,10 @@ def _paired(rows: list[list[str]], named: int, path: Path, options: ReadOptions)
     )
     if options.decimal == "," or (named and 2 * named == width):
         if not (whole and halves):
-            raise refused(path, "text", "the fields do not pair into numbers with a decimal comma")
+            why = "the fields do not pair into numbers with a decimal comma"
+            odd = next((c for row in rows for c in row if "." in c), None)
+            why += "" if odd is None else f": {odd[:20]!r} holds a point"
+            raise refused(path, "text", why, "--decimal ." if odd else None)
         return True
     if whole and 0 < named < width < 2 * named:
         raise refused(

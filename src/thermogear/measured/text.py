@@ -268,7 +268,8 @@ def _table(block: list[str], layout: Layout, path: Path, number: int, last: bool
             continue
         if len(cells) == layout.columns - 1 and layout.separator is not None:
             raw = line.rstrip("\r\n")
-            if raw.endswith(layout.separator):
+            fields = 0 if layout.paired else raw.count(layout.separator) + 1
+            if raw.endswith(layout.separator) or fields == layout.columns:
                 cells.append("")  # an empty last cell, not a missing one
         if len(cells) != layout.columns:
             if last and place == len(block) - 1:
