@@ -135,6 +135,11 @@ def test_compare_as_json() -> None:
         ),
         (
             measure,
+            ["FILE", "--orders", 400],
+            r"^orders: got 400; allowed 0\.02\d*\.\.153\.\d; from .* as --orders 153, or sample f",
+        ),
+        (
+            measure,
             ["FILE", "--channel", 99],
             r"^channel: got '99'; allowed 1\.\.1 or a name; known: ",
         ),

@@ -243,6 +243,35 @@ def test_a_line_beside_the_shaft_s_is_named_and_says_nothing_of_sidebands(order:
             assert found[name].half_width < 0.1
 
 
+@pytest.mark.parametrize("frequency", [419.7, 1251.6])
+def test_orders_that_the_record_cannot_hold_are_refused(frequency: float) -> None:
+    record, rate, shaft = tone(frequency, 10e-6), 25_600.0, frequency / 25
+    lowest, highest = rate / (1 << 16) / shaft, rate / 2 / shaft
+    for order, edge in ((1.01 * highest, highest), (0.9 * lowest, lowest)):
+        with pytest.raises(InputError, match=r"^orders: got .* as --orders \d") as refused:
+            measure(record, teeth=25, orders=(1.0, order))
+        got, low, high = numbers(str(refused.value).replace("..", " .. "))[:3]
+        assert got == pytest.approx(order, rel=1e-5)
+        assert (low, high) == pytest.approx((lowest, highest), rel=1e-3)
+        inside = measure(record, teeth=25, orders=(edge * (0.99 if edge == highest else 1.01),))
+        assert [line.kind for line in inside.lines].count("order") == 1
+
+
+@pytest.mark.parametrize("rate", [25_600.0, None])
+@pytest.mark.parametrize("frequency", [832.58, 1251.6])
+def test_harmonics_above_the_band_are_told(frequency: float, rate: float | None) -> None:
+    record = replace(tone(frequency, 10e-6), rate=rate)
+    fit = int(25_600.0 / 2.56 / frequency)
+    for asked in (fit, fit + 1, 20):
+        found = measure(record, harmonics=asked, sidebands=0)
+        read = [line.name for line in found.lines if line.kind == "mesh"]
+        assert read == [f"mesh x {k}" for k in range(1, fit + 1)]
+        told = [n for n in found.notices if "harmonics" in n.text]
+        assert [(n.level, numbers(n.text)[:2]) for n in told] == (
+            [] if asked == fit else [("info", [fit, asked])]
+        )
+
+
 def test_a_line_hidden_with_all_its_harmonics_keeps_its_place() -> None:
     """No harmonic stood out of the noise: their mean had no weight."""
     raw = prominence(np.random.default_rng(3).normal(size=(1, 4096)), 1.0)

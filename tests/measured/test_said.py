@@ -11,6 +11,7 @@ import pytest
 from scipy import stats
 
 from said import facts, numbers
+from thermogear.base.errors import InputError
 from thermogear.base.units import RPM
 from thermogear.measured.contradictions import of_line, of_pulses, of_speed, of_teeth
 from thermogear.measured.dataset import result_of
@@ -260,3 +261,26 @@ def test_the_greatest_of_one_step_is_that_step() -> None:
     assert (found.step, found.steps) == (1, 1)
     assert (found.low, found.high) == pytest.approx((1.75, 2.25))
     assert greatest([np.nan], half_width=[np.nan]) is None
+
+
+def test_orders_and_harmonics_of_a_run_that_it_cannot_hold() -> None:
+    top = RATE / 2.56 / (FIRST / 60.0)
+    with pytest.raises(InputError, match=r"^orders: got .* slowest speed; .* as --orders \d") as it:
+        measure(run_up(), pulses_per_turn=PULSES, harmonics=1, orders=(1.2 * top,))
+    assert numbers(str(it.value).replace("..", " .. "))[2] == pytest.approx(top, rel=0.05)
+    found = measure(run_up(), pulses_per_turn=PULSES, harmonics=64, sidebands=0)
+    read = [line.name for line in found.lines if line.kind == "mesh"]
+    (told,) = [n.text for n in found.notices if "harmonics" in n.text]
+    assert numbers(told)[:2] == [len(read), 64]
+
+
+def test_orders_of_a_run_whose_shaft_is_not_known_are_refused() -> None:
+    t = np.arange(int(RATE * SECONDS)) / RATE
+    cycles = TEETH * (FIRST * t + (LAST - FIRST) * t**2 / 2.0 / SECONDS) / 60.0
+    x = np.cos(2 * np.pi * cycles) + 0.05 * np.random.default_rng(1).standard_normal(t.size)
+    record = Record((Channel("acc", x, "g"),), "run", RATE, "made")
+    assert measure(record).slices is not None
+    with pytest.raises(InputError, match=r"^orders: got 2; no shaft's speed is known; --teeth"):
+        measure(record, orders=(2.0,))
+    found = measure(record, teeth=TEETH, orders=(2.0,))
+    assert "order 2" in [line.name for line in found.lines]

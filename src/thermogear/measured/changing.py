@@ -183,6 +183,11 @@ def _sliced(
     gearing = None
     if angle.mesh is not None and angle.gearing is not None:
         gearing = replace(angle.gearing, mesh_frequency=angle.mesh * mean)
+    slowest = float(np.percentile(np.diff(turns), 1.0))
+    _require_seen(orders, angle, highest=min(0.43 * per_turn, _HIGHEST / slowest))
+    if angle.mesh is not None:
+        pace = angle.mesh * slowest if gearing is None else gearing.mesh_frequency
+        notices += harmonics_told(pace, harmonics, record.rate)
     wanted = _wanted(gearing, angle, inside, per_turn, harmonics, sidebands, orders, mean)
     if not wanted:
         why = f"in the angle of {shaft.origin} no line is above the noise: does it mark the turns?"
@@ -351,6 +356,61 @@ def order_lines(
         for o in orders
         if all(abs(o * shaft - w.position) > 1e-6 * shaft for w in found)
     ]
+
+
+def _require_seen(orders: Sequence[float], angle: OrderAngle, highest: float) -> None:
+    """Refuse ``orders`` where no shaft's angle is known, or that are seen in no slice."""
+    if orders and angle.of_mesh:
+        got = ", ".join(f"{o:g}" for o in orders)
+        raise InputError("orders", got, why="no shaft's speed is known", fix="--teeth or --tacho")
+    limit = "the sampling rate/2.56 at the slowest speed"
+    require_orders(orders, lowest=0.0, highest=highest, limit=limit)
+
+
+def require_orders(
+    orders: Sequence[float],
+    *,
+    lowest: float,
+    highest: float,
+    limit: str = "half the sampling rate",
+) -> None:
+    """Refuse an order of a shaft that a record cannot hold.
+
+    ``lowest``: the order that comes once in the record; ``highest``: ``limit``, in orders.
+
+    >>> try:
+    ...     require_orders([1.0, 300.0], lowest=0.01, highest=243.3)
+    ... except InputError as error:
+    ...     print(str(error).split("; ")[1:3])
+    ['allowed 0.01..243.3', 'from 243.3 on it is above half the sampling rate']
+    """
+    for order in orders:
+        if lowest <= order <= highest:
+            continue
+        why = f"from {highest:.4g} on it is above {limit}"
+        fix = f"ask for less, as --orders {np.floor(highest):g}, or sample faster"
+        if order < lowest:
+            why = "it does not come once in the record"
+            fix = f"ask for more, as --orders {np.ceil(lowest):g}, or record for longer"
+        allowed = f"{lowest:.4g}..{highest:.4g}"
+        raise InputError("orders", f"{order:g}", allowed=allowed, why=why, fix=fix)
+
+
+def harmonics_told(mesh: Gearing | float | None, asked: int, rate: float | None) -> list[Notice]:
+    """How many of the ``asked`` mesh harmonics are below rate/2.56, where not all are.
+
+    ``mesh`` line [cycles/sample], or the gearing that has it; ``rate`` [samples/s].
+
+    >>> print(*(one.text for one in harmonics_told(0.0596, 20, 10_000.0)))
+    6 of 20 mesh harmonics are read: the others are above the rate/2.56, 3906 Hz
+    """
+    line = mesh.mesh_frequency if isinstance(mesh, Gearing) else mesh
+    fit = asked if line is None else max(int(_HIGHEST / line), 1)
+    if fit >= asked:
+        return []
+    top = f"{_HIGHEST:.4g} cycles/sample" if rate is None else f"{_HIGHEST * rate:.4g} Hz"
+    text = f"{fit} of {asked} mesh harmonics are read: the others are above the rate/2.56, {top}"
+    return [Notice("info", text)]
 
 
 def _apart(beside: Sequence[float]) -> list[float]:

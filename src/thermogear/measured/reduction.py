@@ -16,8 +16,10 @@ from thermogear.measured.chain import METHODS, Chain
 from thermogear.measured.changing import (
     Changing,
     OrderSlices,
+    harmonics_told,
     order_lines,
     read_in_angle,
+    require_orders,
 )
 from thermogear.measured.choosing import chosen_channels
 from thermogear.measured.contradictions import of_speed
@@ -251,6 +253,7 @@ def measure(
                 orders,
                 gearing,
                 teeth,
+                values.size,
             ),
             sensor_tolerance,
             turns,
@@ -262,6 +265,7 @@ def measure(
                 speed=undecided is not None,
             ),
         )
+    notices += harmonics_told(gearing, harmonics, record.rate)
     notices += told_withheld(lines, turns)
     lines = [of_velocity(line, record.channel(line.channel)) for line in lines]
     notices += _untold(record, chosen, sensor_tolerance)
@@ -356,15 +360,24 @@ def _of_slices(
 
 
 def _with_orders(
-    wanted: list[Wanted], orders: Sequence[float], gearing: Gearing | None, teeth: int | None
+    wanted: list[Wanted],
+    orders: Sequence[float],
+    gearing: Gearing | None,
+    teeth: int | None,
+    samples: int,
 ) -> list[Wanted]:
-    """The lines with those at ``orders`` of the first shaft, which must be known for them."""
+    """The lines with those at ``orders`` of the first shaft, which must be known for them.
+
+    Refused is an order that turns less than once in the ``samples`` or is above half the rate.
+    """
     if not orders:
         return wanted
     if gearing is None or not teeth:
         got = ", ".join(f"{o:g}" for o in orders)
         raise InputError("orders", got, why="no shaft's speed is known", fix="--teeth or --tacho")
-    return wanted + order_lines(orders, gearing.mesh_frequency / teeth, wanted)
+    shaft = gearing.mesh_frequency / teeth
+    require_orders(orders, lowest=1.0 / (samples * shaft), highest=(0.5 - 2.0 / samples) / shaft)
+    return wanted + order_lines(orders, shaft, wanted)
 
 
 def _untold(
