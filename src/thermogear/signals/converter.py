@@ -28,7 +28,7 @@ _CLEAR, _CLEAR_ENDS = 9.0, 6.0  # times the usual error of that: the range; wher
 _HARD, _HELD = 0.03, 6  # share of what a bin holds, and samples, in each outermost one: a hard end
 _USUAL, _AT_ALL, _AT_MOST = 3.0, 0.05, 0.2  # error of those put back: times the usual; of the range
 _USUAL_ENDS, _AT_MOST_ENDS = 3.5, 0.36  # the same where the range ends hard
-_DENSE, _NO_DOUBT = 0.25, 8.0  # of what a bin holds, and times the error: sure, but not put back
+_DENSE, _NO_DOUBT, _MANY_BACK = 0.25, 8.0, 0.01  # of a bin, times the error, of all: not put back
 _PUT = 0.42  # of the range: error of those put back, half of it of those that need not be
 _MANY = 10.0  # levels in a standard deviation: fine
 _FOLDED = 0.53  # 2 zeta(3/2)/pi^2: see coarse
@@ -98,9 +98,9 @@ def wrapped(x: Floats, free: Mask) -> list[tuple[Mask, float]]:
     samples are between the range's outer tenths: those of two states are not. Where the outermost
     of 64 bins both hold six samples, and 3 % of what a bin holds, the record ends hard on both
     sides, as what overflows does: a range of six times the usual error then does, and an error of
-    3.5 times or 0.36 of the range; where bins there hold a quarter, and the range is eight times
-    that error, the samples are told with NaN: they came back, and which did is unsure. Where most
-    have one value they were set to it. A saw tooth is a ramp that wraps around, and is told.
+    3.5 times or 0.36 of the range; where bins there hold a quarter, the range is eight times that
+    error and 1 % of the samples are off, they are told with NaN: which came back is unsure. Where
+    most have one value they were set to it. A saw tooth is a ramp that wraps around, and is told.
     ``free``: samples that count.
 
     >>> x = np.cos(0.37 * np.arange(2000.0)) + 0.3 * np.cos(0.1 * np.arange(2000.0))
@@ -138,6 +138,7 @@ def wrapped(x: Floats, free: Mask) -> list[tuple[Mask, float]]:
     if not _put_right(off, error, span, hard):
         usual, wrong = _median(error[~off]), _median(error[off])
         sure = ends >= _DENSE and span >= _NO_DOUBT * usual and wrong < span
+        sure = sure and count >= _MANY_BACK * x.size
         return [(off & free, np.nan)] if sure else []
     sides = [(free & (turns == side), side * span) for side in (1, -1)]
     return [(where, put) for where, put in sides if where.any()]

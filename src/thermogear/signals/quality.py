@@ -80,16 +80,12 @@ def damages(x: ArrayLike) -> list[Damage]:
     values = np.asarray(x, dtype=float)
     free = np.isfinite(values)
     found = [Damage(kind="missing", samples=~free)] if not free.all() else []
-    for one in (_sentinels, _wrapped, _clipped, _straight, _held, _stuck, _spikes):
+    for one in (_sentinels, _quiet, _wrapped, _clipped, _straight, _held, _stuck, _spikes):
         for damage in one(values, free):
             found.append(damage)
             free = free & ~damage.samples
     if np.count_nonzero(free) < 64:
         return found
-    still = quiet(values, free)
-    if still.any():
-        found.append(Damage(kind="quiet", samples=still & free))
-        free = free & ~still
     if run := missing_codes(values, free):
         found.append(Damage(kind="missing codes", samples=free, value=float(run)))
     share = coarse(values, free)
@@ -122,6 +118,12 @@ def _sentinels(x: Floats, free: Mask) -> list[Damage]:
         else:
             break
     return found
+
+
+def _quiet(x: Floats, free: Mask) -> list[Damage]:
+    """Stretches in which nothing vibrates."""
+    still = quiet(x, free) & free
+    return [Damage(kind="quiet", samples=still)] if still.any() else []
 
 
 def _wrapped(x: Floats, free: Mask) -> list[Damage]:
