@@ -80,7 +80,7 @@ def damages(x: ArrayLike) -> list[Damage]:
     values = np.asarray(x, dtype=float)
     free = np.isfinite(values)
     found = [Damage(kind="missing", samples=~free)] if not free.all() else []
-    for one in (_sentinels, _quiet, _wrapped, _clipped, _straight, _held, _stuck, _spikes):
+    for one in (_sentinels, _wrapped, _clipped, _straight, _held, _quiet, _stuck, _spikes):
         for damage in one(values, free):
             found.append(damage)
             free = free & ~damage.samples
