@@ -127,6 +127,60 @@ def test_what_agrees_or_is_open_is_no_contradiction() -> None:
     assert numbers(both.text) == [1.0, 20.0, 41.0, 7.3, 1.0]
 
 
+def pair(random: np.random.Generator, teeth: tuple[int, int], rpm: float) -> Record:
+    """Two gears in mesh, the first at ``rpm``; each turn of each swells the mesh line."""
+    rate, turns = 8192.0, rpm / 60.0 * np.arange(20_000) / 8192.0
+    swell = np.ones(turns.size)
+    for z in teeth:
+        phase = random.uniform(0.0, 2.0 * np.pi)
+        size = random.uniform(0.04, 0.1)
+        swell += size * np.cos(2 * np.pi * turns * teeth[0] / z + phase)
+    x = 0.05 * random.standard_normal(turns.size)
+    for rank, size in ((1, 1.0), (2, 0.5), (3, 0.3)):
+        phase = random.uniform(0.0, 2.0 * np.pi)
+        x += size * swell * np.cos(2 * np.pi * rank * teeth[0] * turns + phase)
+    return Record((Channel("a", x, "g"),), "pair", rate, "made")
+
+
+def pairs(random: np.random.Generator, count: int) -> Iterator[tuple[tuple[int, int], float]]:
+    """Teeth whose speeds cannot be taken for each other, none a divisor, and the first's rpm."""
+    while count:
+        teeth = int(random.integers(17, 41)), int(random.integers(25, 95))
+        if teeth[1] >= 1.2 * teeth[0] and teeth[1] % teeth[0]:
+            count -= 1
+            yield teeth, float(random.uniform(1000.0, 1500.0))
+
+
+def test_teeth_of_one_gear_with_the_speed_of_the_other_are_told_and_right_ones_are_not() -> None:
+    """Both statements that are right are silent; both that are crossed are told, with no speed."""
+    random = np.random.default_rng(20261126)
+    two_gears = 0
+    for teeth, rpm in pairs(random, 6):
+        record = pair(random, teeth, rpm)
+        speeds = rpm, rpm * teeth[0] / teeth[1]
+        for own in (0, 1):
+            for whose in (0, 1):
+                nominal = speeds[whose] * float(random.uniform(0.97, 1.03))
+                found = measure(
+                    record, teeth=teeth[own], speed=nominal * RPM, harmonics=1, sidebands=0
+                )
+                told = [n.text for n in found.notices if n.level in ("important", "warning")]
+                case = f"{teeth}, {rpm}: --teeth {teeth[own]} --speed {nominal}: {told}"
+                if own == whose:
+                    assert told == [], case
+                    assert found.lines[0].shaft_speed / RPM == pytest.approx(speeds[own], rel=1e-3)
+                    continue
+                assert told, case
+                assert np.isnan(found.lines[0].shaft_speed), case
+                crossed = important(found, "teeth given")
+                if crossed:
+                    two_gears += 1
+                    expected = [teeth[own], nominal, teeth[whose], speeds[whose], teeth[own]]
+                    assert numbers(crossed)[:5] == pytest.approx(expected, rel=1e-3), case
+                    assert f"--teeth {teeth[own]} --speed {speeds[own]:.5g}" in crossed
+    assert two_gears >= 9  # of 12: elsewhere the mate is not decided, and the speed alone is told
+
+
 def with_tacho() -> Record:
     """A mesh line of 20 teeth at 900 rpm without sidebands, one pulse a turn."""
     t = np.arange(20_000) / 5000.0

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from thermogear.base.units import RPM
 from thermogear.measured.record import Notice
 
@@ -87,6 +89,31 @@ def of_speed(given: float | None, *, lowest: float, highest: float) -> Notice | 
         f"speed given: {given / RPM:.6g} rpm; found: {span}. The speed given may be wrong, or "
         "teeth, pulses per turn or the rate are",
     )
+
+
+def of_mate(teeth: int, *, speed: float, shaft: float, found: Sequence[int]) -> tuple[str, str]:
+    """Which gear turns at the ``speed`` [rad/s] given, where that of the ``teeth`` given turns at
+    ``shaft`` [rad/s], and what to state instead; both empty where none of the teeth ``found`` on
+    the same mesh line turns so, or the gear of the teeth given does.
+
+    >>> of_mate(71, speed=129.12, shaft=52.74, found=[29, 71])[1]
+    'give teeth and speed of one gear: --teeth 29 --speed 1233 or --teeth 71 --speed 503.63'
+    """
+    if abs(shaft / speed - 1.0) <= NEAR:
+        return "", ""
+    others = [(z, shaft * teeth / z) for z in found if z != teeth]
+    fitting = [(abs(own / speed - 1.0), z, own) for z, own in others]
+    off, mate, own = min(fitting, default=(np.inf, 0, 0.0))
+    if off > NEAR:
+        return "", ""
+    rpm = f"{own / RPM:.5g}", f"{shaft / RPM:.5g}"
+    text = (
+        f"teeth given: {teeth}; speed given: {speed / RPM:.6g} rpm; found: that is the speed of "
+        f"the gear of {mate} teeth, which turns at {rpm[0]} rpm; the gear of {teeth} teeth turns "
+        f"at {rpm[1]} rpm"
+    )
+    ways = f"--teeth {mate} --speed {rpm[0]} or --teeth {teeth} --speed {rpm[1]}"
+    return text, f"give teeth and speed of one gear: {ways}"
 
 
 def of_line(given: float, *, found: float, weight: float) -> Notice | None:

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.bounds import SPEED
 from thermogear.base.errors import InputError
-from thermogear.measured.contradictions import NEAR, of_line, of_teeth
+from thermogear.measured.contradictions import NEAR, of_line, of_mate, of_teeth
 from thermogear.measured.gate import Finding
 from thermogear.measured.gearing import Gearing, find_gearing
 from thermogear.measured.meshes import Stated
@@ -49,7 +49,7 @@ def stated_gearing(
     except InputError as error:
         notices.append(Notice("important", str(error)))
         free = None
-    if expected is None or (free and _is_expected(free, expected)):
+    if expected is None or (free and (_is_expected(free, expected) or _is_of_mate(free, stated))):
         return free
     if 5.0 / table.shape[-1] < expected < 0.45:
         try:
@@ -75,6 +75,16 @@ def _is_expected(free: Gearing, expected: float) -> bool:
     return off < 0.03 or (off <= NEAR and sure)
 
 
+def _is_of_mate(free: Gearing, stated: Stated) -> bool:
+    """Whether the speed stated is that of the mate of the gear stated: of a mate of half or a third
+    of the teeth these two put the mesh line at a harmonic, where a line is as well."""
+    if stated.teeth is None or stated.shaft is None:
+        return False
+    shaft = 2.0 * np.pi * free.mesh_frequency / stated.teeth
+    speed = 2.0 * np.pi * stated.shaft
+    return _of_two_gears(free, teeth=stated.teeth, speed=speed, shaft=shaft) is not None
+
+
 def settled_teeth(gearing: Gearing | None, teeth: int | None, notices: list[Notice]) -> int | None:
     """The teeth given, else those found; told where these contradict each other."""
     if gearing is None:
@@ -95,14 +105,19 @@ def speed_undecided(
     """Where the line that is read may be the mesh line of another gear than that of the ``teeth``
     given, so that its shaft may turn otherwise: the shaft's speed is withheld.
 
-    Not where a ``speed`` [rad/s] is given that fits the line. A comb is no mesh line of theirs
-    where the gear turned less than once in the ``samples``.
+    Not where a ``speed`` [rad/s] is given that fits the line. One that fits the mate of the gear
+    of the ``teeth`` given says something else than these: which shaft is meant is not decided. A
+    comb is no mesh line of theirs where the gear turned less than once in the ``samples``.
     """
     if teeth is None:
         return None
     shaft = gearing.mesh_frequency / teeth
-    if speed is not None and rate and abs(2.0 * np.pi * shaft * rate / speed - 1.0) <= NEAR:
-        return None
+    if speed is not None and rate:
+        turns = 2.0 * np.pi * shaft * rate
+        if abs(turns / speed - 1.0) <= NEAR:
+            return None
+        if (crossed := _of_two_gears(gearing, teeth=teeth, speed=speed, shaft=turns)) is not None:
+            return crossed
     least = _LEAST_TURNS * teeth / samples
     share = gearing.weighed.share_of(gearing.mesh_frequency, teeth=teeth, least=least)
     if share >= SURE:
@@ -112,5 +127,21 @@ def speed_undecided(
         f"{gearing.mesh_frequency:.6f} cycles/sample, which is read, has a weight of {share:.2g}",
         done="the shaft's speed is withheld (give it by --speed)",
         effect="orders count the turns of a shaft that may be another",
+        withholds=True,
+    )
+
+
+def _of_two_gears(gearing: Gearing, *, teeth: int, speed: float, shaft: float) -> Finding | None:
+    """Where the teeth given are of one gear of the mesh and the ``speed`` [rad/s] of the other."""
+    on_line = list(gearing.weighed.teeth)
+    if teeth not in on_line:
+        return None  # teeth that are not found are told of as such
+    text, ways = of_mate(teeth, speed=speed, shaft=shaft, found=on_line)
+    if not text:
+        return None
+    return Finding(
+        kind=text,
+        done=f"the shaft's speed is withheld ({ways})",
+        effect=f"orders count the turns of the gear of {teeth} teeth",
         withholds=True,
     )
