@@ -23,6 +23,8 @@ from thermogear.measured.reduction import Measurement, measure
 from thermogear.measured.shaft import given_shaft
 from thermogear.results.files import json_text
 from thermogear.signals.slices import greatest, order_slices
+from thermogear.views.page import Gallery, Shown
+from thermogear.views.picture import Curve, Points
 from thermogear.views.write import page_of
 
 TEETH, PULSES, RATE, SECONDS = 20, 2, 2000.0, 5.0
@@ -248,6 +250,60 @@ def test_the_terminal_tells_every_weight_once_and_no_evidence_of_nothing(
     (mean,) = [line for line in lines if "shaft speed" in line]
     # three pulses said where there are two: two thirds of the true speed
     assert numbers(mean) == pytest.approx([640.0, 400.0, 880.0], rel=0.09)
+
+
+# --- the spectrum of the page ---------------------------------------------------------------------
+
+
+def spectrum(found: Measurement) -> Shown:
+    """The picture of the spectrum on the record's page."""
+    (section,) = [one for one in page_of(result_of(found)).sections if one.name == "spectrum"]
+    (gallery,) = [one for one in section.blocks if isinstance(one, Gallery)]
+    return gallery.pictures[0]
+
+
+@pytest.mark.parametrize("seed", [41, 42, 43])
+def test_a_run_has_no_order_in_its_spectrum_over_time(seed: int) -> None:
+    """In hertz to half the rate, and nothing marked: no line of a run has one frequency."""
+    random = np.random.default_rng(seed)
+    t = np.arange(int(RATE * SECONDS)) / RATE
+    ends = random.uniform(300.0, 700.0), random.uniform(900.0, 1400.0)
+    turns = (ends[0] * t + (ends[1] - ends[0]) * t**2 / 2.0 / SECONDS) / 60.0
+    x = np.cos(2 * np.pi * TEETH * turns) + 0.05 * random.standard_normal(t.size)
+    pulses = 5.0 * (turns % 1.0 < 0.3)
+    channels = Channel("acc", x, "g"), Channel("tacho", pulses, "V")
+    record = Record(channels, "run", RATE, "made", tacho="tacho")
+    found = measure(record, pulses_per_turn=1.0, teeth=TEETH, harmonics=1, sidebands=0)
+    shown = spectrum(found)
+    panel = shown.picture.panels[0][0]
+    assert "[Hz]" in panel.x.words
+    assert [one for one in panel.marks if isinstance(one, Points)] == []
+    (curve,) = [one for one in panel.marks if isinstance(one, Curve)]
+    assert np.max(curve.x) == pytest.approx(RATE / 2, rel=0.01)
+    assert found.slices is not None
+    speed = found.slices.speed / RPM
+    told = numbers(str(shown.caption))[:2]
+    assert told == pytest.approx([speed.min(), speed.max()], rel=1e-4)
+
+
+@pytest.mark.parametrize(("wander", "seed"), [(0.0, 44), (0.0, 45), (0.0015, 46), (0.002, 47)])
+def test_marks_above_the_spectrum_are_explained_and_others_lie_on_it(
+    wander: float, seed: int
+) -> None:
+    random = np.random.default_rng(seed)
+    t = np.arange(20_000) / 5000.0
+    rpm = random.uniform(700.0, 1100.0)
+    turns = rpm / 60.0 * (t + wander * np.sin(2 * np.pi * t))
+    x = np.cos(46 * np.pi * turns) + 0.4 * np.cos(92 * np.pi * turns)
+    x += 0.05 * random.standard_normal(t.size)
+    record = Record((Channel("a", x, "g"),), "made", 5000.0, "made")
+    shown = spectrum(measure(record, teeth=23, harmonics=1, sidebands=0))
+    panel = shown.picture.panels[0][0]
+    (curve,) = [one for one in panel.marks if isinstance(one, Curve)]
+    (marks,) = [one for one in panel.marks if isinstance(one, Points)]
+    near = np.abs(np.asarray(curve.x) - 23.0) < 0.2
+    assert (np.max(np.asarray(curve.y)[near]) < 0.8 * np.max(marks.y)) == (wander > 0.0)
+    assert ("Marks" in str(shown.caption)) == (wander > 0.0)
 
 
 # --- figures -------------------------------------------------------------------------------------
