@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import pickle
 from functools import partial
 from pathlib import Path
 
@@ -11,12 +12,17 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+from said import numbers
 from thermogear.base.errors import InputError
 from thermogear.front.measure_commands import measure
 from thermogear.front.measuring import measured_among
-from thermogear.measured import at_once
+from thermogear.measured import at_once, reduction
 from thermogear.measured.at_once import rows_of
+from thermogear.measured.record import Channel, Record
 from thermogear.measured.reduction import Measurement
+from thermogear.measured.same_line import Placed, PlacedName
+from thermogear.measured.several import Several, result_of_several, several
+from thermogear.views.write import page_of
 
 RATE = 5120.0
 WORDS = (
@@ -114,3 +120,166 @@ def ends(path: Path) -> Measurement:
     if path.name == "r1.csv":
         os._exit(1)
     raise InputError("file", path.name, why="refused")
+
+
+# --- one line or two ------------------------------------------------------------------------------
+
+
+def signal(
+    random: np.random.Generator,
+    stages: list[tuple[tuple[int, int], float]],
+    rpm: float,
+    harmonics: tuple[float, ...] = (1.0, 0.4, 0.2),
+    swell: float = 0.05,
+) -> np.ndarray:
+    """Stages of (teeth, size) one after another, the first shaft at ``rpm``; 4 s."""
+    turns = rpm / 60.0 * np.arange(4 * 8192) / 8192.0
+    x = 0.05 * random.standard_normal(turns.size)
+    for (one, other), size in stages:
+        swelling = np.ones(turns.size)
+        for z in (one, other):
+            swelling += swell * np.cos(2 * np.pi * turns * one / z + random.uniform(0.0, 6.0))
+        for rank, part in enumerate(harmonics, start=1):
+            wave = np.cos(2 * np.pi * rank * one * turns + random.uniform(0.0, 6.0))
+            x += size * part * swelling * wave
+        turns = turns * one / other
+    return x
+
+
+def compared(
+    signals: list[np.ndarray], tacho: list[np.ndarray] | None = None, **options: float
+) -> Several:
+    """The signals as records r0, r1, ... against the first."""
+    records = {}
+    for k, x in enumerate(signals):
+        channels = [Channel("acc", x, "g")]
+        channels += [Channel("tacho", tacho[k], "V")] if tacho else []
+        name = "tacho" if tacho else None
+        records[Path(f"r{k}")] = Record(tuple(channels), f"r{k}", 8192.0, "made", tacho=name)
+
+    def read(path: Path) -> Measurement:
+        return reduction.measure(records[path], sidebands=0, **options)  # type: ignore[arg-type]
+
+    return several(list(records), read)
+
+
+def mesh_change(found: Several, record: int = 1) -> float:
+    """Of the first harmonic; nan: withheld."""
+    return float(found.change[record, found.keys.index(("acc", "mesh x 1"))])
+
+
+TRAINS = [((17, 43), (22, 61)), ((29, 71), (19, 67)), ((37, 53), (15, 44)), ((23, 59), (31, 73))]
+
+
+@pytest.mark.parametrize(("first", "second"), TRAINS)
+def test_a_second_stage_that_grew_is_no_change_of_the_first(
+    first: tuple[int, int], second: tuple[int, int]
+) -> None:
+    """At one speed stage 1 is as before and stage 2 four times as loud: the mesh line found is
+    another one, both are told, and what is stated of a line is true of it."""
+    random = np.random.default_rng(sum(first) + sum(second))
+    rpm = float(random.uniform(1200.0, 1500.0))
+    runs = [signal(random, [(first, 1.0), (second, size)], rpm) for size in (0.4, 1.6, 0.4)]
+    found = compared(runs)
+    hertz = [turns.hertz for turns in found.turns]
+    meshes = rpm / 60.0 * first[0] * np.array([1.0, second[0] / first[1]])
+    assert hertz[:2] == pytest.approx(meshes, rel=1e-4)
+    assert np.isnan(found.change[1, :]).all()
+    assert not found.beyond[1].any()
+    assert abs(mesh_change(found, 2)) < 0.01
+    ((name, why),) = found.apart
+    assert name == "r1"
+    assert f"{hertz[1]:.6g} Hz" in why
+    result = result_of_several(found)
+    (told,) = [one.text for one in result.notices if one.text.startswith("changes of r1")]
+    assert f"{hertz[0]:.6g} Hz" in told
+    assert f"{hertz[1]:.6g} Hz" in told
+    assert "--teeth" in told
+    figures = page_of(result).numbers()
+    assert [name for name, _ in figures["apart"]] == ["r1"]
+    assert [one["mesh_frequency"] for one in figures["speeds"]] == pytest.approx(hertz)
+    # the teeth of stage 1 given: it is read in both, and is as before
+    stated = compared(runs, teeth=first[0])
+    assert stated.turns[1].hertz == pytest.approx(hertz[0], rel=1e-4)
+    assert abs(mesh_change(stated)) < 0.02
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_drift_of_speed_still_compares(seed: int) -> None:
+    random = np.random.default_rng(900 + seed)
+    teeth = int(random.integers(18, 40)), int(random.integers(41, 90))
+    rpm, drift = random.uniform(1000.0, 1400.0), random.uniform(-0.005, 0.005)
+    swell = 0.05 if seed % 2 else 0.0  # with teeth that show and without
+    runs = [
+        signal(random, [(teeth, size)], rpm * more, swell=swell)
+        for size, more in ((1.0, 1.0), (1.1, 1.0 + drift))
+    ]
+    found = compared(runs)
+    assert found.apart == ()
+    assert mesh_change(found) == pytest.approx(0.1, abs=0.01)
+    assert [n for n in result_of_several(found).notices if n.level != "info"] == []
+
+
+@pytest.mark.parametrize("ratio", [0.5, 0.71, 1.31, 1.486, 2.0])
+def test_another_speed_is_told_where_the_teeth_decide_and_withheld_where_nothing_does(
+    ratio: float,
+) -> None:
+    random = np.random.default_rng(round(1000 * ratio))
+    for swell in (0.06, 0.0):
+        runs = [
+            signal(random, [((23, 57), size)], 900.0 * more, (1.0, 0.3), swell)
+            for size, more in ((1.0, 1.0), (1.2, ratio))
+        ]
+        found = compared(runs)
+        result = result_of_several(found)
+        speeds = [one.text for one in result.notices if "another speed" in one.text]
+        if swell == 0.0:
+            assert np.isnan(mesh_change(found))
+            assert [name for name, _ in found.apart] == ["r1"]
+            assert speeds == []
+            continue
+        assert mesh_change(found) == pytest.approx(0.2, abs=0.02)
+        (told,) = speeds
+        assert {900.0, float(f"{900.0 * ratio:.5g}")} <= set(numbers(told))
+        assert f"{900 * ratio:.5g} rpm" in "\n".join(page_of(result).lines())
+
+
+@pytest.mark.parametrize("rank", [2, 3])
+def test_a_harmonic_taken_for_the_mesh_is_not_compared_with_it(rank: int) -> None:
+    """The first harmonic is gone: what is found is a multiple of the mesh frequency."""
+    random = np.random.default_rng(70 + rank)
+    sizes = np.zeros(3 * rank)
+    sizes[rank - 1 :: rank] = 1.0, 0.4, 0.2
+    for swell in (0.05, 0.0):
+        whole = signal(random, [((20, 47), 1.0)], 1000.0, (1.0, 0.4, 0.2), swell)
+        taken = signal(random, [((20, 47), 1.0)], 1000.0, tuple(sizes), swell)
+        found = compared([whole, taken])
+        if abs(found.turns[1].hertz / found.turns[0].hertz - 1.0) > 0.02:
+            assert np.isnan(mesh_change(found))
+
+
+@pytest.mark.parametrize("ratio", [1.0, 1.5, 2.0])
+def test_a_tacho_decides_whether_a_line_is_the_same(ratio: float) -> None:
+    """One mesh line without sidebands and a pulse a turn; then the line is at another order."""
+    random = np.random.default_rng(round(10 * ratio))
+    turns = [rpm / 60.0 * np.arange(4 * 8192) / 8192.0 for rpm in (900.0, 900.0 * ratio)]
+    pulses = [5.0 * (one % 1.0 < 0.2) for one in turns]
+    lines = [
+        size * np.cos(2 * np.pi * 23 * one) + 0.3 * np.cos(2 * np.pi * 46 * one + 1.0)
+        for size, one in zip((1.0, 1.1), turns, strict=True)
+    ]
+    noise = [0.05 * random.standard_normal(one.size) for one in turns]
+    runs = [line + more for line, more in zip(lines, noise, strict=True)]
+    assert mesh_change(compared(runs, pulses)) == pytest.approx(0.1, abs=0.01)
+    steady = compared(runs, [pulses[0], pulses[0]])
+    assert np.isnan(mesh_change(steady)) == (ratio != 1.0)
+
+
+def test_a_name_brings_its_place_through_a_process_and_is_the_name() -> None:
+    record = Record((Channel("acc", np.cos(0.3 * np.arange(4096)), "g"),), "r", 1000.0, "made")
+    found = Placed(lambda _: reduction.measure(record, harmonics=1, sidebands=0))(Path("r"))
+    name = found.lines[0].name
+    again = pickle.loads(pickle.dumps(name))
+    assert isinstance(name, PlacedName)
+    assert (again, hash(again), repr(again.place)) == (name, hash(str(name)), repr(name.place))
+    assert json.dumps(name) == json.dumps(str(name))

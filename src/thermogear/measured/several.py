@@ -14,9 +14,11 @@ from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError, nearest
 from thermogear.base.progress import Progress, silent
+from thermogear.base.units import RPM
 from thermogear.base.vocabulary import label
 from thermogear.measured.at_once import Row, rows_of
 from thermogear.measured.reduction import Measurement
+from thermogear.measured.same_line import ALIKE, Placed, Turns, compare
 from thermogear.results.result import Notice, Result, now
 
 Floats = NDArray[np.float64]
@@ -33,7 +35,9 @@ class Several:
     where a record has no such line; ``keys`` (channel, name) of the lines; ``refused`` why a file
     gave none; ``withheld`` why readings of a record are, and what damage was ``found`` in it, where
     there is any; ``baseline`` the record that others are compared with; ``hint`` what else the
-    files may be."""
+    files may be. ``same`` (record, line): whether it is the baseline's line, which its name alone
+    does not say; ``apart`` why it is not, by record; ``turns`` what is known of a record's speed,
+    ``ratio`` how many times as fast as the baseline it turns (nan: not known)."""
 
     names: tuple[str, ...]
     keys: tuple[tuple[str, str], ...]
@@ -45,11 +49,15 @@ class Several:
     hint: str = ""
     withheld: tuple[tuple[str, str], ...] = ()
     found: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    same: NDArray[np.bool_]
+    apart: tuple[tuple[str, str], ...] = ()
+    turns: tuple[Turns, ...]
+    ratio: Floats
 
     @property
     def change(self) -> Floats:
-        """(reading - baseline)/baseline, (record, line)."""
-        return np.asarray(self.reading / self.reading[self.baseline] - 1.0)
+        """(reading - baseline)/baseline, (record, line); nan where it is another line."""
+        return np.where(self.same, self.reading / self.reading[self.baseline] - 1.0, np.nan)
 
     @property
     def change_half_width(self) -> Floats:
@@ -57,7 +65,7 @@ class Several:
         base = self.reading[self.baseline]
         own = self.half_width / base
         ratio = self.reading / base * self.half_width[self.baseline] / base
-        return np.asarray(np.hypot(own, ratio))
+        return np.where(self.same, np.hypot(own, ratio), np.nan)
 
     @property
     def beyond(self) -> NDArray[np.bool_]:
@@ -72,7 +80,8 @@ class Several:
         slope, half = (np.full(len(self.keys), np.nan) for _ in range(2))
         base = self.reading[self.baseline]
         for k in range(len(self.keys)):
-            good = np.flatnonzero(np.isfinite(self.reading[:, k]) & (self.half_width[:, k] > 0.0))
+            known = np.isfinite(self.reading[:, k]) & self.same[:, k]
+            good = np.flatnonzero(known & (self.half_width[:, k] > 0.0))
             if good.size < 3 or not np.isfinite(base[k]):
                 continue
             y = self.reading[good, k] / base[k]
@@ -128,7 +137,8 @@ def several(
     """Measure ``files`` by ``read``; a file that is refused is told and left out.
 
     ``baseline``: "first", "last", or the name of a file. Readings are in each record's own unit;
-    records of another unit than the baseline's are refused. Raises InputError where none is left to
+    records of another unit than the baseline's are refused. A line is compared where it is the
+    baseline's (:mod:`~thermogear.measured.same_line`). Raises InputError where none is left to
     compare with the baseline. ``cores``: processes to measure in;
     with more than one ``read`` must be a function that a new process can import, and a script
     needs its ``if __name__ == "__main__":``.
@@ -137,7 +147,7 @@ def several(
     if baseline not in ("first", "last") and _place(baseline, files, shown) is None:
         fix = nearest(baseline, [*shown, "first", "last"])
         raise InputError("--baseline", baseline, allowed="first, last or one of the files", fix=fix)
-    rows = rows_of(read, files, cores=cores, progress=progress)
+    rows = rows_of(Placed(read), files, cores=cores, progress=progress)
     names = dict(zip(files, shown, strict=True))
     refused = [(names[row.file], row.refused) for row in rows if row.refused]
     good = [row for row in rows if not row.refused]
@@ -168,12 +178,22 @@ def several(
     if int(np.sum(both.any(axis=1))) < 2:
         lost = [*refused, *((name, f"readings are withheld: {why}") for name, why in withheld)]
         raise _nothing_compared(names[good[place].file], lost, len(files), _hint(good))
+    first = kept.index(good[place])
+    compared = [compare(row.readings, kept[first].readings, keys) for row in kept]
     return Several(
         names=tuple(names[row.file] for row in kept),
-        keys=keys,
+        keys=tuple((channel, str(name)) for channel, name in keys),
         reading=table[..., 0],
         half_width=table[..., 1],
-        baseline=kept.index(good[place]),
+        baseline=first,
+        same=np.array([one.same for one in compared], dtype=bool).reshape(len(kept), len(keys)),
+        apart=tuple(
+            (names[row.file], one.words(names[good[place].file]))
+            for row, one in zip(kept, compared, strict=True)
+            if one.why or one.moved
+        ),
+        turns=tuple(one.turns for one in compared),
+        ratio=np.array([one.ratio for one in compared]),
         refused=tuple(refused),
         unit=unit,
         hint=_hint(good),
@@ -236,6 +256,18 @@ def result_of_several(found: Several) -> Result:
             "record_line_beyond": (axes, found.beyond.astype(float)),
             "record_line_trend": (("line",), slope),
             "record_line_trend_half_width": (("line",), half),
+            "record_mesh_frequency": (
+                ("record",),
+                np.array([one.hertz for one in found.turns]),
+                "Hz",
+                "mesh line found",
+            ),
+            "record_shaft_speed": (
+                ("record",),
+                np.array([one.shaft for one in found.turns]),
+                "rad/s",
+                "speed of the first shaft",
+            ),
         }
     ).assign_coords(
         record=list(found.names),
@@ -257,6 +289,10 @@ def result_of_several(found: Several) -> Result:
                 f"intervals: {shown} (measure one alone, or see --json, for what it is)",
             )
         )
+    notices += [
+        Notice("important", f"changes of {name} are withheld: {why}") for name, why in found.apart
+    ]
+    notices += _of_speeds(found)
     if found.hint:
         notices.append(Notice("info", found.hint))
     return Result.of(
@@ -270,16 +306,53 @@ def result_of_several(found: Several) -> Result:
     )
 
 
+def _of_speeds(found: Several) -> list[Notice]:
+    """What to know of records that turn at another speed than the baseline."""
+    off = [k for k, ratio in enumerate(found.ratio) if abs(ratio - 1.0) > ALIKE]
+    if not off:
+        return []
+    told = [f"{found.names[k]}: {_speed(found, k)}" for k in off[:_NAMED]]
+    told += [f"and {len(off) - _NAMED} more"] if len(off) > _NAMED else []
+    base = _speed(found, found.baseline)
+    text = (
+        f"{len(off)} of {len(found.names)} records turn at another speed than "
+        f"{found.names[found.baseline]} ({base}): {'; '.join(told)}. The level of a mesh line "
+        "changes with speed: what changed there is not the gears' alone"
+    )
+    return [Notice("important", text)]
+
+
+def _speed(found: Several, k: int) -> str:
+    """Speed and mesh line of a record in words; with neither how many times as fast it turns."""
+    turns, told = found.turns[k], []
+    if np.isfinite(turns.shaft):
+        told.append(f"{turns.shaft / RPM:.5g} rpm")
+    if np.isfinite(turns.hertz):
+        told.append(f"mesh line at {turns.hertz:.6g} Hz")
+    return ", ".join(told) or f"{found.ratio[k]:.4g} times as fast"
+
+
 def figures_of_several(found: Several) -> dict[str, Any]:
     """Plain figures: of every line that changed where, by how much, and its trend."""
     slope, half = found.trends()
     change, width, beyond = found.change, found.change_half_width, found.beyond
+    speeds = [
+        {
+            "record": name,
+            "shaft_speed": _known(turns.shaft),
+            "mesh_frequency": _known(turns.hertz),
+            "speed_ratio": _known(ratio),
+        }
+        for name, turns, ratio in zip(found.names, found.turns, found.ratio, strict=True)
+    ]
     rows = []
     for k, (channel, name) in enumerate(found.keys):
         for i in np.flatnonzero(beyond[:, k]):
             rows.append(
                 {
                     "record": found.names[i],
+                    "shaft_speed": speeds[i]["shaft_speed"],
+                    "mesh_frequency": speeds[i]["mesh_frequency"],
                     "channel": channel,
                     "name": name,
                     "reading": float(found.reading[i, k]),
@@ -299,12 +372,21 @@ def figures_of_several(found: Several) -> dict[str, Any]:
         "compared": int(np.sum(np.isfinite(np.delete(change, found.baseline, axis=0)))),
         "changed": rows,
         "trends": trends,
+        "speeds": speeds,
+        "apart": [list(pair) for pair in found.apart],
         "refused": [list(pair) for pair in found.refused],
         "withheld": [list(pair) for pair in found.withheld],
         "findings": [[name, list(texts)] for name, texts in found.found],
         "units": {
             "reading": found.unit,
+            "shaft_speed": "rad/s",
+            "mesh_frequency": "Hz",
+            "speed_ratio": "1",
             **dict.fromkeys(("change", "change_half_width", "lines", "compared"), "1"),
             **dict.fromkeys(("trend", "trend_half_width"), "1/record"),
         },
     }
+
+
+def _known(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None

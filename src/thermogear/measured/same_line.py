@@ -1,0 +1,285 @@
+"""Whether lines of two records are one line: by speed, by teeth, by frequency; never by name alone.
+
+The mesh line of a record is the one that shows best, of another stage perhaps than in the next.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from thermogear.base.units import RPM
+from thermogear.measured.contradictions import NEAR
+from thermogear.measured.gearing import Gearing
+from thermogear.measured.lines import MeasuredLine
+from thermogear.measured.reduction import Measurement
+from thermogear.measured.shaft import given_shaft
+
+ALIKE = 0.02
+"""Relative distance of two frequencies up to which a drift of speed explains it."""
+_NAMED = 3  # lines that a notice names
+_WEIGHT = 0.1  # of a reading whose lines may be the mesh line
+
+
+@dataclass(frozen=True, kw_only=True)
+class Turns:
+    """What a record tells of its speed: the ``mesh`` line and what ``others`` may be one
+    [cycles/sample], the ``rate`` [samples/s] (None: unknown or doubtful) and what it is ``said`` to
+    be, ``teeth`` decided on that line, teeth and speed [rad/s] ``given``, the ``shaft``'s speed
+    [rad/s] or nan; of a tacho its name and turns per sample."""
+
+    mesh: float = float("nan")
+    others: tuple[float, ...] = ()
+    rate: float | None = None
+    said: float | None = None
+    teeth: tuple[int, ...] = ()
+    given: tuple[int | None, float | None] = (None, None)
+    shaft: float = float("nan")
+    tacho: tuple[str, float] | None = None
+
+    @property
+    def hertz(self) -> float:
+        """Frequency of the mesh line [Hz]; nan: not known."""
+        return self.mesh * (self.rate or float("nan"))
+
+    @property
+    def where(self) -> str:
+        """Place of the mesh line, with the shaft's speed if that is known.
+
+        >>> Turns(mesh=0.1, rate=5000.0, shaft=50 * np.pi).where
+        '500 Hz (1500 rpm)'
+        """
+        place = f"{self.mesh:.6g} cycles/sample" if self.rate is None else f"{self.hertz:.6g} Hz"
+        return f"{place} ({self.shaft / RPM:.5g} rpm)" if np.isfinite(self.shaft) else place
+
+    def scale(self, base: Turns) -> float:
+        """How many times as high as ``base``'s a place of this record is, both in cycles/sample
+        alike; nan where no rate tells."""
+        if self.said == base.said:
+            return 1.0
+        return float("nan") if self.rate is None or base.rate is None else self.rate / base.rate
+
+    def is_stated(self) -> bool:
+        """Whether teeth and speed given put the mesh line where it is."""
+        teeth, speed = self.given
+        if teeth is None or speed is None or (self.teeth and teeth not in self.teeth):
+            return False
+        return abs(2.0 * np.pi * self.hertz / (teeth * speed) - 1.0) <= NEAR
+
+
+def turns_of(found: Measurement) -> Turns:
+    """What a measurement tells of the speed."""
+    record, gearing = found.record, found.gearing
+    sure = any(np.isfinite(line.frequency) for line in found.lines)
+    return Turns(
+        mesh=float("nan") if gearing is None else gearing.mesh_frequency,
+        others=() if gearing is None else _others(gearing),
+        rate=record.rate if sure else None,
+        said=record.rate,
+        teeth=() if gearing is None else gearing.weighed.teeth,
+        given=found.given,
+        shaft=next((line.shaft_speed for line in found.lines), float("nan")),
+        tacho=_tacho(found),
+    )
+
+
+def _others(gearing: Gearing) -> tuple[float, ...]:
+    """Lines that may be a mesh line of the record [cycles/sample], that one included."""
+    first = gearing.mesh_frequency / gearing.shafts[0].teeth if gearing.shafts else 0.0
+    places = [mesh.order * first for mesh in gearing.meshes]
+    places += [named.mesh for named in gearing.weighed.named]
+    for one in gearing.weighed.hypotheses:
+        if one.weight >= _WEIGHT:
+            places += [*(own.mesh for own in one.gears), *one.combs]
+    return tuple(place for place in dict.fromkeys(places) if place > 0.0)
+
+
+def _tacho(found: Measurement) -> tuple[str, float] | None:
+    """Name of a tacho in the record and its mean turns, or pulses, per sample."""
+    given = given_shaft(
+        found.record, samples=found.samples, start=found.start, pulses_per_turn=None
+    )
+    if given is None or given.turns.size < 2:
+        return None
+    return given.origin, float((given.turns[-1] - given.turns[0]) / (given.turns.size - 1))
+
+
+def speed_ratio(own: Turns, base: Turns) -> tuple[float, str]:
+    """How many times as fast a record turns as the baseline, and why the mesh lines of the two are
+    not one line, or may not be; then the ratio is nan.
+
+    A tacho in both decides; else frequencies within 2 % of each other; else teeth and speed given
+    that fit both lines; else teeth decided on both, where neither record has a line at the other's
+    place as well.
+
+    >>> slow, fast = (Turns(mesh=m, rate=1e3, said=1e3, teeth=(20, 31)) for m in (0.1, 0.2))
+    >>> speed_ratio(fast, slow)
+    (2.0, '')
+    >>> speed_ratio(replace(fast, teeth=()), slow)[1]
+    'no speed explains it'
+    """
+    scale = own.scale(base)
+    tachos = own.tacho is not None and base.tacho is not None and own.tacho[0] == base.tacho[0]
+    by_tacho = float("nan")
+    if tachos and own.tacho is not None and base.tacho is not None:
+        by_tacho = own.tacho[1] / base.tacho[1] * scale
+    ratio = own.mesh / base.mesh * scale
+    if np.isnan(own.mesh) or np.isnan(base.mesh):
+        return (1.0 if np.isnan(by_tacho) else by_tacho), ""
+    if np.isnan(ratio):
+        return ratio, "the rate of one of them is not known"
+    if not np.isnan(by_tacho):
+        if abs(ratio / by_tacho - 1.0) <= ALIKE:
+            return by_tacho, ""
+        return float("nan"), f"by the tacho it turns {by_tacho:.4g} times as fast"
+    if _two_meshes(own.teeth, base.teeth):
+        both = (" and ".join(map(str, one.teeth)) for one in (own, base))
+        return float("nan"), "gears of {} teeth are found there, of {} here".format(*both)
+    known = own.is_stated() and base.is_stated()
+    if abs(ratio - 1.0) <= ALIKE or known or _by_teeth(own, base, scale):
+        return ratio, ""
+    return float("nan"), "no speed explains it"
+
+
+def _two_meshes(own: tuple[int, ...], base: tuple[int, ...]) -> bool:
+    """Whether the teeth decided are of two meshes: both gears of each, and none in common."""
+    return len(own) > 1 and len(base) > 1 and not set(own) & set(base)
+
+
+def _by_teeth(own: Turns, base: Turns, scale: float) -> bool:
+    """Whether the teeth decided say that two mesh lines are one, which nothing else may be."""
+    first, second = set(own.teeth), set(base.teeth)
+    if not first or not second or not (first <= second or second <= first):
+        return False
+    stays = (abs(place * scale / base.mesh - 1.0) <= ALIKE for place in own.others)
+    was = (abs(own.mesh * scale / place - 1.0) <= ALIKE for place in base.others)
+    return not any(stays) and not any(was)
+
+
+def what_decides(own: Turns) -> str:
+    """What a user may state, where the mesh line of a record may be another one.
+
+    >>> what_decides(Turns(given=(17, None)))
+    'state --speed as well, or name a tacho'
+    """
+    teeth, speed = own.given
+    if teeth is None:
+        also = "with --speed if it is known" if speed is None else "beside the speed"
+        return f"state --teeth of the gear meant, {also}, or name a tacho"
+    return "state --speed as well, or name a tacho" if speed is None else "name a tacho"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Place:
+    """Where a line of a record is: its ``kind``, ``position`` +- ``half_width`` [cycles/sample],
+    and the record's ``turns``."""
+
+    kind: str
+    position: float
+    half_width: float
+    turns: Turns
+
+    def is_at(self, base: Place, ratio: float) -> bool:
+        """Whether a line ``ratio`` times as fast as the baseline's is at its place, within 2 % and
+        the half widths; a line that no gear explains may have a fixed frequency instead.
+
+        >>> turns = Turns(rate=1e3, said=1e3)
+        >>> at = [Place(kind="mesh", position=p, half_width=0.0, turns=turns) for p in (0.1, 0.15)]
+        >>> at[1].is_at(at[0], 1.5), at[1].is_at(at[0], 1.0)
+        (True, False)
+        """
+        found = self.position / base.position * self.turns.scale(base.turns)
+        wide = sum(one.half_width / one.position for one in (self, base))
+        expected = [ratio, 1.0] if self.kind == base.kind == "line" else [ratio]
+        return any(abs(found / one - 1.0) <= ALIKE + wide for one in expected)
+
+
+class PlacedName(str):
+    """A line's name that brings the line's ``place`` along, also from another process; it is the
+    name to all who read it."""
+
+    place: Place
+
+    @classmethod
+    def of(cls, line: MeasuredLine, turns: Turns) -> PlacedName:
+        """The name of a ``line`` of the record with these ``turns``."""
+        name = cls(line.name)
+        half = line.position_half_width
+        name.place = Place(
+            kind=line.kind,
+            position=line.position,
+            half_width=half if np.isfinite(half) else 0.0,
+            turns=turns,
+        )
+        return name
+
+
+@dataclass(frozen=True)
+class Placed:
+    """Measures as ``read`` does; the names of the lines have their places."""
+
+    read: Callable[[Path], Measurement]
+
+    def __call__(self, file: Path) -> Measurement:
+        found = self.read(file)
+        turns = turns_of(found)
+        named = (replace(line, name=PlacedName.of(line, turns)) for line in found.lines)
+        return replace(found, lines=tuple(named))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Compared:
+    """Of a record beside the baseline: which lines are the ``same``, how many times as fast it
+    turns (``ratio``, nan: not known) and ``why`` its mesh line is another, ``turns`` of it and of
+    the ``base``, and the names of lines that ``moved`` though the mesh line is one."""
+
+    same: tuple[bool, ...]
+    ratio: float
+    why: str
+    turns: Turns
+    base: Turns
+    moved: tuple[str, ...] = ()
+
+    def words(self, baseline: str) -> str:
+        """Why changes are withheld."""
+        if self.why:
+            return (
+                f"its mesh line is found at {self.turns.where}, that of {baseline} at "
+                f"{self.base.where}, and they may be two lines: {self.why} "
+                f"({what_decides(self.turns)})"
+            )
+        more = f" and {len(self.moved) - _NAMED} more" if len(self.moved) > _NAMED else ""
+        return (
+            f"lines of the same name are elsewhere than in {baseline}: "
+            f"{', '.join(self.moved[:_NAMED])}{more}"
+        )
+
+
+Readings = Mapping[tuple[str, str], object]
+
+
+def compare(own: Readings, base: Readings, keys: Sequence[tuple[str, str]]) -> Compared:
+    """Which of the lines ``keys`` (channel, name) of a record are the baseline's; both by names
+    that bring their places."""
+    here, there = _places(own), _places(base)
+    turns, first = (next((place.turns for place in one.values()), Turns()) for one in (here, there))
+    if own is base:
+        return Compared(same=(True,) * len(keys), ratio=1.0, why="", turns=turns, base=first)
+    ratio, why = speed_ratio(turns, first)
+    both = [key for key in keys if key in here and key in there]
+    moved = [key for key in both if not here[key].is_at(there[key], ratio)]
+    return Compared(
+        same=tuple(key not in moved for key in keys),
+        ratio=ratio if here and there else float("nan"),
+        why=why if moved else "",
+        turns=turns,
+        base=first,
+        moved=tuple(f"{key[1]} of {key[0]}" for key in moved),
+    )
+
+
+def _places(readings: Readings) -> dict[tuple[str, str], Place]:
+    return {key: key[1].place for key in readings if isinstance(key[1], PlacedName)}
