@@ -275,6 +275,20 @@ def test_a_tacho_decides_whether_a_line_is_the_same(ratio: float) -> None:
     assert np.isnan(mesh_change(steady)) == (ratio != 1.0)
 
 
+def test_a_record_of_another_rate_is_at_its_own_speed_and_one_without_is_not_compared() -> None:
+    random = np.random.default_rng(31)
+    runs = [signal(random, [((23, 57), size)], 900.0) for size in (1.0, 1.2)]
+    for rate, ratio in ((8192.0, 1.0), (4096.0, 0.5), (None, np.nan)):
+        records = {
+            Path(name): Record((Channel("acc", x, "g"),), name, own, "made")
+            for name, x, own in zip("ab", runs, (8192.0, rate), strict=True)
+        }
+        found = several(list(records), lambda path, of=records: reduction.measure(of[path]))  # type: ignore[misc]
+        assert found.ratio[1] == pytest.approx(ratio, rel=1e-3, nan_ok=True)
+        assert np.isnan(mesh_change(found)) == (rate is None)
+        assert ["--rate" in why for _, why in found.apart] == [True] * (rate is None)
+
+
 def test_a_name_brings_its_place_through_a_process_and_is_the_name() -> None:
     record = Record((Channel("acc", np.cos(0.3 * np.arange(4096)), "g"),), "r", 1000.0, "made")
     found = Placed(lambda _: reduction.measure(record, harmonics=1, sidebands=0))(Path("r"))

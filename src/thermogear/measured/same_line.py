@@ -159,12 +159,14 @@ def _by_teeth(own: Turns, base: Turns, scale: float) -> bool:
     return not any(stays) and not any(was)
 
 
-def what_decides(own: Turns) -> str:
+def what_decides(own: Turns, base: Turns) -> str:
     """What a user may state, where the mesh line of a record may be another one.
 
-    >>> what_decides(Turns(given=(17, None)))
+    >>> what_decides(Turns(given=(17, None)), Turns(given=(17, None)))
     'state --speed as well, or name a tacho'
     """
+    if np.isnan(own.scale(base)):
+        return "state --rate"
     teeth, speed = own.given
     if teeth is None:
         also = "with --speed if it is known" if speed is None else "beside the speed"
@@ -249,12 +251,12 @@ class Compared:
             return (
                 f"its mesh line is found at {self.turns.where}, that of {baseline} at "
                 f"{self.base.where}, and they may be two lines: {self.why} "
-                f"({what_decides(self.turns)})"
+                f"({what_decides(self.turns, self.base)})"
             )
         more = f" and {len(self.moved) - _NAMED} more" if len(self.moved) > _NAMED else ""
         return (
-            f"lines of the same name are elsewhere than in {baseline}: "
-            f"{', '.join(self.moved[:_NAMED])}{more}"
+            f"of {len(self.moved)} lines alone, which are elsewhere than those of the same name in "
+            f"{baseline}: {', '.join(self.moved[:_NAMED])}{more}"
         )
 
 
@@ -273,12 +275,18 @@ def compare(own: Readings, base: Readings, keys: Sequence[tuple[str, str]]) -> C
     moved = [key for key in both if not here[key].is_at(there[key], ratio)]
     return Compared(
         same=tuple(key not in moved for key in keys),
-        ratio=ratio if here and there else float("nan"),
+        ratio=ratio if _is_known(turns, first) else float("nan"),
         why=why if moved else "",
         turns=turns,
         base=first,
         moved=tuple(f"{key[1]} of {key[0]}" for key in moved),
     )
+
+
+def _is_known(own: Turns, base: Turns) -> bool:
+    """Whether anything tells how fast both turn."""
+    meshes = np.isfinite(own.mesh) and np.isfinite(base.mesh)
+    return bool(meshes) or (own.tacho is not None and base.tacho is not None)
 
 
 def _places(readings: Readings) -> dict[tuple[str, str], Place]:

@@ -313,10 +313,12 @@ def _of_speeds(found: Several) -> list[Notice]:
         return []
     told = [f"{found.names[k]}: {_speed(found, k)}" for k in off[:_NAMED]]
     told += [f"and {len(off) - _NAMED} more"] if len(off) > _NAMED else []
-    base = _speed(found, found.baseline)
+    base = found.names[found.baseline]
+    if found.turns[found.baseline].rate is not None:
+        base += f" ({_speed(found, found.baseline)})"
     text = (
         f"{len(off)} of {len(found.names)} records turn at another speed than "
-        f"{found.names[found.baseline]} ({base}): {'; '.join(told)}. The level of a mesh line "
+        f"{base}: {'; '.join(told)}. The level of a mesh line "
         "changes with speed: what changed there is not the gears' alone"
     )
     return [Notice("important", text)]
@@ -342,8 +344,11 @@ def figures_of_several(found: Several) -> dict[str, Any]:
             "shaft_speed": _known(turns.shaft),
             "mesh_frequency": _known(turns.hertz),
             "speed_ratio": _known(ratio),
+            "compared": int(np.sum(np.isfinite(row))),
         }
-        for name, turns, ratio in zip(found.names, found.turns, found.ratio, strict=True)
+        for name, turns, ratio, row in zip(
+            found.names, found.turns, found.ratio, found.change, strict=True
+        )
     ]
     rows = []
     for k, (channel, name) in enumerate(found.keys):

@@ -89,13 +89,12 @@ def _is_compared(data: xr.Dataset) -> bool:
 
 def _speeds(found: dict[str, Any]) -> Section:
     """Speed and mesh line of every record, and whether its lines are the baseline's."""
-    apart = {name for name, _ in found["apart"]}
     rows = [
         [
             one["record"],
             *_speed(one),
             _cell(one["speed_ratio"], 1.0, 4),
-            "withheld" if one["record"] in apart else "compared",
+            str(one["compared"]),
         ]
         for one in found["speeds"][:_SHOWN]
     ]
@@ -105,9 +104,11 @@ def _speeds(found: dict[str, Any]) -> Section:
         "withheld. – : the record does not tell."
     )
     ratio = f"speed over that of {found['baseline']} [–]"
-    head: list[Any] = ["record", "speed [rpm]", "mesh line [Hz]", ratio, "changes of lines"]
+    head: list[Any] = ["record", "speed [rpm]", "mesh line [Hz]", ratio, "lines compared [–]"]
     off = [one for one in found["speeds"] if abs((one["speed_ratio"] or 1.0) - 1.0) > _STEADY]
-    return Section("speeds", "Speeds", [Table(words, head, rows)], folded=not (apart or off))
+    return Section(
+        "speeds", "Speeds", [Table(words, head, rows)], folded=not (found["apart"] or off)
+    )
 
 
 def _speed(one: dict[str, Any]) -> list[str]:
@@ -137,7 +138,9 @@ def summary(found: dict[str, Any]) -> str:
     changed, compared = len(found.get("changed", [])), found.get("compared", 0)
     chance = 0.05 * compared
     apart = len(found.get("apart", []))
-    withheld = f" Changes of {apart} record{'s' * (apart > 1)} are withheld." if apart else ""
+    withheld = (
+        f" Changes of {apart} record{'s' * (apart > 1)} are withheld, all or some." if apart else ""
+    )
     return (
         f"{changed} of {compared} lines differ from {found.get('baseline', '')} beyond their 95 % "
         f"intervals; {chance:.3g} would by chance where nothing changed and intervals are exact."
