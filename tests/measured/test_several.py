@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import pickle
 from functools import partial
 from pathlib import Path
 
@@ -20,7 +19,6 @@ from thermogear.measured import at_once, reduction
 from thermogear.measured.at_once import rows_of
 from thermogear.measured.record import Channel, Record
 from thermogear.measured.reduction import Measurement
-from thermogear.measured.same_line import Placed, PlacedName
 from thermogear.measured.several import Several, result_of_several, several
 from thermogear.views.write import page_of
 
@@ -287,13 +285,3 @@ def test_a_record_of_another_rate_is_at_its_own_speed_and_one_without_is_not_com
         assert found.ratio[1] == pytest.approx(ratio, rel=1e-3, nan_ok=True)
         assert np.isnan(mesh_change(found)) == (rate is None)
         assert ["--rate" in why for _, why in found.apart] == [True] * (rate is None)
-
-
-def test_a_name_brings_its_place_through_a_process_and_is_the_name() -> None:
-    record = Record((Channel("acc", np.cos(0.3 * np.arange(4096)), "g"),), "r", 1000.0, "made")
-    found = Placed(lambda _: reduction.measure(record, harmonics=1, sidebands=0))(Path("r"))
-    name = found.lines[0].name
-    again = pickle.loads(pickle.dumps(name))
-    assert isinstance(name, PlacedName)
-    assert (again, hash(again), repr(again.place)) == (name, hash(str(name)), repr(name.place))
-    assert json.dumps(name) == json.dumps(str(name))

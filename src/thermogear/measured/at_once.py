@@ -19,6 +19,7 @@ import numpy as np
 from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.base.progress import Progress
 from thermogear.measured.reduction import Measurement
+from thermogear.measured.same_line import Place, places_of
 
 Read = Callable[[Path], Measurement]
 
@@ -28,13 +29,14 @@ _WORTH = 5.0
 
 @dataclass(frozen=True, kw_only=True)
 class Row:
-    """What is kept of one record: its lines' ``readings`` with half widths, ``unit``, how it was
-    sampled, how many ``signals`` vibrate, why readings are ``withheld``, what damage was ``found``;
-    or why it was ``refused``."""
+    """What is kept of one record: its lines' ``readings`` with half widths and their ``places``,
+    ``unit``, how it was sampled, how many ``signals`` vibrate, why readings are ``withheld``, what
+    damage was ``found``; or why it was ``refused``."""
 
     file: Path
     unit: str = ""
     readings: dict[tuple[str, str], tuple[float, float]] = field(default_factory=dict)
+    places: dict[tuple[str, str], Place] = field(default_factory=dict, compare=False)
     rate: float | None = None
     samples: int = 0
     signals: int = 0
@@ -63,6 +65,7 @@ def row_of(read: Read, file: Path) -> Row:
             for one in found.lines
             if np.isfinite(one.reading)
         },
+        places=places_of(found),
         rate=found.record.rate,
         samples=found.record.samples,
         signals=len(found.record.vibrating()),

@@ -5,16 +5,14 @@ The mesh line of a record is the one that shows best, of another stage perhaps t
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from pathlib import Path
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from thermogear.base.units import RPM
 from thermogear.measured.contradictions import NEAR
 from thermogear.measured.gearing import Gearing
-from thermogear.measured.lines import MeasuredLine
 from thermogear.measured.reduction import Measurement
 from thermogear.measured.shaft import given_shaft
 
@@ -115,6 +113,7 @@ def speed_ratio(own: Turns, base: Turns) -> tuple[float, str]:
     that fit both lines; else teeth decided on both, where neither record has a line at the other's
     place as well.
 
+    >>> from dataclasses import replace
     >>> slow, fast = (Turns(mesh=m, rate=1e3, said=1e3, teeth=(20, 31)) for m in (0.1, 0.2))
     >>> speed_ratio(fast, slow)
     (2.0, '')
@@ -199,37 +198,22 @@ class Place:
         return any(abs(found / one - 1.0) <= ALIKE + wide for one in expected)
 
 
-class PlacedName(str):
-    """A line's name that brings the line's ``place`` along, also from another process; it is the
-    name to all who read it."""
+Places = Mapping[tuple[str, str], Place]
+"""Of each line, by channel and name."""
 
-    place: Place
 
-    @classmethod
-    def of(cls, line: MeasuredLine, turns: Turns) -> PlacedName:
-        """The name of a ``line`` of the record with these ``turns``."""
-        name = cls(line.name)
-        half = line.position_half_width
-        name.place = Place(
+def places_of(found: Measurement) -> dict[tuple[str, str], Place]:
+    """Where the lines of a measurement are."""
+    turns = turns_of(found)
+    return {
+        (line.channel, line.name): Place(
             kind=line.kind,
             position=line.position,
-            half_width=half if np.isfinite(half) else 0.0,
+            half_width=float(np.nan_to_num(line.position_half_width, posinf=0.0)),
             turns=turns,
         )
-        return name
-
-
-@dataclass(frozen=True)
-class Placed:
-    """Measures as ``read`` does; the names of the lines have their places."""
-
-    read: Callable[[Path], Measurement]
-
-    def __call__(self, file: Path) -> Measurement:
-        found = self.read(file)
-        turns = turns_of(found)
-        named = (replace(line, name=PlacedName.of(line, turns)) for line in found.lines)
-        return replace(found, lines=tuple(named))
+        for line in found.lines
+    }
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -260,15 +244,10 @@ class Compared:
         )
 
 
-Readings = Mapping[tuple[str, str], object]
-
-
-def compare(own: Readings, base: Readings, keys: Sequence[tuple[str, str]]) -> Compared:
-    """Which of the lines ``keys`` (channel, name) of a record are the baseline's; both by names
-    that bring their places."""
-    here, there = _places(own), _places(base)
+def compare(here: Places, there: Places, keys: Sequence[tuple[str, str]]) -> Compared:
+    """Which of the lines ``keys`` (channel, name) of a record are the baseline's."""
     turns, first = (next((place.turns for place in one.values()), Turns()) for one in (here, there))
-    if own is base:
+    if here is there:
         return Compared(same=(True,) * len(keys), ratio=1.0, why="", turns=turns, base=first)
     ratio, why = speed_ratio(turns, first)
     both = [key for key in keys if key in here and key in there]
@@ -287,7 +266,3 @@ def _is_known(own: Turns, base: Turns) -> bool:
     """Whether anything tells how fast both turn."""
     meshes = np.isfinite(own.mesh) and np.isfinite(base.mesh)
     return bool(meshes) or (own.tacho is not None and base.tacho is not None)
-
-
-def _places(readings: Readings) -> dict[tuple[str, str], Place]:
-    return {key: key[1].place for key in readings if isinstance(key[1], PlacedName)}

@@ -18,7 +18,7 @@ from thermogear.base.units import RPM
 from thermogear.base.vocabulary import label
 from thermogear.measured.at_once import Row, rows_of
 from thermogear.measured.reduction import Measurement
-from thermogear.measured.same_line import ALIKE, Placed, Turns, compare
+from thermogear.measured.same_line import ALIKE, Turns, compare
 from thermogear.results.result import Notice, Result, now
 
 Floats = NDArray[np.float64]
@@ -147,7 +147,7 @@ def several(
     if baseline not in ("first", "last") and _place(baseline, files, shown) is None:
         fix = nearest(baseline, [*shown, "first", "last"])
         raise InputError("--baseline", baseline, allowed="first, last or one of the files", fix=fix)
-    rows = rows_of(Placed(read), files, cores=cores, progress=progress)
+    rows = rows_of(read, files, cores=cores, progress=progress)
     names = dict(zip(files, shown, strict=True))
     refused = [(names[row.file], row.refused) for row in rows if row.refused]
     good = [row for row in rows if not row.refused]
@@ -179,7 +179,7 @@ def several(
         lost = [*refused, *((name, f"readings are withheld: {why}") for name, why in withheld)]
         raise _nothing_compared(names[good[place].file], lost, len(files), _hint(good))
     first = kept.index(good[place])
-    compared = [compare(row.readings, kept[first].readings, keys) for row in kept]
+    compared = [compare(row.places, kept[first].places, keys) for row in kept]
     return Several(
         names=tuple(names[row.file] for row in kept),
         keys=tuple((channel, str(name)) for channel, name in keys),
