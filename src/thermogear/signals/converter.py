@@ -228,9 +228,9 @@ def missing_codes(x: Floats, free: Mask) -> int:
     (0, 64)
     """
     kept = x[free]
-    low, high = np.quantile(kept, [0.05, 0.95], method="nearest")
+    low, high = map(float, np.quantile(kept, [0.05, 0.95], method="nearest"))
     step = smallest_step(kept)
-    if not step > 0.0 or not _STATES < (high - low) / step < kept.size:
+    if not _STATES * step < high - low < kept.size * step:
         return 0
     codes = np.rint((kept[(kept >= low) & (kept <= high)] - low) / step).astype(np.int64)
     there = np.flatnonzero(np.bincount(codes))
