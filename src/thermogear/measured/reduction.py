@@ -448,13 +448,13 @@ def _whole_turns(through: Passed, gearing: Gearing | None, teeth: int | None) ->
 
 
 def _one_by_one(table: Floats, gearing: Gearing) -> Finding | None:
-    """Samples lost one by one: the record's clock runs fast by their share."""
+    """Samples lost here and there: the record's clock runs fast by their share."""
     values, _ = clearest(table, gearing.mesh_frequency)
     lost = lost_singly(values, gearing.mesh_frequency)
     if not lost:
         return None
     return Finding(
-        kind=f"about {lost} samples are lost one by one",
+        kind=f"about {lost} samples are lost here and there",
         share=lost / table.shape[-1],
         done="frequencies, speed and displacements are withheld (record it anew without a loss)",
         effect=f"they would be {100.0 * lost / table.shape[-1]:.2g} % too high; orders and "
