@@ -147,7 +147,7 @@ def test_samples_repeated_at_even_distances_are_another_grid() -> None:
     assert not evenly(x, repeats)
 
 
-@pytest.mark.parametrize("bit", [2, 4, 6, 8])
+@pytest.mark.parametrize("bit", [2, 4, 6, 8, 10])
 def test_a_bit_that_does_not_change_is_told_and_decimals_are_not(bit: int) -> None:
     random = np.random.default_rng([SEED, 9, bit])
     for _ in range(10):

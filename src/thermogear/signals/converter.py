@@ -220,7 +220,8 @@ def missing_codes(x: Floats, free: Mask) -> int:
     With the bit of weight 2^b stuck, runs of 2^b levels that occur and runs of 2^b that do not
     follow each other. Between the 5th and the 95th percentile three of four empty levels are in
     runs of one length, a power of two from 2 on, two of them or more (32 over their length); three
-    of four of these begin whole periods of 2^(b+1) apart, and eight of ten other levels occur.
+    of four of these begin whole periods of 2^(b+1) apart, and eight of ten other levels occur. Of
+    the topmost bit there is one run of 64 levels or more, and of 32 on either side as many occur.
     ``free``: samples that count.
 
     >>> x = np.round(500.0 * np.sin(np.arange(20_000.0)))
@@ -237,6 +238,9 @@ def missing_codes(x: Floats, free: Mask) -> int:
     gaps = np.diff(there) - 1
     length = 1 << int(np.log2(max(1, int(np.max(gaps)))))
     starts = there[:-1][gaps == length]
+    if starts.size == 1 and length >= 2 * _EMPTY:  # of the topmost bit there is one run
+        beside = np.abs(there - float(starts[0]) - 0.5 * length) <= 0.5 * length + _EMPTY
+        return length if np.count_nonzero(beside) >= 2.0 * _OCCUR * _EMPTY else 0
     if length < _LEAST_GAP or starts.size < max(_LEAST_GAP, _EMPTY // length):
         return 0
     places = np.bincount(starts % (2 * length))
