@@ -104,8 +104,8 @@ def level_step(x: Floats) -> Event | None:
     """Where the level of a record ``x`` changes at once and for good; None: nowhere.
 
     The rms of 200 pieces, in logarithms, is parted in two where the squares about both means are
-    least. The means differ by a factor of 1.4 or more, by eight times the spread about them, and
-    seven tenths of it within three pieces: a gain that is switched, a load that is set.
+    least. The means differ by a factor of 1.4 or more, by eight times the spread of ten pieces
+    about them, and seven tenths of it within ten pieces: a gain that is switched, a load set anew.
 
     >>> x = np.sin(np.arange(20_000.0))
     >>> level_step(x)
@@ -129,8 +129,11 @@ def level_step(x: Floats) -> Event | None:
     place = int(np.argmax(between[inner])) + _SIDE
     step = float(right[place - 1] - left[place - 1])
     rest = level - np.where(np.arange(count) < place, left[place - 1], right[place - 1])
-    at_once = float(np.median(level[place : place + 3]) - np.median(level[place - 3 : place]))
-    sure = abs(step) >= max(np.log(_STEP), _SURE * float(np.std(rest)))
+    # sidebands change pieces, and less so what ten of them hold together
+    spread = np.std([np.mean(part) for part in np.array_split(rest, count // _SIDE)])
+    near = _SIDE // 2
+    at_once = float(np.mean(level[place : place + near]) - np.mean(level[place - near : place]))
+    sure = abs(step) >= max(np.log(_STEP), _SURE * float(spread))
     if not sure or at_once * np.sign(step) < _ABRUPT * abs(step):
         return None
     return Event(place * size, x.size - 1, round(float(np.exp(step)), 3))
