@@ -188,10 +188,10 @@ def lost_singly(x: Floats, frequency: float) -> int:
     """How many samples are lost one by one, all through a record; 0: too few to tell, or none.
 
     Each moves the phase of a line of ``frequency`` [cycles/sample] on by that frequency, at once: a
-    speed that wanders does so little by little. Of the phase of pieces of four to 32
-    cycles, less its usual pace, in units of one sample's step: four steps or more, nine of ten the
-    same way, and whole numbers of them (the mean of exp(2 pi i n) is 0.75 or more, 0.5 in every
-    eighth of the record).
+    speed that wanders does so little by little. Of the phase of pieces of four to 32 cycles, less
+    its usual pace, in units of one sample's step: four steps or more, at four places or more, nine
+    of ten the same way, and whole numbers of them (the mean of exp(2 pi i n) is 0.75 or more, 0.5
+    in every eighth of the record).
 
     >>> n = np.arange(4000)
     >>> lost_singly(np.cos(0.7 * n), 0.7 / (2 * np.pi))
@@ -227,5 +227,7 @@ def _whole_steps(x: Floats, frequency: float, length: int) -> tuple[float, int]:
     turned = np.exp(2j * np.pi * rest)
     everywhere = min(float(np.abs(np.mean(part))) for part in np.array_split(turned, _PARTS))
     sure = size >= _ALIKE and everywhere >= _PART_ALIKE
-    sure = sure and total >= max(_FEWEST, _ONE_WAY * moved)
+    places = np.flatnonzero(moves)  # a piece is in four hops: what moves in them is one event
+    events = 1 + int(np.count_nonzero(np.diff(places) > length // hop)) if places.size else 0
+    sure = sure and events >= _FEWEST and total >= max(_FEWEST, _ONE_WAY * moved)
     return (size, total) if sure else (0.0, 0)
