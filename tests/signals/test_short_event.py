@@ -54,6 +54,14 @@ def test_no_level_changes_and_no_sensor_dies_in_what_goes_on() -> None:
         assert not quiet(x, np.ones(x.size, dtype=bool)).any()
 
 
+def test_a_sensor_that_dies_beside_samples_that_are_missing_is_told() -> None:
+    x = np.sin(1.3 * np.arange(20_000.0))
+    x[12_000:] *= 1e-3
+    free = np.ones(x.size, dtype=bool)
+    free[11_500:12_000] = False
+    assert np.flatnonzero(quiet(np.where(free, x, np.nan), free))[0] == 12_000
+
+
 def test_a_machine_that_starts_is_no_sensor_that_dies() -> None:
     x = np.sin(1.3 * np.arange(20_000.0)) * np.linspace(0.0, 1.0, 20_000) ** 2
     assert not quiet(x, np.ones(x.size, dtype=bool)).any()

@@ -182,7 +182,7 @@ def several(
     compared = [compare(row.places, kept[first].places, keys) for row in kept]
     return Several(
         names=tuple(names[row.file] for row in kept),
-        keys=tuple((channel, str(name)) for channel, name in keys),
+        keys=keys,
         reading=table[..., 0],
         half_width=table[..., 1],
         baseline=first,

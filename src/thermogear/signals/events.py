@@ -42,23 +42,20 @@ def short_event(x: Floats) -> Event | None:
     >>> short_event(x)
     Event(first=4000, last=4099, times=8.0)
     """
-    size = max(_SHORTEST, x.size // _PIECES)
-    count = x.size // size
+    pieces = _parted(x)
+    count, size = pieces.shape
     if count < 2 * _SHORTEST:
         return None
-    pieces = x[: count * size].reshape(count, size)
     spans, means = np.ptp(pieces, axis=1), np.mean(pieces, axis=1)
     usual = float(np.median(spans))
     if not usual > 0.0:
         return None
     times = np.maximum(spans, np.abs(means - np.median(means))) / usual
     high = times > _TIMES * max(1.0, float(np.quantile(times, _CALM)))
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], high.astype(np.int8), [0]])))
-    starts, stops = edges[::2], edges[1::2]
-    if not 0 < starts.size <= _PLACES or np.mean(high) > _MOST:
+    runs = _runs(high)
+    if not 0 < len(runs) <= _PLACES or np.mean(high) > _MOST:
         return None
-    best = int(np.argmax([np.max(times[a:b]) for a, b in zip(starts, stops, strict=True)]))
-    first, stop = int(starts[best]), int(stops[best])
+    first, stop = max(runs, key=lambda run: float(np.max(times[slice(*run)])))
     return Event(first * size, stop * size - 1, round(float(np.max(times[first:stop])), 1))
 
 
@@ -76,18 +73,16 @@ def quiet(x: Floats, free: Mask) -> Mask:
     array([15000, 19999])
     """
     still = np.zeros(x.size, dtype=bool)
-    size = max(_SHORTEST, x.size // _PIECES)
-    count = x.size // size
+    values = _parted(np.where(free, x, np.nan))
+    count, size = values.shape
     if count < 2 * _SHORTEST or np.mean(free) < 0.5:
         return still
-    values = np.where(free, x, np.nan)[: count * size].reshape(count, size)
-    known = np.count_nonzero(np.isfinite(values), axis=1) >= _SHORTEST // 2
+    held = np.count_nonzero(np.isfinite(values), axis=1) >= _SHORTEST // 2
     rms = np.full(count, np.nan)
-    rms[known] = np.nanstd(values[known], axis=1)
+    rms[held] = np.nanstd(values[held], axis=1)
     usual = float(np.nanquantile(rms, _USUALLY))
-    low = known & (rms < _QUIET * usual)
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], low.astype(np.int8), [0]])))
-    runs = list(zip(edges[::2], edges[1::2], strict=True))
+    low = held & (rms < _QUIET * usual)
+    runs = _runs(low)
     long = [(a, b) for a, b in runs if b - a >= max(2.0, _STILL * count)]
     if not 0 < len(long) <= _PLACES or sum(b - a for a, b in runs) > _STRAY + sum(
         b - a for a, b in long
@@ -95,7 +90,8 @@ def quiet(x: Floats, free: Mask) -> Mask:
         return still
     for a, b in long:
         beside = [rms[max(0, a - 2) : a], rms[b : b + 2]]
-        if all(part.size == 0 or np.nanmax(part) > _LIVELY * usual for part in beside):
+        known = [part[np.isfinite(part)] for part in beside]
+        if all(part.size == 0 or np.max(part) > _LIVELY * usual for part in known):
             still[a * size : x.size if b == count else b * size] = True
     return still
 
@@ -113,12 +109,9 @@ def level_step(x: Floats) -> Event | None:
     >>> level_step(x)
     Event(first=8000, last=19999, times=2.0)
     """
-    size = max(_SHORTEST, x.size // _PIECES)
-    count = x.size // size
-    if count < 4 * _SIDE:
-        return None
-    rms = np.std(x[: count * size].reshape(count, size), axis=1)
-    if not np.all(rms > 0.0):
+    rms = np.std(pieces := _parted(x), axis=1)
+    count, size = pieces.shape
+    if count < 4 * _SIDE or not np.all(rms > 0.0):
         return None
     level = np.log(rms)
     number = np.arange(1, count)
@@ -137,3 +130,15 @@ def level_step(x: Floats) -> Event | None:
     if not sure or at_once * np.sign(step) < _ABRUPT * abs(step):
         return None
     return Event(place * size, x.size - 1, round(float(np.exp(step)), 3))
+
+
+def _parted(x: Floats) -> Floats:
+    """The record in 200 pieces of equal length, of 32 samples at least (piece, sample)."""
+    size = max(_SHORTEST, x.size // _PIECES)
+    return x[: x.size // size * size].reshape(x.size // size, size)
+
+
+def _runs(where: Mask) -> list[tuple[int, int]]:
+    """First and one past the last of each run of true ones."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], where.astype(np.int8), [0]])))
+    return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
