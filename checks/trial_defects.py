@@ -105,30 +105,12 @@ def _between(x: Floats, every: int) -> Floats:
     return np.asarray(np.interp(place, place[::every], x[::every]))
 
 
-def _wrapped(x: Floats, share: float) -> Floats:
-    """What is beyond a limit comes back at the other."""
-    middle = float(np.median(x))
-    limit = float(np.quantile(np.abs(x - middle), 1.0 - share))
-    return np.asarray(np.mod(x - middle + limit, 2.0 * limit) - limit + middle)
-
-
 def _dead(x: Floats, random: Random, share: float) -> Floats:
     """A thousandth of the noise of a live sensor at the end."""
     y = x - float(np.mean(x))
     size = int(share * x.size)
     y[-size:] = 1e-3 * random.normal(size=size)
     return y
-
-
-def _bit(x: Floats, random: Random) -> Floats:
-    """Bit 6 of a converter of 12 bits at 1."""
-    step = 16.0 * 2.0**-12
-    return (np.rint(x / step).astype(np.int64) | 64) * step
-
-
-def _nearest(x: Floats, times: float) -> Floats:
-    """The nearest sample at so many times the rate, of a record that long."""
-    return np.asarray(x[np.rint(np.arange(x.size) / times).astype(np.int64)])
 
 
 DEFECTS: dict[str, Callable[[Floats, Random], Floats]] = {
@@ -154,21 +136,12 @@ DEFECTS: dict[str, Callable[[Floats, Random], Floats]] = {
     "20 straight lines across 15 samples": lambda x, r: _bridged(x, r, 20, 15),
     "every second sample between two": lambda x, r: _between(x, 2),
     "three of four samples between two": lambda x, r: _between(x, 4),
-    "1 % wrap around": lambda x, r: _wrapped(x, 0.01),
-    "8 % wrap around": lambda x, r: _wrapped(x, 0.08),
-    "1 % set to 0, one by one": lambda x, r: _scattered(x, r, 102, np.zeros),
-    "8 % set to 0, one by one": lambda x, r: _scattered(x, r, 819, np.zeros),
     "levels of 0.7 amplitudes": lambda x, r: np.round(x / 0.7) * 0.7,
     "levels of 2 amplitudes": lambda x, r: np.round(x / 2.0) * 2.0,
-    "the nearest at 1.03 times the rate": lambda x, r: _nearest(x, 1.03),
     "a mean of 200 amplitudes": lambda x, r: x + 200.0,
     "a trend of 200 amplitudes": lambda x, r: x + 200.0 * np.arange(x.size) / x.size,
     "a sensor that dies, dead for 30 %": lambda x, r: _dead(x, r, 0.3),
-    "a bit of a quarter amplitude that does not change": _bit,
 }
-
-STRETCHED = {"the nearest at 1.03 times the rate": 1.03}
-"""How much longer than it was a period is in the file's own time."""
 
 
 def before(x: Floats, mesh: float) -> float:
@@ -288,7 +261,7 @@ def run(name: str, number: int) -> Row:
     random = np.random.default_rng([SEED, list(DEFECTS).index(name), number])
     one = made(random)
     x = DEFECTS[name](one.values, random)
-    mesh = one.mesh / STRETCHED.get(name, 1.0)
+    mesh = one.mesh
     first = before(x, mesh)
     try:
         found = measured(x, mesh)

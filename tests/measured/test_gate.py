@@ -118,37 +118,6 @@ def test_a_record_made_finer_by_straight_lines_is_withheld(every: int) -> None:
     assert [one.withholds for one in found.findings] == [True]
 
 
-@pytest.mark.parametrize("share", [0.01, 0.03, 0.1])
-def test_values_that_wrap_around_are_put_back_or_withheld(share: float) -> None:
-    x = channel()
-    limit = float(np.quantile(np.abs(x), 1.0 - share))
-    found = measured(np.mod(x + limit, 2.0 * limit) - limit)
-    line = found.lines[0]
-    beyond = int(np.count_nonzero(np.abs(x) > limit))
-    told = sum(one.count for one in found.findings)
-    if share > 0.05:
-        assert 0.8 * beyond < told <= beyond  # not all are found, and so none is put back
-        assert np.isnan(line.reading)
-        assert line.frequency == pytest.approx(MESH, abs=line.frequency_half_width)
-    else:
-        assert told == beyond
-        assert abs(line.reading - 1.0) < line.half_width < 0.02
-
-
-@pytest.mark.parametrize("share", [0.01, 0.08])
-def test_single_samples_set_to_zero_are_filled_in_or_withheld(share: float) -> None:
-    x = channel()
-    where = np.random.default_rng(75).choice(COUNT, int(share * COUNT), replace=False)
-    x[where] = 0.0
-    found = measured(x)
-    line = found.lines[0]
-    assert sum(one.count for one in found.findings) == where.size
-    if share > 0.05:
-        assert np.isnan(line.reading)
-    else:
-        assert abs(line.reading - 1.0) < line.half_width < 0.02
-
-
 @pytest.mark.parametrize(("step", "stated"), [(0.35, 0.05), (0.5, 0.2), (1.0, np.nan)])
 def test_coarse_levels_widen_intervals_or_withhold(step: float, stated: float) -> None:
     found = measured(np.round(channel() / step) * step)
@@ -157,13 +126,6 @@ def test_coarse_levels_widen_intervals_or_withhold(step: float, stated: float) -
     assert np.isnan(line.reading) == np.isnan(stated)
     if np.isfinite(stated):
         assert abs(line.reading - 1.0) < line.half_width < stated
-
-
-def test_the_nearest_samples_of_another_rate_are_withheld() -> None:
-    x = channel()[np.rint(np.arange(COUNT) / 1.0078).astype(int)]
-    found = measured(x)
-    assert np.isnan(found.lines[0].reading)
-    assert sum(one.withholds for one in found.findings) >= 1
 
 
 def test_lost_samples_cut_the_record_where_the_phase_jumps() -> None:
@@ -353,13 +315,6 @@ def test_a_gain_that_is_switched_is_told_with_its_place() -> None:
     (told,) = measured(x).findings
     assert told.first == pytest.approx(5000, abs=COUNT // 200)
     assert not told.withholds
-
-
-def test_a_bit_that_does_not_change_withholds() -> None:
-    codes = np.rint(channel() / 4.0 * 2047.0).astype(np.int64)
-    found = measured((codes | 64).astype(float) * 4.0 / 2047.0)
-    assert np.isnan(found.lines[0].reading)
-    assert any(one.withholds and one.share == 1.0 for one in found.findings)
 
 
 def test_a_blow_is_told_with_its_place() -> None:

@@ -9,7 +9,7 @@ from scipy import signal
 
 from thermogear.measured.record import Channel, Record
 from thermogear.measured.reduction import measure
-from thermogear.signals.lost import lost_singly, phase_step
+from thermogear.signals.lost import phase_step
 
 RATE = 4000.0
 MESH = 400.0
@@ -105,34 +105,3 @@ def test_two_losses_are_both_left_out() -> None:
         )
         line = next(one for one in found.lines if one.name == "mesh x 1")
         assert abs(line.frequency - MESH) < 1.5 * line.frequency_half_width
-
-
-def test_samples_lost_one_by_one_are_counted_and_a_speed_that_wanders_loses_none() -> None:
-    random = np.random.default_rng(33)
-    told = 0
-    for _ in range(30):
-        lost, pace = int(random.integers(6, 60)), float(random.uniform(0.05, 0.35))
-        n = np.delete(np.arange(20_000), random.choice(20_000, lost, replace=False))
-        x = mesh_line(random, 31, pace * n) + 0.1 * random.normal(size=n.size)
-        found = lost_singly(x, pace * (1.0 + lost / n.size))
-        told += found > 0
-        assert found == 0 or abs(found / lost - 1.0) < 0.15
-        walk = np.cumsum(random.normal(size=20_000))
-        bend = np.sin(np.arange(20_000) * float(random.uniform(1e-4, 1e-3)))
-        for course in (walk / np.std(walk), bend, np.linspace(-1.0, 1.0, 20_000)):
-            cycles = np.cumsum(pace * (1.0 + 10 ** random.uniform(-4, -2) * course))
-            x = mesh_line(random, 31, cycles) + 0.1 * random.normal(size=cycles.size)
-            assert lost_singly(x, float(cycles[-1]) / cycles.size) == 0
-    assert told >= 15
-
-
-def test_of_a_clock_that_loses_samples_frequencies_are_withheld_and_amplitudes_are_read() -> None:
-    random = np.random.default_rng(34)
-    n = np.delete(np.arange(20_000), random.choice(20_000, 25, replace=False))
-    x = mesh_line(random, 31, MESH / RATE * n)
-    found = measure(Record((Channel("a", x, "g"),), "made", RATE, "made"), teeth=31)
-    line = next(one for one in found.lines if one.name == "mesh x 1")
-    assert np.isnan(line.frequency)
-    assert np.isnan(line.shaft_speed)
-    assert abs(line.reading - 1.0) < 2.0 * line.half_width * line.reading
-    assert any(one.withholds and one.share > 1e-3 for one in found.findings)

@@ -211,12 +211,10 @@ class _Channel:
         inside = slice(*stretch) if stretch else slice(0, values.size)
         size = inside.stop - inside.start
         counted = [(one, int(np.count_nonzero(one.samples[inside]))) for one in self.own]
-        whole = [(one, count / size) for one, count in counted if one.kind in _AS_A_WHOLE]
-        for one, share in whole:
-            alike = sum(other for its, other in whole if its.kind == one.kind)
-            if share:
-                self.as_a_whole(one, share, alike)
-        kept = [(one, count) for one, count in counted if one.kind not in _AS_A_WHOLE]
+        for one, count in counted:
+            if one.kind == "coarse" and count:
+                self.coarse(one)
+        kept = [(one, count) for one, count in counted if one.kind != "coarse"]
         total = sum(count for _, count in kept) / size
         missing = np.zeros(values.size, dtype=bool)
         withhold = self.through.withheld.get(self.channel.name, "")
@@ -257,28 +255,16 @@ class _Channel:
             self.through.withheld[self.channel.name] = withhold
             self.more(total)
 
-    def as_a_whole(self, one: Damage, share: float, alike: float) -> None:
-        """What no filling mends: wrapped samples are put back, up to FILLED of all ``alike``;
-        coarse levels widen intervals, up to COARSE; above, and of another grid, amplitudes are
-        withheld."""
-        own, withholds = share, True
-        if one.kind == "wrapped":
-            put = 0.0 if one.value is None else one.value
-            if np.isfinite(put):
-                self.through.table[self.place][one.samples] += put
-            own, withholds = _UNSURE * share, alike > FILLED or not np.isfinite(put)
-        elif one.kind == "coarse":
-            own = one.value or 0.0
-            withholds = own > COARSE
-            self.more_of_strongest(own)
+    def coarse(self, one: Damage) -> None:
+        """Coarse levels widen intervals, up to COARSE; above, amplitudes are withheld."""
+        own = one.value or 0.0
+        self.more_of_strongest(own)
         self.more(own)
-        if withholds:
+        if own > COARSE:
             self.through.withheld.setdefault(self.channel.name, _WORDS[one.kind])
             self.say(one, "amplitudes are withheld", _TOO_MUCH[one.kind], withholds=True)
         else:
-            self.say(
-                one, _DONE[one.kind], f"adds {100 * own:.2g} % to the half width of amplitudes"
-            )
+            self.say(one, "kept", f"adds {100 * own:.2g} % to the half width of amplitudes")
 
     def more(self, own: float) -> None:
         """Add to the relative half width of the channel's amplitudes."""
@@ -311,7 +297,7 @@ class _Channel:
         self.more(extra)
 
     def say(self, one: Damage, done: str, effect: str, *, withholds: bool = False) -> None:
-        value = "" if one.value is None or one.kind in _AS_A_WHOLE else f" {one.value:g}"
+        value = "" if one.value is None or one.kind == "coarse" else f" {one.value:g}"
         self.through.findings.append(
             Finding(
                 kind=f"{_WORDS[one.kind]}{value}",
@@ -340,24 +326,13 @@ _WORDS = {
     "clipping": "clipping at",
     "bridged": "straight lines in place of samples",
     "made finer": "samples on the line between their neighbours",
-    "stuck": "single samples at",
-    "wrapped": "values beyond the range that came back at its other end",
-    "another grid": "samples repeated at even distances",
     "coarse": "coarse levels",
-    "missing codes": "codes that never occur",
     "quiet": "no vibration",
 }
-_GONE = ("missing", "sentinel", "zeros", "bridged", "stuck", "quiet")
-_AS_A_WHOLE = ("wrapped", "another grid", "coarse", "missing codes")
-_DONE = {"wrapped": "put back by adding or taking the range", "coarse": "kept"}
+_GONE = ("missing", "sentinel", "zeros", "bridged", "quiet")
 _TOO_MUCH = {
     "clipping": "lines are too small, and harmonics are made, by an unknown amount",
     "held": "a sample that repeats the one before weakens lines and makes images",
-    "missing codes": "a bit of the converter does not change, which falsifies every line (mend it)",
-    "wrapped": "which samples were beyond the range is unsure where they are many (use a larger "
-    "range)",
-    "another grid": "the nearest samples taken at another rate weaken lines and make images of "
-    "them (give the record at the rate at which it was taken)",
     "coarse": "rounding to few levels is no noise, and falsifies every line (use more of the "
     "converter's range)",
     "made finer": "straight lines between samples weaken lines and make images of them (give the "

@@ -58,7 +58,7 @@ from thermogear.measured.turns import MeshTurns, clearest, mesh_turns
 from thermogear.measured.units import UNITS
 from thermogear.signals.interval import read_line
 from thermogear.signals.lines import LineSpectrum
-from thermogear.signals.lost import lost_singly, phase_jumps, phase_step
+from thermogear.signals.lost import phase_jumps, phase_step
 from thermogear.signals.strong import strong_lines
 from thermogear.signals.windows import Window
 
@@ -199,7 +199,7 @@ def measure(
     chosen, start, table = through.channels, through.start, through.table
     if changing is None:
         teeth = settled_teeth(gearing, teeth, notices)
-    doubt, undecided, singly = record.rate_doubt, None, ""
+    doubt, undecided = record.rate_doubt, None
     if gearing is not None and turns is None:
         turns = mesh_turns(table, gearing, teeth=teeth, harmonics=harmonics)
         # in a resampled record the lines stand at multiples of this mean and nowhere else
@@ -221,9 +221,6 @@ def measure(
             undecided=undecided is not None,
         )
         through.findings += [undecided] if undecided else []
-        told = None if changing is not None else _one_by_one(table, gearing)
-        through.findings += [told] if told else []
-        singly = told.kind if told else ""
     if doubt:
         through.findings.append(
             Finding(
@@ -264,7 +261,7 @@ def measure(
                 extra=through.extra.get(channel.name, 0.0),
                 clipped=through.clipped.get(channel.name, 0.0),
                 withheld=through.withheld.get(channel.name, ""),
-                rate=doubt or singly,
+                rate=doubt,
                 speed=undecided is not None,
             ),
         )
@@ -445,22 +442,6 @@ def _whole_turns(through: Passed, gearing: Gearing | None, teeth: int | None) ->
     through.cut(first, stop=stop)
     _whole_turns(through, gearing, teeth)  # a smaller jump shows beside no larger one
     return True
-
-
-def _one_by_one(table: Floats, gearing: Gearing) -> Finding | None:
-    """Samples lost here and there: the record's clock runs fast by their share."""
-    values, _ = clearest(table, gearing.mesh_frequency)
-    lost = lost_singly(values, gearing.mesh_frequency)
-    if not lost:
-        return None
-    return Finding(
-        kind=f"about {lost} samples are lost here and there",
-        share=lost / table.shape[-1],
-        done="frequencies, speed and displacements are withheld (record it anew without a loss)",
-        effect=f"they would be {100.0 * lost / table.shape[-1]:.2g} % too high; orders and "
-        "accelerations hold",
-        withholds=True,
-    )
 
 
 def _beats(spectrum: LineSpectrum, mesh: float) -> bool:

@@ -1,4 +1,4 @@
-"""Samples that others put in place: gaps bridged, a record made finer, or put on another grid."""
+"""Samples that others put in place: gaps bridged, or a record made finer."""
 
 from __future__ import annotations
 
@@ -18,9 +18,6 @@ _RISE = 20.0  # levels over a bridge
 _BESIDE, _MORE = 8, 30.0  # samples on either side, which bend as many times as much
 _AROUND = 17  # samples in which one bends most
 _FINE = 50.0  # levels that it bends
-_EVENLY, _EVEN = 8, 0.7  # repeats, and how many of their distances differ by a sample at most
-_APART = 8.0  # samples from one to the next
-_STEEP = 0.5  # of the usual step, of those before and after a repeat
 _SHARE = 0.25  # of the samples: with lines of three pieces two of three are straight, of two one
 
 
@@ -89,34 +86,6 @@ def made_finer(x: Floats, free: Mask) -> Mask:
     straight[1:-1] &= (x[1:-1] != x[:-2]) | (x[1:-1] != x[2:])
     often = np.count_nonzero(straight) >= _SHARE * np.count_nonzero(free)
     return straight if often else np.zeros(x.size, dtype=bool)
-
-
-def evenly(x: Floats, repeats: Mask) -> bool:
-    """Whether ``repeats``, samples equal to the one before, are those of another grid.
-
-    The nearest sample taken at a rate k times as high repeats one in k/(k - 1), evenly: of eight
-    repeats or more, the distances differ from their median, eight samples or more, by one at most,
-    seven of ten of them. The record moves beside them as elsewhere; at its peaks, where a coarse
-    converter repeats samples, it hardly moves. Half of the values differ: those of lines in step
-    with the rate do not.
-
-    >>> x = np.sin(0.1 * np.arange(2000.0) ** 1.1)
-    >>> y = x[np.rint(np.arange(2000) / 1.01).astype(int)]
-    >>> evenly(y, np.concatenate([[False], y[1:] == y[:-1]]))
-    True
-    """
-    places = np.flatnonzero(repeats[1:-1]) + 1
-    places = places[(places > 1) & (places < x.size - 2)]
-    if places.size < _EVENLY:
-        return False
-    apart = np.diff(places)
-    usual = float(np.median(apart))
-    even = usual >= _APART and np.mean(np.abs(apart - usual) <= 1.0) >= _EVEN
-    if not even or 2 * np.unique(x[places]).size < places.size:
-        return False
-    moves = np.abs(np.diff(x))
-    beside = np.concatenate([moves[places - 2], moves[places]])
-    return bool(np.nanmedian(beside) >= _STEEP * np.nanmedian(moves) > 0.0)
 
 
 def bends(x: Floats, free: Mask) -> Floats:

@@ -17,10 +17,6 @@ _MOST_PIECES = 512
 _SHORT = 4.0  # cycles of the line, the shortest piece
 _HIDDEN = 6.0  # times the noise of a piece: a step that is lost in it
 _RANKS = (1, 2, 3)  # of a shaft
-_LEAST_PIECE, _FEWEST = 32, 4  # samples, and steps
-_LENGTHS = (1, 2, 4, 8)  # times the shortest piece
-_ALIKE, _PART_ALIKE = 0.75, 0.5  # means of phasors, of all and of a part
-_ONE_WAY, _PACE = 0.9, 0.05  # share; steps a piece
 _STEPS = 12.0  # standard errors of a step; fewer are made by a speed that walks
 
 
@@ -182,52 +178,3 @@ def _one_step(phase: Floats, waves: Sequence[Floats] = ()) -> int | None:
         white = alike < 2.0 / np.sqrt(rest.size) or abs(step) > _STEPS * np.sqrt(power / rest.size)
         clear = sharp and white and abs(step) > _STEPS * float(error)
     return best[1] if best is not None and clear else None
-
-
-def lost_singly(x: Floats, frequency: float) -> int:
-    """How many samples are lost one by one, all through a record; 0: too few to tell, or none.
-
-    Each moves the phase of a line of ``frequency`` [cycles/sample] on by that frequency, at once: a
-    speed that wanders does so little by little. Of the phase of pieces of four to 32 cycles, less
-    its usual pace, in units of one sample's step: four steps or more, at four places or more, nine
-    of ten the same way, and whole numbers of them (the mean of exp(2 pi i n) is 0.75 or more, 0.5
-    in every eighth of the record).
-
-    >>> n = np.arange(4000)
-    >>> lost_singly(np.cos(0.7 * n), 0.7 / (2 * np.pi))
-    0
-    >>> lost_singly(np.cos(0.7 * np.delete(n, n[500::500])), 0.7 / (2 * np.pi))
-    7
-    """
-    shortest = max(_LEAST_PIECE, int(np.ceil(_SHORT / frequency)))
-    found = [_whole_steps(x, frequency, times * shortest) for times in _LENGTHS]
-    return max(found)[1]
-
-
-def _whole_steps(x: Floats, frequency: float, length: int) -> tuple[float, int]:
-    """How alike the phase of pieces of ``length`` is to whole numbers of steps, and how many it
-    goes; 0, 0 where they are none."""
-    hop = length // 4
-    starts = np.arange((x.size - length) // hop + 1) * hop
-    if starts.size < 8 * _FEWEST:
-        return 0.0, 0
-    phase, _ = _pieces(x, frequency, starts, length=length)
-    steps = (phase - float(np.median(np.diff(phase))) * np.arange(phase.size)) / frequency
-    # the usual pace is known to some steps over the record
-    padded = 4 * int(2 ** np.ceil(np.log2(steps.size)))
-    alike = np.fft.fft(np.exp(2j * np.pi * steps), padded) / steps.size
-    slow = np.abs(np.fft.fftfreq(padded)) <= _PACE
-    best = int(np.argmax(np.where(slow, np.abs(alike), 0.0)))
-    slope = float(np.fft.fftfreq(padded)[best])
-    rest = steps - slope * np.arange(steps.size) - float(np.angle(alike[best])) / (2.0 * np.pi)
-    whole = np.rint(rest)
-    moves = np.diff(whole)
-    total, moved = int(whole[-1] - whole[0]), float(np.sum(np.abs(moves)))
-    size = float(np.abs(alike[best]))
-    turned = np.exp(2j * np.pi * rest)
-    everywhere = min(float(np.abs(np.mean(part))) for part in np.array_split(turned, _PARTS))
-    sure = size >= _ALIKE and everywhere >= _PART_ALIKE
-    places = np.flatnonzero(moves)  # a piece is in four hops: what moves in them is one event
-    events = 1 + int(np.count_nonzero(np.diff(places) > length // hop)) if places.size else 0
-    sure = sure and events >= _FEWEST and total >= max(_FEWEST, _ONE_WAY * moved)
-    return (size, total) if sure else (0.0, 0)

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.signals.bridged import bridges, evenly, made_finer
-from thermogear.signals.converter import coarse, missing_codes, stuck, wrapped
+from thermogear.signals.bridged import bridges, made_finer
+from thermogear.signals.converter import coarse
 from thermogear.signals.events import quiet
 from thermogear.signals.lines import line_spectrum
 from thermogear.signals.strong import Strong, strong_lines
@@ -37,9 +37,7 @@ _FALSIFIED = 0.01  # of the strongest line: what levels may do untold
 class Damage:
     """``kind`` of damage, ``samples`` where it is, the ``value`` there where it is one.
 
-    Of wrapped samples the value is what, added, puts them right, NaN where that is unsure; of
-    coarse levels, how far they may falsify a line, as a share of the strongest; of missing codes,
-    how many levels are missing in a run.
+    Of coarse levels the value is how far they may falsify a line, as a share of the strongest.
     """
 
     kind: str
@@ -63,10 +61,9 @@ class Damage:
 
 
 def damages(x: ArrayLike) -> list[Damage]:
-    """Every damage of one channel: missing, sentinels, values wrapped around, zeros, held or stuck
-    samples, spikes, clipping, another grid, straight lines in place of samples or between all of
-    them; stretches without vibration; codes that never occur and coarse levels, of which all
-    samples are.
+    """Every damage of one channel: missing, sentinels, zeros, held samples, spikes, clipping,
+    straight lines in place of samples or between all of them, stretches without vibration, and
+    coarse levels, of which all samples are.
 
     ``x`` [any unit], NaN where a value is missing. No sample is in two others of them.
 
@@ -80,14 +77,12 @@ def damages(x: ArrayLike) -> list[Damage]:
     values = np.asarray(x, dtype=float)
     free = np.isfinite(values)
     found = [Damage(kind="missing", samples=~free)] if not free.all() else []
-    for one in (_sentinels, _wrapped, _clipped, _straight, _held, _quiet, _stuck, _spikes):
+    for one in (_sentinels, _clipped, _straight, _held, _quiet, _spikes):
         for damage in one(values, free):
             found.append(damage)
             free = free & ~damage.samples
     if np.count_nonzero(free) < 64:
         return found
-    if run := missing_codes(values, free):
-        found.append(Damage(kind="missing codes", samples=free, value=float(run)))
     share = coarse(values, free)
     if share > _FALSIFIED:
         found.append(Damage(kind="coarse", samples=free, value=share))
@@ -124,18 +119,6 @@ def _quiet(x: Floats, free: Mask) -> list[Damage]:
     """Stretches in which nothing vibrates."""
     still = quiet(x, free) & free
     return [Damage(kind="quiet", samples=still)] if still.any() else []
-
-
-def _wrapped(x: Floats, free: Mask) -> list[Damage]:
-    """Values beyond one end of the range that came back at the other."""
-    if np.count_nonzero(free) < 64:
-        return []
-    return [Damage(kind="wrapped", samples=at, value=put) for at, put in wrapped(x, free)]
-
-
-def _stuck(x: Floats, free: Mask) -> list[Damage]:
-    """Samples at one value inside the range, here and there."""
-    return [Damage(kind="stuck", samples=at, value=value) for at, value in stuck(x, free)]
 
 
 def _clipped(x: Floats, free: Mask) -> list[Damage]:
@@ -267,21 +250,18 @@ def _held(x: Floats, free: Mask) -> list[Damage]:
         (zeros if x[start] == 0.0 else held)[start:stop] = True
     held[starts[lengths >= least]] = False  # the first of a held run is a true sample
     short = same & ~zeros & ~held
-    grid = np.zeros(x.size, dtype=bool)
     # a coarse converter repeats values by chance: neighbours are equal as often as at random
-    if evenly(x, short) and _not_by_chance(x, free, short, times=2.0):
-        grid = short
-    elif np.count_nonzero(short) > 1e-3 * x.size and _not_by_chance(x, free, short, times=16.0):
+    if np.count_nonzero(short) > 1e-3 * x.size and _not_by_chance(x, free, short):
         held |= short
-    for kind, where in (("zeros", zeros), ("held", held), ("another grid", grid)):
+    for kind, where in (("zeros", zeros), ("held", held)):
         if where.any():
             found.append(Damage(kind=kind, samples=where))
     return found
 
 
-def _not_by_chance(x: Floats, free: Mask, short: Mask, times: float) -> bool:
-    """Whether neighbours are equal so many times as often as they are one level apart, up or down,
-    of many levels."""
+def _not_by_chance(x: Floats, free: Mask, short: Mask) -> bool:
+    """Whether neighbours are equal 16 times as often as they are one level apart, up or down, of
+    many levels."""
     kept = x[free]
     levels = np.unique(kept)
     if levels.size <= 512:
@@ -289,7 +269,7 @@ def _not_by_chance(x: Floats, free: Mask, short: Mask, times: float) -> bool:
     step = float(np.min(np.diff(levels)))
     moves = np.abs(np.diff(kept))
     beside = int(np.count_nonzero((moves > 0.0) & (moves < 4.5 * step)))
-    return int(np.count_nonzero(short)) > times * max(beside, 1) / 8.0  # levels beside
+    return int(np.count_nonzero(short)) > 2.0 * max(beside, 1)  # 16 of 8 levels
 
 
 def _straight(x: Floats, free: Mask) -> list[Damage]:
