@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from thermogear.analysis.labels import label as settle
 from thermogear.base.parameters import PARAMETERS
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import UNDEFORMED, told_labels
+from thermogear.dynamics.models import TorsionalModel
 from thermogear.thesis import motions
 from thermogear.thesis.claim import Claim, Finding, Verdict, listed, verdict_of
 from thermogear.thesis.evidence import Evidence
@@ -19,14 +19,17 @@ SET = "It holds for a set of numbers of ours, found by search; none is given."
 SYMBOLS = {row: PARAMETERS[name].symbol for row, name in motions.SWEPT.items()}
 
 
-def _no_torus(e: Evidence) -> str:
-    """The argument against quasi-periodic motion, with the determinant of the base set's orbit."""
-    model = e.row_points.model("none", damping_ratio=e.row_points.ends["zeta"][0])
-    multipliers = settle(model).multipliers
-    product = float("nan") if multipliers is None else float(np.prod(multipliers).real)
+def _no_torus(*models: TorsionalModel) -> str:
+    """The argument against quasi-periodic motion of ``models``, with what is left of an area.
+
+    A period of the excitation takes every area of the phase plane to exp(-4 pi zeta/omega_h) of
+    itself (Liouville: the divergence is -2 zeta, the period 2 pi/omega_h).
+    """
+    left = [np.exp(-4.0 * np.pi * np.divide(m.damping_ratio, m.frequency)) for m in models]
+    shown = " to ".join(f"{float(area):.3f}" for area in sorted(left))
     return (
         "Quasi-periodic motion is impossible in this equation: a period shrinks every area of the "
-        f"phase plane to {product:.3f} of itself, so no closed curve can stay."
+        f"phase plane to {shown} of itself here, so no closed curve can stay."
     )
 
 
@@ -145,7 +148,7 @@ def _to_torus(e: Evidence) -> Finding:
         f"{w['label'].values[0]} to {w['label'].values[-1]}",
         "a half-frequency line is the mark of period doubling",
         verdict_of("quasi" in str(w["label"].values[-1])),
-        _no_torus(e),
+        _no_torus(motions.hottest(e.rows("section-4.1"), "thesis")),
     )
 
 
@@ -161,7 +164,8 @@ def _end(e: Evidence, row: str, place: int, wanted: tuple[str, ...], why: str = 
 
 
 def _torus_end(e: Evidence, row: str, place: int) -> Finding:
-    return _end(e, row, place, ("quasi-periodic",), _no_torus(e))
+    model = e.row_points.model("none", **{motions.SWEPT[row]: e.row_points.ends[row][place]})
+    return _end(e, row, place, ("quasi-periodic",), _no_torus(model))
 
 
 def _multiplier_grows(e: Evidence) -> Finding:
@@ -289,11 +293,12 @@ def _structure(e: Evidence) -> Finding:
 
 def _zeta_sequence(e: Evidence, wanted: str) -> Finding:
     names = motions.sequence(e.diagrams["zeta/none"], falling=True)
+    ends = [e.row_points.model("none", damping_ratio=zeta) for zeta in e.row_points.ends["zeta"]]
     return Finding(
         f"as ζ falls: {', '.join(names)}",
         f"with E(T): {', '.join(motions.sequence(e.diagrams['zeta/consistent'], falling=True))}",
         verdict_of(wanted in names, assumption=True),
-        _no_torus(e) if wanted == "quasi-periodic" else SET,
+        _no_torus(*ends) if wanted == "quasi-periodic" else SET,
     )
 
 
