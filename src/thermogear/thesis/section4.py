@@ -279,7 +279,8 @@ def _structure(e: Evidence) -> Finding:
         )
 
     return Finding(
-        f"flips up to the range's end, {e.size.flips} at most: {said('none')} without, {said('thesis')} with heat",
+        f"flips up to the range's end, {e.size.flips} at most: {said('none')} without, "
+        f"{said('thesis')} with heat",
         f"{said('consistent')} with E(T); values with a second motion beside: "
         f"{_beside(e, 'none')} without, {_beside(e, 'thesis')} and {_beside(e, 'consistent')} "
         "with heat",
