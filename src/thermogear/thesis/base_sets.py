@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.analysis.labels import label, labels
+from thermogear.base.errors import ConvergenceError
 from thermogear.base.parameters import long_name
 from thermogear.dynamics.models import TorsionalModel
 from thermogear.thesis import motions
@@ -61,7 +62,10 @@ STARTS = 2
 
 @dataclass(frozen=True)
 class Judged:
-    """A base set that meets the table, and whether each statement holds for it, by its number."""
+    """A base set that meets the table, and whether each statement holds for it, by its number.
+
+    ``holds`` is empty where a located bifurcation was lost on the way: such a set is not judged.
+    """
 
     values: Mapping[str, float]
     holds: Mapping[str, bool]
@@ -120,7 +124,10 @@ def judged(values: Mapping[str, float], rows: motions.Rows) -> Judged:
         key: motions.sequence(data, key.startswith("zeta")) for key, data in diagrams.items()
     }
     zeta, omega, epsilon = (set(labels_along[f"{row}/none"]) for row in motions.SWEPT)
-    flips = motions.flips(base, FLIPS)["value"]
+    try:
+        flips = motions.flips(base, FLIPS)["value"]
+    except ConvergenceError:
+        return Judged(values, {})
     cold, hot = (flips.sel(heat=heat, flip=1).values for heat in ("none", "thesis"))
     # period doublings of a row's cascade, those just before the document's range too
     counts = {heat: np.isfinite(flips.sel(heat=heat).values).sum(axis=-1) for heat in motions.HEATS}
@@ -162,9 +169,14 @@ def text_of(sets: Sequence[Judged]) -> str:
     """The table of ``sets`` as it is stored: values, then 1 or 0 for each statement."""
     into = io.StringIO()
     writer = csv.writer(into, lineterminator="\n")
-    writer.writerow([*sets[0].values, *sets[0].holds])
+    writer.writerow([*COLUMNS, *STATEMENTS])
     for judged_set in sets:
-        writer.writerow([*judged_set.values.values(), *map(int, judged_set.holds.values())])
+        writer.writerow(
+            [
+                *(judged_set.values[name] for name in COLUMNS),
+                *(int(judged_set.holds[n]) if judged_set.holds else "" for n in STATEMENTS),
+            ]
+        )
     return into.getvalue()
 
 
@@ -174,13 +186,17 @@ def stored() -> list[Judged]:
     return [
         Judged(
             {name: float(line[name]) for name in COLUMNS},
-            {name: line[name] == "1" for name in line if name not in COLUMNS},
+            {number: line[number] == "1" for number in STATEMENTS if line[number]},
         )
         for line in csv.DictReader(io.StringIO(text))
     ]
 
 
 def share(sets: Sequence[Judged], number: str) -> tuple[int, float, float]:
-    """(sets for which a statement holds, lower and upper end of the share's 95 % interval)."""
-    hits = sum(judged_set.holds[number] for judged_set in sets)
-    return hits, *interval(hits, count=len(sets))
+    """(sets for which a statement holds, lower and upper end of the share's 95 % interval).
+
+    Sets that are not judged are misses for the lower end and hits for the upper.
+    """
+    hits = sum(judged_set.holds.get(number, False) for judged_set in sets)
+    lost = sum(not judged_set.holds for judged_set in sets)
+    return hits, *interval(hits, count=len(sets), lost=lost)
