@@ -27,7 +27,7 @@ from thermogear.thesis.experiment_answer import interval
 
 Floats = NDArray[np.float64]
 TABLE = "base_sets.csv"
-DRAWS, SEED = 200_000, 480
+DRAWS, SEED = 100_000, 480
 BLOCK = 20_000
 """Draws judged at once."""
 RANGES = {
@@ -54,8 +54,8 @@ MANY_POINTS = 8
 """Points of a section beyond which it is read as spread out [1]; chosen."""
 NEARLY = 0.1
 """Relative shift of a first flip that is read as nearly the same [1]; chosen."""
-ENDS = (("period-1", 0), ("chaotic", 1))
-"""What a row's first and last value must settle on, after at most PERIODS periods."""
+ENDS = (("chaotic", 1), ("period-1", 0))
+"""(label, place of the value in a row) that a set must show; the rarer one is asked first."""
 PERIODS = 4000
 STARTS = 2
 
