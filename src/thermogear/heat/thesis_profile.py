@@ -66,19 +66,22 @@ def thesis_half_backlash(
     return np.asarray(0.5 * (2.0 * np.asarray(half_backlash) - lost))
 
 
-def flank_growth_as_printed(gear: GearLike, field: RadialField, radius: ArrayLike) -> Floats:
+def flank_growth_as_printed(
+    gear: GearLike, field: RadialField, radius: ArrayLike, thickness_at: ArrayLike | None = None
+) -> Floats:
     """Delta f exactly as printed, in SI: a pure number plus a length; feeds nothing.
 
     lambda tau/(r_k cos alpha_k) [s_k - 2 r_k (inv alpha_k - inv alpha)]
     + lambda int_{r_b}^{r_k} tau dr/cos(alpha_k).
 
     ``radius`` r_k [m]. s_k is read as the thickness on the pitch circle, the only reading
-    under which the bracket is not counted twice.
+    under which the bracket is not counted twice; ``thickness_at`` another radius [m], as r_k
+    itself, which is what the symbol says.
     """
     r = np.asarray(radius, dtype=float)
     cosine = np.minimum(gear.base_radius / r, 1.0)
-    pitch_thickness = 2.0 * gear.pitch_radius * gear.half_thickness_angle(gear.pitch_radius)
-    bracket = pitch_thickness - 2.0 * r * _involute_difference(gear, r)
+    at = gear.pitch_radius if thickness_at is None else np.asarray(thickness_at, dtype=float)
+    bracket = 2.0 * at * gear.half_thickness_angle(at) - 2.0 * r * _involute_difference(gear, r)
     number = gear.material.thermal_expansion * field.rise(r) / (r * cosine) * bracket
     return np.asarray(number + _stretch(gear, field, r) / cosine)
 

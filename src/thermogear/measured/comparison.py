@@ -17,7 +17,14 @@ import numpy as np
 from thermogear.base.errors import InputError
 from thermogear.base.units import RPM, STANDARD_GRAVITY
 from thermogear.base.vocabulary import label
-from thermogear.measured.published import LineTable, Printed, SpeedLine, unstated_processing
+from thermogear.measured.published import (
+    LineTable,
+    Printed,
+    SpeedLine,
+    allowed,
+    rounded_error,
+    unstated_processing,
+)
 from thermogear.measured.reduction import Measurement
 from thermogear.results.result import Notice, Result, now
 
@@ -273,17 +280,17 @@ def _printed(printed: Printed, names: Sequence[str], quantity: str, number: int)
 def _misprints(rows: Sequence[Row], names: Sequence[str]) -> list[Notice]:
     notices = []
     for row in rows:
-        for name, error, text in zip(names, row.errors, row.printed or (), strict=False):
+        for name, simulated, text in zip(names, row.simulated, row.printed or (), strict=False):
             if not text:
                 continue
-            digits = len(text.partition(".")[2])
-            percent = 100.0 * abs(error)
-            if f"{percent:.{digits}f}" != text:
+            low, high = rounded_error(simulated, row.measured, row.quantity)
+            if not allowed(text, low, high):
                 notices.append(
                     Notice(
                         "important",
                         f"{row.speed / RPM:.0f} rpm, {row.quantity}, {name}: printed {text} %, "
-                        f"recomputed {percent:.2f} %",
+                        f"recomputed {100.0 * abs(simulated / row.measured - 1.0):.2f} %, "
+                        f"{low:.2f} to {high:.2f} % as the entries are rounded",
                     )
                 )
     wrong = [row for row in rows if row.verdict.startswith("impossible")]

@@ -25,7 +25,7 @@ from thermogear.results.result import Result
 from thermogear.study.compare import compare
 from thermogear.study.run import run
 from thermogear.study.sensitivity import Plan, sensitivity
-from thermogear.thesis import chain, experiment, experiment_answer, motions
+from thermogear.thesis import base_sets, chain, experiment, experiment_answer, motions
 from thermogear.thesis.errata import with_errata
 
 if TYPE_CHECKING:
@@ -129,6 +129,11 @@ class Evidence:
     def row_points(self) -> motions.Rows:
         """The base set, its ranges, and what heat adds to it."""
         return motions.rows(self.rows("table-4.2"), self.rows("section-4.1"))
+
+    @cached_property
+    def base_sets(self) -> list[base_sets.Judged]:
+        """Base sets that meet table 4.2, sampled, each with the statements that hold for it."""
+        return base_sets.stored()
 
     @cached_property
     def warming(self) -> xr.Dataset:

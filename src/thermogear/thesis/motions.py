@@ -87,6 +87,11 @@ def _by_row(case: DimensionlessCase) -> dict[str, list[Point]]:
     return found
 
 
+def hottest(section: DimensionlessCase, row: str) -> TorsionalModel:
+    """The model at the last temperature of a row of the ready-made temperature case."""
+    return TorsionalModel(**_by_row(section)[row][-1].model_arguments())
+
+
 def diagrams(base: Rows, values: int = 241) -> dict[str, xr.Dataset]:
     """Orbit diagrams of every row without heat and with both kinds, by "row/heat"."""
     found = {}

@@ -142,13 +142,18 @@ def _deformation(e: Evidence) -> Finding:
     hot = HotPair(e.case.pair, e.case.operating, e.textbook)
     r = np.array([gear.tip_radius])
     field = hot.field(gear)
-    printed = float(np.ravel(flank_growth_as_printed(gear, field, r))[0])
+    printed, at_radius = (
+        1e6 * float(np.ravel(flank_growth_as_printed(gear, field, r, thickness_at=at))[0])
+        for at in (None, r)
+    )
     thesis = float(np.ravel(thesis_flank_growth(gear, field, r))[0])
     right = 1e6 * float(
         e.bundle("path", "consistent")["pinion_deformation"].isel(operating=0).values[-1]
     )
     return Finding(
-        f"{1e6 * printed:.4g} µm literally, {1e6 * thesis:.3g} µm with the first term as a length",
+        f"{printed:.4g} µm literally with the tooth thickness at the pitch circle, "
+        f"{at_radius:.3g} µm with that at r_k; {1e6 * thesis:.3g} µm with the first term as a "
+        "length",
         f"{right:.3g} µm normal growth of one flank at the pinion's tip",
         verdict_of(abs(1e6 * thesis / right - 1.0) < 0.1),
         "The first term is a pure number, the second a stretch along the flank and not normal to "

@@ -7,7 +7,13 @@ import numpy as np
 from thermogear.base.units import RPM
 from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.measured.comparison import Row
-from thermogear.measured.published import THESIS_5_2, SpeedLine, unstated_processing
+from thermogear.measured.published import (
+    THESIS_5_2,
+    SpeedLine,
+    allowed,
+    rounded_error,
+    unstated_processing,
+)
 from thermogear.signals.integration import trapezoid_factor
 from thermogear.thesis.claim import Claim, Finding, Verdict, listed, verdict_of
 from thermogear.thesis.evidence import Evidence
@@ -147,15 +153,15 @@ def _simulated_amplitude(e: Evidence, number: int, model: int) -> Finding:
 def _error(e: Evidence, number: int, quantity: str, model: int) -> Finding:
     row = _row(e, number, quantity)
     printed = THESIS_5_2.errors[MODELS[model], quantity, number]
-    digits = len(printed.partition(".")[2])
-    percent = 100.0 * abs(row.errors[model])
-    agrees = f"{percent:.{digits}f}" == printed
+    low, high = rounded_error(row.simulated[model], row.measured, quantity)
+    agrees = allowed(printed, low, high)
     return Finding(
         f"printed {printed} %",
-        f"recomputed {percent:.2f} %",
+        f"recomputed {100.0 * abs(row.errors[model]):.2f} %, {low:.2f} to {high:.2f} % as the "
+        "entries are rounded",
         verdict_of(agrees),
         "From the table's own entries." if agrees else
-        "The table's own entries give another value.",
+        "The table's own entries give another value, however they were rounded.",
     )  # fmt: skip
 
 
