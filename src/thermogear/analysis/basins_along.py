@@ -118,7 +118,7 @@ def _along(
     count: int,
 ) -> xr.Dataset:
     fraction = np.zeros((points.size, count))
-    period = np.full((points.size, count), -1)
+    period = np.full((points.size, count), np.nan)
     section = np.full((points.size, count, 2), np.nan)
     safe = np.full((points.size, count), np.nan)
     for i, row in enumerate(rows):
@@ -129,7 +129,7 @@ def _along(
         {
             "fraction": (dims, fraction, "1", "share of the starts"),
             "attractor_period": (
-                dims, period, "1", "mesh periods, 0: chaotic, -1: absent"
+                dims, period, "1", "mesh periods, 0: chaotic"
             ),
             "attractor_x": (dims, section[..., 0], "1", "section point"),
             "attractor_v": (dims, section[..., 1], "1", "section point"),

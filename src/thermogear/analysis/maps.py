@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -41,7 +42,9 @@ from thermogear.base.plan import (
     gather,
     keep_going,
     ranges_of,
+    spread,
 )
+from thermogear.base.vocabulary import ASSUMED
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -106,8 +109,6 @@ class MapPlan:
 
     def variables(self) -> dict[str, Variable]:
         found = outcome_variables(self.family.names)
-        words = {"long_name": "0: taken over from equal neighbours, 1: computed"}
-        found["computed"] = Variable(self.family.names, "int8", 0, words)
         return found | watched_variables(self.family, self.family.names)
 
     def coordinates(self) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]:
@@ -117,21 +118,32 @@ class MapPlan:
     def needs(self, key: Key) -> Key | None:
         return None
 
-    def pilot(self, points: int) -> int:
-        """Compute about ``points`` points spread over the map; how many."""
-        side = max(2, round(points**0.5))
-        some = [
-            np.array(v)[np.linspace(0, len(v) - 1, min(side, len(v))).astype(int)]
-            for v in self.axes
-        ]
-        small = replace(
-            self,
-            axes=(tuple(some[0]), tuple(some[1])),
-            refine=False,
-            tile=max(2, *(s.size for s in some)),
-        )
-        small.compute((0, 0), None, keep_going)
-        return int(some[0].size * some[1].size)
+    def pilot(self, share: float, turn: int, alive: Alive) -> float:
+        """Compute about a ``share`` of the points, spread over the map; what share it was.
+
+        Where points are spared, by how much motions differ among those computed.
+        """
+        points = math.prod(map(len, self.axes))
+        some = grid_of(self.axes, share, turn)
+        small = replace(self, axes=some, refine=False, tile=max(2, *map(len, some)))
+        found = small.compute((0, 0), None, alive)
+        code = found["label"].astype(np.int64) * 2**31 + found["period"]
+        return code.size / (points * (self._visited(code) if self.refine else 1.0))
+
+    def _visited(self, code: NDArray[np.int64]) -> float:
+        """Share of the points that refinement goes to, from the motions of a few, a guess.
+
+        Between the first lattice alone, where all are alike, and every point, where two of them
+        differ as often as not; of fewer than 4 motions the middle of both is taken.
+        """
+        counts = np.unique(code, return_counts=True)[1] / code.size
+        differ = 0.25 if code.size < 4 else float(1.0 - (counts**2).sum())
+        least = math.prod(_lattice(len(v), self.stride).size / len(v) for v in self.axes)
+        return float(least ** (1.0 - min(1.0, 2.0 * differ)))
+
+    def sparing(self) -> MapPlan:
+        """The same with points spared where neighbours are alike."""
+        return replace(self, refine=True)
 
     def thinned(self, step: int) -> tuple[MapPlan, Mapping[str, NDArray[np.int64]]]:
         """The map of every ``step``-th value of both axes."""
@@ -154,15 +166,18 @@ class MapPlan:
             for name, v in self.variables().items()
         }
         stride = self.stride if self.refine else 1
+        done = np.zeros(shape, bool)
         wanted = np.zeros(shape, bool)
         wanted[np.ix_(_lattice(one.size, stride), _lattice(two.size, stride))] = True
         while True:
-            places = np.flatnonzero(wanted & (found["computed"] == 0))
+            places = np.flatnonzero(wanted & ~done)
             if places.size:
                 self._settle(one, two, places, found, alive)
+                done.flat[places] = True
             if stride == 1:
+                found["status"][~done] = ASSUMED
                 return found
-            wanted = _refined(found, stride, self._kinds)
+            wanted = _refined(found, done, stride, self._kinds)
             stride //= 2
             inside = np.zeros(shape, bool)
             inside[np.ix_(_lattice(one.size, stride), _lattice(two.size, stride))] = True
@@ -181,15 +196,13 @@ class MapPlan:
             found[name][i, j] = values
         for name, values in watched_arrays(self.family, points, settled).items():
             found[name][i, j] = values
-        found["computed"][i, j] = 1
 
     def finish(self, data: xr.Dataset) -> xr.Dataset:
-        used = int(data["used_periods"].values.astype(np.int64).sum())
         points = int(np.prod([len(a) for a in self.axes]))
         data.attrs |= {
-            "total_periods": used,
+            "total_periods": int(data["used_periods"].sum()),
             "full_periods": points * self.rule.cap,
-            "computed_points": int(data["computed"].values.astype(np.int64).sum()),
+            "computed_points": int((data["status"] != ASSUMED).sum()),
             "initial_state": list(self.start),
         }
         return data
@@ -200,10 +213,20 @@ def _lattice(size: int, stride: int) -> NDArray[np.int64]:
     return np.unique(np.append(np.arange(0, size, stride), size - 1))
 
 
-def _refined(found: Arrays, stride: int, kinds: tuple[str, ...] = ()) -> NDArray[np.bool_]:
+def grid_of(axes: Sequence[Sequence[float]], share: float, turn: int) -> Any:
+    """About a ``share`` of a grid's points, of each axis the same share of its values."""
+    each = share ** (1.0 / len(axes))
+    return tuple(
+        tuple(v[i] for i in spread(len(v), some=round(len(v) * each), turn=turn)) for v in axes
+    )
+
+
+def _refined(
+    found: Arrays, done: NDArray[np.bool_], stride: int, kinds: tuple[str, ...] = ()
+) -> NDArray[np.bool_]:
     """Places inside or next to cells whose corners differ; equal cells take their corners' label.
 
-    Corners differ in label, period or one of the ``kinds``.
+    Corners differ in label, period or one of the ``kinds``. ``done``: what is computed.
 
     A cell counts as equal only when its neighbours are equal too, and never when undecided.
     """
@@ -233,8 +256,8 @@ def _refined(found: Arrays, stride: int, kinds: tuple[str, ...] = ()) -> NDArray
             slice(int(rows[i]), int(rows[i + 1]) + 1),
             slice(int(columns[j]), int(columns[j + 1]) + 1),
         )
-        fresh = (found["computed"][place] == 0) & ~wanted[place]
-        for name in ("label", "period", "status", *kinds):
+        fresh = ~done[place] & ~wanted[place]
+        for name in ("label", "period", *kinds):
             found[name][place][fresh] = found[name][rows[i], columns[j]]
     return wanted
 
@@ -266,7 +289,8 @@ def parameter_map(
     one point for longer and from several starts.
 
     Returns label, period, largest multiplier, Lyapunov exponent and counts over the two
-    parameters; points that equal neighbours spoke for have ``computed`` 0 and no figures. The
+    parameters; points that equal neighbours spoke for have the status "assumed" and NaN in every
+    number, and their label may be wrong where a motion lives between the points computed. The
     attributes tell the periods run and those of the full run. The result does not depend on
     ``threads``. ``alive`` is called between rounds and raises to end the work.
 

@@ -32,6 +32,8 @@ LABELS = ("undecided", "periodic", "chaotic", "diverged", "jammed")
 """Meaning of the label codes 0, 1, 2, ..."""
 UNDECIDED, PERIODIC, CHAOTIC, DIVERGED, JAMMED = range(5)
 TRIES = 4
+WATCHED = 128
+"""Mesh periods after its label over which the contact of a chaotic motion is told."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,7 +89,8 @@ class Settled:
     ``label`` codes into :data:`LABELS`, ``period`` n (0: none), ``point`` (lane, d) of the
     orbit where the trajectory is, ``multiplier`` (lane, d) complex, ``lyapunov`` per unit
     time with its ``lyapunov_error`` (exact, error 0, for periodic lanes), ``losses`` and
-    ``impacts`` per orbit, ``shares`` of time in back, free and drive, ``used`` periods run,
+    ``impacts`` per orbit (NaN without one), ``shares`` of time in back, free and drive (in chaos
+    those of :data:`WATCHED` periods, of one mass alone), ``used`` periods run,
     ``state`` (lane, d) at the end, ``sections`` (lane, keep, d) the last ones, on the orbit
     itself for periodic lanes.
     """
@@ -98,8 +101,8 @@ class Settled:
     multiplier: NDArray[np.complex128]
     lyapunov: Floats
     lyapunov_error: Floats
-    losses: NDArray[np.int32]
-    impacts: NDArray[np.int32]
+    losses: Floats
+    impacts: Floats
     shares: Floats
     used: NDArray[np.int32]
     state: Floats
@@ -116,8 +119,8 @@ class Settled:
             multiplier=np.full((lanes, dimension), complex(nan, nan)),
             lyapunov=np.full(lanes, nan),
             lyapunov_error=np.full(lanes, nan),
-            losses=np.full(lanes, -1, np.int32),
-            impacts=np.full(lanes, -1, np.int32),
+            losses=np.full(lanes, nan),
+            impacts=np.full(lanes, nan),
             shares=np.full((lanes, 3), nan),
             used=np.zeros(lanes, np.int32),
             state=np.full((lanes, dimension), nan),
@@ -339,6 +342,12 @@ def _verdicts(block: _Block, window: Floats, stretch: Floats, last: bool) -> Fla
         )
         result.label[active[chaotic]] = CHAOTIC
         done |= chaotic
+        rows = np.flatnonzero(chaotic)
+        # more masses take too long with their variational equations: their families watch them
+        if rows.size and window.shape[2] == 2:
+            run = close_orbits(block.maps.take(rows), window[rows, -1], WATCHED)
+            lanes = active[rows]
+            result.shares[lanes] = run.spent / (WATCHED * block.period[lanes])[:, None]
     if block.keep:
         rows = np.flatnonzero((done | last) & (result.label[active] != PERIODIC))
         count = min(block.keep, window.shape[1])

@@ -7,6 +7,7 @@ it on threads; a store can keep the same chunks on disk. A chunk depends on the 
 
 from __future__ import annotations
 
+import math
 import os
 import threading
 from collections import Counter
@@ -89,7 +90,12 @@ class Plan(Protocol):
 
     def finish(self, data: xr.Dataset) -> xr.Dataset: ...
 
-    def pilot(self, points: int) -> int: ...
+    def pilot(self, share: float, turn: int, alive: Alive) -> float:
+        """Do about a ``share`` of the work, spread over it, at least one point of it.
+
+        Returns what share it was. Each ``turn`` 0, 1, 2, ... takes other points.
+        """
+        ...
 
 
 def keys_of(plan: Plan) -> list[Key]:
@@ -311,6 +317,32 @@ class Thinned(Protocol):
     def thinned(self, step: int) -> tuple[Plan, Mapping[str, NDArray[np.int64]]]:
         """The plan of every ``step``-th value, the last included, and which values these are."""
         ...
+
+
+@runtime_checkable
+class Sparing(Protocol):
+    """A plan that can leave points out where their neighbours are alike."""
+
+    def sparing(self) -> Plan:
+        """The plan that does."""
+        ...
+
+
+def spread(count: int, *, some: int, turn: int = 0) -> NDArray[np.int64]:
+    """About ``some`` places of ``count``, in the middle of equal stretches, moved on each ``turn``.
+
+    The golden ratio moves them, so that places of many turns fill the stretches evenly.
+    """
+    some = min(max(some, 1), count)
+    move = (0.5 + 0.5 * (math.sqrt(5.0) - 1.0) * turn) % 1.0
+    return np.unique(((np.arange(some) + move) * count / some).astype(int))
+
+
+def stretches(values: Sequence[float], count: int, turn: int) -> tuple[float, ...]:
+    """About ``count`` of ``values``, at least one, in fours of neighbours spread over them."""
+    length = min(max(count, 1), len(values), 4)
+    places = spread(len(values) - length + 1, some=max(count, 1) // length, turn=turn)
+    return tuple(values[i] for i in np.unique(places[:, None] + np.arange(length)))
 
 
 def every(count: int, *, step: int) -> NDArray[np.int64]:

@@ -187,7 +187,9 @@ def bifurcation(
 @delivery.case
 @_over(f"{GEAR_AXES}; zeta, omega, epsilon, F_m, F_h, b, eps_T of a dimensionless one.")
 @_but
-@click.option("--full", is_flag=True, help="Compute every point, give none up to its neighbours.")
+@click.option("--full", is_flag=True,
+              help="Compute every point; without it points whose neighbours are alike are assumed "
+              "where all would take more than two minutes.")  # fmt: skip
 @_train
 @_common
 def map_(
@@ -206,6 +208,7 @@ def map_(
     """
     from thermogear.case.axes import parse_axes, parse_numbers
     from thermogear.case.samples import GEARS_AT
+    from thermogear.results.work import chosen, require_space
     from thermogear.study.diagrams import case_map, train_maps
 
     read = delivery.load(case, options["overrides"])
@@ -218,10 +221,13 @@ def map_(
     plan: Plan
     if train is None or changes or GEARS_AT in axes or options["state"] is not None:
         plan = case_map(
-            read, axes, bundle=bundle, state=state, changes=changes, refine=not full, train=train
+            read, axes, bundle=bundle, state=state, changes=changes, refine=False, train=train
         )
     else:
-        plan = train_maps(read, axes, bundle=bundle, refine=not full, train=train)
+        plan = train_maps(read, axes, bundle=bundle, refine=False, train=train)
+    if not full:
+        require_space(plan, Path(output), threads=options["threads"], forced=options["force"])
+        plan = chosen(plan, Path(output), threads=options["threads"])
     _carry(plan, Path(output), read.title, as_json, options)
 
 

@@ -2,21 +2,29 @@
 
 from __future__ import annotations
 
+import json
 import math
 import os
 import shutil
 import time
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from numba.core.event import install_timer
 
 from thermogear.base.errors import InputError
 from thermogear.base.memory import SHARE, free_bytes
 from thermogear.base.plan import (
     Alive,
     Plan,
+    Sparing,
+    Stopped,
     bytes_of,
     computed,
     gather,
@@ -24,6 +32,7 @@ from thermogear.base.plan import (
     keys_of,
 )
 from thermogear.base.progress import duration
+from thermogear.base.stores import read_manifests
 from thermogear.results.store import Store
 from thermogear.results.workers import cluster, computed_on
 
@@ -33,10 +42,12 @@ if TYPE_CHECKING:
 WORKSPACE = 48 * 2**20
 """Bytes that one thread's kernels and maps take, about."""
 
-BRIEF, LONG = 1.0, 10.0
-"""Seconds of the first points of an estimate: below the one it looks at as many as it likes, below
-the other at a few, else those must do."""
-FEW = 8
+SPENT = 1.0 / 20.0
+"""Share of the work's time that an estimate takes, about."""
+BRIEF, LONGEST = 0.5, 60.0
+"""Seconds that every estimate may take, and those after which its first points are given up."""
+WHOLE = 120.0
+"""Seconds of estimated time below which every point of a map is computed."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,17 +67,22 @@ Report = Callable[[Step], None]
 
 @dataclass(frozen=True, kw_only=True)
 class Estimate:
-    """What a plan will take: ``points``, ``chunks``, bytes of memory and disk, seconds."""
+    """What a plan will take: ``points``, ``chunks``, bytes of memory and disk, seconds.
+
+    ``least``: it takes so many seconds at least, the first points were given up.
+    """
 
     points: int
     chunks: int
     memory: int
     disk: int
     seconds: float
+    least: bool = False
 
     def __str__(self) -> str:
+        about = "more than" if self.least else "about"
         return (
-            f"{self.points} points in {self.chunks} chunks, about {duration(self.seconds)}, "
+            f"{self.points} points in {self.chunks} chunks, {about} {duration(self.seconds)}, "
             f"{self.memory / 2**20:.3g} MiB of memory, {self.disk / 2**20:.3g} MiB of disk"
         )
 
@@ -79,41 +95,76 @@ def points_of(plan: Plan) -> int:
     return total
 
 
-def estimate(plan: Plan, *, threads: int | None = None, pilot: int = 64) -> Estimate:
-    """What ``plan`` will take, from its sizes and from ``pilot`` points computed now.
+def estimate(plan: Plan, *, threads: int | None = None) -> Estimate:
+    """What ``plan`` will take, from its sizes and from a part of it that is done now.
 
-    Points near borders cost more than others and refinement saves some: the time is a guess
-    within a factor of about 3. Of points that take long a few are computed, not ``pilot``.
-    ``pilot`` 0 leaves it out (infinite).
+    The part grows up to a twentieth of the whole (:data:`SPENT`), on as many threads as the work
+    will have; compiling kernels does not count. Points near borders cost more than others: the
+    time is a guess within a factor of about 2.
     """
-    count = threads or os.cpu_count() or 1
+    seconds, least = _seconds(plan, threads or os.cpu_count() or 1)
+    return replace(_sizes(plan, threads), seconds=seconds, least=least)
+
+
+def _sizes(plan: Plan, threads: int | None) -> Estimate:
+    """The estimate without a time."""
     size = bytes_of(plan)
-    chunks = math.prod(-(-plan.sizes[name] // length) for name, length in plan.cuts.items())
-    seconds = float("inf")
-    if pilot > 0:
-        begun = time.perf_counter()
-        run = plan.pilot(2)  # loads the compiled kernels
-        took = time.perf_counter() - begun
-        if took < LONG:
-            begun = time.perf_counter()
-            run = plan.pilot(pilot if took < BRIEF else FEW)
-            took = time.perf_counter() - begun
-        each = took / max(run, 1)
-        seconds = each * points_of(plan) / count
     return Estimate(
         points=points_of(plan),
-        chunks=chunks,
-        memory=2 * size + count * WORKSPACE,
+        chunks=math.prod(-(-plan.sizes[name] // length) for name, length in plan.cuts.items()),
+        memory=2 * size + (threads or os.cpu_count() or 1) * WORKSPACE,
         disk=size,
-        seconds=seconds,
+        seconds=float("inf"),
     )
+
+
+def _seconds(plan: Plan, threads: int) -> tuple[float, bool]:
+    """Seconds of the whole work from larger and larger parts of it; whether it is a least time."""
+    begun = [key for key in keys_of(plan) if plan.needs(key) is None]
+    width = max(1, min(threads, len(begun)))
+    seconds, share, spent, least = float("inf"), 0.0, 0.0, True
+    with ThreadPoolExecutor(width) as pool:
+        for step in count():
+            until = time.monotonic() + LONGEST
+            pilot = partial(plan.pilot, share / width, alive=partial(_hold, until))
+            compiling: list[float] = []
+            clock = time.perf_counter()
+            try:
+                with install_timer("numba:compile", compiling.append):
+                    done = sum(pool.map(pilot, range(step * width, (step + 1) * width)))
+            except Stopped:
+                return (LONGEST * points_of(plan) / width, True) if least else (seconds, False)
+            took = max(time.perf_counter() - clock - sum(compiling), 1e-6)
+            seconds, share, spent, least = took / done, 2.0 * done, spent + took, False
+            if spent + 2.0 * took > max(BRIEF, SPENT * seconds) or done >= 0.5:
+                return seconds, False
+    raise AssertionError("it went on for ever")
+
+
+def _hold(until: float) -> None:
+    """Raises Stopped after the moment ``until`` [s, monotonic]."""
+    if time.monotonic() > until:
+        raise Stopped
+
+
+def chosen(plan: Plan, directory: Path, *, threads: int | None = None) -> Plan:
+    """The map ``plan``, with points spared where computing all takes longer than :data:`WHOLE`.
+
+    A store keeps what it was begun with, so that the same command goes on with it.
+    """
+    assert isinstance(plan, Sparing)
+    stored = next(iter(read_manifests(directory).values()), {}).get("inputs")
+    spared = plan.sparing()
+    if stored is not None:
+        return spared if stored == json.loads(json.dumps(spared.inputs())) else plan
+    return plan if estimate(plan, threads=threads).seconds < WHOLE else spared
 
 
 def require_space(
     plan: Plan, directory: Path | None, *, threads: int | None = None, forced: bool = False
 ) -> Estimate:
     """Refuse what does not fit into 70 % of the free memory or of the free disk."""
-    needed = estimate(plan, threads=threads, pilot=0)
+    needed = _sizes(plan, threads)
     free = free_bytes()
     if needed.memory > SHARE * free and not forced:
         raise InputError(

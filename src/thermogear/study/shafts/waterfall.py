@@ -7,6 +7,7 @@ with clearance: d(phase)/dt = n(t). Samples are uniform in the phase, so that or
 from __future__ import annotations
 
 import json
+import math
 import os
 import threading
 from collections.abc import Sequence
@@ -21,7 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.family import axis_values
 from thermogear.base.errors import ConvergenceError, InputError
-from thermogear.base.plan import Alive, Arrays, Key, Variable, keep_going, ranges_of
+from thermogear.base.plan import Alive, Arrays, Key, Variable, keep_going, ranges_of, spread
 from thermogear.base.vocabulary import STATUS
 from thermogear.case.case import GearCase
 from thermogear.case.thermal_state import HOT, UNDEFORMED, ThermalState
@@ -202,11 +203,23 @@ class WaterfallPlan:
         before = block - 1 if direction == 0 else block + 1
         return (state, direction, before) if 0 <= before < blocks else None
 
-    def pilot(self, points: int) -> int:
-        """Run over the first few speeds, to tell how long all take; how many."""
-        count = min(points, len(self.speeds), 4)
-        replace(self, speeds=self.speeds[:count], block=count).compute((0, 0, 0), None, keep_going)
-        return count
+    def pilot(self, share: float, turn: int, alive: Alive) -> float:
+        """Settle at a few of the speeds; what share of all mesh periods it was.
+
+        A run passes speed after speed at its rate; what ``finish`` tries is not in it.
+        """
+        ways, each = len(self.states) * len(DIRECTIONS), SETTLING + WINDOW
+        passed = (
+            self.duration * self.case.pair.pinion.teeth * float(np.mean(self.speeds)) / math.tau
+        )
+        whole = ways * (each + max(passed, WINDOW * (len(self.speeds) - 1)))
+        some = spread(len(self.speeds), some=round(share * whole / each), turn=turn)
+        for place in some:
+            one = replace(self, speeds=(self.speeds[place],), block=1)
+            one._trains.update(self._trains)
+            one.compute((turn % len(self.states), 0, 0), None, alive)
+            self._trains.update(one._trains)
+        return some.size * each / whole
 
     def compute(self, key: Key, before: Arrays | None, alive: Alive) -> Arrays:
         up = key[1] == 0

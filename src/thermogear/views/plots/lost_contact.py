@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.parameters import axis_words, each_state, named, shown
-from thermogear.views.plots.sweeps import edges
+from thermogear.views.plots.sweeps import edges, hatch_assumed
 from thermogear.views.style import FAINT, INK, OKABE_ITO, QUIET, WIDE
 
 if TYPE_CHECKING:
@@ -80,6 +80,7 @@ def _put(
     whole = np.where(data["label"].values == JAMMED, len(looks) + 1, whole)
     borders = edges(shown(one, data[one].values)), edges(shown(two, data[two].values))
     panel.field(*borders, whole.T, colours=colours, classes=names)
+    hatch_assumed(panel, data)
     return panel
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.units import ZERO_CELSIUS
+from thermogear.base.vocabulary import ASSUMED, STATUS
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.parameters import axis_words, each_state, shown
 from thermogear.views.style import COLD, FAINT, HOT, INK, OKABE_ITO, QUIET, WIDE, scale
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Floats = NDArray[np.float64]
+DIVERGED = STATUS.index("diverged")
 
 CLASSES = (
     ("period 1", "#0072B2"),
@@ -126,15 +128,51 @@ def _branches(panel: Panel, data: xr.Dataset, name: str) -> None:
             )  # fmt: skip
 
 
+CONTACT = (
+    ("always in contact", FAINT),
+    ("drive flank parts", "#E69F00"),
+    ("drive flank parts, back flank is hit", "#D55E00"),
+    ("contact not known", "#999999"),
+)
+"""What a motion loses contact at."""
+
+
 def map_picture(data: xr.Dataset) -> Picture:
-    """The regime over two parameters, in every state of heat that it has."""
+    """The regime over two parameters and what loses contact, in every state of heat it has.
+
+    What is assumed is hatched. Of a train a picture of its own shows the contact.
+    """
     panels = []
     for state, one in each_state(data):
-        panel = _regimes(one)
-        panel.title = state
-        panels.append(panel)
-    height = 6.4 if len(panels) == 1 else 4.6
-    return Picture([panels], size=(WIDE, height), legend=6, share_y="row")
+        panels.append(_regimes(one))
+        panels[-1].title = state
+        if "lost_contact" not in data:
+            panels[-1].title = "regime"
+            panels.append(_contact(one))
+    return Picture([panels], size=(WIDE, 4.6), legend=4, share_y="row")
+
+
+def hatch_assumed(panel: Panel, data: xr.Dataset) -> None:
+    """Hatch the cells of a map over two parameters that were not computed."""
+    one, two = (str(name) for name in data["label"].dims[-2:])
+    borders = edges(shown(one, data[one].values)), edges(shown(two, data[two].values))
+    assumed = data["status"].values == ASSUMED
+    if assumed.any():
+        # a hatch runs between the middles of its cells: each cell is given at both its borders
+        ends = [np.repeat(x, 2)[1:-1] for x in borders]
+        panel.hatch(*ends, np.repeat(np.repeat(assumed.T, 2, axis=0), 2, axis=1).astype(float))
+
+
+def _contact(data: xr.Dataset) -> Panel:
+    panel, borders = _over_two(data)
+    panel.title = "contact of the teeth"
+    drive, back = data["drive_share"].values, data["back_share"].values
+    codes = np.where(back > 0.0, 2, np.where(drive < 1.0, 1, 0))
+    names, colours = zip(*CONTACT, strict=True)
+    whole = np.where(np.isfinite(drive), codes, len(CONTACT) - 1)
+    panel.field(*borders, whole.T, colours=colours, classes=names)
+    hatch_assumed(panel, data)
+    return panel
 
 
 def _over_two(data: xr.Dataset) -> tuple[Panel, tuple[Floats, Floats]]:
@@ -148,6 +186,7 @@ def _regimes(data: xr.Dataset) -> Panel:
     panel, borders = _over_two(data)
     names, colours = zip(*CLASSES, strict=True)
     panel.field(*borders, classes_of(data).T, colours=colours, classes=names)
+    hatch_assumed(panel, data)
     return panel
 
 
@@ -164,8 +203,10 @@ def basins_picture(data: xr.Dataset) -> Picture:
         period = int(data["attractor_period"].values[n])
         kind = f"period {period}" if period else "chaotic, estimate"
         names.append(f"{kind}: {100.0 * float(data['fraction'].values[n]):.3g} %")
+    none = np.where(data["status"].values == DIVERGED, 0, 1)
+    codes = np.where(np.isnan(data["attractor"].values), none, data["attractor"].values + 2)
     panel.field(
-        x, y, data["attractor"].values.T + 2, colours=[INK, "#bbbbbb", *colours],
+        x, y, codes.T, colours=[INK, "#bbbbbb", *colours],
         classes=["diverged", "undecided", *names],
     )  # fmt: skip
     for n, colour in enumerate(colours):
