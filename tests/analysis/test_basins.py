@@ -346,7 +346,7 @@ def test_of_two_old_attractors_that_end_on_one_the_nearer_keeps_its_number():
 
 @pytest.mark.parametrize(("rows", "columns"), [(7, 3), (5000, 3), (300, 100), (4, 20_000)])
 def test_a_chunk_of_a_basin_holds_as_many_whole_rows_as_it_may(rows, columns):
-    plan = BasinPlan(model=MODEL_TWO, x=tuple(range(rows)), v=tuple(range(columns)), attractors=())
+    plan = BasinPlan(model=MODEL_TWO, x=tuple(range(rows)), v=tuple(range(columns)))
     cut = plan.cuts["x"]
     assert plan.sizes == {"x": rows, "v": columns}
     assert cut == 1 or cut * columns <= CHUNK_POINTS

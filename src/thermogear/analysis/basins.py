@@ -34,6 +34,7 @@ from thermogear.base.plan import (
     Variable,
     every,
     gather,
+    keep_going,
     ranges_of,
     spread,
 )
@@ -145,15 +146,17 @@ class BasinPlan:
     def needs(self, key: Key) -> Key | None:
         return None
 
-    def pilot(self, share: float, turn: int, alive: Alive) -> float:
+    def pilot(self, share: float, turn: int) -> float:
         """Do about a ``share`` of the survey and of the grid; what share it was."""
         whole, points = self._starts, len(self.x) * len(self.v)
         some = whole[spread(len(whole), some=round(share * len(whole)), turn=turn)]
-        found, _ = attractors_from(single(self.model), some, self.rule, alive)
+        found, _ = attractors_from(single(self.model), some, self.rule)
         share = len(some) / len(whole)
         places = spread(points, some=round(share * points), turn=turn)
         row, column = np.unravel_index(places, (len(self.x), len(self.v)))
-        self._ends(np.stack([np.array(self.x)[row], np.array(self.v)[column]], 1), found, alive)
+        self._ends(
+            np.stack([np.array(self.x)[row], np.array(self.v)[column]], 1), found, keep_going
+        )
         return share
 
     def _ends(

@@ -160,7 +160,7 @@ class DiagramPlan:
         before = block - 1 if direction == 0 else block + 1
         return (direction, before) if 0 <= before < blocks else None
 
-    def pilot(self, share: float, turn: int, alive: Alive) -> float:
+    def pilot(self, share: float, turn: int) -> float:
         """Settle about a ``share`` of the values, in fours of neighbours; what share it was.
 
         The branches count as :data:`BRANCHES` values.
@@ -168,7 +168,7 @@ class DiagramPlan:
         whole = 2 * len(self.values) + BRANCHES * (self.branch_period > 0)
         chosen = stretches(self.values, round(share * whole), turn)
         small = replace(self, values=chosen, block=len(chosen), branch_period=0)
-        small.compute((turn % len(DIRECTIONS), 0), None, alive)
+        small.compute((turn % len(DIRECTIONS), 0), None, keep_going)
         return len(chosen) / whole
 
     def thinned(self, step: int) -> tuple[DiagramPlan, Mapping[str, NDArray[np.int64]]]:

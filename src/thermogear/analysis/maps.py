@@ -64,7 +64,7 @@ class MapPlan:
     axes: tuple[tuple[float, ...], tuple[float, ...]]
     start: tuple[float, ...] = (0.0, 0.0)
     rule: Rule = MAP_RULE
-    refine: bool = True
+    refine: bool = False
     tile: int = TILE
     stride: int = STRIDE
     kind: str = "map"
@@ -118,28 +118,18 @@ class MapPlan:
     def needs(self, key: Key) -> Key | None:
         return None
 
-    def pilot(self, share: float, turn: int, alive: Alive) -> float:
+    def pilot(self, share: float, turn: int) -> float:
         """Compute about a ``share`` of the points, spread over the map; what share it was.
 
-        Where points are spared, by how much motions differ among those computed.
+        Of points that are spared the middle between those of the first lattice and all.
         """
         points = math.prod(map(len, self.axes))
         some = grid_of(self.axes, share, turn)
         small = replace(self, axes=some, refine=False, tile=max(2, *map(len, some)))
-        found = small.compute((0, 0), None, alive)
-        code = found["label"].astype(np.int64) * 2**31 + found["period"]
-        return code.size / (points * (self._visited(code) if self.refine else 1.0))
-
-    def _visited(self, code: NDArray[np.int64]) -> float:
-        """Share of the points that refinement goes to, from the motions of a few, a guess.
-
-        Between the first lattice alone, where all are alike, and every point, where two of them
-        differ as often as not; of fewer than 4 motions the middle of both is taken.
-        """
-        counts = np.unique(code, return_counts=True)[1] / code.size
-        differ = 0.25 if code.size < 4 else float(1.0 - (counts**2).sum())
-        least = math.prod(_lattice(len(v), self.stride).size / len(v) for v in self.axes)
-        return float(least ** (1.0 - min(1.0, 2.0 * differ)))
+        small.compute((0, 0), None, keep_going)
+        stride = self.stride if self.refine else 1
+        least = math.prod(_lattice(len(v), stride).size / len(v) for v in self.axes)
+        return math.prod(map(len, some)) / (points * math.sqrt(least))
 
     def sparing(self) -> MapPlan:
         """The same with points spared where neighbours are alike."""
@@ -268,7 +258,7 @@ def parameter_map(
     *,
     initial_state: ArrayLike = (0.0, 0.0),
     rule: Rule = MAP_RULE,
-    refine: bool = True,
+    refine: bool = False,
     tile: int = TILE,
     stride: int = STRIDE,
     threads: int | None = None,
@@ -283,7 +273,7 @@ def parameter_map(
     (:func:`~thermogear.dynamics.plane.plane_of`), or the whole state. A point leaves as soon as
     its label is proven (:class:`Rule`); with ``refine`` the map starts on every ``stride``-th
     point and goes on only where neighbours differ, inside tiles of ``tile`` x ``tile`` points.
-    ``rule.full()`` with ``refine=False`` is the full run.
+    ``rule.full()`` without ``refine`` is the full run.
 
     Labels are an estimate by this faster rule; :func:`~thermogear.analysis.labels.label` follows
     one point for longer and from several starts.
@@ -320,7 +310,7 @@ def map_plan(
     *,
     initial_state: ArrayLike = (0.0, 0.0),
     rule: Rule = MAP_RULE,
-    refine: bool = True,
+    refine: bool = False,
     tile: int = TILE,
     stride: int = STRIDE,
 ) -> MapPlan:

@@ -90,7 +90,7 @@ class Plan(Protocol):
 
     def finish(self, data: xr.Dataset) -> xr.Dataset: ...
 
-    def pilot(self, share: float, turn: int, alive: Alive) -> float:
+    def pilot(self, share: float, turn: int) -> float:
         """Do about a ``share`` of the work, spread over it, at least one point of it.
 
         Returns what share it was. Each ``turn`` 0, 1, 2, ... takes other points.
@@ -316,15 +316,6 @@ class Thinned(Protocol):
 
     def thinned(self, step: int) -> tuple[Plan, Mapping[str, NDArray[np.int64]]]:
         """The plan of every ``step``-th value, the last included, and which values these are."""
-        ...
-
-
-@runtime_checkable
-class Sparing(Protocol):
-    """A plan that can leave points out where their neighbours are alike."""
-
-    def sparing(self) -> Plan:
-        """The plan that does."""
         ...
 
 

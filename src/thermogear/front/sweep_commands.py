@@ -19,6 +19,8 @@ from thermogear.base.units import RPM
 from thermogear.front import delivery
 
 if TYPE_CHECKING:
+    from thermogear.analysis.maps import MapPlan
+    from thermogear.analysis.stacked import StackedPlan
     from thermogear.base.plan import Plan
     from thermogear.case.case import DimensionlessCase, GearCase
     from thermogear.case.thermal_state import ThermalState
@@ -208,8 +210,8 @@ def map_(
     """
     from thermogear.case.axes import parse_axes, parse_numbers
     from thermogear.case.samples import GEARS_AT
-    from thermogear.results.work import chosen, require_space
-    from thermogear.study.diagrams import case_map, train_maps
+    from thermogear.results.work import require_space
+    from thermogear.study.diagrams import case_map, train_maps, whole_or_spared
 
     read = delivery.load(case, options["overrides"])
     if len(over) != 2:
@@ -218,16 +220,14 @@ def map_(
     delivery.heat_once(axes, options["state"])
     bundle, state = _choice(read, options)
     changes, train = parse_numbers(but), _train_of(read, options)
-    plan: Plan
+    plan: MapPlan | StackedPlan
     if train is None or changes or GEARS_AT in axes or options["state"] is not None:
-        plan = case_map(
-            read, axes, bundle=bundle, state=state, changes=changes, refine=False, train=train
-        )
+        plan = case_map(read, axes, bundle=bundle, state=state, changes=changes, train=train)
     else:
-        plan = train_maps(read, axes, bundle=bundle, refine=False, train=train)
+        plan = train_maps(read, axes, bundle=bundle, train=train)
     if not full:
         require_space(plan, Path(output), threads=options["threads"], forced=options["force"])
-        plan = chosen(plan, Path(output), threads=options["threads"])
+        plan, options["estimated"] = whole_or_spared(plan, Path(output), threads=options["threads"])
     _carry(plan, Path(output), read.title, as_json, options)
 
 
@@ -457,7 +457,8 @@ def _compute(plan: Plan, directory: Path, title: str, options: dict[str, Any]) -
 
     require_space(plan, directory, threads=options["threads"], forced=options["force"])
     if options["only_estimate"] or sys.stderr.isatty():
-        say("estimate", estimate(plan, threads=options["threads"]))
+        known = options.get("estimated")
+        say("estimate", known or estimate(plan, threads=options["threads"]))
     if options["only_estimate"]:
         return None
     last: list[Step] = []

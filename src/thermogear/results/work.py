@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import os
 import shutil
@@ -23,8 +22,6 @@ from thermogear.base.memory import SHARE, free_bytes
 from thermogear.base.plan import (
     Alive,
     Plan,
-    Sparing,
-    Stopped,
     bytes_of,
     computed,
     gather,
@@ -32,7 +29,6 @@ from thermogear.base.plan import (
     keys_of,
 )
 from thermogear.base.progress import duration
-from thermogear.base.stores import read_manifests
 from thermogear.results.store import Store
 from thermogear.results.workers import cluster, computed_on
 
@@ -44,10 +40,8 @@ WORKSPACE = 48 * 2**20
 
 SPENT = 1.0 / 20.0
 """Share of the work's time that an estimate takes, about."""
-BRIEF, LONGEST = 0.5, 60.0
-"""Seconds that every estimate may take, and those after which its first points are given up."""
-WHOLE = 120.0
-"""Seconds of estimated time below which every point of a map is computed."""
+BRIEF = 0.5
+"""Seconds that every estimate may take."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,22 +61,17 @@ Report = Callable[[Step], None]
 
 @dataclass(frozen=True, kw_only=True)
 class Estimate:
-    """What a plan will take: ``points``, ``chunks``, bytes of memory and disk, seconds.
-
-    ``least``: it takes so many seconds at least, the first points were given up.
-    """
+    """What a plan will take: ``points``, ``chunks``, bytes of memory and disk, seconds."""
 
     points: int
     chunks: int
     memory: int
     disk: int
     seconds: float
-    least: bool = False
 
     def __str__(self) -> str:
-        about = "more than" if self.least else "about"
         return (
-            f"{self.points} points in {self.chunks} chunks, {about} {duration(self.seconds)}, "
+            f"{self.points} points in {self.chunks} chunks, about {duration(self.seconds)}, "
             f"{self.memory / 2**20:.3g} MiB of memory, {self.disk / 2**20:.3g} MiB of disk"
         )
 
@@ -102,8 +91,8 @@ def estimate(plan: Plan, *, threads: int | None = None) -> Estimate:
     will have; compiling kernels does not count. Points near borders cost more than others: the
     time is a guess within a factor of about 2.
     """
-    seconds, least = _seconds(plan, threads or os.cpu_count() or 1)
-    return replace(_sizes(plan, threads), seconds=seconds, least=least)
+    seconds = _seconds(plan, threads or os.cpu_count() or 1)
+    return replace(_sizes(plan, threads), seconds=seconds)
 
 
 def _sizes(plan: Plan, threads: int | None) -> Estimate:
@@ -118,46 +107,22 @@ def _sizes(plan: Plan, threads: int | None) -> Estimate:
     )
 
 
-def _seconds(plan: Plan, threads: int) -> tuple[float, bool]:
-    """Seconds of the whole work from larger and larger parts of it; whether it is a least time."""
-    begun = [key for key in keys_of(plan) if plan.needs(key) is None]
-    width = max(1, min(threads, len(begun)))
-    seconds, share, spent, least = float("inf"), 0.0, 0.0, True
+def _seconds(plan: Plan, threads: int) -> float:
+    """Seconds of the whole work, from larger and larger parts of it."""
+    width = max(1, min(threads, sum(plan.needs(key) is None for key in keys_of(plan))))
+    share = spent = 0.0
     with ThreadPoolExecutor(width) as pool:
         for step in count():
-            until = time.monotonic() + LONGEST
-            pilot = partial(plan.pilot, share / width, alive=partial(_hold, until))
             compiling: list[float] = []
-            clock = time.perf_counter()
-            try:
-                with install_timer("numba:compile", compiling.append):
-                    done = sum(pool.map(pilot, range(step * width, (step + 1) * width)))
-            except Stopped:
-                return (LONGEST * points_of(plan) / width, True) if least else (seconds, False)
-            took = max(time.perf_counter() - clock - sum(compiling), 1e-6)
-            seconds, share, spent, least = took / done, 2.0 * done, spent + took, False
-            if spent + 2.0 * took > max(BRIEF, SPENT * seconds) or done >= 0.5:
-                return seconds, False
-    raise AssertionError("it went on for ever")
-
-
-def _hold(until: float) -> None:
-    """Raises Stopped after the moment ``until`` [s, monotonic]."""
-    if time.monotonic() > until:
-        raise Stopped
-
-
-def chosen(plan: Plan, directory: Path, *, threads: int | None = None) -> Plan:
-    """The map ``plan``, with points spared where computing all takes longer than :data:`WHOLE`.
-
-    A store keeps what it was begun with, so that the same command goes on with it.
-    """
-    assert isinstance(plan, Sparing)
-    stored = next(iter(read_manifests(directory).values()), {}).get("inputs")
-    spared = plan.sparing()
-    if stored is not None:
-        return spared if stored == json.loads(json.dumps(spared.inputs())) else plan
-    return plan if estimate(plan, threads=threads).seconds < WHOLE else spared
+            begun = time.perf_counter()
+            with install_timer("numba:compile", compiling.append):
+                turns = range(step * width, (step + 1) * width)
+                done = sum(pool.map(partial(plan.pilot, share / width), turns))
+            took = time.perf_counter() - begun - sum(compiling)
+            share, spent = 2.0 * done, spent + took
+            if done >= 0.5 or spent + 2.0 * took > max(BRIEF, SPENT * took / done):
+                break
+    return max(took, 0.0) / done
 
 
 def require_space(

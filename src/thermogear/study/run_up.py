@@ -183,13 +183,13 @@ class RunUpPlan:
         before = block - 1 if direction == 0 else block + 1
         return (state, direction, before) if 0 <= before < blocks else None
 
-    def pilot(self, share: float, turn: int, alive: Alive) -> float:
+    def pilot(self, share: float, turn: int) -> float:
         """Follow about a ``share`` of the speeds, in fours of neighbours; what share it was."""
         whole = len(self.states) * len(DIRECTIONS) * len(self.speeds)
         some = stretches(self.speeds, round(share * whole), turn)
         state, direction = turn % len(self.states), turn // len(self.states) % len(DIRECTIONS)
         small = replace(self, speeds=some, block=len(some))
-        small.compute((state, direction, 0), None, alive)
+        small.compute((state, direction, 0), None, keep_going)
         return len(some) / whole
 
     def compute(self, key: Key, before: Arrays | None, alive: Alive) -> Arrays:

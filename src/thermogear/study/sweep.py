@@ -96,11 +96,11 @@ class SweepPlan:
     def needs(self, key: Key) -> Key | None:
         return None
 
-    def pilot(self, share: float, turn: int, alive: Alive) -> float:
+    def pilot(self, share: float, turn: int) -> float:
         """Compute about a ``share`` of the points, spread over the grid; what share it was."""
         some = grid_of(self.axes, share, turn)
         rows = np.stack(np.meshgrid(*map(np.array, some), indexing="ij"), -1)
-        self._rows(rows.reshape(-1, len(some)), alive)
+        self._rows(rows.reshape(-1, len(some)), keep_going)
         return int(rows[..., 0].size) / math.prod(map(len, self.axes))
 
     def thinned(self, step: int) -> tuple[SweepPlan, Mapping[str, NDArray[np.int64]]]:

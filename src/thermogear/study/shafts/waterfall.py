@@ -203,7 +203,7 @@ class WaterfallPlan:
         before = block - 1 if direction == 0 else block + 1
         return (state, direction, before) if 0 <= before < blocks else None
 
-    def pilot(self, share: float, turn: int, alive: Alive) -> float:
+    def pilot(self, share: float, turn: int) -> float:
         """Settle at a few of the speeds; what share of all mesh periods it was.
 
         A run passes speed after speed at its rate; what ``finish`` tries is not in it.
@@ -217,7 +217,7 @@ class WaterfallPlan:
         for place in some:
             one = replace(self, speeds=(self.speeds[place],), block=1)
             one._trains.update(self._trains)
-            one.compute((turn % len(self.states), 0, 0), None, alive)
+            one.compute((turn % len(self.states), 0, 0), None, keep_going)
             self._trains.update(one._trains)
         return some.size * each / whole
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from thermogear.base.display import number
 from thermogear.base.units import ZERO_CELSIUS
-from thermogear.base.vocabulary import FASTER_RULE
+from thermogear.base.vocabulary import ASSUMED, FASTER_RULE
 from thermogear.results.result import Result
 from thermogear.views.page import LEAD, Block, Page, Pictures, Section, Table, Text
 from thermogear.views.pages.findings import finding
@@ -102,7 +102,7 @@ def _pictures(data: xr.Dataset) -> Section:
         "map": [
             (
                 "regimes", "Regimes over two parameters",
-                "What the motion from one start settles on.", sweeps.map_picture,
+                _map_caption, sweeps.map_picture,
             )
         ],
         "basins": [
@@ -140,6 +140,15 @@ def _pictures(data: xr.Dataset) -> Section:
         said = caption if isinstance(caption, str) else caption(data)
         pictures.add(name, heading, said, data, (), drawn, wide=True)
     return Section(LEAD, "In pictures", pictures.take(), folded=False)
+
+
+def _map_caption(data: xr.Dataset) -> str:
+    words = "What the motion from one start settles on."
+    if not has_lost(data):
+        words += " Beside it whether the drive flanks part, and whether the back flanks are hit."
+    if (data["status"].values == ASSUMED).any():
+        words += " Hatched: assumed, not computed; points computed around it are alike."
+    return words
 
 
 def _diagram_caption(data: xr.Dataset) -> str:
@@ -281,7 +290,7 @@ def _settings(data: xr.Dataset) -> Section:
     shown = {
         "total_periods": "mesh periods run",
         "full_periods": "mesh periods of the full run",
-        "computed_points": "points computed, the rest taken over from equal neighbours",
+        "computed_points": "points computed; the rest is assumed, its neighbours are alike",
         "bundle": "bundle of choices",
         "branch_notes": "branches",
     }

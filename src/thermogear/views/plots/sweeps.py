@@ -154,13 +154,14 @@ def map_picture(data: xr.Dataset) -> Picture:
 
 def hatch_assumed(panel: Panel, data: xr.Dataset) -> None:
     """Hatch the cells of a map over two parameters that were not computed."""
-    one, two = (str(name) for name in data["label"].dims[-2:])
-    borders = edges(shown(one, data[one].values)), edges(shown(two, data[two].values))
-    assumed = data["status"].values == ASSUMED
+    assumed = data["status"].values.T == ASSUMED
     if assumed.any():
-        # a hatch runs between the middles of its cells: each cell is given at both its borders
-        ends = [np.repeat(x, 2)[1:-1] for x in borders]
-        panel.hatch(*ends, np.repeat(np.repeat(assumed.T, 2, axis=0), 2, axis=1).astype(float))
+        # a hatch runs between places: each cell is given at both its borders
+        across, up = (
+            np.repeat(edges(shown(str(n), data[n].values)), 2)[1:-1]
+            for n in data["label"].dims[-2:]
+        )
+        panel.hatch(across, up, np.repeat(np.repeat(assumed, 2, axis=0), 2, axis=1))
 
 
 def _contact(data: xr.Dataset) -> Panel:
