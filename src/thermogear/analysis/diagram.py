@@ -41,6 +41,8 @@ from thermogear.base.plan import (
     Key,
     Progress,
     Variable,
+    before_along,
+    empty_arrays,
     every,
     gather,
     keep_going,
@@ -57,7 +59,7 @@ DIRECTIONS = (1, -1)
 """Up and down."""
 DIAGRAM_RULE = Rule(first=128, cap=8192, settled=1e-6, chaos_periods=1000)
 BLOCK = 32
-BRANCHES = 600
+BRANCHES = 900
 """Values whose settling takes as long as all branches, about: measured on gears and numbers."""
 KEEP = 64
 BRANCH_PERIOD = 4
@@ -155,10 +157,7 @@ class DiagramPlan:
         }
 
     def needs(self, key: Key) -> Key | None:
-        direction, block = key
-        blocks = -(-len(self.values) // self.cuts[self.parameter])
-        before = block - 1 if direction == 0 else block + 1
-        return (direction, before) if 0 <= before < blocks else None
+        return before_along(self, key, self.parameter)
 
     def pilot(self, share: float, turn: int) -> float:
         """Settle about a ``share`` of the values, in fours of neighbours; what share it was.
@@ -190,11 +189,7 @@ class DiagramPlan:
             if self.dimension != 2:
                 state = before["end"][0, :, last]
         count = len(self.starts)
-        found: Arrays = {}
-        sizes = self.sizes | {"direction": 1, self.parameter: values.size}
-        for name, variable in self.variables().items():
-            shape = tuple(sizes[dim] for dim in variable.dims)
-            found[name] = np.full(shape, variable.fill, np.dtype(variable.dtype))
+        found = empty_arrays(self, key)
         lanes, status = lanes_and_status(self.family, values[:, None])
         for place in order:
             same = np.full(count, place)

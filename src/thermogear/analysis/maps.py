@@ -38,6 +38,7 @@ from thermogear.base.plan import (
     Progress,
     Variable,
     axis_coordinates,
+    empty_arrays,
     every,
     gather,
     keep_going,
@@ -150,11 +151,7 @@ class MapPlan:
             for values, part in zip(self.axes, ranges_of(self, key).values(), strict=True)
         )
         shape = (one.size, two.size)
-        sizes = self.sizes | dict(zip(self.family.names, shape, strict=True))
-        found = {
-            name: np.full(tuple(sizes[dim] for dim in v.dims), v.fill, np.dtype(v.dtype))
-            for name, v in self.variables().items()
-        }
+        found = empty_arrays(self, key)
         stride = self.stride if self.refine else 1
         done = np.zeros(shape, bool)
         wanted = np.zeros(shape, bool)
@@ -207,7 +204,8 @@ def grid_of(axes: Sequence[Sequence[float]], share: float, turn: int) -> Any:
     """About a ``share`` of a grid's points, of each axis the same share of its values."""
     each = share ** (1.0 / len(axes))
     return tuple(
-        tuple(v[i] for i in spread(len(v), some=round(len(v) * each), turn=turn)) for v in axes
+        tuple(v[i] for i in spread(len(v), some=round(len(v) * each), turn=turn * math.pi**axis))
+        for axis, v in enumerate(axes)
     )
 
 

@@ -10,7 +10,7 @@ hundredth of the longest transient in it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, fields, replace
 
@@ -21,6 +21,7 @@ from thermogear.analysis.orbits import multipliers
 from thermogear.analysis.section import units_of as units_of
 from thermogear.base.bounds import require_share, whole
 from thermogear.base.errors import InputError
+from thermogear.base.plan import Alive, keep_going
 from thermogear.dynamics.bundle import Bundle, Visits, bundles
 from thermogear.dynamics.tables import Lanes
 
@@ -211,16 +212,12 @@ def multipliers_of(jacobian: Floats, *, determinant: Floats) -> NDArray[np.compl
     return out
 
 
-def _alive() -> None:
-    """Nobody asks to stop."""
-
-
 def settle(
     lanes: Lanes | Sequence[object],
     start: Floats,
     rule: Rule,
     keep: int = 0,
-    alive: Callable[[], None] = _alive,
+    alive: Alive = keep_going,
 ) -> Settled:
     """What every lane settles on from ``start`` (lane, d); ``keep`` last sections are returned.
 
@@ -277,7 +274,7 @@ def settle_block(
     start: Floats,
     rule: Rule,
     keep: int = 0,
-    alive: Callable[[], None] = _alive,
+    alive: Alive = keep_going,
 ) -> Settled:
     """:func:`settle` for lanes that run together."""
     block = _Block(maps, start, rule, keep)

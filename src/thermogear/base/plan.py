@@ -121,21 +121,32 @@ def region_of(plan: Plan, key: Key, variable: Variable) -> tuple[slice, ...]:
 def checked(plan: Plan, key: Key, arrays: Arrays) -> Arrays:
     """The chunk's arrays in their stored types and shapes."""
     found: Arrays = {}
-    for name, variable in plan.variables().items():
-        shape = tuple(s.stop - s.start for s in region_of(plan, key, variable))
-        values = np.ascontiguousarray(arrays[name], dtype=np.dtype(variable.dtype))
-        if values.shape != shape:
-            raise ValueError(f"{name} of chunk {key}: shape {values.shape}, expected {shape}")
+    for name, blank in empty_arrays(plan, key).items():
+        values = np.ascontiguousarray(arrays[name], dtype=blank.dtype)
+        if values.shape != blank.shape:
+            raise ValueError(f"{name} of chunk {key}: shape {values.shape}, expected {blank.shape}")
         found[name] = values
     return found
 
 
-def empty_arrays(plan: Plan) -> Arrays:
-    """Arrays of the whole, filled with the fill values."""
+def empty_arrays(plan: Plan, key: Key | None = None) -> Arrays:
+    """Arrays of the whole, or of one chunk, filled with the fill values."""
+    sizes = dict(plan.sizes)
+    if key is not None:
+        sizes |= {n: part.stop - part.start for n, part in ranges_of(plan, key).items()}
     return {
-        name: np.full([plan.sizes[d] for d in v.dims], v.fill, np.dtype(v.dtype))
+        name: np.full([sizes[d] for d in v.dims], v.fill, np.dtype(v.dtype))
         for name, v in plan.variables().items()
     }
+
+
+def before_along(plan: Plan, key: Key, name: str) -> Key | None:
+    """The chunk before ``key`` along the axis ``name``, its last; behind it on the way down.
+
+    The axis of the direction, 0 up, stands before it.
+    """
+    place = key[-1] - 1 if key[-2] == 0 else key[-1] + 1
+    return (*key[:-1], place) if 0 <= place < -(-plan.sizes[name] // plan.cuts[name]) else None
 
 
 def dataset_of(plan: Plan, arrays: Arrays) -> xr.Dataset:
@@ -319,7 +330,7 @@ class Thinned(Protocol):
         ...
 
 
-def spread(count: int, *, some: int, turn: int = 0) -> NDArray[np.int64]:
+def spread(count: int, *, some: int, turn: float = 0) -> NDArray[np.int64]:
     """About ``some`` places of ``count``, in the middle of equal stretches, moved on each ``turn``.
 
     The golden ratio moves them, so that places of many turns fill the stretches evenly.

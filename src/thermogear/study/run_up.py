@@ -25,7 +25,17 @@ from thermogear.analysis.outcome import (
 from thermogear.analysis.section import units_of
 from thermogear.analysis.settle import PERIODIC, Rule, Settled
 from thermogear.base.errors import InputError
-from thermogear.base.plan import Alive, Arrays, Key, Variable, keep_going, ranges_of, stretches
+from thermogear.base.plan import (
+    Alive,
+    Arrays,
+    Key,
+    Variable,
+    before_along,
+    empty_arrays,
+    keep_going,
+    ranges_of,
+    stretches,
+)
 from thermogear.base.units import RPM
 from thermogear.case.case import GearCase, gear_case
 from thermogear.case.family import GearFamily, Tabulated
@@ -178,10 +188,7 @@ class RunUpPlan:
         }
 
     def needs(self, key: Key) -> Key | None:
-        state, direction, block = key
-        blocks = -(-len(self.speeds) // self.cuts["pinion_speed"])
-        before = block - 1 if direction == 0 else block + 1
-        return (state, direction, before) if 0 <= before < blocks else None
+        return before_along(self, key, "pinion_speed")
 
     def pilot(self, share: float, turn: int) -> float:
         """Follow about a ``share`` of the speeds, in fours of neighbours; what share it was."""
@@ -210,11 +217,7 @@ class RunUpPlan:
             run.at = float(before["end_speed"][last])
             run.state = np.array([before["end_x"][last], before["end_v"][last]])
             run.period = int(before["end_period"][last])
-        found: Arrays = {}
-        for name, variable in self.variables().items():
-            inner = [self.sizes[d] for d in variable.dims[3:]]
-            shape = (1, 1, speeds.size, *inner)
-            found[name] = np.full(shape, variable.fill, np.dtype(variable.dtype))
+        found = empty_arrays(self, key)
         ends = np.full((speeds.size, 2), np.nan)
         for place in order:
             one = np.array([place])

@@ -21,7 +21,17 @@ from thermogear.analysis.outcome import outcome_arrays, outcome_variables, settl
 from thermogear.analysis.settle import Rule
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import Excitations
-from thermogear.base.plan import Alive, Arrays, Key, Variable, every, keep_going, ranges_of, spread
+from thermogear.base.plan import (
+    Alive,
+    Arrays,
+    Key,
+    Variable,
+    empty_arrays,
+    every,
+    keep_going,
+    ranges_of,
+    spread,
+)
 from thermogear.case.case import GearCase, gear_case
 from thermogear.case.family import GearFamily
 from thermogear.case.points import points_of
@@ -115,10 +125,7 @@ class RunUpsPlan:
         springs = self._springs(key[1], np.array(self.rows)[mine])
         count, teeth = len(springs), self.family.case.pair.pinion.teeth
         state = np.tile(np.array(self.family.case.simulation.initial_state), (count, 1))
-        found: Arrays = {
-            name: np.full((1, count, len(self.speeds)), one.fill, np.dtype(one.dtype))
-            for name, one in self.variables().items()
-        }
+        found = empty_arrays(self, key)
         order = range(len(self.speeds))
         for place in order if key[0] == 0 else reversed(order):
             mesh = np.full(count, teeth * self.speeds[place])

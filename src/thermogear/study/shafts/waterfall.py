@@ -22,7 +22,17 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.family import axis_values
 from thermogear.base.errors import ConvergenceError, InputError
-from thermogear.base.plan import Alive, Arrays, Key, Variable, keep_going, ranges_of, spread
+from thermogear.base.plan import (
+    Alive,
+    Arrays,
+    Key,
+    Variable,
+    before_along,
+    empty_arrays,
+    keep_going,
+    ranges_of,
+    spread,
+)
 from thermogear.base.vocabulary import STATUS
 from thermogear.case.case import GearCase
 from thermogear.case.thermal_state import HOT, UNDEFORMED, ThermalState
@@ -198,10 +208,7 @@ class WaterfallPlan:
         }
 
     def needs(self, key: Key) -> Key | None:
-        state, direction, block = key
-        blocks = -(-len(self.speeds) // self.cuts["pinion_speed"])
-        before = block - 1 if direction == 0 else block + 1
-        return (state, direction, before) if 0 <= before < blocks else None
+        return before_along(self, key, "pinion_speed")
 
     def pilot(self, share: float, turn: int) -> float:
         """Settle at a few of the speeds; what share of all mesh periods it was.
@@ -225,11 +232,7 @@ class WaterfallPlan:
         up = key[1] == 0
         every = np.array(self.speeds)
         mine = np.arange(every.size)[ranges_of(self, key)["pinion_speed"]]
-        found: Arrays = {}
-        for name, variable in self.variables().items():
-            inner = [self.sizes[d] for d in variable.dims[3:]]
-            shape = (1, 1, mine.size, *inner)
-            found[name] = np.full(shape, variable.fill, np.dtype(variable.dtype))
+        found = empty_arrays(self, key)
         train = self.train(key[0])
         if train is None:
             found["status"][...] = STATUS.index("jammed")

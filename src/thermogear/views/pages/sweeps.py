@@ -18,7 +18,12 @@ from thermogear.views.pages.lost_words import lost_words
 from thermogear.views.pages.sweep_numbers import JUMPS_AT, lines, numbers
 from thermogear.views.picture import Picture
 from thermogear.views.plots import sweeps
-from thermogear.views.plots.lost_contact import forces_picture, has_lost, lost_contact_picture
+from thermogear.views.plots.lost_contact import (
+    forces_picture,
+    has_lost,
+    lost_contact_picture,
+    map_picture,
+)
 from thermogear.views.plots.parameters import page_words, shown
 
 if TYPE_CHECKING:
@@ -102,7 +107,7 @@ def _pictures(data: xr.Dataset) -> Section:
         "map": [
             (
                 "regimes", "Regimes over two parameters",
-                _map_caption, sweeps.map_picture,
+                _map_caption, map_picture,
             )
         ],
         "basins": [

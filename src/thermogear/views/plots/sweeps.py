@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import ASSUMED, STATUS
 from thermogear.views.picture import Axis, Panel, Picture
-from thermogear.views.plots.parameters import axis_words, each_state, shown
+from thermogear.views.plots.parameters import axis_words, shown
 from thermogear.views.style import COLD, FAINT, HOT, INK, OKABE_ITO, QUIET, WIDE, scale
 
 if TYPE_CHECKING:
@@ -128,30 +128,6 @@ def _branches(panel: Panel, data: xr.Dataset, name: str) -> None:
             )  # fmt: skip
 
 
-CONTACT = (
-    ("always in contact", FAINT),
-    ("drive flank parts", "#E69F00"),
-    ("drive flank parts, back flank is hit", "#D55E00"),
-    ("contact not known", "#999999"),
-)
-"""What a motion loses contact at."""
-
-
-def map_picture(data: xr.Dataset) -> Picture:
-    """The regime over two parameters and what loses contact, in every state of heat it has.
-
-    What is assumed is hatched. Of a train a picture of its own shows the contact.
-    """
-    panels = []
-    for state, one in each_state(data):
-        panels.append(_regimes(one))
-        panels[-1].title = state
-        if "lost_contact" not in data:
-            panels[-1].title = "regime"
-            panels.append(_contact(one))
-    return Picture([panels], size=(WIDE, 4.6), legend=4, share_y="row")
-
-
 def hatch_assumed(panel: Panel, data: xr.Dataset) -> None:
     """Hatch the cells of a map over two parameters that were not computed."""
     assumed = data["status"].values.T == ASSUMED
@@ -164,18 +140,6 @@ def hatch_assumed(panel: Panel, data: xr.Dataset) -> None:
         panel.hatch(across, up, np.repeat(np.repeat(assumed, 2, axis=0), 2, axis=1))
 
 
-def _contact(data: xr.Dataset) -> Panel:
-    panel, borders = _over_two(data)
-    panel.title = "contact of the teeth"
-    drive, back = data["drive_share"].values, data["back_share"].values
-    codes = np.where(back > 0.0, 2, np.where(drive < 1.0, 1, 0))
-    names, colours = zip(*CONTACT, strict=True)
-    whole = np.where(np.isfinite(drive), codes, len(CONTACT) - 1)
-    panel.field(*borders, whole.T, colours=colours, classes=names)
-    hatch_assumed(panel, data)
-    return panel
-
-
 def _over_two(data: xr.Dataset) -> tuple[Panel, tuple[Floats, Floats]]:
     """An empty panel over the first two axes of a grid, and the borders of its cells."""
     one, two = (str(name) for name in data["label"].dims[:2])
@@ -183,7 +147,7 @@ def _over_two(data: xr.Dataset) -> tuple[Panel, tuple[Floats, Floats]]:
     return Panel(_along(data, one), _along(data, two)), borders
 
 
-def _regimes(data: xr.Dataset) -> Panel:
+def regimes(data: xr.Dataset) -> Panel:
     panel, borders = _over_two(data)
     names, colours = zip(*CLASSES, strict=True)
     panel.field(*borders, classes_of(data).T, colours=colours, classes=names)
@@ -288,4 +252,4 @@ def sweep_picture(data: xr.Dataset) -> Picture:
     panel.background = FAINT
     values = here["dynamic_factor"].values.T
     panel.field(*borders, values, colours=scale("viridis"), words=factor)
-    return Picture([[_regimes(here), panel]], size=(WIDE, 4.6), legend=6)
+    return Picture([[regimes(here), panel]], size=(WIDE, 4.6), legend=6)
