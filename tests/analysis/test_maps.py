@@ -27,13 +27,13 @@ def changed(one, other):
 
 
 def test_result_does_not_depend_on_threads():
-    one = parameter_map(MODEL, axes(24), tile=8, threads=1)
-    two = parameter_map(MODEL, axes(24), tile=8, threads=3)
+    one = parameter_map(MODEL, axes(24), tile=8, threads=1, refine=True)
+    two = parameter_map(MODEL, axes(24), tile=8, threads=3, refine=True)
     assert one.identical(two)
 
 
 def test_every_point_computed_is_the_same_with_and_without_refinement():
-    coarse = parameter_map(MODEL, axes(24), tile=24)
+    coarse = parameter_map(MODEL, axes(24), tile=24, refine=True)
     full = parameter_map(MODEL, axes(24), refine=False)
     inside = coarse.status.values != ASSUMED
     assert 0.2 < inside.mean() < 1.0
@@ -56,7 +56,7 @@ def test_every_point_computed_is_the_same_with_and_without_refinement():
 def test_four_times_fewer_periods_and_few_labels_changed(at_length):
     count = at_length(64, 128, "points of each axis of a map")
     full = parameter_map(MODEL, axes(count), rule=MAP_RULE.full(), refine=False)
-    fast = parameter_map(MODEL, axes(count))
+    fast = parameter_map(MODEL, axes(count), refine=True)
     assert fast.attrs["full_periods"] >= 4 * fast.attrs["total_periods"]
     assert changed(full, fast) <= 0.003
 

@@ -120,17 +120,20 @@ class MapPlan:
         return None
 
     def pilot(self, share: float, turn: int) -> float:
-        """Compute about a ``share`` of the points, spread over the map; what share it was.
-
-        Of points that are spared the middle between those of the first lattice and all.
-        """
-        points = math.prod(map(len, self.axes))
+        """Compute about a ``share`` of the points, spread over the map; what share it was."""
         some = grid_of(self.axes, share, turn)
         small = replace(self, axes=some, refine=False, tile=max(2, *map(len, some)))
         small.compute((0, 0), None, keep_going)
+        return math.prod(map(len, some)) / math.prod(map(len, self.axes)) / self.visited
+
+    @property
+    def visited(self) -> float:
+        """Share of the points that is computed; where some are spared a guess.
+
+        The middle between the first lattice alone and all, by their ratio.
+        """
         stride = self.stride if self.refine else 1
-        least = math.prod(_lattice(len(v), stride).size / len(v) for v in self.axes)
-        return math.prod(map(len, some)) / (points * math.sqrt(least))
+        return math.prod(_lattice(len(v), stride).size / len(v) for v in self.axes) ** 0.5
 
     def sparing(self) -> MapPlan:
         """The same with points spared where neighbours are alike."""

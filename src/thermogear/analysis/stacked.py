@@ -66,6 +66,11 @@ class StackedPlan:
         place, count = turn % len(self.plans), len(self.plans)
         return self.plans[place].pilot(share * count, turn // count) / count
 
+    @property
+    def visited(self) -> float:
+        """Share of the points that is computed; where some are spared a guess."""
+        return self.plans[0].visited
+
     def sparing(self) -> StackedPlan:
         """The same with points spared where neighbours are alike."""
         return replace(self, plans=tuple(one.sparing() for one in self.plans))

@@ -457,8 +457,7 @@ def _compute(plan: Plan, directory: Path, title: str, options: dict[str, Any]) -
 
     require_space(plan, directory, threads=options["threads"], forced=options["force"])
     if options["only_estimate"] or sys.stderr.isatty():
-        known = options.get("estimated")
-        say("estimate", known or estimate(plan, threads=options["threads"]))
+        say("estimate", options.get("estimated") or estimate(plan, threads=options["threads"]))
     if options["only_estimate"]:
         return None
     last: list[Step] = []

@@ -91,8 +91,7 @@ def estimate(plan: Plan, *, threads: int | None = None) -> Estimate:
     will have; compiling kernels does not count. Points near borders cost more than others: the
     time is a guess within a factor of about 2.
     """
-    seconds = _seconds(plan, threads or os.cpu_count() or 1)
-    return replace(_sizes(plan, threads), seconds=seconds)
+    return replace(_sizes(plan, threads), seconds=_seconds(plan, threads or os.cpu_count() or 1))
 
 
 def _sizes(plan: Plan, threads: int | None) -> Estimate:

@@ -163,14 +163,15 @@ def whole_or_spared(
 ) -> tuple[MapPlan | StackedPlan, Estimate | None]:
     """The map ``plan`` of every point, or sparing some where all take longer than :data:`WHOLE`.
 
-    With the estimate of the former. A store in ``directory`` keeps what it was begun with.
+    With its estimate, where one was made: a store in ``directory`` keeps what it was begun with.
     """
     spared = plan.sparing()
     for begun in read_manifests(directory).values():
-        same = begun["inputs"] == json.loads(json.dumps(spared.inputs()))
-        return spared if same else plan, None
+        return spared if begun["inputs"] == json.loads(json.dumps(spared.inputs())) else plan, None
     found = estimate(plan, threads=threads)
-    return (plan, found) if found.seconds < WHOLE else (spared, None)
+    if found.seconds < WHOLE:
+        return plan, found
+    return spared, replace(found, seconds=found.seconds * spared.visited)
 
 
 def _map(

@@ -195,8 +195,7 @@ class RunUpPlan:
         whole = len(self.states) * len(DIRECTIONS) * len(self.speeds)
         some = stretches(self.speeds, round(share * whole), turn)
         state, direction = turn % len(self.states), turn // len(self.states) % len(DIRECTIONS)
-        small = replace(self, speeds=some, block=len(some))
-        small.compute((state, direction, 0), None, keep_going)
+        replace(self, speeds=some, block=len(some)).compute((state, direction, 0), None, keep_going)
         return len(some) / whole
 
     def compute(self, key: Key, before: Arrays | None, alive: Alive) -> Arrays:

@@ -107,8 +107,8 @@ class RunUpsPlan:
         """Run a few samples over all speeds, about a ``share`` of the work; what share it was."""
         whole = len(DIRECTIONS) * len(self.rows)
         some = spread(len(self.rows), some=round(share * whole), turn=turn)
-        small = replace(self, rows=tuple(self.rows[i] for i in some))
-        small.compute((turn % len(DIRECTIONS), 0), None, keep_going)
+        rows = tuple(self.rows[i] for i in some)
+        replace(self, rows=rows).compute((turn % len(DIRECTIONS), 0), None, keep_going)
         return some.size / whole
 
     def thinned(self, step: int) -> tuple[RunUpsPlan, Mapping[str, NDArray[np.int64]]]:
