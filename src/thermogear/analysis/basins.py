@@ -89,8 +89,9 @@ class BasinPlan:
         """What the survey finds, looked for when first asked."""
         with _LOOKING:
             if "found" not in self._survey:
-                found, _ = attractors_from(single(self.model), self._starts, self.rule)
-                self._survey["found"] = tuple(found)
+                self._survey["found"] = tuple(
+                    attractors_from(single(self.model), self._starts, self.rule)[0]
+                )
             return self._survey["found"]
 
     def __getstate__(self) -> dict[str, Any]:

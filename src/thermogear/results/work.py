@@ -40,8 +40,8 @@ WORKSPACE = 48 * 2**20
 
 SPENT = 1.0 / 20.0
 """Share of the work's time that an estimate takes, about."""
-BRIEF = 0.5
-"""Seconds that every estimate may take."""
+BRIEF, LONG = 1.0, 5.0
+"""Seconds that every estimate may take, and those from which its first points must do."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -115,9 +115,14 @@ def _seconds(plan: Plan, threads: int) -> float:
             compiling: list[float] = []
             begun = time.perf_counter()
             with install_timer("numba:compile", compiling.append):
-                turns = range(step * width, (step + 1) * width)
-                done = sum(pool.map(partial(plan.pilot, share / width), turns))
+                done = sum(
+                    pool.map(
+                        partial(plan.pilot, share / width), range(step * width, (step + 1) * width)
+                    )
+                )
             took = time.perf_counter() - begun - sum(compiling)
+            if step == 0 and took < LONG:
+                continue  # it loaded what is loaded once
             share, spent = 2.0 * done, spent + took
             if done >= 0.5 or spent + 2.0 * took > max(BRIEF, SPENT * took / done):
                 break
