@@ -129,3 +129,5 @@ def test_a_pilot_of_basins_does_one_share_of_survey_and_grid():
     plan = basin_plan(BISTABLE, x=np.linspace(-1.0, 1.0, 5), v=[0.0, 0.5, 1.0], survey=2)
     shares = [plan.pilot(share, 0) for share in (0.0, 0.25, 0.5, 1.0)]
     assert shares == [0.25, 0.25, 0.5, 1.0]
+    # a coarse look first has the attractors of the whole
+    assert plan.thinned(2)[0].attractors is plan.attractors

@@ -207,7 +207,12 @@ class BasinPlan:
     def thinned(self, step: int) -> tuple[BasinPlan, Mapping[str, NDArray[np.int64]]]:
         """The basins of every ``step``-th start of both axes."""
         x, v = every(len(self.x), step=step), every(len(self.v), step=step)
-        thin = replace(self, x=tuple(self.x[i] for i in x), v=tuple(self.v[i] for i in v))
+        thin = replace(
+            self,
+            x=tuple(self.x[i] for i in x),
+            v=tuple(self.v[i] for i in v),
+            _survey={"found": self.attractors},  # that of the whole serves both
+        )
         return thin, {"x": x, "v": v}
 
     def compute(self, key: Key, before: Arrays | None, alive: Alive) -> Arrays:
