@@ -99,7 +99,7 @@ def test_a_pilot_of_a_map_does_the_share_that_it_tells(share, sides):
     family = Asked("frequency", "mean_force")
     axes = {"frequency": [0.5, 0.52, 0.54, 0.56, 0.6], "mean_force": [0.3, 0.35, 0.5]}
     plan = map_plan(family, axes, refine=False)
-    assert plan.pilot(share, 0) * 15 == sides[0] * sides[1] == len(family.points)
+    assert plan.pilot(share, turn=0) * 15 == sides[0] * sides[1] == len(family.points)
     for place, (side, values) in enumerate(zip(sides, axes.values(), strict=True)):
         seen = {point[place] for point in family.points}
         assert len(seen) == side
@@ -107,7 +107,7 @@ def test_a_pilot_of_a_map_does_the_share_that_it_tells(share, sides):
     assert len(set(family.points)) == len(family.points)
     # each turn takes other points, until all are seen
     for turn in range(1, 40):
-        plan.pilot(share, turn)
+        plan.pilot(share, turn=turn)
     assert len(set(family.points)) == 15
 
 
@@ -116,7 +116,7 @@ def test_a_pilot_of_a_diagram_does_the_share_that_it_tells():
     for share, count in ((0.0, 1), (0.1, 1), (0.3, 3), (0.4, 4)):
         family = Asked("frequency")
         plan = diagram_plan(family, "frequency", values, branch_period=0)
-        assert plan.pilot(share, 0) == count / 10
+        assert plan.pilot(share, turn=0) == count / 10
         seen = [value for (value,) in family.points]
         assert len(set(seen)) == len(seen) == count
         # neighbours, as the diagram itself goes from value to value
@@ -127,7 +127,7 @@ def test_a_pilot_of_a_diagram_does_the_share_that_it_tells():
 
 def test_a_pilot_of_basins_does_one_share_of_survey_and_grid():
     plan = basin_plan(BISTABLE, x=np.linspace(-1.0, 1.0, 5), v=[0.0, 0.5, 1.0], survey=2)
-    shares = [plan.pilot(share, 0) for share in (0.0, 0.25, 0.5, 1.0)]
+    shares = [plan.pilot(share, turn=0) for share in (0.0, 0.25, 0.5, 1.0)]
     assert shares == [0.25, 0.25, 0.5, 1.0]
     # a coarse look first has the attractors of the whole
     assert plan.thinned(2)[0].attractors is plan.attractors

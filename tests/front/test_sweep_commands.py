@@ -73,7 +73,8 @@ def test_a_map_tells_what_it_assumes_apart_from_what_it_computed(cases, tmp_path
     monkeypatch.setattr(diagrams, "WHOLE", 0.0)
     lines = call("map", *words, tmp_path / "some", "--csv", tmp_path / "some.csv")
     # the first lattice: rows 0, 4, 8 and columns 0, 4, 5
-    assert "labels: period-1 9 computed, 45 assumed\n" in lines
+    headline = "labels: period-1 9 computed, 45 assumed\n"
+    assert headline in lines
     table = pd.read_csv(tmp_path / "some.csv")
     assert dict(table["status"].value_counts()) == {"assumed": 45, "ok": 9}
     there = table["status"] == "assumed"
@@ -82,11 +83,12 @@ def test_a_map_tells_what_it_assumes_apart_from_what_it_computed(cases, tmp_path
     assert numbers[there].isna().all(axis=None)
     assert numbers[~there].notna().all(axis=None)
     page = (tmp_path / "some" / "report.html").read_text(encoding="utf-8")
-    assert (
+    told = (
         "Of 54 points 9 were computed: period 1 at 9; equal neighbours speak for the others, "
-        "which are assumed and not computed: period 1 at 45." in page
+        "which are assumed and not computed: period 1 at 45.",
+        "Hatched: assumed, not computed",
     )
-    assert "Hatched: assumed, not computed" in page
+    assert all(words in page for words in told)
 
 
 def test_basins_and_page(cases, tmp_path):

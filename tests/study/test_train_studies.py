@@ -267,8 +267,12 @@ def test_the_words_say_where_each_flank_and_bearing_loses_contact() -> None:
         (0, 1),
         (3, 0),
     ]
-    assert lost_words(guessed) == f"{SAID} Where the motion is assumed, so is this."
-    assert lost_line(lost_rows(guessed)[0]).endswith("(2 of 10 points, and 2 that are assumed)")
+    more, tail = (
+        " Where the motion is assumed, so is this.",
+        "2 of 10 points, and 2 that are assumed)",
+    )
+    assert lost_words(guessed) == SAID + more
+    assert lost_line(lost_rows(guessed)[0]).endswith(tail)
     assert lost_words(stored(np.zeros((3, 4), np.int32))) == NOTHING
     assert lost_words(stored(np.full((3, 4), -1, np.int32), 4)) == UNKNOWN
     scattered = np.zeros((3, 4), np.int32)

@@ -147,7 +147,7 @@ class BasinPlan:
     def needs(self, key: Key) -> Key | None:
         return None
 
-    def pilot(self, share: float, turn: int) -> float:
+    def pilot(self, share: float, *, turn: int) -> float:
         """Do about a ``share`` of the survey and of the grid; what share it was."""
         whole, points = self._starts, len(self.x) * len(self.v)
         some = whole[spread(len(whole), some=round(share * len(whole)), turn=turn)]

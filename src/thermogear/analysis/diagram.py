@@ -159,13 +159,13 @@ class DiagramPlan:
     def needs(self, key: Key) -> Key | None:
         return before_along(self, key, self.parameter)
 
-    def pilot(self, share: float, turn: int) -> float:
+    def pilot(self, share: float, *, turn: int) -> float:
         """Settle about a ``share`` of the values, in fours of neighbours; what share it was.
 
         The branches count as :data:`BRANCHES` values.
         """
         whole = 2 * len(self.values) + BRANCHES * (self.branch_period > 0)
-        chosen = stretches(self.values, round(share * whole), turn)
+        chosen = stretches(self.values, count=round(share * whole), turn=turn)
         small = replace(self, values=chosen, block=len(chosen), branch_period=0)
         small.compute((turn % len(DIRECTIONS), 0), None, keep_going)
         return len(chosen) / whole

@@ -119,9 +119,9 @@ class MapPlan:
     def needs(self, key: Key) -> Key | None:
         return None
 
-    def pilot(self, share: float, turn: int) -> float:
+    def pilot(self, share: float, *, turn: int) -> float:
         """Compute about a ``share`` of the points, spread over the map; what share it was."""
-        some = grid_of(self.axes, share, turn)
+        some = grid_of(self.axes, share=share, turn=turn)
         small = replace(self, axes=some, refine=False, tile=max(2, *map(len, some)))
         small.compute((0, 0), None, keep_going)
         return math.prod(map(len, some)) / math.prod(map(len, self.axes)) / self.visited
@@ -203,7 +203,7 @@ def _lattice(size: int, stride: int) -> NDArray[np.int64]:
     return np.unique(np.append(np.arange(0, size, stride), size - 1))
 
 
-def grid_of(axes: Sequence[Sequence[float]], share: float, turn: int) -> Any:
+def grid_of(axes: Sequence[Sequence[float]], *, share: float, turn: int) -> Any:
     """About a ``share`` of a grid's points, of each axis the same share of its values."""
     each = share ** (1.0 / len(axes))
     return tuple(

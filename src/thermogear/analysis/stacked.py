@@ -61,10 +61,10 @@ class StackedPlan:
         before = self.plans[key[0]].needs(key[1:])
         return None if before is None else (key[0], *before)
 
-    def pilot(self, share: float, turn: int) -> float:
+    def pilot(self, share: float, *, turn: int) -> float:
         """Compute about a ``share`` of the points, of one map a turn; what share it was."""
         place, count = turn % len(self.plans), len(self.plans)
-        return self.plans[place].pilot(share * count, turn // count) / count
+        return self.plans[place].pilot(share * count, turn=turn // count) / count
 
     @property
     def visited(self) -> float:

@@ -90,7 +90,7 @@ class Plan(Protocol):
 
     def finish(self, data: xr.Dataset) -> xr.Dataset: ...
 
-    def pilot(self, share: float, turn: int) -> float:
+    def pilot(self, share: float, *, turn: int) -> float:
         """Do about a ``share`` of the work, spread over it, at least one point of it.
 
         Returns what share it was. Each ``turn`` 0, 1, 2, ... takes other points.
@@ -143,7 +143,7 @@ def empty_arrays(plan: Plan, key: Key | None = None) -> Arrays:
 def before_along(plan: Plan, key: Key, name: str) -> Key | None:
     """The chunk before ``key`` along the axis ``name``, its last; behind it on the way down.
 
-    The axis of the direction, 0 up, stands before it.
+    The axis in front of it is that of the direction, 0 up.
     """
     place = key[-1] - 1 if key[-2] == 0 else key[-1] + 1
     return (*key[:-1], place) if 0 <= place < -(-plan.sizes[name] // plan.cuts[name]) else None
@@ -340,7 +340,7 @@ def spread(count: int, *, some: int, turn: float = 0) -> NDArray[np.int64]:
     return np.unique(((np.arange(some) + move) * count / some).astype(int))
 
 
-def stretches(values: Sequence[float], count: int, turn: int) -> tuple[float, ...]:
+def stretches(values: Sequence[float], *, count: int, turn: int) -> tuple[float, ...]:
     """About ``count`` of ``values``, at least one, in fours of neighbours spread over them."""
     length = min(max(count, 1), len(values), 4)
     places = spread(len(values) - length + 1, some=max(count, 1) // length, turn=turn)

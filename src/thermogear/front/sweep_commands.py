@@ -19,13 +19,12 @@ from thermogear.base.units import RPM
 from thermogear.front import delivery
 
 if TYPE_CHECKING:
-    from thermogear.analysis.maps import MapPlan
-    from thermogear.analysis.stacked import StackedPlan
     from thermogear.base.plan import Plan
     from thermogear.case.case import DimensionlessCase, GearCase
     from thermogear.case.thermal_state import ThermalState
     from thermogear.results.result import Result
     from thermogear.results.work import Report, Step
+    from thermogear.study.diagrams import AnyMap
 
 
 def _common(command: Callable[..., None]) -> Callable[..., None]:
@@ -122,16 +121,9 @@ _but = click.option(
 @_train
 @_common
 def bifurcation(
-    case: str,
-    over: tuple[str, ...],
-    but: tuple[str, ...],
-    starts: tuple[str, ...],
-    branch_period: int,
-    against: tuple[str, ...],
-    output: str,
-    as_json: bool,
-    **options: Any,
-) -> None:
+    case: str, over: tuple[str, ...], but: tuple[str, ...], starts: tuple[str, ...],
+    branch_period: int, against: tuple[str, ...], output: str, as_json: bool, **options: Any,
+) -> None:  # fmt: skip
     """Orbit diagram of CASE over one parameter, up and down, with located bifurcations."""
     from thermogear.case.axes import parse_axis, parse_numbers
     from thermogear.results.files import json_text
@@ -220,7 +212,7 @@ def map_(
     delivery.heat_once(axes, options["state"])
     bundle, state = _choice(read, options)
     changes, train = parse_numbers(but), _train_of(read, options)
-    plan: MapPlan | StackedPlan
+    plan: AnyMap
     if train is None or changes or GEARS_AT in axes or options["state"] is not None:
         plan = case_map(read, axes, bundle=bundle, state=state, changes=changes, train=train)
     else:

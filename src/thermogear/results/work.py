@@ -10,7 +10,6 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
-from functools import partial
 from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -115,11 +114,9 @@ def _seconds(plan: Plan, threads: int) -> float:
             compiling: list[float] = []
             begun = time.perf_counter()
             with install_timer("numba:compile", compiling.append):
-                done = sum(
-                    pool.map(
-                        partial(plan.pilot, share / width), range(step * width, (step + 1) * width)
-                    )
-                )
+                turns = range(step * width, (step + 1) * width)
+                parts = [pool.submit(plan.pilot, share / width, turn=turn) for turn in turns]
+                done = sum(one.result() for one in parts)
             took = time.perf_counter() - begun - sum(compiling)
             if step == 0 and took < LONG:
                 continue  # it loaded what is loaded once

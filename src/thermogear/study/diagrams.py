@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Floats = NDArray[np.float64]
+AnyMap: TypeAlias = MapPlan | StackedPlan
 WHOLE = 120.0
 """Seconds of estimated time below which every point of a map is computed."""
 TRAIN_TILE, TRAIN_STRIDE = 8, 2
@@ -159,8 +160,8 @@ def train_maps(
 
 
 def whole_or_spared(
-    plan: MapPlan | StackedPlan, directory: Path, *, threads: int | None = None
-) -> tuple[MapPlan | StackedPlan, Estimate | None]:
+    plan: AnyMap, directory: Path, *, threads: int | None = None
+) -> tuple[AnyMap, Estimate | None]:
     """The map ``plan`` of every point, or sparing some where all take longer than :data:`WHOLE`.
 
     With its estimate, where one was made: a store in ``directory`` keeps what it was begun with.

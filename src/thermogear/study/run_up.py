@@ -190,10 +190,10 @@ class RunUpPlan:
     def needs(self, key: Key) -> Key | None:
         return before_along(self, key, "pinion_speed")
 
-    def pilot(self, share: float, turn: int) -> float:
+    def pilot(self, share: float, *, turn: int) -> float:
         """Follow about a ``share`` of the speeds, in fours of neighbours; what share it was."""
         whole = len(self.states) * len(DIRECTIONS) * len(self.speeds)
-        some = stretches(self.speeds, round(share * whole), turn)
+        some = stretches(self.speeds, count=round(share * whole), turn=turn)
         state, direction = turn % len(self.states), turn // len(self.states) % len(DIRECTIONS)
         replace(self, speeds=some, block=len(some)).compute((state, direction, 0), None, keep_going)
         return len(some) / whole

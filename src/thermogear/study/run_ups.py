@@ -103,7 +103,7 @@ class RunUpsPlan:
     def needs(self, key: Key) -> Key | None:
         return None
 
-    def pilot(self, share: float, turn: int) -> float:
+    def pilot(self, share: float, *, turn: int) -> float:
         """Run a few samples over all speeds, about a ``share`` of the work; what share it was."""
         whole = len(DIRECTIONS) * len(self.rows)
         some = spread(len(self.rows), some=round(share * whole), turn=turn)

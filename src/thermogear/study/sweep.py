@@ -96,9 +96,9 @@ class SweepPlan:
     def needs(self, key: Key) -> Key | None:
         return None
 
-    def pilot(self, share: float, turn: int) -> float:
+    def pilot(self, share: float, *, turn: int) -> float:
         """Compute about a ``share`` of the points, spread over the grid; what share it was."""
-        some = grid_of(self.axes, share, turn)
+        some = grid_of(self.axes, share=share, turn=turn)
         rows = np.stack(np.meshgrid(*map(np.array, some), indexing="ij"), -1)
         self._rows(rows.reshape(-1, len(some)), keep_going)
         return int(rows[..., 0].size) / math.prod(map(len, self.axes))

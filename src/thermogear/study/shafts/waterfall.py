@@ -99,9 +99,7 @@ class WaterfallPlan:
     block: int = BLOCK
     threads: int | None = field(default=None, compare=False)
     kind: str = KIND
-    _trains: dict[int, MovingTrain | None] = field(
-        init=False, repr=False, compare=False, default_factory=dict
-    )
+    _trains: dict[int, MovingTrain | None] = field(repr=False, compare=False, default_factory=dict)
 
     @property
     def orders(self) -> Floats:
@@ -210,22 +208,19 @@ class WaterfallPlan:
     def needs(self, key: Key) -> Key | None:
         return before_along(self, key, "pinion_speed")
 
-    def pilot(self, share: float, turn: int) -> float:
-        """Settle at a few of the speeds; what share of all mesh periods it was.
+    def pilot(self, share: float, *, turn: int) -> float:
+        """Settle at some of the speeds; what share of the mesh periods of all runs it was.
 
-        A run passes speed after speed at its rate; what ``finish`` tries is not in it.
+        What ``finish`` tries is not in it.
         """
-        ways, each = len(self.states) * len(DIRECTIONS), SETTLING + WINDOW
-        passed = (
-            self.duration * self.case.pair.pinion.teeth * float(np.mean(self.speeds)) / math.tau
-        )
-        whole = ways * (each + max(passed, WINDOW * (len(self.speeds) - 1)))
+        each, teeth = SETTLING + WINDOW, self.case.pair.pinion.teeth
+        passed = self.duration * teeth * float(np.mean(self.speeds)) / math.tau
+        ways = len(self.states) * len(DIRECTIONS)
+        whole = ways * (each + max(passed, WINDOW * len(self.speeds)))
         some = spread(len(self.speeds), some=round(share * whole / each), turn=turn)
         for place in some:
             one = replace(self, speeds=(self.speeds[place],), block=1)
-            one._trains.update(self._trains)
             one.compute((turn % len(self.states), 0, 0), None, keep_going)
-            self._trains.update(one._trains)
         return some.size * each / whole
 
     def compute(self, key: Key, before: Arrays | None, alive: Alive) -> Arrays:
@@ -467,15 +462,9 @@ def waterfall_plan(
             raise InputError("operating", operating, allowed=f"1..{most}")
         place = operating - 1
     return WaterfallPlan(
-        case=case,
-        speeds=tuple(axis.tolist()),
-        states=tuple(states),
-        place=place,
-        duration=float(duration),
-        size=coordinates or 0,
-        block=block,
-        threads=threads,
-    )
+        case=case, speeds=tuple(axis.tolist()), states=tuple(states), place=place,
+        duration=float(duration), size=coordinates or 0, block=block, threads=threads,
+    )  # fmt: skip
 
 
 def waterfall(
@@ -502,14 +491,9 @@ def waterfall(
     for a case without shafts.
     """
     plan = waterfall_plan(
-        case,
-        speeds,
-        states=states,
-        operating=operating,
-        duration=duration,
-        coordinates=coordinates,
-        threads=threads,
-    )
+        case, speeds, states=states, operating=operating, duration=duration,
+        coordinates=coordinates, threads=threads,
+    )  # fmt: skip
     how: dict[str, Any] = {"threads": threads, "scheduler": scheduler, "report": report}
     data = carry_out(plan, store, **how, alive=alive, title=case.title)
     return finished(data, case.title)
