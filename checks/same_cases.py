@@ -227,10 +227,6 @@ from thermogear import (
     Gear, GearPair, PairModel, Periodic, TorsionalModel, excitation, heat_balance, lubricant,
     mesh_cycle, simulate,
 )
-try:
-    from thermogear.analysis.basins_along import basins_along
-except ImportError:  # where it was before
-    from thermogear.analysis.basins import basins_along
 numbers = dict(damping_ratio=0.12, stiffness_amplitude=0.335, mean_force=0.017,
                force_amplitude=-1.16)
 one = TorsionalModel(frequency=1.245, **numbers)
@@ -253,13 +249,10 @@ found = {
     "adaptive": simulate(one, method="adaptive", **few),
     "gears": simulate(PairModel.from_excitation(inputs[1]), **few),
     "cycle": cycle,
-    "basins": basins_along(
-        one, "damping_ratio", values=[0.12, 0.125], x=np.linspace(-2, 2, 9), v=np.linspace(-2, 2, 9)
-    ),
 }
 xr.DataTree.from_dict(found).to_netcdf("found.nc", engine="h5netcdf")
 """
-"""What no command reaches: other ways to integrate, both gears' angles, basins over a number."""
+"""What no command reaches: other ways to integrate, both gears' angles."""
 
 # --- the cases -----------------------------------------------------------------------------------
 

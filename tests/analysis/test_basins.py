@@ -13,7 +13,6 @@ from thermogear.analysis.attractors import (
     _trap,
     attractors_from,
     chaotic_index,
-    matched,
     trapped,
 )
 from thermogear.analysis.basins import (
@@ -24,10 +23,10 @@ from thermogear.analysis.basins import (
     basins,
     border_distances,
 )
-from thermogear.analysis.basins_along import basins_along
 from thermogear.analysis.orbits import periodic_orbit
 from thermogear.analysis.settle import close_orbits
 from thermogear.base.excitation import Periodic
+from thermogear.base.vocabulary import STATUS
 from thermogear.dynamics.models import DeadZoneModel, TorsionalModel
 
 # attractor (period, point on it) -> starts of the grid that end there
@@ -105,19 +104,6 @@ def test_entropy_in_closed_form():
     mixed, mean, share = basin_entropy(stripes, box=4)
     assert (mixed, mean, share) == pytest.approx((np.log(2.0), np.log(2.0), 1.0))
     assert basin_entropy(np.zeros((8, 8), int), box=4) == (0.0, 0.0, 0.0)
-
-
-def test_attractors_keep_their_number_over_a_parameter():
-    """The small orbit dies at the fold w = 0.79174; the large one keeps its number."""
-    axis = np.linspace(-2.0, 2.0, 21)
-    data = basins_along(
-        MODEL_TWO, "frequency", values=[0.70, 0.74, 0.78, 0.80], x=axis, v=axis, survey=8
-    )
-    assert data.sizes["attractor_number"] == 2
-    small = 1
-    assert np.all(data.fraction.values[:3, small] > 0.0)
-    assert data.fraction.values[3, small] == 0.0
-    assert data.fraction.values[3, 0] == 1.0
 
 
 def rattling(scale, damping=0.1):
@@ -247,7 +233,8 @@ def test_a_start_that_leaves_for_infinity_is_no_basin():
     assert places.tolist() == [-2, -2]
     axis = np.array([500.0, 501.0])
     data = basins(model, x=axis, v=axis - 500.0)
-    assert np.all(data.attractor == -2)
+    assert np.all(np.isnan(data.attractor))
+    assert np.all(data.status == STATUS.index("diverged"))
     assert data.attrs["unassigned"] == 1.0
     assert data.sizes["attractor_number"] == 0
 
@@ -321,32 +308,9 @@ def test_entropy_and_border_distance_counted_start_by_start():
         assert np.isnan(border_distances(**few, known=[orbit(home)], unit=unit)).all()
 
 
-def test_of_two_old_attractors_that_end_on_one_the_nearer_keeps_its_number():
-    unit = np.array([0.5, 2.0])
-
-    def at(*points):
-        return Attractor(
-            period=len(points),
-            points=np.array(points),
-            multiplier=0.5 + 0j,
-            lyapunov=-0.1,
-            trap=0.01,
-        )
-
-    old = [at((0.0, 0.0)), at((1.0, 0.0)), at((5.0, 5.0))]
-    new = [at((0.4, 0.0)), at((0.9, 0.0)), at((7.0, 7.0))]
-    assert matched(old, new, landed=[1, 1, -1], unit=unit) == [-1, 1, -1]
-    assert matched(old[::-1], new, landed=[-1, 1, 1], unit=unit) == [-1, 1, -1]
-    assert matched(old, new, landed=[0, 1, 2], unit=unit) == [0, 1, 2]
-    pair = at((0.0, 0.0), (0.0, 3.0))
-    # Hausdorff in half backlashes: the farthest of all nearest points, whoever asks
-    assert pair.distance(old[0], unit) == old[0].distance(pair, unit) == 1.5
-    assert old[0].distance(old[1], unit) == 2.0
-
-
 @pytest.mark.parametrize(("rows", "columns"), [(7, 3), (5000, 3), (300, 100), (4, 20_000)])
 def test_a_chunk_of_a_basin_holds_as_many_whole_rows_as_it_may(rows, columns):
-    plan = BasinPlan(model=MODEL_TWO, x=tuple(range(rows)), v=tuple(range(columns)), attractors=())
+    plan = BasinPlan(model=MODEL_TWO, x=tuple(range(rows)), v=tuple(range(columns)))
     cut = plan.cuts["x"]
     assert plan.sizes == {"x": rows, "v": columns}
     assert cut == 1 or cut * columns <= CHUNK_POINTS

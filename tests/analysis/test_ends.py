@@ -58,12 +58,12 @@ def test_a_point_without_an_orbit_has_no_numbers_of_one():
     chaos, orbit = data.isel(damping_ratio=0), data.isel(damping_ratio=1)
     assert np.all(chaos["period"] == 0)
     assert np.all(orbit["period"] == 1)
-    for name in ("contact_losses", "back_impacts"):
-        assert np.all(chaos[name] == -1)
-        assert np.all(orbit[name] >= 0)
-    for name in ("multiplier_real", "point_x", "drive_share"):
+    # chaos has no orbit whose numbers could be told; how long it is in contact it has
+    for name in ("contact_losses", "back_impacts", "multiplier_real", "point_x"):
         assert np.all(np.isnan(chaos[name]))
         assert np.all(np.isfinite(orbit[name]))
+    for name in ("drive_share", "back_share"):
+        assert np.all((data[name] >= 0.0) & (data[name] <= 1.0))
     assert np.all(chaos["lyapunov"] > 0.0)
     assert np.all(orbit["lyapunov"] < 0.0)
     # progress ends at the whole
@@ -93,33 +93,41 @@ class Asked:
 
 
 @pytest.mark.parametrize(
-    ("points", "sides"), [(1, (2, 2)), (9, (3, 3)), (16, (4, 3)), (99, (5, 3))]
+    ("share", "sides"), [(0.0, (1, 1)), (0.3, (3, 2)), (0.6, (4, 2)), (1.0, (5, 3))]
 )
-def test_a_pilot_of_a_map_spreads_over_its_axes_ends_included(points, sides):
+def test_a_pilot_of_a_map_does_the_share_that_it_tells(share, sides):
     family = Asked("frequency", "mean_force")
     axes = {"frequency": [0.5, 0.52, 0.54, 0.56, 0.6], "mean_force": [0.3, 0.35, 0.5]}
-    assert map_plan(family, axes).pilot(points) == sides[0] * sides[1] == len(family.points)
+    plan = map_plan(family, axes, refine=False)
+    assert plan.pilot(share, turn=0) * 15 == sides[0] * sides[1] == len(family.points)
     for place, (side, values) in enumerate(zip(sides, axes.values(), strict=True)):
         seen = {point[place] for point in family.points}
         assert len(seen) == side
-        assert {values[0], values[-1]} <= seen <= set(values)
+        assert seen <= set(values)
     assert len(set(family.points)) == len(family.points)
+    # each turn takes other points, until all are seen
+    for turn in range(1, 40):
+        plan.pilot(share, turn=turn)
+    assert len(set(family.points)) == 15
 
 
-def test_a_pilot_of_a_diagram_spreads_over_its_range_ends_included():
+def test_a_pilot_of_a_diagram_does_the_share_that_it_tells():
     values = [0.5, 0.52, 0.54, 0.58, 0.6]
-    for points, count in ((1, 1), (2, 2), (3, 3), (50, 5)):
+    for share, count in ((0.0, 1), (0.1, 1), (0.3, 3), (0.4, 4)):
         family = Asked("frequency")
-        plan = diagram_plan(family, "frequency", values, starts=[(1.1, 0.0), (0.0, 0.0)])
-        assert plan.pilot(points) == 2 * count
+        plan = diagram_plan(family, "frequency", values, branch_period=0)
+        assert plan.pilot(share, turn=0) == count / 10
         seen = [value for (value,) in family.points]
         assert len(set(seen)) == len(seen) == count
-        assert set(seen) <= set(values)
-        if count > 1:
-            assert {0.5, 0.6} <= set(seen)
+        # neighbours, as the diagram itself goes from value to value
+        first = values.index(min(seen))
+        assert sorted(seen) == values[first : first + count]
     assert plan.rule == DIAGRAM_RULE
 
 
-def test_a_pilot_of_basins_follows_a_square_of_starts():
+def test_a_pilot_of_basins_does_one_share_of_survey_and_grid():
     plan = basin_plan(BISTABLE, x=np.linspace(-1.0, 1.0, 5), v=[0.0, 0.5, 1.0], survey=2)
-    assert [plan.pilot(n) for n in (1, 9, 16, 100)] == [4, 9, 12, 15]
+    shares = [plan.pilot(share, turn=0) for share in (0.0, 0.25, 0.5, 1.0)]
+    assert shares == [0.25, 0.25, 0.5, 1.0]
+    # a coarse look first has the attractors of the whole
+    assert plan.thinned(2)[0].attractors is plan.attractors

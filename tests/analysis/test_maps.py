@@ -6,6 +6,7 @@ import pytest
 from thermogear.analysis.family import family_for
 from thermogear.analysis.maps import MAP_RULE, MapPlan, _refined, parameter_map
 from thermogear.base.errors import InputError
+from thermogear.base.vocabulary import ASSUMED
 from thermogear.dynamics.models import TorsionalModel
 
 MODEL = TorsionalModel(
@@ -26,27 +27,26 @@ def changed(one, other):
 
 
 def test_result_does_not_depend_on_threads():
-    one = parameter_map(MODEL, axes(24), tile=8, threads=1)
-    two = parameter_map(MODEL, axes(24), tile=8, threads=3)
+    one = parameter_map(MODEL, axes(24), tile=8, threads=1, refine=True)
+    two = parameter_map(MODEL, axes(24), tile=8, threads=3, refine=True)
     assert one.identical(two)
 
 
 def test_every_point_computed_is_the_same_with_and_without_refinement():
-    coarse = parameter_map(MODEL, axes(24), tile=24)
+    coarse = parameter_map(MODEL, axes(24), tile=24, refine=True)
     full = parameter_map(MODEL, axes(24), refine=False)
-    inside = coarse.computed.values == 1
+    inside = coarse.status.values != ASSUMED
     assert 0.2 < inside.mean() < 1.0
     for name in ("label", "period", "multiplier_real", "lyapunov"):
         assert np.array_equal(
             coarse[name].values[inside], full[name].values[inside], equal_nan=True
         )
-    # a point that its equal neighbours spoke for has a label and no figures
-    for name in ("contact_losses", "back_impacts"):
-        assert np.all(coarse[name].values[~inside] == -1)
-    for name in ("multiplier_real", "multiplier_imag", "lyapunov", "point_x", "drive_share"):
-        assert np.all(np.isnan(coarse[name].values[~inside]))
-    assert np.all(coarse.used_periods.values[~inside] == 0)
+    # a point that its equal neighbours spoke for has a label, and no number at all
+    for name in set(coarse.data_vars) - {"label", "period", "status"}:
+        assert np.all(np.isnan(coarse[name].values[~inside])), name
+        assert full[name].dtype == float
     assert np.all(coarse.label.values[~inside] > 0)
+    assert not np.any(full.status.values == ASSUMED)
     assert coarse.attrs["computed_points"] == inside.sum()
     assert coarse.attrs["total_periods"] == coarse.used_periods.values[inside].sum()
     assert coarse.attrs["full_periods"] == 24 * 24 * MAP_RULE.cap
@@ -56,7 +56,7 @@ def test_every_point_computed_is_the_same_with_and_without_refinement():
 def test_four_times_fewer_periods_and_few_labels_changed(at_length):
     count = at_length(64, 128, "points of each axis of a map")
     full = parameter_map(MODEL, axes(count), rule=MAP_RULE.full(), refine=False)
-    fast = parameter_map(MODEL, axes(count))
+    fast = parameter_map(MODEL, axes(count), refine=True)
     assert fast.attrs["full_periods"] >= 4 * fast.attrs["total_periods"]
     assert changed(full, fast) <= 0.003
 
@@ -127,11 +127,9 @@ def test_only_cells_that_differ_from_a_neighbour_are_gone_into(shape, stride):
         found = {
             "label": label.copy(),
             "period": period.copy(),
-            "status": np.zeros(shape, np.int8),
-            "computed": computed,
         }
         wanted, spoken, spoken_period = brute_refined(label, period, computed, stride)
-        assert np.array_equal(_refined(found, stride), wanted)
+        assert np.array_equal(_refined(found, computed == 1, stride), wanted)
         assert np.array_equal(found["label"], spoken)
         assert np.array_equal(found["period"], spoken_period)
 

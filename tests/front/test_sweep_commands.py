@@ -2,6 +2,7 @@
 
 import json
 
+import pandas as pd
 import pytest
 import xarray as xr
 from click.testing import CliRunner
@@ -10,6 +11,7 @@ from thermogear.base.errors import InputError
 from thermogear.case.examples import example_text
 from thermogear.front.sweep_commands import COMMANDS
 from thermogear.results.store import RESULT
+from thermogear.study import diagrams
 
 GRID = ("--over", "zeta=0.1:0.2:3", "--over", "w=1:2:3")
 BY_NAME = {command.name: command for command in COMMANDS}
@@ -58,6 +60,35 @@ def test_map_resumes_and_refuses_other_words(cases, tmp_path):
     words[2] = "omega=1.1:1.4:8"
     with pytest.raises(InputError, match=r"axes\.frequency\[1\]: got"):
         call("map", *words)
+
+
+def test_a_map_tells_what_it_assumes_apart_from_what_it_computed(cases, tmp_path, monkeypatch):
+    """Rows, page, headline and sums hold what was computed apart from the rest."""
+    axes = ("--over", "zeta=0.5:0.9:9", "--over", "w=0.5:0.6:6")
+    words = [cases / "table-4.2.toml", *axes, "-o"]
+    whole = call("map", *words, tmp_path / "whole", "--json")
+    assert (whole["labels"], whole["assumed"]) == ({"period-1": 54}, {})
+    assert whole["computed_points"] == whole["points"] == 54
+
+    monkeypatch.setattr(diagrams, "WHOLE", 0.0)
+    lines = call("map", *words, tmp_path / "some", "--csv", tmp_path / "some.csv")
+    # the first lattice: rows 0, 4, 8 and columns 0, 4, 5
+    headline = "labels: period-1 9 computed, 45 assumed\n"
+    assert headline in lines
+    table = pd.read_csv(tmp_path / "some.csv")
+    assert dict(table["status"].value_counts()) == {"assumed": 45, "ok": 9}
+    there = table["status"] == "assumed"
+    numbers = table.select_dtypes("number").iloc[:, 3:]  # behind both axes and the period
+    assert len(numbers.columns) == 11
+    assert numbers[there].isna().all(axis=None)
+    assert numbers[~there].notna().all(axis=None)
+    page = (tmp_path / "some" / "report.html").read_text(encoding="utf-8")
+    told = (
+        "Of 54 points 9 were computed: period 1 at 9; equal neighbours speak for the others, "
+        "which are assumed and not computed: period 1 at 45.",
+        "Hatched: assumed, not computed",
+    )
+    assert all(words in page for words in told)
 
 
 def test_basins_and_page(cases, tmp_path):

@@ -75,7 +75,7 @@ def in_child(work) -> int:
 def kills(directory: Path, count: int) -> dict:
     """Kill a run at random moments, go on, compare: nothing finished may be lost."""
     plan = small_plan()
-    plan.pilot(16)  # loads the kernels once, for every child
+    plan.pilot(0.1, turn=0)  # loads the kernels once, for every child
     code_version()  # and reads the sources once
     lost = wrong = done = finished = killed_working = 0
     draw = random.Random(6)
@@ -124,7 +124,7 @@ def kills(directory: Path, count: int) -> dict:
 def full(directory: Path, _: int) -> dict:
     """No file may grow beyond a few hundred bytes: the disk refuses in the middle of a chunk."""
     plan = small_plan(36, 18)
-    plan.pilot(16)
+    plan.pilot(0.1, turn=0)
     code_version()
     store = directory / "store"
 
@@ -198,7 +198,7 @@ def cluster(directory: Path, count: int) -> dict:
     )
 
     plan = small_plan(count)
-    plan.pilot(16)
+    plan.pilot(0.1, turn=0)
     with (
         LocalCluster(
             n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0"
@@ -206,7 +206,7 @@ def cluster(directory: Path, count: int) -> dict:
         Client(local) as client,
     ):
         address = local.scheduler_address
-        client.run(plan.pilot, 16)  # kernels
+        client.run(plan.pilot, 0.1, turn=0)  # kernels
         begun = time.perf_counter()
         calm = carry_out(plan, directory / "calm", scheduler=address)
         on_cluster = time.perf_counter() - begun
@@ -303,7 +303,7 @@ def loaded() -> None:
 def crowd(directory: Path, count: int) -> dict:
     """Good, old, bare and dying workers, then a scheduler that dies, then nobody of use."""
     plan = small_plan(count)
-    plan.pilot(16)
+    plan.pilot(0.1, turn=0)
     threads = numbers(carry_out(plan, directory / "threads", threads=1))
     found: dict = {"dead": []}
     one = Crowd(directory)

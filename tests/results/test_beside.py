@@ -7,12 +7,13 @@ import json
 import numpy as np
 import xarray as xr
 
+from thermogear.base.vocabulary import ASSUMED
 from thermogear.results.beside import NO_BACK_IMPACT, with_notices
 
 
-def store(impacts: list[int], label: int = 1) -> xr.Dataset:
-    labels = np.full(len(impacts), label)
-    return xr.Dataset({"back_impacts": ("row", np.array(impacts)), "label": ("row", labels)})
+def store(shares: list[float], status: int = 0) -> xr.Dataset:
+    known = np.where(np.isnan(shares), ASSUMED, status)
+    return xr.Dataset({"back_share": ("row", np.array(shares)), "status": ("row", known)})
 
 
 def test_backlash_without_effect_is_told_from_the_data_alone() -> None:
@@ -20,7 +21,7 @@ def test_backlash_without_effect_is_told_from_the_data_alone() -> None:
         found: list[str] = json.loads(with_notices(data).attrs["notices"])
         return found
 
-    assert told(store([0, 0, -1])) == [NO_BACK_IMPACT]
-    assert told(store([0, 1])) == told(store([-1])) == told(store([0, 0], label=2)) == []
-    own = store([0, 0]).assign_attrs(notices=json.dumps(["mine"]))
+    assert told(store([0.0, 0.0, np.nan])) == [NO_BACK_IMPACT]
+    assert told(store([0.0, 0.1])) == told(store([np.nan])) == told(store([0.0], status=1)) == []
+    own = store([0.0, 0.0]).assign_attrs(notices=json.dumps(["mine"]))
     assert told(own) == ["mine"]

@@ -209,9 +209,9 @@ def test_too_large_work_is_refused_before_it_starts(tmp_path):
 
 
 def test_estimate_counts_points_chunks_and_bytes():
-    found = estimate(plan_of(), threads=1, pilot=4)
+    found = estimate(plan_of(), threads=1)
     assert (found.points, found.chunks) == (144, 4)
-    assert found.disk == 144 * (8 * 7 + 4 * 4 + 3)
+    assert found.disk == 144 * (8 * 11 + 4 + 2)
     assert 0.0 < found.seconds < 60.0
     assert duration(30.0) == "30 s"
     assert duration(600.0) == "10 min"

@@ -11,6 +11,7 @@ import pytest
 
 from said import numbers
 from thermogear import InputError, run
+from thermogear.base.vocabulary import STATUS
 from thermogear.case.case import load_example
 from thermogear.results.versus import (
     MOST_CASES,
@@ -70,7 +71,8 @@ def test_points_are_matched_by_speed_and_figures_are_those_of_each_run(
     swing = data["peak_to_peak_displacement"].sel(case=data["case"][1]).isel(operating=[1, 2])
     np.testing.assert_array_equal(swing, second.groups["motion"]["peak_to_peak_displacement"])
     assert np.all(data["label"].isel(case=0, operating=2).values == "")
-    assert np.all(data["status"].isel(case=0, operating=2).values == -1)
+    assert np.all(data["status"].isel(case=0, operating=2).values == len(STATUS))
+    assert data["status"].attrs["flag_meanings"].split()[len(STATUS)] == "absent"
 
 
 def test_curves_keep_their_own_positions(first: Stored, second: Stored) -> None:

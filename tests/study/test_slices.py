@@ -72,6 +72,14 @@ def test_slices_together_are_the_whole(name: str) -> None:
     assert any(seen) == (name != "run-up")
 
 
+def test_no_stored_number_stands_for_a_missing_one() -> None:
+    """A whole number that may be missing is NaN, or its fill is told to whoever opens the file."""
+    for plan in plans().values():
+        for name, one in plan.variables().items():
+            known = np.isnan(one.fill) or one.fill >= 0
+            assert known or one.attributes["_FillValue"] == one.fill, (plan.kind, name)
+
+
 def test_a_run_up_comes_in_order_of_speed() -> None:
     plan = plans()["run-up"]
     firsts: dict[int, list[int]] = {0: [], 1: []}

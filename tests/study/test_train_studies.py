@@ -15,12 +15,13 @@ from thermogear.analysis.maps import MapPlan
 from thermogear.base.errors import InputError
 from thermogear.base.plan import gather, keys_of, region_of
 from thermogear.base.units import RPM, ZERO_CELSIUS
+from thermogear.base.vocabulary import ASSUMED
 from thermogear.case.case import GearCase, gear_case, load_case
 from thermogear.results.workers import compute_chunk
 from thermogear.study.diagrams import Train, case_basins, case_diagram, case_map, train_maps
 from thermogear.study.notices import finished
 from thermogear.study.shafts.motion import train_motion
-from thermogear.views.pages.lost_words import lost_rows, lost_words
+from thermogear.views.pages.lost_words import lost_line, lost_rows, lost_words
 from thermogear.views.plots.lost_contact import lost_contact_picture
 from thermogear.views.write import page_of
 
@@ -214,12 +215,13 @@ def test_a_map_refines_where_contact_ends() -> None:
     from thermogear.analysis.maps import _refined
 
     size = (5, 5)
-    found = {n: np.ones(size, np.int32) for n in ("label", "period", "computed")}
-    found |= {"lost_contact": np.zeros(size, np.int32), "status": np.zeros(size, np.int8)}
-    assert not _refined(found, 4, ("lost_contact",)).any()
+    found = {n: np.ones(size, np.int32) for n in ("label", "period")}
+    found |= {"lost_contact": np.zeros(size, np.int32)}
+    done = np.ones(size, bool)
+    assert not _refined(found, done, 4, ("lost_contact",)).any()
     found["lost_contact"][4] = 1
-    assert _refined(found, 4, ("lost_contact",)).all()
-    assert not _refined(found, 4, ()).any()
+    assert _refined(found, done, 4, ("lost_contact",)).all()
+    assert not _refined(found, done, 4, ()).any()
 
 
 def test_basins_of_a_journal_and_names_that_are_none() -> None:
@@ -255,6 +257,22 @@ def test_the_words_say_where_each_flank_and_bearing_loses_contact() -> None:
     said = lost_words(data)
     assert said == SAID
     assert [row["points"] for row in lost_rows(data)] == [4, 1, 3]
+    assert data["lost_contact"].attrs["_FillValue"] == -1
+    # what is assumed is told apart: the second and third speed at the last temperature
+    status = np.zeros((3, 4), np.int8)
+    status[1:, 3] = ASSUMED
+    guessed = data.assign(status=(data["label"].dims, status))
+    assert [(row["points"], row["assumed"]) for row in lost_rows(guessed)] == [
+        (2, 2),
+        (0, 1),
+        (3, 0),
+    ]
+    more, tail = (
+        " Where the motion is assumed, so is this.",
+        "2 of 10 points, and 2 that are assumed)",
+    )
+    assert lost_words(guessed) == SAID + more
+    assert lost_line(lost_rows(guessed)[0]).endswith(tail)
     assert lost_words(stored(np.zeros((3, 4), np.int32))) == NOTHING
     assert lost_words(stored(np.full((3, 4), -1, np.int32), 4)) == UNKNOWN
     scattered = np.zeros((3, 4), np.int32)

@@ -70,7 +70,9 @@ def of_sweeps() -> dict[str, Picture]:
         section_x=rising("direction", "start", "damping_ratio", "section"),
         damping_ratio=rising("damping_ratio"),
     )
-    codes = {"label": np.array([1, 1, 2, 3])[:3], "period": np.array([1, 9, 0])}
+    codes = {"label": np.array([1, 1, 2, 3])[:3], "period": np.array([1, 9, 0]),
+             "status": np.zeros(3, int), "drive_share": np.array([1.0, 0.9, np.nan, 0.8]),
+             "back_share": np.array([0.0, 0.0, np.nan, 0.1])}  # fmt: skip
     grid = xr.Dataset(
         {name: (("damping_ratio", "frequency"), np.resize(values, (5, 4)))
          for name, values in codes.items()},
@@ -90,7 +92,8 @@ def of_sweeps() -> dict[str, Picture]:
     )
     basins = made("attractor_number point", "attractor_x", "attractor_v").assign(
         x=rising("x"), v=rising("v"), fraction=rising("attractor_number"),
-        attractor=(("x", "v"), np.resize([-2, -1, 0, 1], (4, 5))),
+        attractor=(("x", "v"), np.resize([np.nan, np.nan, 0, 1], (4, 5))),
+        status=(("x", "v"), np.resize([3, 2, 0, 0], (4, 5))),
         attractor_period=("attractor_number", np.array([1, 0])),
     )  # fmt: skip
     run = "state direction pinion_speed"
@@ -99,7 +102,7 @@ def of_sweeps() -> dict[str, Picture]:
         dte_line=rising(*run.split(), "order"), gear_temperature=rising("state", high=400.0),
     )  # fmt: skip
     width = "gears.pinion.face_width"
-    line = made(width, "dte_peak_to_peak", "dynamic_factor", "label")
+    line = made(width, "dte_peak_to_peak", "dynamic_factor", "label", "status")
     line = line.assign_coords({width: (width, rising(width)[1], {"units": "m"})})
     both = grid.assign(dynamic_factor=rising("damping_ratio", "frequency"))
     look = made("pinion_speed", "dynamic_factor").assign(
@@ -109,7 +112,7 @@ def of_sweeps() -> dict[str, Picture]:
     diagram = diagram.merge(branches).merge(events).assign_attrs(parameter="damping_ratio")
     return {
         "diagram": sweeps.orbit_diagram_picture(diagram),
-        "map": sweeps.map_picture(grid),
+        "map": lost_contact.map_picture(grid),
         "lost-contact": lost_contact.lost_contact_picture(lost),
         "train-forces": lost_contact.forces_picture(forces.assign_attrs(parameter="damping_ratio")),
         "basins": sweeps.basins_picture(basins),

@@ -6,7 +6,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from thermogear.base.vocabulary import ASSUMED
 from thermogear.views.pages.findings import SAME, finding
+from thermogear.views.picture import Field, Hatch
+from thermogear.views.plots.lost_contact import map_picture
 
 RPM = 2.0 * np.pi / 60.0
 
@@ -53,6 +56,50 @@ def test_undecided_points_are_counted() -> None:
     count, total = int((data["label"] == 0).sum()), data["label"].size
     assert f"{count} of {total} points are undecided" in finding(data)
     assert "undecided" not in finding(two_ways([]))
+
+
+def test_what_a_map_assumes_is_told_apart_from_what_it_computed() -> None:
+    label, status = np.ones((3, 4), int), np.zeros((3, 4), int)
+    period = np.array([[1, 1, 1, 2]] * 3)
+    status[1] = ASSUMED
+    dims = ("frequency", "mean_force")
+    variables = {"label": label, "period": period, "status": status}
+    data = xr.Dataset({n: (dims, v) for n, v in variables.items()}, attrs={"kind": "map"})
+    said = (
+        "Of 12 points 8 were computed: period 1 at 6, period 2 at 2; equal neighbours speak for "
+        "the others, which are assumed and not computed: period 1 at 3, period 2 at 1."
+    )
+    assert finding(data) == said
+    every = data.assign(status=(dims, np.zeros((3, 4), int)))
+    said = "Of 12 points: period 1 at 9, period 2 at 3."
+    assert finding(every) == said
+
+
+def test_a_map_draws_what_loses_contact_and_hatches_what_is_assumed() -> None:
+    """Each cell has the colour of its own motion; a cell is hatched between its own borders."""
+    share = {"drive_share": [[1.0, 0.9, 0.5], [1.0 - 1e-16, np.nan, 1.0]],
+             "back_share": [[0.0, 0.0, 0.1], [0.0, np.nan, 0.0]]}  # fmt: skip
+    whole = {"label": np.ones((2, 3), int), "period": np.ones((2, 3), int)}
+    status = np.array([[0, 0, 0], [0, ASSUMED, 0]])
+    data = xr.Dataset(
+        {n: (("x", "y"), np.array(v)) for n, v in (share | whole | {"status": status}).items()},
+        {"x": [1.0, 2.0], "y": [0.0, 1.0, 2.0]},
+    )
+    ((regime, teeth),) = map_picture(data).panels
+    (colours,) = [mark for mark in teeth.marks if isinstance(mark, Field)]
+    words = [[colours.classes[int(code)] for code in row] for row in np.asarray(colours.values).T]
+    always, parts, hit, unknown = (
+        "teeth always in contact", "drive flank parts", "drive flank parts, back flank is hit",
+        "not known",
+    )  # fmt: skip
+    assert words == [[always, parts, hit], [always, unknown, always]]
+    for panel in (regime, teeth):
+        (hatch,) = [mark for mark in panel.marks if isinstance(mark, Hatch)]
+        held = np.asarray(hatch.values).T > 0.5
+        assert np.unique(np.asarray(hatch.x)[held.any(axis=1)]).tolist() == [1.5, 2.5]
+        assert np.unique(np.asarray(hatch.y)[held.any(axis=0)]).tolist() == [0.5, 1.5]
+    none = map_picture(data.assign(status=(("x", "y"), np.zeros((2, 3), int))))
+    assert not any(isinstance(m, Hatch) for row in none.panels for p in row for m in p.marks)
 
 
 @pytest.mark.parametrize("shares", [[1.0], [0.7, 0.3]])

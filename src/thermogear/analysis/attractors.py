@@ -49,12 +49,6 @@ class Attractor:
         """No period."""
         return self.period == 0
 
-    def distance(self, other: Attractor, unit: Floats) -> float:
-        """Hausdorff distance of the two section sets in half backlashes."""
-        one, two = self.points / unit, other.points / unit
-        there = cKDTree(two).query(one)[0].max()
-        return float(max(there, cKDTree(one).query(two)[0].max()))
-
 
 class Field:
     """One parameter point with its maps ready for many states at once.
@@ -238,22 +232,3 @@ def trapped(
             lane = lane[left]
             crowd = crowd.take(left)
     return where, used, last
-
-
-def matched(
-    old: Sequence[Attractor], new: Sequence[Attractor], *, landed: Sequence[int], unit: Floats
-) -> list[int]:
-    """Old number of every new attractor; -1 for one that no old one continues into.
-
-    ``landed``: the new attractor that the trajectory from each old one's first point ends on at
-    the new parameter. Where two old ones end on the same, the nearer keeps its number.
-    """
-    found = [-1] * len(new)
-    best = [np.inf] * len(new)
-    for number, target in enumerate(landed):
-        if target < 0:
-            continue
-        away = old[number].distance(new[target], unit)
-        if away < best[target]:
-            best[target], found[target] = away, number
-    return found

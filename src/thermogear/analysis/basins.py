@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -35,6 +36,7 @@ from thermogear.base.plan import (
     gather,
     keep_going,
     ranges_of,
+    spread,
 )
 from thermogear.base.vocabulary import STATUS, status_attributes
 from thermogear.dynamics.models import ClearanceModel
@@ -48,6 +50,7 @@ BASIN_RULE = Rule(first=256, cap=8192, settled=1e-6, chaos_periods=1000)
 CHUNK_POINTS = 8192
 SURVEY = 24
 BOX = 5
+_LOOKING = threading.RLock()
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -57,10 +60,13 @@ class BasinPlan:
     model: Any
     x: tuple[float, ...]
     v: tuple[float, ...]
-    attractors: tuple[Attractor, ...]
     seeds: tuple[tuple[float, ...], ...] = ()
     rule: Rule = BASIN_RULE
+    survey: int = SURVEY
     kind: str = "basins"
+    _survey: dict[str, tuple[Attractor, ...]] = field(
+        repr=False, compare=False, default_factory=dict
+    )
 
     @property
     def sizes(self) -> dict[str, int]:
@@ -71,6 +77,25 @@ class BasinPlan:
     def dimension(self) -> int:
         """Length of a state."""
         return return_map(self.model).dimension
+
+    @cached_property
+    def _starts(self) -> Floats:
+        """The starts of the survey: seeds and a coarse grid."""
+        extra = np.array(self.seeds, dtype=float).reshape(-1, self.dimension)
+        return np.concatenate([extra, _states(self.model, _spread(self.x, self.v, self.survey))])
+
+    @property
+    def attractors(self) -> tuple[Attractor, ...]:
+        """What the survey finds, looked for when first asked."""
+        with _LOOKING:
+            if "found" not in self._survey:
+                self._survey["found"] = tuple(
+                    attractors_from(single(self.model), self._starts, self.rule)[0]
+                )
+            return self._survey["found"]
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_survey": {"found": self.attractors}}
 
     @property
     def cuts(self) -> dict[str, int]:
@@ -93,7 +118,7 @@ class BasinPlan:
         return {
             **(longer if self.dimension != 2 else {}),
             "reached": Variable(
-                dims, "int16", -1, {"long_name": "attractor of the survey, -1: none of them"}
+                dims, "float64", nan, {"long_name": "attractor of the survey", "units": "1"}
             ),
             "label": Variable(dims, "int8", 0, LABEL_ATTRIBUTES),
             "period": Variable(dims, "int32", 0, {"long_name": "period", "units": "1"}),
@@ -122,19 +147,28 @@ class BasinPlan:
     def needs(self, key: Key) -> Key | None:
         return None
 
-    def pilot(self, points: int) -> int:
-        """Follow about ``points`` starts spread over the grid; how many."""
-        starts = _spread(self.x, self.v, max(2, round(points**0.5)))
-        self._ends(starts, keep_going)
-        return len(starts)
+    def pilot(self, share: float, *, turn: int) -> float:
+        """Do about a ``share`` of the survey and of the grid; what share it was."""
+        whole, points = self._starts, len(self.x) * len(self.v)
+        some = whole[spread(len(whole), some=round(share * len(whole)), turn=turn)]
+        found, _ = attractors_from(single(self.model), some, self.rule)
+        share = len(some) / len(whole)
+        places = spread(points, some=round(share * points), turn=turn)
+        row, column = np.unravel_index(places, (len(self.x), len(self.v)))
+        self._ends(
+            np.stack([np.array(self.x)[row], np.array(self.v)[column]], 1), found, keep_going
+        )
+        return share
 
-    def _ends(self, starts: Floats, alive: Alive) -> dict[str, NDArray[Any]]:
+    def _ends(
+        self, starts: Floats, attractors: Sequence[Attractor], alive: Alive
+    ) -> dict[str, NDArray[Any]]:
         """Where ``starts`` (start, 2) in the plane lead, as flat arrays."""
         lanes = single(self.model)
         field = Field(lanes)
         starts = _states(self.model, starts)
-        where, used, _ = trapped(field, starts, self.attractors, alive=alive)
-        periods = np.array([a.period for a in self.attractors] or [0])
+        where, used, _ = trapped(field, starts, attractors, alive=alive)
+        periods = np.array([a.period for a in attractors] or [0])
         period = np.where(where >= 0, periods[np.maximum(where, 0)], 0)
         label = np.where(where == -2, DIVERGED, PERIODIC)
         point = np.full(starts.shape, np.nan)
@@ -148,11 +182,11 @@ class BasinPlan:
                 if slow.label[row] == DIVERGED:
                     where[place] = -2
                 elif slow.label[row] == CHAOTIC:
-                    where[place] = chaotic_index(self.attractors, field, slow.state[row])
+                    where[place] = chaotic_index(attractors, field, slow.state[row])
                     point[place] = slow.state[row]
                 elif slow.period[row] > 0:
                     n = int(slow.period[row])
-                    where[place] = periodic_index(self.attractors, slow.point[row], n, field.unit)
+                    where[place] = periodic_index(attractors, slow.point[row], n, field.unit)
                     point[place] = slow.point[row]
         point[where != -1] = np.nan
         status = np.zeros(len(starts), np.int8)
@@ -161,7 +195,7 @@ class BasinPlan:
         shown = _shown(self.model, point)
         return {
             **({"point": point} if self.dimension != 2 else {}),
-            "reached": where,
+            "reached": np.where(where < 0, np.nan, where),
             "label": label,
             "period": period,
             "point_x": shown[:, 0],
@@ -173,19 +207,26 @@ class BasinPlan:
     def thinned(self, step: int) -> tuple[BasinPlan, Mapping[str, NDArray[np.int64]]]:
         """The basins of every ``step``-th start of both axes."""
         x, v = every(len(self.x), step=step), every(len(self.v), step=step)
-        thin = replace(self, x=tuple(self.x[i] for i in x), v=tuple(self.v[i] for i in v))
+        thin = replace(
+            self,
+            x=tuple(self.x[i] for i in x),
+            v=tuple(self.v[i] for i in v),
+            _survey={"found": self.attractors},  # that of the whole serves both
+        )
         return thin, {"x": x, "v": v}
 
     def compute(self, key: Key, before: Arrays | None, alive: Alive) -> Arrays:
         x = np.array(self.x)[ranges_of(self, key)["x"]]
         v = np.array(self.v)
         starts = np.stack(np.meshgrid(x, v, indexing="ij"), axis=-1).reshape(-1, 2)
-        found = self._ends(starts, alive)
+        found = self._ends(starts, self.attractors, alive)
         return {n: a.reshape(x.size, v.size, *a.shape[1:]) for n, a in found.items()}
 
     def finish(self, data: xr.Dataset) -> xr.Dataset:
         """Add attractors that the survey missed, fractions and robustness."""
-        where = data["reached"].values.astype(np.int64)
+        nowhere = np.where(data["label"].values == DIVERGED, -2, -1)
+        reached = data["reached"].values
+        where = np.where(np.isnan(reached), nowhere, np.nan_to_num(reached)).astype(np.int64)
         known = list(self.attractors)
         known, where = _late(self, data, known, where)
         order = sorted(range(len(known)), key=lambda n: (-int(np.count_nonzero(where == n)), n))
@@ -196,8 +237,8 @@ class BasinPlan:
         known = [known[n] for n in order]
         data["attractor"] = (
             ("x", "v"),
-            where.astype(np.int16),
-            {"long_name": "attractor reached, -1: undecided, -2: diverged"},
+            np.where(where < 0, np.nan, where),
+            {"long_name": "attractor reached, the status says why none is", "units": "1"},
         )
         return _described(data, known, where, self.model)
 
@@ -315,7 +356,7 @@ def _described(
         "boxes_with_borders": rough,
         "box_cells": BOX,
         "unassigned": float(np.mean(where < 0)) if where.size else 0.0,
-        "total_periods": int(data["used_periods"].values.astype(np.int64).sum()),
+        "total_periods": int(data["used_periods"].sum()),
     }
     return data
 
@@ -381,21 +422,17 @@ def basin_plan(
     survey: int = SURVEY,
 ) -> BasinPlan:
     """The plan of :func:`basins`; looks for the attractors from ``survey`` x ``survey`` starts."""
-    lanes = single(model)
-    if len(lanes) != 1:
-        raise InputError("model", f"{len(lanes)} lanes", allowed="one lane")
+    if len(single(model)) != 1:
+        raise InputError("model", f"{len(single(model))} lanes", allowed="one lane")
     xs, vs = axis_values("x", x), axis_values("v", v)
     extra = np.asarray(seeds, dtype=float).reshape(-1, return_map(model).dimension)
-    grid = _states(model, _spread(xs.tolist(), vs.tolist(), survey))
-    starts = np.concatenate([extra, grid])
-    found, _ = attractors_from(lanes, starts, rule)
     return BasinPlan(
         model=model,
         x=tuple(xs.tolist()),
         v=tuple(vs.tolist()),
-        attractors=tuple(found),
         seeds=tuple(map(tuple, extra.tolist())),
         rule=rule,
+        survey=survey,
     )
 
 
@@ -418,7 +455,7 @@ def basins(
     found first, from a coarse grid of starts and from ``seeds``. Then every start runs until it
     comes close to one; how close was tried out. Starts that reach none are labelled one by one,
     and so late attractors are found. Returns the number of the attractor over (x, v), the largest
-    basin first (-1: undecided, -2: diverged); fractions and counts; the attractors' sections,
+    basin first (NaN: none, the status says why); fractions and counts; the attractors' sections,
     multipliers and distance to the nearest border; the basin entropies. Alike for any ``threads``.
 
     >>> model = TorsionalModel(

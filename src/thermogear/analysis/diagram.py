@@ -41,10 +41,13 @@ from thermogear.base.plan import (
     Key,
     Progress,
     Variable,
+    before_along,
+    empty_arrays,
     every,
     gather,
     keep_going,
     ranges_of,
+    stretches,
 )
 
 if TYPE_CHECKING:
@@ -56,6 +59,8 @@ DIRECTIONS = (1, -1)
 """Up and down."""
 DIAGRAM_RULE = Rule(first=128, cap=8192, settled=1e-6, chaos_periods=1000)
 BLOCK = 32
+BRANCHES = 900
+"""Values whose settling takes as long as all branches, about: measured on gears and numbers."""
 KEEP = 64
 BRANCH_PERIOD = 4
 """Branches are followed for orbits of up to so many periods."""
@@ -152,27 +157,18 @@ class DiagramPlan:
         }
 
     def needs(self, key: Key) -> Key | None:
-        direction, block = key
-        blocks = -(-len(self.values) // self.cuts[self.parameter])
-        before = block - 1 if direction == 0 else block + 1
-        return (direction, before) if 0 <= before < blocks else None
+        return before_along(self, key, self.parameter)
 
-    def pilot(self, points: int) -> int:
-        """Settle about ``points`` values spread over the range, up and down; how many."""
-        count = min(points, len(self.values))
-        some = np.linspace(0, len(self.values) - 1, count).round().astype(int)
-        chosen = tuple(self.values[i] for i in np.unique(some))
-        small = DiagramPlan(
-            family=self.family,
-            values=chosen,
-            starts=self.starts,
-            rule=self.rule,
-            keep=self.keep,
-            block=max(len(chosen), 1),
-            branch_period=0,
-        )
-        small.compute((0, 0), None, keep_going)
-        return len(chosen) * len(self.starts)
+    def pilot(self, share: float, *, turn: int) -> float:
+        """Settle about a ``share`` of the values, in fours of neighbours; what share it was.
+
+        The branches count as :data:`BRANCHES` values.
+        """
+        whole = 2 * len(self.values) + BRANCHES * (self.branch_period > 0)
+        chosen = stretches(self.values, count=round(share * whole), turn=turn)
+        small = replace(self, values=chosen, block=len(chosen), branch_period=0)
+        small.compute((turn % len(DIRECTIONS), 0), None, keep_going)
+        return len(chosen) / whole
 
     def thinned(self, step: int) -> tuple[DiagramPlan, Mapping[str, NDArray[np.int64]]]:
         """The diagram of every ``step``-th value, in one chunk a direction."""
@@ -193,11 +189,7 @@ class DiagramPlan:
             if self.dimension != 2:
                 state = before["end"][0, :, last]
         count = len(self.starts)
-        found: Arrays = {}
-        sizes = self.sizes | {"direction": 1, self.parameter: values.size}
-        for name, variable in self.variables().items():
-            shape = tuple(sizes[dim] for dim in variable.dims)
-            found[name] = np.full(shape, variable.fill, np.dtype(variable.dtype))
+        found = empty_arrays(self, key)
         lanes, status = lanes_and_status(self.family, values[:, None])
         for place in order:
             same = np.full(count, place)
@@ -223,7 +215,7 @@ class DiagramPlan:
     def finish(self, data: xr.Dataset) -> xr.Dataset:
         data.attrs |= {
             "parameter": self.parameter,
-            "total_periods": int(data["used_periods"].values.astype(np.int64).sum()),
+            "total_periods": int(data["used_periods"].sum()),
         }
         data["back_side_matters"] = (
             (self.parameter,),

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -37,11 +38,14 @@ from thermogear.base.plan import (
     Progress,
     Variable,
     axis_coordinates,
+    empty_arrays,
     every,
     gather,
     keep_going,
     ranges_of,
+    spread,
 )
+from thermogear.base.vocabulary import ASSUMED
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -61,7 +65,7 @@ class MapPlan:
     axes: tuple[tuple[float, ...], tuple[float, ...]]
     start: tuple[float, ...] = (0.0, 0.0)
     rule: Rule = MAP_RULE
-    refine: bool = True
+    refine: bool = False
     tile: int = TILE
     stride: int = STRIDE
     kind: str = "map"
@@ -106,8 +110,6 @@ class MapPlan:
 
     def variables(self) -> dict[str, Variable]:
         found = outcome_variables(self.family.names)
-        words = {"long_name": "0: taken over from equal neighbours, 1: computed"}
-        found["computed"] = Variable(self.family.names, "int8", 0, words)
         return found | watched_variables(self.family, self.family.names)
 
     def coordinates(self) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]:
@@ -117,21 +119,25 @@ class MapPlan:
     def needs(self, key: Key) -> Key | None:
         return None
 
-    def pilot(self, points: int) -> int:
-        """Compute about ``points`` points spread over the map; how many."""
-        side = max(2, round(points**0.5))
-        some = [
-            np.array(v)[np.linspace(0, len(v) - 1, min(side, len(v))).astype(int)]
-            for v in self.axes
-        ]
-        small = replace(
-            self,
-            axes=(tuple(some[0]), tuple(some[1])),
-            refine=False,
-            tile=max(2, *(s.size for s in some)),
-        )
+    def pilot(self, share: float, *, turn: int) -> float:
+        """Compute about a ``share`` of the points, spread over the map; what share it was."""
+        some = grid_of(self.axes, share=share, turn=turn)
+        small = replace(self, axes=some, refine=False, tile=max(2, *map(len, some)))
         small.compute((0, 0), None, keep_going)
-        return int(some[0].size * some[1].size)
+        return math.prod(map(len, some)) / math.prod(map(len, self.axes)) / self.visited
+
+    @property
+    def visited(self) -> float:
+        """Share of the points that is computed; where some are spared a guess.
+
+        The middle between the first lattice alone and all, by their ratio.
+        """
+        stride = self.stride if self.refine else 1
+        return math.prod(_lattice(len(v), stride).size / len(v) for v in self.axes) ** 0.5
+
+    def sparing(self) -> MapPlan:
+        """The same with points spared where neighbours are alike."""
+        return replace(self, refine=True)
 
     def thinned(self, step: int) -> tuple[MapPlan, Mapping[str, NDArray[np.int64]]]:
         """The map of every ``step``-th value of both axes."""
@@ -148,21 +154,20 @@ class MapPlan:
             for values, part in zip(self.axes, ranges_of(self, key).values(), strict=True)
         )
         shape = (one.size, two.size)
-        sizes = self.sizes | dict(zip(self.family.names, shape, strict=True))
-        found = {
-            name: np.full(tuple(sizes[dim] for dim in v.dims), v.fill, np.dtype(v.dtype))
-            for name, v in self.variables().items()
-        }
+        found = empty_arrays(self, key)
         stride = self.stride if self.refine else 1
+        done = np.zeros(shape, bool)
         wanted = np.zeros(shape, bool)
         wanted[np.ix_(_lattice(one.size, stride), _lattice(two.size, stride))] = True
         while True:
-            places = np.flatnonzero(wanted & (found["computed"] == 0))
+            places = np.flatnonzero(wanted & ~done)
             if places.size:
                 self._settle(one, two, places, found, alive)
+                done.flat[places] = True
             if stride == 1:
+                found["status"][~done] = ASSUMED
                 return found
-            wanted = _refined(found, stride, self._kinds)
+            wanted = _refined(found, done, stride, self._kinds)
             stride //= 2
             inside = np.zeros(shape, bool)
             inside[np.ix_(_lattice(one.size, stride), _lattice(two.size, stride))] = True
@@ -181,15 +186,13 @@ class MapPlan:
             found[name][i, j] = values
         for name, values in watched_arrays(self.family, points, settled).items():
             found[name][i, j] = values
-        found["computed"][i, j] = 1
 
     def finish(self, data: xr.Dataset) -> xr.Dataset:
-        used = int(data["used_periods"].values.astype(np.int64).sum())
         points = int(np.prod([len(a) for a in self.axes]))
         data.attrs |= {
-            "total_periods": used,
+            "total_periods": int(data["used_periods"].sum()),
             "full_periods": points * self.rule.cap,
-            "computed_points": int(data["computed"].values.astype(np.int64).sum()),
+            "computed_points": int((data["status"] != ASSUMED).sum()),
             "initial_state": list(self.start),
         }
         return data
@@ -200,10 +203,21 @@ def _lattice(size: int, stride: int) -> NDArray[np.int64]:
     return np.unique(np.append(np.arange(0, size, stride), size - 1))
 
 
-def _refined(found: Arrays, stride: int, kinds: tuple[str, ...] = ()) -> NDArray[np.bool_]:
+def grid_of(axes: Sequence[Sequence[float]], *, share: float, turn: int) -> Any:
+    """About a ``share`` of a grid's points, of each axis the same share of its values."""
+    each = share ** (1.0 / len(axes))
+    return tuple(
+        tuple(v[i] for i in spread(len(v), some=round(len(v) * each), turn=turn * math.pi**axis))
+        for axis, v in enumerate(axes)
+    )
+
+
+def _refined(
+    found: Arrays, done: NDArray[np.bool_], stride: int, kinds: tuple[str, ...] = ()
+) -> NDArray[np.bool_]:
     """Places inside or next to cells whose corners differ; equal cells take their corners' label.
 
-    Corners differ in label, period or one of the ``kinds``.
+    Corners differ in label, period or one of the ``kinds``. ``done``: what is computed.
 
     A cell counts as equal only when its neighbours are equal too, and never when undecided.
     """
@@ -233,8 +247,8 @@ def _refined(found: Arrays, stride: int, kinds: tuple[str, ...] = ()) -> NDArray
             slice(int(rows[i]), int(rows[i + 1]) + 1),
             slice(int(columns[j]), int(columns[j + 1]) + 1),
         )
-        fresh = (found["computed"][place] == 0) & ~wanted[place]
-        for name in ("label", "period", "status", *kinds):
+        fresh = ~done[place] & ~wanted[place]
+        for name in ("label", "period", *kinds):
             found[name][place][fresh] = found[name][rows[i], columns[j]]
     return wanted
 
@@ -245,7 +259,7 @@ def parameter_map(
     *,
     initial_state: ArrayLike = (0.0, 0.0),
     rule: Rule = MAP_RULE,
-    refine: bool = True,
+    refine: bool = False,
     tile: int = TILE,
     stride: int = STRIDE,
     threads: int | None = None,
@@ -260,13 +274,14 @@ def parameter_map(
     (:func:`~thermogear.dynamics.plane.plane_of`), or the whole state. A point leaves as soon as
     its label is proven (:class:`Rule`); with ``refine`` the map starts on every ``stride``-th
     point and goes on only where neighbours differ, inside tiles of ``tile`` x ``tile`` points.
-    ``rule.full()`` with ``refine=False`` is the full run.
+    ``rule.full()`` without ``refine`` is the full run.
 
     Labels are an estimate by this faster rule; :func:`~thermogear.analysis.labels.label` follows
     one point for longer and from several starts.
 
     Returns label, period, largest multiplier, Lyapunov exponent and counts over the two
-    parameters; points that equal neighbours spoke for have ``computed`` 0 and no figures. The
+    parameters; points that equal neighbours spoke for have the status "assumed" and NaN in every
+    number, and their label may be wrong where a motion lives between the points computed. The
     attributes tell the periods run and those of the full run. The result does not depend on
     ``threads``. ``alive`` is called between rounds and raises to end the work.
 
@@ -296,7 +311,7 @@ def map_plan(
     *,
     initial_state: ArrayLike = (0.0, 0.0),
     rule: Rule = MAP_RULE,
-    refine: bool = True,
+    refine: bool = False,
     tile: int = TILE,
     stride: int = STRIDE,
 ) -> MapPlan:

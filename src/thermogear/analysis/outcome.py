@@ -46,19 +46,24 @@ VALUES: dict[str, tuple[str, float | int, dict[str, Any]]] = {
         "float64", _NAN, {"long_name": "standard error of the Lyapunov exponent", "units": "1"}
     ),
     "contact_losses": (
-        "int32", -1, {"long_name": "losses of drive contact per orbit, -1: not known", "units": "1"}
+        "float64", _NAN, {"long_name": "losses of drive contact per orbit", "units": "1"}
     ),
     "back_impacts": (
-        "int32", -1, {"long_name": "back-side impacts per orbit, -1: not known", "units": "1"}
+        "float64", _NAN, {"long_name": "back-side impacts per orbit", "units": "1"}
     ),
     "drive_share": (
         "float64", _NAN, {"long_name": "share of time in drive contact", "units": "1"}
+    ),
+    "back_share": (
+        "float64", _NAN, {"long_name": "share of time in contact of the back flanks", "units": "1"}
     ),
     "point_x": (
         "float64", _NAN, {"long_name": "displacement of the orbit at phase 0", "units": "1"}
     ),
     "point_v": ("float64", _NAN, {"long_name": "velocity of the orbit at phase 0", "units": "1"}),
-    "used_periods": ("int32", 0, {"long_name": "mesh periods run for this point", "units": "1"}),
+    "used_periods": (
+        "float64", _NAN, {"long_name": "mesh periods run for this point", "units": "1"}
+    ),
     "status": ("int8", 0, status_attributes()),
 }  # fmt: skip
 
@@ -97,6 +102,7 @@ def outcome_arrays(settled: Settled, status: NDArray[np.int8], lanes: Models = N
         "contact_losses": settled.losses,
         "back_impacts": settled.impacts,
         "drive_share": settled.shares[:, 2].copy(),
+        "back_share": settled.shares[:, 0].copy(),
         "point_x": point[:, 0].copy(),
         "point_v": point[:, 1].copy(),
         "used_periods": settled.used,

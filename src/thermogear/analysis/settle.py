@@ -10,7 +10,7 @@ hundredth of the longest transient in it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, fields, replace
 
@@ -21,6 +21,7 @@ from thermogear.analysis.orbits import multipliers
 from thermogear.analysis.section import units_of as units_of
 from thermogear.base.bounds import require_share, whole
 from thermogear.base.errors import InputError
+from thermogear.base.plan import Alive, keep_going
 from thermogear.dynamics.bundle import Bundle, Visits, bundles
 from thermogear.dynamics.tables import Lanes
 
@@ -32,6 +33,8 @@ LABELS = ("undecided", "periodic", "chaotic", "diverged", "jammed")
 """Meaning of the label codes 0, 1, 2, ..."""
 UNDECIDED, PERIODIC, CHAOTIC, DIVERGED, JAMMED = range(5)
 TRIES = 4
+WATCHED = 128
+"""Mesh periods after its label over which the contact of a chaotic motion is told."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,7 +90,8 @@ class Settled:
     ``label`` codes into :data:`LABELS`, ``period`` n (0: none), ``point`` (lane, d) of the
     orbit where the trajectory is, ``multiplier`` (lane, d) complex, ``lyapunov`` per unit
     time with its ``lyapunov_error`` (exact, error 0, for periodic lanes), ``losses`` and
-    ``impacts`` per orbit, ``shares`` of time in back, free and drive, ``used`` periods run,
+    ``impacts`` per orbit (NaN without one), ``shares`` of time in back, free and drive (in chaos
+    those of :data:`WATCHED` periods, of one mass alone), ``used`` periods run,
     ``state`` (lane, d) at the end, ``sections`` (lane, keep, d) the last ones, on the orbit
     itself for periodic lanes.
     """
@@ -98,8 +102,8 @@ class Settled:
     multiplier: NDArray[np.complex128]
     lyapunov: Floats
     lyapunov_error: Floats
-    losses: NDArray[np.int32]
-    impacts: NDArray[np.int32]
+    losses: Floats
+    impacts: Floats
     shares: Floats
     used: NDArray[np.int32]
     state: Floats
@@ -116,8 +120,8 @@ class Settled:
             multiplier=np.full((lanes, dimension), complex(nan, nan)),
             lyapunov=np.full(lanes, nan),
             lyapunov_error=np.full(lanes, nan),
-            losses=np.full(lanes, -1, np.int32),
-            impacts=np.full(lanes, -1, np.int32),
+            losses=np.full(lanes, nan),
+            impacts=np.full(lanes, nan),
             shares=np.full((lanes, 3), nan),
             used=np.zeros(lanes, np.int32),
             state=np.full((lanes, dimension), nan),
@@ -208,16 +212,12 @@ def multipliers_of(jacobian: Floats, *, determinant: Floats) -> NDArray[np.compl
     return out
 
 
-def _alive() -> None:
-    """Nobody asks to stop."""
-
-
 def settle(
     lanes: Lanes | Sequence[object],
     start: Floats,
     rule: Rule,
     keep: int = 0,
-    alive: Callable[[], None] = _alive,
+    alive: Alive = keep_going,
 ) -> Settled:
     """What every lane settles on from ``start`` (lane, d); ``keep`` last sections are returned.
 
@@ -274,7 +274,7 @@ def settle_block(
     start: Floats,
     rule: Rule,
     keep: int = 0,
-    alive: Callable[[], None] = _alive,
+    alive: Alive = keep_going,
 ) -> Settled:
     """:func:`settle` for lanes that run together."""
     block = _Block(maps, start, rule, keep)
@@ -339,6 +339,12 @@ def _verdicts(block: _Block, window: Floats, stretch: Floats, last: bool) -> Fla
         )
         result.label[active[chaotic]] = CHAOTIC
         done |= chaotic
+        rows = np.flatnonzero(chaotic)
+        # more masses take too long with their variational equations: their families watch them
+        if rows.size and window.shape[2] == 2:
+            run = close_orbits(block.maps.take(rows), window[rows, -1], WATCHED)
+            lanes = active[rows]
+            result.shares[lanes] = run.spent / (WATCHED * block.period[lanes])[:, None]
     if block.keep:
         rows = np.flatnonzero((done | last) & (result.label[active] != PERIODIC))
         count = min(block.keep, window.shape[1])

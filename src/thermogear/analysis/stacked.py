@@ -61,10 +61,19 @@ class StackedPlan:
         before = self.plans[key[0]].needs(key[1:])
         return None if before is None else (key[0], *before)
 
-    def pilot(self, points: int) -> int:
-        """Compute about ``points`` points spread over the maps; how many."""
-        each = max(2, points // len(self.plans))
-        return sum(one.pilot(each) for one in self.plans)
+    def pilot(self, share: float, *, turn: int) -> float:
+        """Compute about a ``share`` of the points, of one map a turn; what share it was."""
+        place, count = turn % len(self.plans), len(self.plans)
+        return self.plans[place].pilot(share * count, turn=turn // count) / count
+
+    @property
+    def visited(self) -> float:
+        """Share of the points that is computed; where some are spared a guess."""
+        return self.plans[0].visited
+
+    def sparing(self) -> StackedPlan:
+        """The same with points spared where neighbours are alike."""
+        return replace(self, plans=tuple(one.sparing() for one in self.plans))
 
     def thinned(self, step: int) -> tuple[StackedPlan, Mapping[str, NDArray[np.int64]]]:
         """Every ``step``-th value of both axes of each."""

@@ -7,6 +7,7 @@ it on threads; a store can keep the same chunks on disk. A chunk depends on the 
 
 from __future__ import annotations
 
+import math
 import os
 import threading
 from collections import Counter
@@ -89,7 +90,12 @@ class Plan(Protocol):
 
     def finish(self, data: xr.Dataset) -> xr.Dataset: ...
 
-    def pilot(self, points: int) -> int: ...
+    def pilot(self, share: float, *, turn: int) -> float:
+        """Do about a ``share`` of the work, spread over it, at least one point of it.
+
+        Returns what share it was. Each ``turn`` 0, 1, 2, ... takes other points.
+        """
+        ...
 
 
 def keys_of(plan: Plan) -> list[Key]:
@@ -115,21 +121,32 @@ def region_of(plan: Plan, key: Key, variable: Variable) -> tuple[slice, ...]:
 def checked(plan: Plan, key: Key, arrays: Arrays) -> Arrays:
     """The chunk's arrays in their stored types and shapes."""
     found: Arrays = {}
-    for name, variable in plan.variables().items():
-        shape = tuple(s.stop - s.start for s in region_of(plan, key, variable))
-        values = np.ascontiguousarray(arrays[name], dtype=np.dtype(variable.dtype))
-        if values.shape != shape:
-            raise ValueError(f"{name} of chunk {key}: shape {values.shape}, expected {shape}")
+    for name, blank in empty_arrays(plan, key).items():
+        values = np.ascontiguousarray(arrays[name], dtype=blank.dtype)
+        if values.shape != blank.shape:
+            raise ValueError(f"{name} of chunk {key}: shape {values.shape}, expected {blank.shape}")
         found[name] = values
     return found
 
 
-def empty_arrays(plan: Plan) -> Arrays:
-    """Arrays of the whole, filled with the fill values."""
+def empty_arrays(plan: Plan, key: Key | None = None) -> Arrays:
+    """Arrays of the whole, or of one chunk, filled with the fill values."""
+    sizes = dict(plan.sizes)
+    if key is not None:
+        sizes |= {n: part.stop - part.start for n, part in ranges_of(plan, key).items()}
     return {
-        name: np.full([plan.sizes[d] for d in v.dims], v.fill, np.dtype(v.dtype))
+        name: np.full([sizes[d] for d in v.dims], v.fill, np.dtype(v.dtype))
         for name, v in plan.variables().items()
     }
+
+
+def before_along(plan: Plan, key: Key, name: str) -> Key | None:
+    """The chunk before ``key`` along the axis ``name``, its last; behind it on the way down.
+
+    The axis in front of it is that of the direction, 0 up.
+    """
+    place = key[-1] - 1 if key[-2] == 0 else key[-1] + 1
+    return (*key[:-1], place) if 0 <= place < -(-plan.sizes[name] // plan.cuts[name]) else None
 
 
 def dataset_of(plan: Plan, arrays: Arrays) -> xr.Dataset:
@@ -311,6 +328,23 @@ class Thinned(Protocol):
     def thinned(self, step: int) -> tuple[Plan, Mapping[str, NDArray[np.int64]]]:
         """The plan of every ``step``-th value, the last included, and which values these are."""
         ...
+
+
+def spread(count: int, *, some: int, turn: float = 0) -> NDArray[np.int64]:
+    """About ``some`` places of ``count``, in the middle of equal stretches, moved on each ``turn``.
+
+    The golden ratio moves them, so that places of many turns fill the stretches evenly.
+    """
+    some = min(max(some, 1), count)
+    move = (0.5 + 0.5 * (math.sqrt(5.0) - 1.0) * turn) % 1.0
+    return np.unique(((np.arange(some) + move) * count / some).astype(int))
+
+
+def stretches(values: Sequence[float], *, count: int, turn: int) -> tuple[float, ...]:
+    """About ``count`` of ``values``, at least one, in fours of neighbours spread over them."""
+    length = min(max(count, 1), len(values), 4)
+    places = spread(len(values) - length + 1, some=max(count, 1) // length, turn=turn)
+    return tuple(values[i] for i in np.unique(places[:, None] + np.arange(length)))
 
 
 def every(count: int, *, step: int) -> NDArray[np.int64]:

@@ -32,8 +32,12 @@ class Quantity:
 UNDEFORMED, HOT = STATES = ("undeformed", "hot")
 """States of a run: the drawing's sizes with the oil of operation, and as hot as the case says."""
 
-STATUS = ("ok", "jammed", "not_converged", "diverged")
-"""Meaning of the values 0, 1, 2, ... of every ``status`` variable."""
+STATUS = ("ok", "jammed", "not_converged", "diverged", "assumed")
+"""Meaning of the values 0, 1, 2, ... of every ``status`` variable.
+
+Assumed: not computed, equal neighbours of a map spoke for it.
+"""
+ASSUMED = STATUS.index("assumed")
 
 EDGE_CONTACT = ("no_edge_contact", "wheel_tip_corner", "pinion_tip_corner", "both_tip_corners")
 """Meaning of the values 0, 1, 2, 3 of every ``edge_contact``: the tip corner that carries load."""

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from thermogear.case.thermal_state import ThermalState
     from thermogear.results.result import Result
     from thermogear.results.work import Report, Step
+    from thermogear.study.diagrams import AnyMap
 
 
 def _common(command: Callable[..., None]) -> Callable[..., None]:
@@ -120,16 +121,9 @@ _but = click.option(
 @_train
 @_common
 def bifurcation(
-    case: str,
-    over: tuple[str, ...],
-    but: tuple[str, ...],
-    starts: tuple[str, ...],
-    branch_period: int,
-    against: tuple[str, ...],
-    output: str,
-    as_json: bool,
-    **options: Any,
-) -> None:
+    case: str, over: tuple[str, ...], but: tuple[str, ...], starts: tuple[str, ...],
+    branch_period: int, against: tuple[str, ...], output: str, as_json: bool, **options: Any,
+) -> None:  # fmt: skip
     """Orbit diagram of CASE over one parameter, up and down, with located bifurcations."""
     from thermogear.case.axes import parse_axis, parse_numbers
     from thermogear.results.files import json_text
@@ -187,7 +181,9 @@ def bifurcation(
 @delivery.case
 @_over(f"{GEAR_AXES}; zeta, omega, epsilon, F_m, F_h, b, eps_T of a dimensionless one.")
 @_but
-@click.option("--full", is_flag=True, help="Compute every point, give none up to its neighbours.")
+@click.option("--full", is_flag=True,
+              help="Compute every point; without it points whose neighbours are alike are assumed "
+              "where all would take more than two minutes.")  # fmt: skip
 @_train
 @_common
 def map_(
@@ -206,7 +202,8 @@ def map_(
     """
     from thermogear.case.axes import parse_axes, parse_numbers
     from thermogear.case.samples import GEARS_AT
-    from thermogear.study.diagrams import case_map, train_maps
+    from thermogear.results.work import require_space
+    from thermogear.study.diagrams import case_map, train_maps, whole_or_spared
 
     read = delivery.load(case, options["overrides"])
     if len(over) != 2:
@@ -215,13 +212,14 @@ def map_(
     delivery.heat_once(axes, options["state"])
     bundle, state = _choice(read, options)
     changes, train = parse_numbers(but), _train_of(read, options)
-    plan: Plan
+    plan: AnyMap
     if train is None or changes or GEARS_AT in axes or options["state"] is not None:
-        plan = case_map(
-            read, axes, bundle=bundle, state=state, changes=changes, refine=not full, train=train
-        )
+        plan = case_map(read, axes, bundle=bundle, state=state, changes=changes, train=train)
     else:
-        plan = train_maps(read, axes, bundle=bundle, refine=not full, train=train)
+        plan = train_maps(read, axes, bundle=bundle, train=train)
+    if not full:
+        require_space(plan, Path(output), threads=options["threads"], forced=options["force"])
+        plan, options["estimated"] = whole_or_spared(plan, Path(output), threads=options["threads"])
     _carry(plan, Path(output), read.title, as_json, options)
 
 
@@ -451,7 +449,7 @@ def _compute(plan: Plan, directory: Path, title: str, options: dict[str, Any]) -
 
     require_space(plan, directory, threads=options["threads"], forced=options["force"])
     if options["only_estimate"] or sys.stderr.isatty():
-        say("estimate", estimate(plan, threads=options["threads"]))
+        say("estimate", options.get("estimated") or estimate(plan, threads=options["threads"]))
     if options["only_estimate"]:
         return None
     last: list[Step] = []

@@ -10,8 +10,6 @@ import numpy as np
 if TYPE_CHECKING:
     import xarray as xr
 
-CHAOTIC = 2
-"""The label of motions whose impacts are not counted."""
 NO_BACK_IMPACT = (
     "the teeth never reach the back flanks anywhere in this range: a wider or narrower gap would "
     "change nothing here but the place x is counted from"
@@ -27,11 +25,9 @@ def with_notices(data: xr.Dataset) -> xr.Dataset:
 
 def back_side_notice(data: xr.Dataset) -> list[str]:
     """Whether the half backlash has any effect."""
-    if "back_impacts" not in data:
+    if "back_share" not in data:
         return []
-    impacts = data["back_impacts"].values
-    known = impacts[impacts >= 0]
-    chaotic = bool(np.any(data["label"].values == CHAOTIC))
-    if known.size and not np.any(known > 0) and not chaotic:
+    known = data["status"].values == 0
+    if known.any() and np.all(data["back_share"].values[known] == 0.0):
         return [NO_BACK_IMPACT]
     return []

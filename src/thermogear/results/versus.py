@@ -20,7 +20,7 @@ from thermogear.base.enclosed import folded, with_digests
 from thermogear.base.errors import InputError
 from thermogear.base.toml import overridden, tables, told
 from thermogear.base.units import RPM
-from thermogear.base.vocabulary import attributes, label, told_labels
+from thermogear.base.vocabulary import STATUS, attributes, label, told_labels
 from thermogear.results.result import Notice, Result
 
 MOST_CASES = 6
@@ -46,7 +46,7 @@ LEAD = ("bundle", "state", "operating")
 
 ALONG = dict.fromkeys(FIGURES, "") | {name: c for c, names in CURVES.items() for name in names}
 """Every figure and curve that is compared, and what it runs along."""
-ABSENT = {"status": -1, "label": "", "present": 0}
+ABSENT = {"status": len(STATUS), "label": "", "present": 0}
 """What stands for texts and whole numbers where a case has no such point."""
 
 Floats = NDArray[np.float64]
@@ -344,7 +344,7 @@ def _notices(
 def _joined(
     cases: Sequence[Stored], bundles: Sequence[Sequence[str]], axes: Mapping[str, list[Any]]
 ) -> xr.Dataset:
-    """Every case on the axes of all; what a case lacks is nan, -1 or an empty text."""
+    """Every case on the axes of all; what a case lacks is nan, "absent" or an empty text."""
     whole = xr.concat(
         [_alone(case, names, axes) for case, names in zip(cases, bundles, strict=True)],
         "case",
@@ -365,7 +365,10 @@ def _joined(
             {**flash.attrs, "long_name": "greatest flash temperature rise along the path"},
         )  # fmt: skip
     variables |= {name: found[name] for name in ("status", "label", "present")}
-    variables["status"].attrs["comment"] = "-1: the case has no such point"
+    variables["status"].attrs |= {
+        "flag_values": np.arange(len(STATUS) + 1, dtype=np.int8),
+        "flag_meanings": " ".join((*STATUS, "absent")),
+    }
     variables["label"] = variables["label"].astype(str)
     coordinates: dict[str, Any] = {name: axes[name] for name in ("case", "bundle", "state")}
     keys = axes["operating"]
@@ -382,7 +385,7 @@ def _alone(case: Stored, bundles: Sequence[str], axes: Mapping[str, list[Any]]) 
     places = {a: [axes[a].index(one) for one in names] for a, names in zip(LEAD, own, strict=True)}
     sizes = tuple(map(len, places.values()))
     variables: dict[str, Any] = {
-        "status": (LEAD, np.full(sizes, -1, np.int8)),
+        "status": (LEAD, np.full(sizes, ABSENT["status"], np.int8)),
         "label": (LEAD, np.full(sizes, "", dtype=object), "", "kind of motion"),
         "present": (LEAD[::2], np.ones(sizes[::2], np.int8), "", "1 where the case has the point"),
     }

@@ -7,10 +7,14 @@ import os
 import shutil
 import time
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from numba.core.event import install_timer
 
 from thermogear.base.errors import InputError
 from thermogear.base.memory import SHARE, free_bytes
@@ -33,10 +37,10 @@ if TYPE_CHECKING:
 WORKSPACE = 48 * 2**20
 """Bytes that one thread's kernels and maps take, about."""
 
-BRIEF, LONG = 1.0, 10.0
-"""Seconds of the first points of an estimate: below the one it looks at as many as it likes, below
-the other at a few, else those must do."""
-FEW = 8
+SPENT = 1.0 / 20.0
+"""Share of the work's time that an estimate takes, about."""
+BRIEF, LONG = 1.0, 5.0
+"""Seconds that every estimate may take, and those from which its first points must do."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,41 +83,54 @@ def points_of(plan: Plan) -> int:
     return total
 
 
-def estimate(plan: Plan, *, threads: int | None = None, pilot: int = 64) -> Estimate:
-    """What ``plan`` will take, from its sizes and from ``pilot`` points computed now.
+def estimate(plan: Plan, *, threads: int | None = None) -> Estimate:
+    """What ``plan`` will take, from its sizes and from a part of it that is done now.
 
-    Points near borders cost more than others and refinement saves some: the time is a guess
-    within a factor of about 3. Of points that take long a few are computed, not ``pilot``.
-    ``pilot`` 0 leaves it out (infinite).
+    The part grows up to a twentieth of the whole (:data:`SPENT`), on as many threads as the work
+    will have; compiling kernels does not count. Points near borders cost more than others: the
+    time is a guess within a factor of about 2.
     """
-    count = threads or os.cpu_count() or 1
+    return replace(_sizes(plan, threads), seconds=_seconds(plan, threads or os.cpu_count() or 1))
+
+
+def _sizes(plan: Plan, threads: int | None) -> Estimate:
+    """The estimate without a time."""
     size = bytes_of(plan)
-    chunks = math.prod(-(-plan.sizes[name] // length) for name, length in plan.cuts.items())
-    seconds = float("inf")
-    if pilot > 0:
-        begun = time.perf_counter()
-        run = plan.pilot(2)  # loads the compiled kernels
-        took = time.perf_counter() - begun
-        if took < LONG:
-            begun = time.perf_counter()
-            run = plan.pilot(pilot if took < BRIEF else FEW)
-            took = time.perf_counter() - begun
-        each = took / max(run, 1)
-        seconds = each * points_of(plan) / count
     return Estimate(
         points=points_of(plan),
-        chunks=chunks,
-        memory=2 * size + count * WORKSPACE,
+        chunks=math.prod(-(-plan.sizes[name] // length) for name, length in plan.cuts.items()),
+        memory=2 * size + (threads or os.cpu_count() or 1) * WORKSPACE,
         disk=size,
-        seconds=seconds,
+        seconds=float("inf"),
     )
+
+
+def _seconds(plan: Plan, threads: int) -> float:
+    """Seconds of the whole work, from larger and larger parts of it."""
+    width = max(1, min(threads, sum(plan.needs(key) is None for key in keys_of(plan))))
+    share = spent = 0.0
+    with ThreadPoolExecutor(width) as pool:
+        for step in count():
+            compiling: list[float] = []
+            begun = time.perf_counter()
+            with install_timer("numba:compile", compiling.append):
+                turns = range(step * width, (step + 1) * width)
+                parts = [pool.submit(plan.pilot, share / width, turn=turn) for turn in turns]
+                done = sum(one.result() for one in parts)
+            took = time.perf_counter() - begun - sum(compiling)
+            if step == 0 and took < LONG:
+                continue  # it loaded what is loaded once
+            share, spent = 2.0 * done, spent + took
+            if done >= 0.5 or spent + 2.0 * took > max(BRIEF, SPENT * took / done):
+                break
+    return max(took, 0.0) / done
 
 
 def require_space(
     plan: Plan, directory: Path | None, *, threads: int | None = None, forced: bool = False
 ) -> Estimate:
     """Refuse what does not fit into 70 % of the free memory or of the free disk."""
-    needed = estimate(plan, threads=threads, pilot=0)
+    needed = _sizes(plan, threads)
     free = free_bytes()
     if needed.memory > SHARE * free and not forced:
         raise InputError(

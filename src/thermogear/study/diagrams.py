@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,10 +20,12 @@ from thermogear.analysis.maps import MAP_RULE, MapPlan, map_plan
 from thermogear.analysis.settle import Rule
 from thermogear.analysis.stacked import StackedPlan
 from thermogear.base.errors import InputError
+from thermogear.base.stores import read_manifests
 from thermogear.case.base import Case
 from thermogear.case.case import gear_case
 from thermogear.case.family import GearFamily, NumberFamily, Tabulated, family, moving
 from thermogear.case.thermal_state import HOT, StateLike, ThermalState
+from thermogear.results.work import Estimate, estimate
 from thermogear.study.shafts.family import TabulatedTrains, TrainFamily
 from thermogear.study.shafts.motion import LONGEST
 from thermogear.study.shafts.state import STATES
@@ -30,6 +34,9 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Floats = NDArray[np.float64]
+AnyMap: TypeAlias = MapPlan | StackedPlan
+WHOLE = 120.0
+"""Seconds of estimated time below which every point of a map is computed."""
 TRAIN_TILE, TRAIN_STRIDE = 8, 2
 """A train's point costs as much as thousands of lanes: small chunks, and few points spared."""
 
@@ -128,7 +135,7 @@ def case_map(
     bundle: str = "",
     state: StateLike = HOT,
     changes: Mapping[str, float] | None = None,
-    refine: bool = True,
+    refine: bool = False,
     train: Train | None = None,
 ) -> MapPlan:
     """The map of regimes of a case, or of its drive ``train``, over two parameters."""
@@ -140,7 +147,7 @@ def train_maps(
     axes: Mapping[str, Floats],
     *,
     bundle: str = "",
-    refine: bool = True,
+    refine: bool = False,
     train: Train | None = None,
 ) -> StackedPlan:
     """The maps of a case's drive ``train`` undeformed and hot, side by side, over two parameters.
@@ -150,6 +157,22 @@ def train_maps(
     chosen = Train() if train is None else train
     plans = [_map(case, axes, bundle, state, None, refine, chosen) for state in STATES]
     return StackedPlan(plans=tuple(plans), words=tuple(state.words for state in STATES))
+
+
+def whole_or_spared(
+    plan: AnyMap, directory: Path, *, threads: int | None = None
+) -> tuple[AnyMap, Estimate | None]:
+    """The map ``plan`` of every point, or sparing some where all take longer than :data:`WHOLE`.
+
+    With its estimate, where one was made: a store in ``directory`` keeps what it was begun with.
+    """
+    spared = plan.sparing()
+    for begun in read_manifests(directory).values():
+        return spared if begun["inputs"] == json.loads(json.dumps(spared.inputs())) else plan, None
+    found = estimate(plan, threads=threads)
+    if found.seconds < WHOLE:
+        return plan, found
+    return spared, replace(found, seconds=found.seconds * spared.visited)
 
 
 def _map(

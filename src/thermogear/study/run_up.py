@@ -25,7 +25,17 @@ from thermogear.analysis.outcome import (
 from thermogear.analysis.section import units_of
 from thermogear.analysis.settle import PERIODIC, Rule, Settled
 from thermogear.base.errors import InputError
-from thermogear.base.plan import Alive, Arrays, Key, Variable, keep_going, ranges_of
+from thermogear.base.plan import (
+    Alive,
+    Arrays,
+    Key,
+    Variable,
+    before_along,
+    empty_arrays,
+    keep_going,
+    ranges_of,
+    stretches,
+)
 from thermogear.base.units import RPM
 from thermogear.case.case import GearCase, gear_case
 from thermogear.case.family import GearFamily, Tabulated
@@ -42,8 +52,6 @@ Floats = NDArray[np.float64]
 DIRECTIONS = (1, -1)
 BLOCK = 32
 KEEP = 16
-PILOT = 24
-"""Speeds computed at most for an estimate of the time."""
 LEAPS = 16
 """Jumps kept of one step of speed."""
 STRIDE = 0.005
@@ -180,20 +188,15 @@ class RunUpPlan:
         }
 
     def needs(self, key: Key) -> Key | None:
-        state, direction, block = key
-        blocks = -(-len(self.speeds) // self.cuts["pinion_speed"])
-        before = block - 1 if direction == 0 else block + 1
-        return (state, direction, before) if 0 <= before < blocks else None
+        return before_along(self, key, "pinion_speed")
 
-    def pilot(self, points: int) -> int:
-        """Follow about ``points`` speeds, as neighbours of a few places of the range; how many."""
-        count = min(points, len(self.speeds), PILOT)
-        places = max(1, count // 4)
-        length = count // places
-        for first in np.linspace(0, len(self.speeds) - length, places).round().astype(int):
-            some = self.speeds[first : first + length]
-            replace(self, speeds=some, block=length).compute((0, 0, 0), None, keep_going)
-        return places * length
+    def pilot(self, share: float, *, turn: int) -> float:
+        """Follow about a ``share`` of the speeds, in fours of neighbours; what share it was."""
+        whole = len(self.states) * len(DIRECTIONS) * len(self.speeds)
+        some = stretches(self.speeds, count=round(share * whole), turn=turn)
+        state, direction = turn % len(self.states), turn // len(self.states) % len(DIRECTIONS)
+        replace(self, speeds=some, block=len(some)).compute((state, direction, 0), None, keep_going)
+        return len(some) / whole
 
     def compute(self, key: Key, before: Arrays | None, alive: Alive) -> Arrays:
         up = key[1] == 0
@@ -213,11 +216,7 @@ class RunUpPlan:
             run.at = float(before["end_speed"][last])
             run.state = np.array([before["end_x"][last], before["end_v"][last]])
             run.period = int(before["end_period"][last])
-        found: Arrays = {}
-        for name, variable in self.variables().items():
-            inner = [self.sizes[d] for d in variable.dims[3:]]
-            shape = (1, 1, speeds.size, *inner)
-            found[name] = np.full(shape, variable.fill, np.dtype(variable.dtype))
+        found = empty_arrays(self, key)
         ends = np.full((speeds.size, 2), np.nan)
         for place in order:
             one = np.array([place])
@@ -245,7 +244,7 @@ class RunUpPlan:
             "bundle": self.bundle,
             "pinion_torque": self.torque,
             "pinion_teeth": self.case.pair.pinion.teeth,
-            "total_periods": int(data["used_periods"].values.astype(np.int64).sum()),
+            "total_periods": int(data["used_periods"].sum()),
         }
         data = _with_jumps(self, data)
         told = range_notices(self.case, data) + difference_notices(data)

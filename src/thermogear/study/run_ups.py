@@ -21,7 +21,17 @@ from thermogear.analysis.outcome import outcome_arrays, outcome_variables, settl
 from thermogear.analysis.settle import Rule
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import Excitations
-from thermogear.base.plan import Alive, Arrays, Key, Variable, every, keep_going, ranges_of
+from thermogear.base.plan import (
+    Alive,
+    Arrays,
+    Key,
+    Variable,
+    empty_arrays,
+    every,
+    keep_going,
+    ranges_of,
+    spread,
+)
 from thermogear.case.case import GearCase, gear_case
 from thermogear.case.family import GearFamily
 from thermogear.case.points import points_of
@@ -93,13 +103,13 @@ class RunUpsPlan:
     def needs(self, key: Key) -> Key | None:
         return None
 
-    def pilot(self, points: int) -> int:
-        """Run about ``points`` speeds of the first samples; how many."""
-        lanes = min(len(self.rows), 8)
-        count = max(1, min(len(self.speeds), points // lanes))
-        small = replace(self, rows=self.rows[:lanes], speeds=self.speeds[:count])
-        small.compute((0, 0), None, keep_going)
-        return lanes * count
+    def pilot(self, share: float, *, turn: int) -> float:
+        """Run a few samples over all speeds, about a ``share`` of the work; what share it was."""
+        whole = len(DIRECTIONS) * len(self.rows)
+        some = spread(len(self.rows), some=round(share * whole), turn=turn)
+        rows = tuple(self.rows[i] for i in some)
+        replace(self, rows=rows).compute((turn % len(DIRECTIONS), 0), None, keep_going)
+        return some.size / whole
 
     def thinned(self, step: int) -> tuple[RunUpsPlan, Mapping[str, NDArray[np.int64]]]:
         """The run-ups of every ``step``-th sample over every ``step``-th speed."""
@@ -115,10 +125,7 @@ class RunUpsPlan:
         springs = self._springs(key[1], np.array(self.rows)[mine])
         count, teeth = len(springs), self.family.case.pair.pinion.teeth
         state = np.tile(np.array(self.family.case.simulation.initial_state), (count, 1))
-        found: Arrays = {
-            name: np.full((1, count, len(self.speeds)), one.fill, np.dtype(one.dtype))
-            for name, one in self.variables().items()
-        }
+        found = empty_arrays(self, key)
         order = range(len(self.speeds))
         for place in order if key[0] == 0 else reversed(order):
             mesh = np.full(count, teeth * self.speeds[place])
@@ -142,7 +149,7 @@ class RunUpsPlan:
         return data.assign_attrs(
             bundle=self.family.bundle,
             state=self.family.state.stored,
-            total_periods=int(data["used_periods"].values.astype(np.int64).sum()),
+            total_periods=int(data["used_periods"].sum()),
         )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -12,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.family import axis_values
+from thermogear.analysis.maps import grid_of
 from thermogear.analysis.outcome import (
     outcome_arrays,
     outcome_variables,
@@ -94,17 +96,12 @@ class SweepPlan:
     def needs(self, key: Key) -> Key | None:
         return None
 
-    def pilot(self, points: int) -> int:
-        """Compute about ``points`` points spread over the grid; how many."""
-        side = max(1, round(points ** (1.0 / len(self.axes))))
-        some = tuple(
-            tuple(np.array(v)[np.linspace(0, len(v) - 1, min(side, len(v))).astype(int)].tolist())
-            for v in self.axes
-        )
-        small = replace(self, axes=some)
+    def pilot(self, share: float, *, turn: int) -> float:
+        """Compute about a ``share`` of the points, spread over the grid; what share it was."""
+        some = grid_of(self.axes, share=share, turn=turn)
         rows = np.stack(np.meshgrid(*map(np.array, some), indexing="ij"), -1)
-        small._rows(rows.reshape(-1, len(some)), keep_going)
-        return int(rows[..., 0].size)
+        self._rows(rows.reshape(-1, len(some)), keep_going)
+        return int(rows[..., 0].size) / math.prod(map(len, self.axes))
 
     def thinned(self, step: int) -> tuple[SweepPlan, Mapping[str, NDArray[np.int64]]]:
         """The sweep over every ``step``-th value of each axis."""

@@ -273,7 +273,8 @@ class TrainFamily:
         bearings = range(1, len(plan_of(self.case).bearing_names) + 1)
         flags = (*LOST_FLAGS, *(f"bearing_{number}" for number in bearings))
         lost = {
-            "long_name": "what loses contact, the sum of its flags; 0: nothing, -1: not known",
+            "long_name": "what loses contact, the sum of its flags; 0: nothing",
+            "_FillValue": np.int32(-1),
             "flag_masks": 2 ** np.arange(len(flags), dtype=np.int32),
             "flags": " ".join(flags),
         }

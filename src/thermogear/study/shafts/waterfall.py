@@ -7,6 +7,7 @@ with clearance: d(phase)/dt = n(t). Samples are uniform in the phase, so that or
 from __future__ import annotations
 
 import json
+import math
 import os
 import threading
 from collections.abc import Sequence
@@ -21,7 +22,17 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.family import axis_values
 from thermogear.base.errors import ConvergenceError, InputError
-from thermogear.base.plan import Alive, Arrays, Key, Variable, keep_going, ranges_of
+from thermogear.base.plan import (
+    Alive,
+    Arrays,
+    Key,
+    Variable,
+    before_along,
+    empty_arrays,
+    keep_going,
+    ranges_of,
+    spread,
+)
 from thermogear.base.vocabulary import STATUS
 from thermogear.case.case import GearCase
 from thermogear.case.thermal_state import HOT, UNDEFORMED, ThermalState
@@ -88,9 +99,7 @@ class WaterfallPlan:
     block: int = BLOCK
     threads: int | None = field(default=None, compare=False)
     kind: str = KIND
-    _trains: dict[int, MovingTrain | None] = field(
-        init=False, repr=False, compare=False, default_factory=dict
-    )
+    _trains: dict[int, MovingTrain | None] = field(repr=False, compare=False, default_factory=dict)
 
     @property
     def orders(self) -> Floats:
@@ -197,26 +206,28 @@ class WaterfallPlan:
         }
 
     def needs(self, key: Key) -> Key | None:
-        state, direction, block = key
-        blocks = -(-len(self.speeds) // self.cuts["pinion_speed"])
-        before = block - 1 if direction == 0 else block + 1
-        return (state, direction, before) if 0 <= before < blocks else None
+        return before_along(self, key, "pinion_speed")
 
-    def pilot(self, points: int) -> int:
-        """Run over the first few speeds, to tell how long all take; how many."""
-        count = min(points, len(self.speeds), 4)
-        replace(self, speeds=self.speeds[:count], block=count).compute((0, 0, 0), None, keep_going)
-        return count
+    def pilot(self, share: float, *, turn: int) -> float:
+        """Settle at some of the speeds; what share of the mesh periods of all runs it was.
+
+        What ``finish`` tries is not in it.
+        """
+        each, teeth = SETTLING + WINDOW, self.case.pair.pinion.teeth
+        passed = self.duration * teeth * float(np.mean(self.speeds)) / math.tau
+        ways = len(self.states) * len(DIRECTIONS)
+        whole = ways * (each + max(passed, WINDOW * len(self.speeds)))
+        some = spread(len(self.speeds), some=round(share * whole / each), turn=turn)
+        for place in some:
+            one = replace(self, speeds=(self.speeds[place],), block=1)
+            one.compute((turn % len(self.states), 0, 0), None, keep_going)
+        return some.size * each / whole
 
     def compute(self, key: Key, before: Arrays | None, alive: Alive) -> Arrays:
         up = key[1] == 0
         every = np.array(self.speeds)
         mine = np.arange(every.size)[ranges_of(self, key)["pinion_speed"]]
-        found: Arrays = {}
-        for name, variable in self.variables().items():
-            inner = [self.sizes[d] for d in variable.dims[3:]]
-            shape = (1, 1, mine.size, *inner)
-            found[name] = np.full(shape, variable.fill, np.dtype(variable.dtype))
+        found = empty_arrays(self, key)
         train = self.train(key[0])
         if train is None:
             found["status"][...] = STATUS.index("jammed")
@@ -451,15 +462,9 @@ def waterfall_plan(
             raise InputError("operating", operating, allowed=f"1..{most}")
         place = operating - 1
     return WaterfallPlan(
-        case=case,
-        speeds=tuple(axis.tolist()),
-        states=tuple(states),
-        place=place,
-        duration=float(duration),
-        size=coordinates or 0,
-        block=block,
-        threads=threads,
-    )
+        case=case, speeds=tuple(axis.tolist()), states=tuple(states), place=place,
+        duration=float(duration), size=coordinates or 0, block=block, threads=threads,
+    )  # fmt: skip
 
 
 def waterfall(
@@ -486,14 +491,9 @@ def waterfall(
     for a case without shafts.
     """
     plan = waterfall_plan(
-        case,
-        speeds,
-        states=states,
-        operating=operating,
-        duration=duration,
-        coordinates=coordinates,
-        threads=threads,
-    )
+        case, speeds, states=states, operating=operating, duration=duration,
+        coordinates=coordinates, threads=threads,
+    )  # fmt: skip
     how: dict[str, Any] = {"threads": threads, "scheduler": scheduler, "report": report}
     data = carry_out(plan, store, **how, alive=alive, title=case.title)
     return finished(data, case.title)

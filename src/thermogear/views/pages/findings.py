@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.display import exactly, number
 from thermogear.base.parameters import PARAMETERS, long_name
+from thermogear.base.vocabulary import ASSUMED
 from thermogear.views.plots.parameters import shown
 from thermogear.views.plots.sweeps import CLASSES, classes_of
 
@@ -95,12 +96,21 @@ def _basins(data: xr.Dataset) -> str:
 
 
 def _counts(data: xr.Dataset) -> str:
-    codes = classes_of(data)
-    found = Counter(int(n) for n in codes.ravel() if n != UNDECIDED)
-    if not found:
+    codes, assumed = classes_of(data), data["status"].values == ASSUMED
+
+    def words(some: NDArray[np.int64]) -> str:
+        found = Counter(int(n) for n in some if n != UNDECIDED)
+        return ", ".join(f"{CLASSES[n][0]} at {c}" for n, c in found.most_common())
+
+    told = words(codes[~assumed])
+    if not told:
         return "No point is decided"
-    words = ", ".join(f"{CLASSES[n][0]} at {c}" for n, c in found.most_common())
-    return f"Of {codes.size} points: {words}"
+    if not assumed.any():
+        return f"Of {codes.size} points: {told}"
+    return (
+        f"Of {codes.size} points {int((~assumed).sum())} were computed: {told}; equal neighbours "
+        f"speak for the others, which are assumed and not computed: {words(codes[assumed])}"
+    )
 
 
 def _greatest(data: xr.Dataset) -> str:

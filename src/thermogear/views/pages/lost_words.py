@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.display import exactly
 from thermogear.base.parameters import PARAMETERS, long_name
+from thermogear.base.vocabulary import ASSUMED
 from thermogear.views.plots.lost_contact import has_lost, things
 from thermogear.views.plots.parameters import each_state, shown
 
@@ -36,6 +37,8 @@ def lost_words(data: xr.Dataset) -> str:
             words = "; ".join(parts) if parts else "nothing loses contact"
         begun = f"{state}: {words}" if state else words
         told.append(f"{begun[0].upper()}{begun[1:]}.")
+    if (data["status"].values == ASSUMED).any():
+        told.append("Where the motion is assumed, so is this.")
     return " ".join(told)
 
 
@@ -45,16 +48,23 @@ def lost_rows(data: xr.Dataset) -> list[dict[str, Any]]:
     for state, here in each_state(data):
         for what, flags in things(here).items():
             if flags.any():
-                row = {"what": what, "points": int(flags.sum()), "of": int(flags.size),
-                       "where": where(here, flags)}  # fmt: skip
+                known = here["status"].values != ASSUMED
+                row = {
+                    "what": what, "points": int((flags & known).sum()), "of": int(known.sum()),
+                    "assumed": int((flags & ~known).sum()), "where": where(here, flags),
+                }  # fmt: skip
                 rows.append({"state": state, **row} if state else row)
     return rows
 
 
 def lost_line(row: dict[str, Any]) -> str:
-    """One of the rows as a sentence: "hot: the drive flank parts at 300 rpm (2 of 5 points)"."""
+    """One of the rows as a sentence: "hot: the drive flank parts at 300 rpm (2 of 5 points)".
+
+    Points that are assumed are told apart.
+    """
+    more = f", and {row['assumed']} that are assumed" if row["assumed"] else ""
     state = f"{row['state']}: " if "state" in row else ""
-    return f"{state}{row['what']} {row['where']} ({row['points']} of {row['of']} points)"
+    return f"{state}{row['what']} {row['where']} ({row['points']} of {row['of']} points{more})"
 
 
 def where(data: xr.Dataset, flags: Flags) -> str:

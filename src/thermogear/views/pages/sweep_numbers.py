@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -9,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.units import ZERO_CELSIUS
-from thermogear.base.vocabulary import FASTER_RULE
+from thermogear.base.vocabulary import ASSUMED, FASTER_RULE
 from thermogear.results.result import Result
 from thermogear.views.pages.lost_words import lost_line, lost_rows
 from thermogear.views.plots.lost_contact import has_lost
@@ -32,11 +33,11 @@ def _labels(result: Result) -> dict[str, Any]:
     told = words_of(data["label"]).astype("U16")
     periodic = told == "periodic"
     told[periodic] = np.char.add("period-", data["period"].values[periodic].astype(str))
-    names, counts = np.unique(told, return_counts=True)
-    order = np.argsort(-counts, kind="stable")
+    assumed = data["status"].values == ASSUMED
     found: dict[str, Any] = {
         "points": int(data["label"].size),
-        "labels": {str(names[i]): int(counts[i]) for i in order},
+        "labels": dict(Counter(sorted(told[~assumed].tolist())).most_common()),
+        "assumed": dict(Counter(sorted(told[assumed].tolist())).most_common()),
         "rule": FASTER_RULE,
     }
     for name in ("total_periods", "full_periods", "computed_points"):
@@ -147,7 +148,12 @@ def lines(result: Result) -> list[str]:
     """The same as a terminal shows it."""
     found = []
     for name, value in numbers(result).items():
-        if name == "lost_contact":
+        if name == "labels" and (taken := numbers(result)["assumed"]):
+            each = [f"{k} {n} computed, {taken.get(k, 0)} assumed" for k, n in value.items()]
+            found.append(f"labels: {', '.join(each)}")
+        elif name == "assumed":
+            continue
+        elif name == "lost_contact":
             found += [f"- {lost_line(row)}" for row in value] or ["- nothing loses contact"]
         elif isinstance(value, list):
             found += [f"- {row if isinstance(row, str) else _line(row)}" for row in value]

@@ -10,7 +10,7 @@ import numpy as np
 
 from thermogear.base.display import number
 from thermogear.base.units import ZERO_CELSIUS
-from thermogear.base.vocabulary import FASTER_RULE
+from thermogear.base.vocabulary import ASSUMED, FASTER_RULE
 from thermogear.results.result import Result
 from thermogear.views.page import LEAD, Block, Page, Pictures, Section, Table, Text
 from thermogear.views.pages.findings import finding
@@ -18,7 +18,12 @@ from thermogear.views.pages.lost_words import lost_words
 from thermogear.views.pages.sweep_numbers import JUMPS_AT, lines, numbers
 from thermogear.views.picture import Picture
 from thermogear.views.plots import sweeps
-from thermogear.views.plots.lost_contact import forces_picture, has_lost, lost_contact_picture
+from thermogear.views.plots.lost_contact import (
+    forces_picture,
+    has_lost,
+    lost_contact_picture,
+    map_picture,
+)
 from thermogear.views.plots.parameters import page_words, shown
 
 if TYPE_CHECKING:
@@ -102,7 +107,7 @@ def _pictures(data: xr.Dataset) -> Section:
         "map": [
             (
                 "regimes", "Regimes over two parameters",
-                "What the motion from one start settles on.", sweeps.map_picture,
+                _map_caption, map_picture,
             )
         ],
         "basins": [
@@ -140,6 +145,15 @@ def _pictures(data: xr.Dataset) -> Section:
         said = caption if isinstance(caption, str) else caption(data)
         pictures.add(name, heading, said, data, (), drawn, wide=True)
     return Section(LEAD, "In pictures", pictures.take(), folded=False)
+
+
+def _map_caption(data: xr.Dataset) -> str:
+    words = "What the motion from one start settles on."
+    if not has_lost(data):
+        words += " Beside it whether the drive flanks part, and whether the back flanks are hit."
+    if (data["status"].values == ASSUMED).any():
+        words += " Hatched: assumed, not computed; points computed around it are alike."
+    return words
 
 
 def _diagram_caption(data: xr.Dataset) -> str:
@@ -281,7 +295,7 @@ def _settings(data: xr.Dataset) -> Section:
     shown = {
         "total_periods": "mesh periods run",
         "full_periods": "mesh periods of the full run",
-        "computed_points": "points computed, the rest taken over from equal neighbours",
+        "computed_points": "points computed; the rest is assumed, its neighbours are alike",
         "bundle": "bundle of choices",
         "branch_notes": "branches",
     }

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.parameters import axis_words, each_state, named, shown
-from thermogear.views.plots.sweeps import edges
+from thermogear.views.plots.sweeps import edges, hatch_assumed, regimes
 from thermogear.views.style import FAINT, INK, OKABE_ITO, QUIET, WIDE
 
 if TYPE_CHECKING:
@@ -22,6 +22,8 @@ DRIVE, BACK, FIRST = 1, 2, 4
 """Flags of what loses contact: the drive flank, the back flank (hit), the first bearing."""
 JAMMED = 4
 """Its label."""
+PARTED = 1e-9
+"""Share of the time out of drive contact [1] that is more than rounding."""
 MOST = 6
 """Sets of bearings with a colour of their own."""
 ALIKE, UNKNOWN, LOCKED = FAINT, "#999999", "#ffffff"
@@ -52,6 +54,23 @@ def things(data: xr.Dataset) -> dict[str, Flags]:
     return found
 
 
+def map_picture(data: xr.Dataset) -> Picture:
+    """The regime over two parameters, in every state of heat that it has; what is assumed hatched.
+
+    Of a pair beside it what the teeth lose contact at, which a train has a picture of its own for.
+    """
+    panels = []
+    for state, one in each_state(data):
+        panels.append(regimes(one))
+        panels[-1].title = state
+    if not has_lost(data):
+        drive, back = data["drive_share"].values, data["back_share"].values
+        lost = np.where(drive < 1.0 - PARTED, DRIVE, 0) + np.where(back > 0.0, BACK, 0)
+        lost = np.where(np.isfinite(drive), lost, -1)
+        panels.append(_teeth(data.assign(lost_contact=(data["label"].dims, lost)), ""))
+    return Picture([panels], size=(WIDE, 4.6), legend=4, share_y="row")
+
+
 def lost_contact_picture(data: xr.Dataset) -> Picture:
     """Which flank, and which bearing, loses contact over two parameters, in every state of heat."""
     states = each_state(data)
@@ -80,6 +99,7 @@ def _put(
     whole = np.where(data["label"].values == JAMMED, len(looks) + 1, whole)
     borders = edges(shown(one, data[one].values)), edges(shown(two, data[two].values))
     panel.field(*borders, whole.T, colours=colours, classes=names)
+    hatch_assumed(panel, data)
     return panel
 
 

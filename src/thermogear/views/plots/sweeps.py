@@ -8,14 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.units import ZERO_CELSIUS
+from thermogear.base.vocabulary import ASSUMED, STATUS
 from thermogear.views.picture import Axis, Panel, Picture
-from thermogear.views.plots.parameters import axis_words, each_state, shown
+from thermogear.views.plots.parameters import axis_words, shown
 from thermogear.views.style import COLD, FAINT, HOT, INK, OKABE_ITO, QUIET, WIDE, scale
 
 if TYPE_CHECKING:
     import xarray as xr
 
 Floats = NDArray[np.float64]
+DIVERGED = STATUS.index("diverged")
 
 CLASSES = (
     ("period 1", "#0072B2"),
@@ -126,15 +128,16 @@ def _branches(panel: Panel, data: xr.Dataset, name: str) -> None:
             )  # fmt: skip
 
 
-def map_picture(data: xr.Dataset) -> Picture:
-    """The regime over two parameters, in every state of heat that it has."""
-    panels = []
-    for state, one in each_state(data):
-        panel = _regimes(one)
-        panel.title = state
-        panels.append(panel)
-    height = 6.4 if len(panels) == 1 else 4.6
-    return Picture([panels], size=(WIDE, height), legend=6, share_y="row")
+def hatch_assumed(panel: Panel, data: xr.Dataset) -> None:
+    """Hatch the cells of a map over two parameters that were not computed."""
+    assumed = data["status"].values.T == ASSUMED
+    if assumed.any():
+        # a hatch runs between places: each cell is given at both its borders
+        across, up = (
+            np.repeat(edges(shown(str(n), data[n].values)), 2)[1:-1]
+            for n in data["label"].dims[-2:]
+        )
+        panel.hatch(across, up, np.repeat(np.repeat(assumed, 2, axis=0), 2, axis=1))
 
 
 def _over_two(data: xr.Dataset) -> tuple[Panel, tuple[Floats, Floats]]:
@@ -144,10 +147,11 @@ def _over_two(data: xr.Dataset) -> tuple[Panel, tuple[Floats, Floats]]:
     return Panel(_along(data, one), _along(data, two)), borders
 
 
-def _regimes(data: xr.Dataset) -> Panel:
+def regimes(data: xr.Dataset) -> Panel:
     panel, borders = _over_two(data)
     names, colours = zip(*CLASSES, strict=True)
     panel.field(*borders, classes_of(data).T, colours=colours, classes=names)
+    hatch_assumed(panel, data)
     return panel
 
 
@@ -164,8 +168,10 @@ def basins_picture(data: xr.Dataset) -> Picture:
         period = int(data["attractor_period"].values[n])
         kind = f"period {period}" if period else "chaotic, estimate"
         names.append(f"{kind}: {100.0 * float(data['fraction'].values[n]):.3g} %")
+    none = np.where(data["status"].values == DIVERGED, 0, 1)
+    codes = np.where(np.isnan(data["attractor"].values), none, data["attractor"].values + 2)
     panel.field(
-        x, y, data["attractor"].values.T + 2, colours=[INK, "#bbbbbb", *colours],
+        x, y, codes.T, colours=[INK, "#bbbbbb", *colours],
         classes=["diverged", "undecided", *names],
     )  # fmt: skip
     for n, colour in enumerate(colours):
@@ -246,4 +252,4 @@ def sweep_picture(data: xr.Dataset) -> Picture:
     panel.background = FAINT
     values = here["dynamic_factor"].values.T
     panel.field(*borders, values, colours=scale("viridis"), words=factor)
-    return Picture([[_regimes(here), panel]], size=(WIDE, 4.6), legend=6)
+    return Picture([[regimes(here), panel]], size=(WIDE, 4.6), legend=6)
