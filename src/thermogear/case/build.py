@@ -19,13 +19,13 @@ from thermogear.base import materials
 from thermogear.base.errors import InputError, ValidityWarning, nearest, short
 from thermogear.base.excitation import Periodic
 from thermogear.base.materials import MATERIALS, Lubricant, Material
-from thermogear.base.units import ZERO_CELSIUS
+from thermogear.base.units import ROUNDED, ZERO_CELSIUS
 from thermogear.case.backlash import Backlash, from_tolerances, from_value, recommended
 from thermogear.case.fields import BODY
 from thermogear.case.schema import GearFile, GearTable
-from thermogear.case.units import shown
+from thermogear.case.units import rounding, shown
 from thermogear.gears.geometry import LEFT_OUT, Gear, Rack
-from thermogear.gears.pair import GearPair
+from thermogear.gears.pair import GearPair, tight_distance
 from thermogear.heat.friction import LAWS, ROUGHNESS_LIMIT
 from thermogear.heat.law_parameters import parameters, with_parameters
 from thermogear.mesh.excite import disc_inertia
@@ -212,11 +212,19 @@ def faults(file: GearFile) -> list[InputError]:
     return found
 
 
-def pair_of(file: GearFile, known: Mapping[str, Material]) -> GearPair:
-    """The two gears and their centre distance."""
+def pair_of(file: GearFile, known: Mapping[str, Material], data: Mapping[str, Any]) -> GearPair:
+    """The two gears and their centre distance.
+
+    One that misses the mesh without backlash by the rounding of its digits in ``data``, the bare
+    tables, is taken as that.
+    """
     distance = file.gears.centre_distance
     pinion = _gear(file.gears.pinion, file, "gears.pinion", known)
     wheel = _gear(file.gears.wheel, file, "gears.wheel", known)
+    if distance is not None:
+        slack = min(rounding(data["gears"]["centre_distance"], "length"), ROUNDED * pinion.module)
+        tight = tight_distance(pinion, wheel)
+        distance = tight if 0.0 < tight - distance <= slack else distance
     try:
         return _under(
             "gears", lambda: GearPair(pinion, wheel, LEFT_OUT if distance is None else distance)

@@ -400,7 +400,7 @@ def load_example(
 def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
     materials = MATERIALS | parts.own_materials(file)
     housing = parts.named_material(file.housing.material, "housing.material", materials)
-    pair = parts.pair_of(file, materials)
+    pair = parts.pair_of(file, materials, common["data"])
     rule = parts.temperature_rule(file)
     given = file.temperatures
     if rule is None or given.pinion_addendum is None or given.wheel_addendum is None:

@@ -356,7 +356,7 @@ def _centre_distance(reader: Reader, made: Draft, module: float, angle: float) -
         value, text = apart, f"{plain(round(1e3 * apart, 9))} mm"
         origin, note = DERIVED, "distance of the axes by their support vectors"
     tight = tightest(made, module=module, angle=angle)
-    if tight is not None and 1e-12 * value < tight - value <= _ROUNDED * module:
+    if 1e-12 * value < tight - value <= _ROUNDED * module:
         made.put(
             "gears.centre_distance",
             f"{plain(1e3 * tight)} mm",
