@@ -111,7 +111,8 @@ def own_materials(file: GearFile) -> dict[str, Material]:
 
 def named_material(name: str, at: str, known: Mapping[str, _Made]) -> _Made:
     """The material of the field ``at``, or an error that says the nearest name."""
-    if name not in known:
+    meant = materials.spelled(name, known)
+    if meant is None:
         raise InputError(
             at,
             short(name),
@@ -120,7 +121,7 @@ def named_material(name: str, at: str, known: Mapping[str, _Made]) -> _Made:
             if name.isidentifier()
             else nearest(name, known),
         )
-    return known[name]
+    return known[meant]
 
 
 def unknown_names(data: Mapping[str, Any]) -> list[InputError]:

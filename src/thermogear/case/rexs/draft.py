@@ -63,6 +63,7 @@ def tightest(made: Draft, *, module: float, angle: float) -> float:
     teeth = [values[f"gears.{name}.teeth"] for name, _ in made.both]
     shift = sum(float(values.get(f"gears.{name}.profile_shift", 0.0)) for name, _ in made.both)
     try:
-        return tight_distance(*(Gear(z, module, pressure_angle=angle) for z in teeth), shift)
+        pinion, wheel = (Gear(z, module, pressure_angle=angle) for z in teeth)
+        return tight_distance(pinion, wheel, shift)
     except InputError:
         return math.nan
