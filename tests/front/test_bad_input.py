@@ -107,8 +107,9 @@ BAD_VALUES: list[tuple[str, str]] = [
     ),
     (
         "gears.pinion.teeth=12",
-        "gears.pinion.profile_shift: got 0 for 12 teeth; needs x >= 0.298; "
-        "use x >= 0.30 or >= 18 teeth",
+        "gears.pinion.tip_diameter: got a radius of 67.5 mm; allowed < 37.0117 mm; the tooth is "
+        "pointed at that radius (tip thickness -120.127 mm, x = 0); "
+        "lower the tip radius or the profile shift",
     ),
     (
         "gears.pinion.profile_shift=inf",
@@ -491,10 +492,12 @@ torque = "80 N m"
         """[gears]
 module = "3 mm"
 [gears.pinion]
-teeth = 8
+teeth = 18
 face_width = "30 mm"
+bore_radius = "30 mm"
 [gears.wheel]
-teeth = 9
+teeth = 19
+bore_radius = "30 mm"
 [oil]
 name = "ISO VG 101"
 [operating]
@@ -502,11 +505,11 @@ speed = "3000 rpm"
 torque = "80 N m"
 """,
         [
-            "line 3: gears.pinion.profile_shift: got 0 for 8 teeth; needs x >= 0.532; "
-            "use x >= 0.54 or >= 18 teeth",
-            "line 6: gears.wheel.profile_shift: got 0 for 9 teeth; needs x >= 0.474; "
-            "use x >= 0.48 or >= 18 teeth",
-            "line 9: oil.name: got 'ISO VG 101'; ",
+            "line 6: gears.pinion.bore_radius: got 30 mm; allowed < root radius 23.25 mm; "
+            "the body must be a ring",
+            "line 9: gears.wheel.bore_radius: got 30 mm; allowed < root radius 24.75 mm; "
+            "the body must be a ring",
+            "line 11: oil.name: got 'ISO VG 101'; ",
         ],
     ),
 }

@@ -68,13 +68,13 @@ TABLE: dict[str, Row] = {
         "expansion of 10.5 to 11)" + _HOT_MODULUS,
     ),
     "EN-GJS-400-15": Row(
-        169, 0.275, 7100, 36.2, 515, 12.5, 0, None,
+        169, 0.275, 7100, 36.2, 461, 11.5, 0, None,
         "EN 1563, values for information: modulus and density read in a foundry's table, the rest "
-        "usual, unconfirmed: conductivity at 300 C, expansion 20 to 400 C (10.8 near 20 C in "
-        "another table), specific heat 20 to 500 C" + _HOT_MODULUS,
+        "usual, unconfirmed: conductivity at 300 C; expansion 20 to 100 C and specific heat at "
+        "20 C as a public code has them (10.8 elsewhere, 12.5 from 20 to 400 C)" + _HOT_MODULUS,
     ),
     "EN-GJS-500-7": Row(
-        169, 0.275, 7100, 35.2, 515, 12.5, 0, None,
+        169, 0.275, 7100, 35.2, 461, 11.5, 0, None,
         "EN 1563, values for information: modulus, density and conductivity at 300 C read in a "
         "foundry's table, the rest as EN-GJS-400-15" + _HOT_MODULUS,
     ),
