@@ -222,25 +222,27 @@ class GearPair:
         both = self.pinion.base_radius + self.wheel.base_radius
         return math.sqrt((self.centre_distance - both) * (self.centre_distance + both))
 
+    @property
+    def _tip_ends(self) -> tuple[float, float]:
+        """Where the tips alone would have the path begin and end [m]."""
+        reach = [float(g.curvature_radius(g.tip_radius)) for g in (self.wheel, self.pinion)]
+        return self.line_of_action - reach[0], reach[1]
+
     @cached_property
     def path(self) -> PathPoints:
         """The points A..E of the path of contact, which ends at a tip or where an undercut does."""
-        length, (p, w) = self.line_of_action, (self.pinion, self.wheel)
-        start = length - float(w.curvature_radius(w.tip_radius))
-        end = float(p.curvature_radius(p.tip_radius))
+        (start, end), p, w = self._tip_ends, self.pinion, self.wheel
         if p.undercut:
             start = max(start, p.base_radius * p.junction[1])
         if w.undercut:
-            end = min(end, length - w.base_radius * w.junction[1])
+            end = min(end, self.line_of_action - w.base_radius * w.junction[1])
         pitch = self.pinion.base_radius * math.tan(self.operating_pressure_angle)
         return PathPoints(start, end - self.base_pitch, pitch, start + self.base_pitch, end)
 
     @property
     def cut_short(self) -> bool:
         """Whether undercut ends the path of contact before a tip does."""
-        p, w = self.pinion, self.wheel
-        tips = self.line_of_action - float(w.curvature_radius(w.tip_radius))
-        return self.path.a > tips or self.path.e < float(p.curvature_radius(p.tip_radius))
+        return (self.path.a, self.path.e) != self._tip_ends
 
     @property
     def start_radii(self) -> tuple[float, float]:
