@@ -6,6 +6,9 @@ way out. The gap of a pair is how far the mesh must advance along the line of ac
 it touches. Plane kinematics, exact; the only approximation is that the elastic advance does
 not move the point of contact.
 
+Where undercut ends the path before a tip does, the mate's flank is taken to end there, as at its
+tip: what the edge of the undercut does off the path is not computed.
+
 Frame: origin at the pinion's centre, first axis to its tangent point N1, second along the
 line of action; as complex numbers an involute's string of length l that leaves the base
 circle at the angle psi from N1 ends at (r_b + i l) exp(i psi).
