@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from thermogear.base.errors import GeometryError, ValidityWarning
+from thermogear.gears.corner import contact_point, flank_ends, pinion_point, wheel_point
 from thermogear.gears.geometry import Gear, Rack
 from thermogear.gears.pair import GearPair, tight_distance
 
@@ -190,3 +191,24 @@ def test_a_fillet_that_is_too_round_by_its_last_digit_is_the_full_round() -> Non
         Gear(25, MODULE, pressure_angle=math.radians(25.0), rack=Rack(fillet_radius=0.319))
     with pytest.raises(GeometryError, match=r"^rack.fillet_radius: got 0.31789 modules"):
         Gear(25, MODULE, pressure_angle=math.radians(25.0), rack=Rack(fillet_radius=0.31789))
+
+
+@pytest.mark.parametrize(("first", "second"), [(13, 24), (14, 14), (30, 60)])
+def test_off_the_path_the_gap_is_the_least_advance_of_any_point_of_the_flank(
+    first: int, second: int
+) -> None:
+    """The edge of undercut or a tip corner: whichever of all points of both flanks is nearest."""
+    for one, other in ((first, second), (second, first)):
+        pair = paired(*(Gear(z, MODULE, allow_undercut=True) for z in (one, other)))
+        (low, high), (lowest, highest) = flank_ends(pair)
+        for s in (pair.path.a - 0.05 * MODULE, pair.path.e + 0.05 * MODULE):
+            found = []
+            # which of the gears advances changes the gap by the second order
+            for corner, own, mate in (
+                (pinion_point, (low, high), (lowest, highest)),
+                (wheel_point, (lowest, highest), (low, high)),
+            ):
+                string, advance = corner(pair, s, rho=np.linspace(*own, 100001))
+                found.append(float(np.min(advance[(string >= mate[0]) & (string <= mate[1])])))
+            gap = float(contact_point(pair, s).gap)
+            assert gap == pytest.approx(min(found), rel=0.01)

@@ -222,8 +222,8 @@ class GearPair:
         both = self.pinion.base_radius + self.wheel.base_radius
         return math.sqrt((self.centre_distance - both) * (self.centre_distance + both))
 
-    @property
-    def _tip_ends(self) -> tuple[float, float]:
+    @cached_property
+    def tip_ends(self) -> tuple[float, float]:
         """Where the tips alone would have the path begin and end [m]."""
         reach = [float(g.curvature_radius(g.tip_radius)) for g in (self.wheel, self.pinion)]
         return self.line_of_action - reach[0], reach[1]
@@ -231,7 +231,7 @@ class GearPair:
     @cached_property
     def path(self) -> PathPoints:
         """The points A..E of the path of contact, which ends at a tip or where an undercut does."""
-        (start, end), p, w = self._tip_ends, self.pinion, self.wheel
+        (start, end), p, w = self.tip_ends, self.pinion, self.wheel
         if p.undercut:
             start = max(start, p.base_radius * p.junction[1])
         if w.undercut:
@@ -242,7 +242,7 @@ class GearPair:
     @property
     def cut_short(self) -> bool:
         """Whether undercut ends the path of contact before a tip does."""
-        return (self.path.a, self.path.e) != self._tip_ends
+        return (self.path.a, self.path.e) != self.tip_ends
 
     @property
     def start_radii(self) -> tuple[float, float]:
