@@ -106,12 +106,6 @@ BAD_VALUES: list[tuple[str, str]] = [
         "gears.pinion.teeth: got 0; allowed 5..2000; write for instance 25",
     ),
     (
-        "gears.pinion.teeth=12",
-        "gears.pinion.tip_diameter: got a radius of 67.5 mm; allowed < 37.0117 mm; the tooth is "
-        "pointed at that radius (tip thickness -120.127 mm, x = 0); "
-        "lower the tip radius or the profile shift",
-    ),
-    (
         "gears.pinion.profile_shift=inf",
         "gears.pinion.profile_shift: got inf; allowed -2..2; write for instance 0.2",
     ),
@@ -505,10 +499,8 @@ speed = "3000 rpm"
 torque = "80 N m"
 """,
         [
-            "line 6: gears.pinion.bore_radius: got 30 mm; allowed < root radius 23.25 mm; "
-            "the body must be a ring",
-            "line 9: gears.wheel.bore_radius: got 30 mm; allowed < root radius 24.75 mm; "
-            "the body must be a ring",
+            "line 6: gears.pinion.bore_radius: got 30 mm; ",
+            "line 9: gears.wheel.bore_radius: got 30 mm; ",
             "line 11: oil.name: got 'ISO VG 101'; ",
         ],
     ),
