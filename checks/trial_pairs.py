@@ -192,9 +192,9 @@ def draws(count: int, seed: int = SEED) -> tuple[list[Drawn], Counter[str]]:
 def reason(error: InputError) -> str:
     """Why a pair was refused, without its numbers."""
     text = error.why or str(error)
-    for words in ("interference", "pointed", "undercut", "needs x", "hits", "contact ratio"):
+    for words in ("interference", "pointed", "undercut", "hits", "contact ratio"):
         if words in text:
-            return "undercut" if words == "needs x" else words
+            return words
     return "no meshing position" if "meshing position" in text else error.field
 
 

@@ -427,10 +427,10 @@ def test_an_override_may_make_a_table() -> None:
 
 def test_geometry_errors_keep_their_class_and_speak_of_the_file() -> None:
     with pytest.raises(GeometryError) as caught:
-        rig("gears.pinion.teeth=12")
+        rig("gears.pinion.bore_radius=60 mm")
     assert str(caught.value) == (
-        "gears.pinion.profile_shift: got 0 for 12 teeth; needs x >= 0.298; "
-        "use x >= 0.30 or >= 18 teeth"
+        "gears.pinion.bore_radius: got 60 mm; allowed < root radius 56.25 mm; "
+        "the body must be a ring"
     )
 
 

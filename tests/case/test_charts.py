@@ -416,3 +416,37 @@ def test_the_chart_of_the_how_to_is_read(tmp_path: Path) -> None:
     assert case.charts[0].hand(1) == "tooth 1 right (drive)"
     assert drive.figures[0].slope > 4e-6
     assert case.charts[0].read.signed
+
+
+@pytest.mark.parametrize(
+    ("over", "places", "module", "most"),
+    [
+        ("diameter [in]", diameter(RHO) / 25.4, 3.0 / 25.4, 5),
+        ("roll angle [deg]", np.degrees(RHO / BASE), math.degrees(3e-3 / BASE), 4),
+        ("roll length [mm]", 1e3 * RHO, 3.0, 4),
+    ],
+    ids=["in", "deg", "mm"],
+)
+def test_an_end_that_misses_the_tip_by_the_rounding_of_its_digits_is_taken(
+    tmp_path: Path, over: str, places: Floats, module: float, most: int
+) -> None:
+    """Half a unit of the last digit, never more than a hundredth of a module."""
+    taken = refused = 0
+    for digits in range(1, most + 1):
+        unit = 10.0**-digits
+        inner = [f"{d:.{digits}f}" for d in np.linspace(places[60], places[-1] - 2.0 * unit, 13)]
+        nearest = round(float(places[-1]) / unit) * unit
+        for last in (nearest, nearest + unit):
+            rows = [f"{d},0" for d in dict.fromkeys([*inner, f"{last:.{digits}f}"])]
+            beyond = float(f"{last:.{digits}f}") - float(places[-1])
+            text = "\n".join([f"{over}, {LEFT}", *rows]) + "\n"
+            if beyond > min(0.5 * unit, 0.01 * module):
+                with pytest.raises(InputError, match="it lies above the tip of the pinion"):
+                    own_chart.case(tmp_path, text)
+                refused += 1
+            elif beyond > 0.0 and len(rows) > 10:
+                found = own_chart.case(tmp_path, text).charts[0].traces.rho[-1]
+                assert found == pytest.approx(END, rel=1e-12)
+                taken += 1
+    assert taken >= 1
+    assert refused >= 4

@@ -72,11 +72,16 @@ def cases(read: list[tuple[tuple[int, int], GearCase | InputError]]) -> list[Gea
 def test_five_fields_are_enough_unless_teeth_are_undercut(
     read: list[tuple[tuple[int, int], GearCase | InputError]],
 ) -> None:
-    """ISO 53 at 20 deg cuts no tooth under from z = 2 h / sin^2(20 deg) = 17.1 on."""
+    """ISO 53 at 20 deg cuts no tooth under from z = 2 h / sin^2(20 deg) = 17.1 on, and fewer teeth
+    are taken where what is cut lies below the flank in use."""
     least = 2.0 / math.sin(math.radians(20.0)) ** 2
     for teeth, found in read:
-        if min(teeth) > least:
+        if min(teeth) > least or isinstance(found, GearCase):
             assert isinstance(found, GearCase), (teeth, found)
+            pair = found.pair
+            assert (pair.pinion.undercut, pair.wheel.undercut) == tuple(z < least for z in teeth)
+            assert pair.start_radii[0] >= pair.pinion.form_radius
+            assert pair.start_radii[1] >= pair.wheel.form_radius
             continue
         assert isinstance(found, InputError)
         few = "pinion" if teeth[0] < least else "wheel"
@@ -84,7 +89,9 @@ def test_five_fields_are_enough_unless_teeth_are_undercut(
         shift = 1.0 - z / least
         assert found.field == f"gears.{few}.profile_shift"
         assert found.line == (4 if few == "pinion" else 6)
-        assert f"got 0 for {z} teeth; needs x >= {shift:.3f}; use x >= " in str(found)
+        assert f"got 0 for {z} teeth; undercut takes " in str(found)
+        from_here = f"; no undercut from x = {shift:.3f}; use x >= "
+        assert from_here in str(found)
 
 
 def test_a_shift_as_the_message_says_makes_the_case() -> None:

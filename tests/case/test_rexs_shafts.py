@@ -142,3 +142,46 @@ def test_a_rigid_concept_bearing_is_very_stiff(tmp_path: Path) -> None:
     law = case.train.bearings[2].law
     assert isinstance(law, LinearLaw)
     assert law.stiffness_matrix[0][0] == 1e10
+
+
+def test_the_section_under_a_gear_is_its_bore(tmp_path: Path) -> None:
+    """30 mm under the pinion, 25 mm under the wheel; bearings are not asked for."""
+    parts, links = with_shafts()
+    case, found = case_of(put(tmp_path, xml(parts, links)))
+    assert [g.bore_radius for g in (case.pair.pinion, case.pair.wheel)] == [0.015, 0.0125]
+    line = 'bore_radius = "15 mm"   # derived: half the diameter of shaft 4 under the gear'
+    assert line in found.text.splitlines()
+    alone = [one for one in links if one[0] != "side"]
+    case, found = case_of(put(tmp_path, xml(parts, alone)))
+    assert case.train is None
+    assert [g.bore_radius for g in (case.pair.pinion, case.pair.wheel)] == [0.015, 0.0125]
+    assert not [line for line in found.unused if "shaft_section" in line]
+
+
+def test_a_pinion_cut_from_its_shaft_or_beside_the_sections_keeps_the_default(
+    tmp_path: Path,
+) -> None:
+    parts, links = with_shafts()
+    thick = replaced(parts, 40, ("outer_diameter_begin", "mm", 60.0))
+    thick = replaced(thick, 40, ("outer_diameter_end", "mm", 60.0))
+    thick = replaced(thick, 9, ("u_coordinate_on_shaft", "mm", 150.0))
+    case, found = case_of(put(tmp_path, xml(thick, links)))
+    root = case.pair.pinion.root_radius
+    assert case.pair.pinion.bore_radius == pytest.approx(0.3 * root)
+    lost = [line for line in found.unused if line.startswith("bore of")]
+    assert lost == [
+        f"bore of the pinion: shaft 4: got 60 mm; allowed < {2e3 * root:.12g} mm, the root circle",
+        "bore of the wheel: shaft 5: got no section at 150 mm, where the gear is",
+    ]
+
+
+def test_a_module_stated_in_inches_is_read(tmp_path: Path) -> None:
+    """A tenth of an inch; the axes of 2.54/2.5 times the distance."""
+    parts, links = one_stage()
+    for gear in (7, 9):
+        parts = replaced(parts, gear, ("normal_module", "in", 0.1))
+    parts = replaced(parts, 3, ("center_distance", "mm", 80.9 * 2.54 / 2.5))
+    case, found = case_of(put(tmp_path, xml(parts, links)))
+    assert case.pair.pinion.module == pytest.approx(2.54e-3, rel=1e-15)
+    line = 'module = "2.54 mm"   # read: normal_module of cylindrical_gear 7, 0.1 in'
+    assert line in found.text.splitlines()

@@ -106,11 +106,6 @@ BAD_VALUES: list[tuple[str, str]] = [
         "gears.pinion.teeth: got 0; allowed 5..2000; write for instance 25",
     ),
     (
-        "gears.pinion.teeth=12",
-        "gears.pinion.profile_shift: got 0 for 12 teeth; needs x >= 0.298; "
-        "use x >= 0.30 or >= 18 teeth",
-    ),
-    (
         "gears.pinion.profile_shift=inf",
         "gears.pinion.profile_shift: got inf; allowed -2..2; write for instance 0.2",
     ),
@@ -491,10 +486,12 @@ torque = "80 N m"
         """[gears]
 module = "3 mm"
 [gears.pinion]
-teeth = 8
+teeth = 18
 face_width = "30 mm"
+bore_radius = "30 mm"
 [gears.wheel]
-teeth = 9
+teeth = 19
+bore_radius = "30 mm"
 [oil]
 name = "ISO VG 101"
 [operating]
@@ -502,11 +499,9 @@ speed = "3000 rpm"
 torque = "80 N m"
 """,
         [
-            "line 3: gears.pinion.profile_shift: got 0 for 8 teeth; needs x >= 0.532; "
-            "use x >= 0.54 or >= 18 teeth",
-            "line 6: gears.wheel.profile_shift: got 0 for 9 teeth; needs x >= 0.474; "
-            "use x >= 0.48 or >= 18 teeth",
-            "line 9: oil.name: got 'ISO VG 101'; ",
+            "line 6: gears.pinion.bore_radius: got 30 mm; ",
+            "line 9: gears.wheel.bore_radius: got 30 mm; ",
+            "line 11: oil.name: got 'ISO VG 101'; ",
         ],
     ),
 }

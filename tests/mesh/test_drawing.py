@@ -24,7 +24,7 @@ from thermogear.views.gears import PINION, WHEEL, DrawnState, GearDrawing, gear_
 Floats = NDArray[np.float64]
 T0 = ZERO_CELSIUS + 20.0
 PHASES = (0.0, 0.11, 0.37, 0.5, 0.83)
-FINE = 12
+FINE = 16
 
 
 @dataclass(frozen=True, eq=False)

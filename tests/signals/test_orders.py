@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy import signal
+from scipy import interpolate, signal
 
 from thermogear.base.errors import InputError
-from thermogear.signals.density import welch
 from thermogear.signals.orders import (
     line_angle,
     resample_by_angle,
-    sideband_orders,
-    tacho_angle,
-    tacho_times,
+    rising_edges,
 )
 from thermogear.signals.spectra import order_amplitudes
 
@@ -35,9 +32,9 @@ def test_tacho_orders_are_sharp_where_the_speed_wanders() -> None:
     t, turns = wandering_turns()
     pulse = (np.mod(turns, 1.0) < 0.1).astype(float)
     smooth = signal.sosfiltfilt(signal.butter(2, 0.3, output="sos"), pulse)
-    times = tacho_times(smooth, RATE)
+    times = rising_edges(smooth, rate=RATE)
     assert times.size == pytest.approx(turns[-1], abs=2)
-    angle = tacho_angle(times, 1.0, t)
+    angle = interpolate.CubicSpline(times, np.arange(times.size))(t, extrapolate=False)
     inside = np.isfinite(angle)
     y = resample_by_angle(gear(turns)[inside], angle[inside], samples_per_turn=256, turns=100)
     lines = order_amplitudes(y, samples_per_period=256, periods=100, orders=[24, 25, 26, 50, 25.5])
@@ -61,33 +58,8 @@ def test_mesh_line_phase_gives_the_angle_without_a_tacho() -> None:
     np.testing.assert_allclose(lines, [0.05, 1.0, 0.1, 0.3], atol=0.02)
 
 
-def test_welch_agrees_with_scipy_in_one_block_and_in_many() -> None:
-    x = np.random.default_rng(2).standard_normal(10_000) + 2.0
-    mine = welch([x], 500.0, 1024)
-    blocks = welch([x[:333], x[333:5000], x[5000:]], 500.0, 1024)
-    _, theirs = signal.welch(x, 500.0, "hann", 1024)
-    np.testing.assert_allclose(mine.density, theirs, rtol=1e-9, atol=1e-18)
-    np.testing.assert_array_equal(blocks.density, mine.density)
-    assert mine.averages == 18
-    assert mine.bin_width == 500.0 / 1024
-
-
-def test_welch_amplitude_of_a_line_at_a_bin() -> None:
-    n = np.arange(8192)
-    density = welch([2.0 * np.cos(2 * np.pi * 64 / 512 * n)], 1.0, 512)
-    assert density.amplitudes[64] == pytest.approx(2.0, rel=1e-9)
-
-
-def test_sidebands_and_refusals() -> None:
-    np.testing.assert_allclose(
-        sideband_orders(centre=32, spacing=0.4, count=2), [31.2, 31.6, 32, 32.4, 32.8]
-    )
-    with pytest.raises(InputError, match=r"^tacho: got 0 edges; allowed >= 2 rising edges$"):
-        tacho_times(np.zeros(100), 10.0)
-    with pytest.raises(InputError, match=r"^segment: got 64; allowed at most the record's 32"):
-        welch([np.zeros(32)], 1.0, 64)
-    with pytest.raises(InputError, match=r"^record: got a non-finite sample; allowed finite$"):
-        welch([np.zeros(64), np.array([np.nan])], 1.0, 64)
+def test_refusals() -> None:
+    assert rising_edges(np.zeros(100), rate=10.0).size == 0
     with pytest.raises(InputError, match=r"^angle: got shape \(5,\); allowed rising"):
         resample_by_angle(np.zeros(5), [0, 1, 1, 2, 3], samples_per_turn=8)
     with pytest.raises(InputError, match=r"^half_width: got 0\.2 at 0\.1"):

@@ -79,10 +79,10 @@ class GeometryError(InputError):
     """A gear or a gear pair that cannot be made or cannot mesh.
 
     >>> try:
-    ...     Gear(8, 4e-3)
+    ...     Gear(18, 4e-3, bore_radius=36e-3)
     ... except GeometryError as error:
     ...     print(error)
-    profile_shift: got 0 for 8 teeth; needs x >= 0.532; use x >= 0.54 or >= 18 teeth
+    bore_radius: got 36 mm; allowed < root radius 31 mm; the body must be a ring
     """
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import re
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -12,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base import bounds
 from thermogear.base.errors import InputError, nearest
-from thermogear.base.material_table import TABLE
+from thermogear.base.material_table import ALSO, TABLE
 from thermogear.base.units import ZERO_CELSIUS
 
 Floats = NDArray[np.float64]
@@ -244,14 +245,34 @@ Creep of PA66 and POM begins at 60 to 80 C."""
 
 
 def material(name: str) -> Material:
-    """The named set, or an error that says the nearest name.
+    """The named set as :func:`spelled` finds it, or an error that says the nearest name.
 
     >>> f"{1e-9 * material('steel').youngs_modulus:.0f} GPa"
     '206 GPa'
     """
-    if name not in MATERIALS:
+    known = spelled(name, MATERIALS)
+    if known is None:
         raise InputError("material", repr(name), fix=nearest(name, MATERIALS))
-    return MATERIALS[name]
+    return MATERIALS[known]
+
+
+def spelled(name: str, known: Collection[str]) -> str | None:
+    """The name among ``known`` that ``name`` means, None where none is meant.
+
+    Itself first; else capitals, blanks, signs and the EN or EN AC of a standard do not count, and
+    usual names are known.
+
+    >>> spelled("grey iron", MATERIALS), spelled("en ac-alsi9cu3", MATERIALS)
+    ('EN-GJL-250', 'AlSi9Cu3')
+    """
+
+    def bare(text: str) -> str:
+        return re.sub("^en(ac)?", "", re.sub("[^a-z0-9]", "", text.lower()))
+
+    if name in known:
+        return name
+    names = {bare(one): one for one in known}
+    return names.get(bare(name), ALSO.get(bare(name)))
 
 
 _PUBLIC_SET = (

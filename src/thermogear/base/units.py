@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from decimal import Decimal
 
 RPM = math.pi / 30.0
 """One revolution per minute [rad/s]: ``rpm * RPM`` is SI, ``speed / RPM`` is in rpm."""
@@ -12,3 +13,16 @@ ZERO_CELSIUS = 273.15
 
 STANDARD_GRAVITY = 9.80665
 """The g of accelerations [m/s^2] (CGPM 1901)."""
+
+ROUNDED = 0.01
+"""Modules that a printed length may miss an exact one by: what both shifts, given to a hundredth,
+leave open in the centre distance (ours)."""
+
+
+def half_digit(number: str) -> float:
+    """Half a unit of the last digit of a decimal ``number``.
+
+    >>> half_digit("91.50"), half_digit("2e3")
+    (0.005, 500.0)
+    """
+    return 0.5 * 10.0 ** min(int(Decimal(number).as_tuple().exponent), 300)

@@ -19,13 +19,13 @@ from thermogear.base import materials
 from thermogear.base.errors import InputError, ValidityWarning, nearest, short
 from thermogear.base.excitation import Periodic
 from thermogear.base.materials import MATERIALS, Lubricant, Material
-from thermogear.base.units import ZERO_CELSIUS
+from thermogear.base.units import ROUNDED, ZERO_CELSIUS
 from thermogear.case.backlash import Backlash, from_tolerances, from_value, recommended
 from thermogear.case.fields import BODY
 from thermogear.case.schema import GearFile, GearTable
-from thermogear.case.units import shown
+from thermogear.case.units import rounding, shown
 from thermogear.gears.geometry import LEFT_OUT, Gear, Rack
-from thermogear.gears.pair import GearPair
+from thermogear.gears.pair import GearPair, tight_distance
 from thermogear.heat.friction import LAWS, ROUGHNESS_LIMIT
 from thermogear.heat.law_parameters import parameters, with_parameters
 from thermogear.mesh.excite import disc_inertia
@@ -111,7 +111,8 @@ def own_materials(file: GearFile) -> dict[str, Material]:
 
 def named_material(name: str, at: str, known: Mapping[str, _Made]) -> _Made:
     """The material of the field ``at``, or an error that says the nearest name."""
-    if name not in known:
+    meant = materials.spelled(name, known)
+    if meant is None:
         raise InputError(
             at,
             short(name),
@@ -120,7 +121,7 @@ def named_material(name: str, at: str, known: Mapping[str, _Made]) -> _Made:
             if name.isidentifier()
             else nearest(name, known),
         )
-    return known[name]
+    return known[meant]
 
 
 def unknown_names(data: Mapping[str, Any]) -> list[InputError]:
@@ -212,11 +213,19 @@ def faults(file: GearFile) -> list[InputError]:
     return found
 
 
-def pair_of(file: GearFile, known: Mapping[str, Material]) -> GearPair:
-    """The two gears and their centre distance."""
+def pair_of(file: GearFile, known: Mapping[str, Material], data: Mapping[str, Any]) -> GearPair:
+    """The two gears and their centre distance.
+
+    One that misses the mesh without backlash by the rounding of its digits in ``data``, the bare
+    tables, is taken as that.
+    """
     distance = file.gears.centre_distance
     pinion = _gear(file.gears.pinion, file, "gears.pinion", known)
     wheel = _gear(file.gears.wheel, file, "gears.wheel", known)
+    if distance is not None:
+        slack = min(rounding(data["gears"]["centre_distance"], "length"), ROUNDED * pinion.module)
+        tight = tight_distance(pinion, wheel)
+        distance = tight if 0.0 < tight - distance <= slack else distance
     try:
         return _under(
             "gears", lambda: GearPair(pinion, wheel, LEFT_OUT if distance is None else distance)

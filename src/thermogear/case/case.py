@@ -400,7 +400,7 @@ def load_example(
 def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
     materials = MATERIALS | parts.own_materials(file)
     housing = parts.named_material(file.housing.material, "housing.material", materials)
-    pair = parts.pair_of(file, materials)
+    pair = parts.pair_of(file, materials, common["data"])
     rule = parts.temperature_rule(file)
     given = file.temperatures
     if rule is None or given.pinion_addendum is None or given.wheel_addendum is None:
@@ -412,7 +412,7 @@ def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
             pinion_addendum=given.pinion_addendum, wheel_addendum=given.wheel_addendum
         )
         oil = rule.oil_at(given.pinion_addendum)
-    box, readings = gearbox(file, pair)
+    box, readings = gearbox(file, pair, housing)
     backlash = parts.cold_backlash(file, pair, housing)
     speeds, torques = file.operating.speed, file.operating.torque
     count = len(speeds) * len(torques)
@@ -426,7 +426,7 @@ def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
     inertias, inertia_kind = parts.inertias(file, pair)
     train = train_plan(file, pair, materials, inertias)
     if train is not None:
-        box = heated(file, pair, box, train)
+        box = heated(file, pair, box, train, housing)
     measured = charts(file, pair)
     return GearCase(
         pair=pair,

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from thermogear.base.enclosed import with_files
 from thermogear.base.errors import InputError, short
 from thermogear.base.files import decoded
+from thermogear.base.units import ROUNDED
 from thermogear.case.flank_file import LARGEST, FlankFile, read_flanks
 from thermogear.case.schema import GearFile
 from thermogear.gears.deviations import FlankTable
@@ -142,8 +143,7 @@ def _chart(gear: str, names: tuple[str, ...], read: FlankFile, pair: GearPair) -
     if max(read.tooth) > body.teeth or min(read.tooth) < 1:
         most = max(read.tooth, key=lambda one: abs(one - 1))
         raise InputError("", f"{name}: tooth {most}", allowed=f"1..{body.teeth}")
-    rho = _roll(read.over, read.position, body)
-    _inside(name, read, rho, body, gear)
+    rho = _inside(name, read, body, gear)
     step = np.diff(rho)
     order = slice(None)
     if np.all(step < 0.0):
@@ -204,12 +204,21 @@ def _shown(read: FlankFile, place: int) -> str:
     return f"{1e3 * value:.6g} mm"
 
 
-def _inside(name: str, read: FlankFile, rho: NDArray[np.float64], gear: Gear, which: str) -> None:
-    """Refuse a trace that leaves the tooth's involute, from base circle to tip."""
+def _inside(name: str, read: FlankFile, gear: Gear, which: str) -> NDArray[np.float64]:
+    """Roll path [m] of the points; refused where they leave the involute, from base circle to tip.
+
+    One that leaves it by the rounding of its digits alone is taken at its end.
+    """
+    rho = _roll(read.over, read.position, gear)
     tip = float(gear.curvature_radius(gear.tip_radius))
-    wrong = ~((rho >= 0.0) & (rho <= tip * (1.0 + 1e-6)))
+    most = ROUNDED * gear.module
+    slack = min(read.rounding, most / gear.base_radius if read.over == "roll angle" else most)
+    inward, outward = (_roll(read.over, read.position + off, gear) for off in (-slack, slack))
+    rho = np.where((rho > tip) & (inward <= tip * (1.0 + 1e-6)), tip, rho)
+    rho = np.where(~(rho >= 0.0) & (outward >= 0.0), 0.0, rho)
+    wrong = ~((rho >= 0.0) & (rho <= tip))
     if not wrong.any():
-        return
+        return rho
     place = int(np.argmax(wrong))
     below = not rho[place] > tip
     edge = "below the base circle" if below else "above the tip"

@@ -31,6 +31,7 @@ def decided(
         "gearbox.housing_area": shown(around.housing_area, "area", 3),
         "gearbox.housing_mass": shown(around.housing_mass, "mass", 3),
         "gearbox.oil_mass": shown(around.oil_mass, "mass", 3),
+        "gearbox.housing_specific_heat": shown(around.housing_specific_heat, "specific heat"),
     }
     if around.train is not None:
         drawn = "none: the shafts are drawn"

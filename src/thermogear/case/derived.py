@@ -13,6 +13,7 @@ from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.case.base import Case
 from thermogear.case.case import DimensionlessCase, GearCase
 from thermogear.case.charts import Chart
+from thermogear.case.units import shown
 from thermogear.gears.deviations import Deviation
 from thermogear.gears.geometry import Gear
 from thermogear.gears.graded_flanks import WavyProfile
@@ -35,8 +36,8 @@ def facts(case: Case) -> tuple[Fact, ...]:
     if isinstance(case, GearCase):
         return (
             *_pair(case),
-            *_gear("pinion", case.pair.pinion),
-            *_gear("wheel", case.pair.wheel),
+            *_gear("pinion", case.pair.pinion, case.pair.start_radii[0]),
+            *_gear("wheel", case.pair.wheel, case.pair.start_radii[1]),
             *_dynamics(case),
             *_train(case),
             *_oil(case.stated.lubricant),
@@ -57,6 +58,10 @@ def _pair(case: GearCase) -> list[Fact]:
         Fact(group, "contact ratio", pair.contact_ratio),
         Fact(group, "common face width", 1e3 * pair.face_width, "mm"),
     ]
+    given = case.file.gears.centre_distance
+    if given is not None and given < pair.centre_distance:
+        words = f"{shown(given, 'length')}, rounded: the mesh without backlash is taken"
+        found.append(Fact(group, "centre distance given", words))
     found += [
         Fact("path of contact from the pinion's tangent point", name, 1e3 * value, "mm")
         for name, value in zip("ABCDE", path, strict=True)
@@ -73,7 +78,9 @@ def _pair(case: GearCase) -> list[Fact]:
     return found
 
 
-def _gear(name: str, gear: Gear) -> list[Fact]:
+def _gear(name: str, gear: Gear, start: float) -> list[Fact]:
+    below = 1e6 * (start - gear.form_radius)
+    cut = f"ends {below:.4g} um below the flank in use" if below > 0.05 else "shortens the contact"
     return [
         Fact(name, "teeth", gear.teeth),
         Fact(name, "pitch radius", 1e3 * gear.pitch_radius, "mm"),
@@ -83,6 +90,7 @@ def _gear(name: str, gear: Gear) -> list[Fact]:
         Fact(name, "tip radius", 1e3 * gear.tip_radius, "mm"),
         Fact(name, "tip thickness", 1e3 * gear.tip_thickness, "mm"),
         Fact(name, "least profile shift without undercut", gear.minimum_profile_shift),
+        *([Fact(name, "undercut", cut)] if gear.undercut else []),
     ]
 
 

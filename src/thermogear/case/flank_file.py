@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from thermogear.base import bounds
 from thermogear.base.cells import MISSING, NUMBER, cells_of
 from thermogear.base.errors import InputError, nearest, short
+from thermogear.base.units import half_digit
 from thermogear.case.units import read_quantity
 
 Floats = NDArray[np.float64]
@@ -50,6 +51,7 @@ class FlankFile:
 
     ``over``: what ``position`` is, a key of :data:`POSITIONS`; ``added`` [m] of shape (trace,
     point) with the ``side`` ("left", "right", "drive", "back") and ``tooth`` of each trace;
+    ``rounding``: half a unit of the last digit of the positions;
     ``evaluate``: what the range runs over and its ends; ``drive``: the side that drives; ``pitch``:
     [m] over the teeth by the column's name; ``places``: the line of each point.
     """
@@ -60,6 +62,7 @@ class FlankFile:
     side: tuple[str, ...]
     tooth: tuple[int, ...]
     places: tuple[str, ...]
+    rounding: float = 0.0
     evaluate: tuple[str, float, float] | None = None
     drive: str | None = None
     teeth: int | None = None
@@ -114,6 +117,7 @@ def read_flanks(texts: Mapping[str, str]) -> FlankFile:
         side=sides,
         tooth=tuple(one[1] for one in columns),
         places=tuple(table.places),
+        rounding=scale * min(map(half_digit, table.positions())),
         evaluate=_range(said, over),
         drive=_drive(said, sides, table),
         teeth=_teeth(said),
@@ -159,6 +163,11 @@ class _Block:
         fix: str | None = None,
     ) -> InputError:
         return InputError("", f"{self.where}: {got}", allowed=allowed, why=why, fix=fix)
+
+    def positions(self) -> list[str]:
+        """The texts of the first column."""
+        rows = (row.replace(",", ".") if self.comma else row for _, row in self.rows)
+        return [cells_of(row, self.separator)[0] for row in rows]
 
     def values(self) -> Floats:
         """The numbers, (row, column)."""

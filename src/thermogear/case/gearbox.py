@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from thermogear.base.errors import InputError
-from thermogear.base.materials import Material
+from thermogear.base.materials import MATERIALS, Material
 from thermogear.case.gearbox_schema import NODES, GearboxTable, ReadingTable
 from thermogear.case.schema import GearFile
 from thermogear.case.shaft_plan import TrainPlan
@@ -32,8 +32,6 @@ CLEAR = 0.02
 """From the gears' tips to the walls of a housing that is not given [m]; ours."""
 WALL = 0.008
 """The thickness of those walls [m]; ours."""
-STEEL = 7850.0
-"""Their density [kg/m^3]."""
 OIL = 870.0
 """The density of the oil in it [kg/m^3]."""
 
@@ -46,7 +44,9 @@ class Box(NamedTuple):
     oil_mass: float
 
 
-def housing_box(pair: GearPair, shaft_length: float, immersion: float) -> Box:
+def housing_box(
+    pair: GearPair, shaft_length: float, immersion: float, material: Material = MATERIALS["steel"]
+) -> Box:
     """A box around ``pair``, as wide as the face and two shafts of ``shaft_length`` [m] each.
 
     Length a + r_a1 + r_a2 + 2 c, height 2 max(r_a) + 2 c, with c of 20 mm; the oil level is
@@ -58,7 +58,7 @@ def housing_box(pair: GearPair, shaft_length: float, immersion: float) -> Box:
     width = pair.face_width + 2.0 * shaft_length
     area = 2.0 * (length * height + length * width + height * width)
     level = CLEAR + immersion * second
-    return Box(area, area * WALL * STEEL, OIL * length * width * level)
+    return Box(area, area * WALL * material.density, OIL * length * width * level)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,7 +72,9 @@ class Reading:
     uncertainty: float
 
 
-def gearbox(file: GearFile, pair: GearPair) -> tuple[Gearbox, tuple[Reading, ...]]:
+def gearbox(
+    file: GearFile, pair: GearPair, housing: Material
+) -> tuple[Gearbox, tuple[Reading, ...]]:
     """What heats and cools the pair, and the readings that hold nodes of it."""
     table = GearboxTable() if file.gearbox is None else file.gearbox
     readings = tuple(_readings(table, pair))
@@ -82,7 +84,7 @@ def gearbox(file: GearFile, pair: GearPair) -> tuple[Gearbox, tuple[Reading, ...
     if file.temperatures.computed:
         held |= _stated(file, held)
     wetted = table.wetted_share
-    box = housing_box(pair, table.shaft_length, table.immersion)
+    box = housing_box(pair, table.shaft_length, table.immersion, housing)
     around = Surroundings(
         ambient=table.ambient,
         housing_area=box.area if table.housing_area is None else table.housing_area,
@@ -93,7 +95,9 @@ def gearbox(file: GearFile, pair: GearPair) -> tuple[Gearbox, tuple[Reading, ...
         bearing_conductance=table.bearing_conductance,
         oil_mass=box.oil_mass if table.oil_mass is None else table.oil_mass,
         housing_mass=box.mass if table.housing_mass is None else table.housing_mass,
-        housing_specific_heat=table.housing_specific_heat,
+        housing_specific_heat=housing.specific_heat
+        if table.housing_specific_heat is None
+        else table.housing_specific_heat,
         oil_flow=table.oil_flow,
         supply_temperature=table.supply_temperature,
     )
@@ -105,7 +109,9 @@ def gearbox(file: GearFile, pair: GearPair) -> tuple[Gearbox, tuple[Reading, ...
     ), readings
 
 
-def heated(file: GearFile, pair: GearPair, box: Gearbox, train: TrainPlan) -> Gearbox:
+def heated(
+    file: GearFile, pair: GearPair, box: Gearbox, train: TrainPlan, housing: Material
+) -> Gearbox:
     """The gearbox with shafts and bearings as nodes.
 
     A housing that is left out is as wide as the longer shaft between its bearings.
@@ -114,7 +120,8 @@ def heated(file: GearFile, pair: GearPair, box: Gearbox, train: TrainPlan) -> Ge
     table = GearboxTable() if file.gearbox is None else file.gearbox
     places = [[b.position for b in train.bearings if b.shaft == name] for name in SHAFTS]
     width = max(max(mine) - min(mine) for mine in places)
-    walls = housing_box(pair, max(0.0, 0.5 * (width - pair.face_width)), table.immersion)
+    beside = max(0.0, 0.5 * (width - pair.face_width))
+    walls = housing_box(pair, beside, table.immersion, housing)
     around = replace(
         box.surroundings,
         train=drawn,

@@ -165,12 +165,15 @@ class GearboxTable(Table):
     housing_mass: Annotated[float, Measure("mass", "0.01 kg", "1e6 kg", example="40 kg")] | None = (
         Field(
             default=None,
-            description="walls of that box of 8 mm steel; decides the warm-up time alone",
+            description="walls of that box, 8 mm of the housing's material; decides the warm-up "
+            "time alone",
         )
     )
-    housing_specific_heat: Annotated[float, measure("specific heat", bounds.SPECIFIC_HEAT)] = Field(
-        default=_AROUND.housing_specific_heat,
-        description="steel, 470 J/(kg K); decides the warm-up time alone",
+    housing_specific_heat: (
+        Annotated[float, measure("specific heat", bounds.SPECIFIC_HEAT)] | None
+    ) = Field(
+        default=None,
+        description="that of the housing's material; decides the warm-up time alone",
     )
     oil_flow: Annotated[float, Measure("volume flow", "0 l/min", "10000 l/min")] = Field(
         default=_AROUND.oil_flow,

@@ -39,6 +39,7 @@ class NewCase:
     accuracy: int | None = None
     pinion_flanks: str | None = None
     wheel_flanks: str | None = None
+    allow_undercut: bool = False
     shafts: bool = False
 
     def text(self, folder: Path | None = None) -> str:
@@ -77,6 +78,7 @@ class NewCase:
                 line("teeth", self.teeth[place]),
                 line("profile_shift", shift and shift[place], "in modules"),
                 line("material", material and material[place]),
+                line("allow_undercut", self.allow_undercut or None, "may shorten the contact"),
             )
         oil = line("name", self.oil or "ISO VG 100")
         known = self.oil_temperature

@@ -121,7 +121,7 @@ class GearTable(Table):
     ] = Field(default=None, title="none")
     profile: ProfileTable | None = Field(default=None, title="no table of added material")
     allow_undercut: StrictBool = Field(
-        default=False, title="an undercut tooth is refused unless true"
+        default=False, title="undercut that shortens the path of contact is refused unless true"
     )
 
 

@@ -13,7 +13,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from thermogear.base.errors import InputError, short
-from thermogear.base.units import ZERO_CELSIUS
+from thermogear.base.units import ZERO_CELSIUS, half_digit
 
 if TYPE_CHECKING:
     import pint
@@ -240,6 +240,20 @@ def read_quantity(text: object, kind_name: str) -> float:
     if not isinstance(text, str):
         raise refused(f"not a text with number and unit of {kind.name}")
     return _of_text(text, kind)
+
+
+def rounding(text: str, kind_name: str) -> float:
+    """Half a unit [SI] of the last digit of a quantity that :func:`read_quantity` reads.
+
+    >>> f"{1e3 * rounding('91.50 mm', 'length'):.3f} mm"
+    '0.005 mm'
+    """
+    match = _TEXT.fullmatch(text)
+    return (
+        0.0
+        if match is None
+        else convert(half_digit(match["number"]), match["unit"], KINDS[kind_name])
+    )
 
 
 @lru_cache(maxsize=4096)

@@ -53,6 +53,9 @@ NEEDED = {
 )
 @click.option("--pinion-flanks", metavar="CSV", help="Inspection chart of the pinion's flanks.")
 @click.option("--wheel-flanks", metavar="CSV", help="The wheel's; each replaces the class.")
+@click.option(
+    "--allow-undercut", is_flag=True, help="Take teeth whose undercut shortens the path of contact."
+)
 @click.option("--shafts", is_flag=True, help="Two shafts between four ball bearings too.")
 @click.option("-o", "--output", metavar="FILE", help="Write a new FILE instead of printing.")
 def new(output: str | None, **given: Any) -> None:

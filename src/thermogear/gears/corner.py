@@ -6,6 +6,9 @@ way out. The gap of a pair is how far the mesh must advance along the line of ac
 it touches. Plane kinematics, exact; the only approximation is that the elastic advance does
 not move the point of contact.
 
+Where undercut ends the path before a tip does, its edge on the undercut gear takes the place of
+that corner.
+
 Frame: origin at the pinion's centre, first axis to its tangent point N1, second along the
 line of action; as complex numbers an involute's string of length l that leaves the base
 circle at the angle psi from N1 ends at (r_b + i l) exp(i psi).
@@ -37,6 +40,8 @@ class ContactPoint(NamedTuple):
 
 def off_path(pair: GearPair, s: Floats) -> tuple[Flags, Flags]:
     """(s < s_A, s > s_E), rounding aside: where the wheel's, the pinion's tip corner touches.
+
+    Where undercut ends the path there, its edge does.
 
     >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
     >>> [flag.tolist() for flag in off_path(pair, np.array([pair.path.c, pair.path.e + 1e-3]))]
@@ -98,8 +103,8 @@ def flank_ends(pair: GearPair) -> tuple[tuple[float, float], tuple[float, float]
     '22.87 mm'
     """
     return (
-        (pair.pinion.base_radius * pair.pinion.junction[1], pair.path.e),
-        (pair.wheel.base_radius * pair.wheel.junction[1], pair.line_of_action - pair.path.a),
+        (pair.pinion.base_radius * pair.pinion.junction[1], pair.tip_ends[1]),
+        (pair.wheel.base_radius * pair.wheel.junction[1], pair.line_of_action - pair.tip_ends[0]),
     )
 
 
@@ -117,19 +122,22 @@ def contact_point(pair: GearPair, s: ArrayLike, extended: bool = True) -> Contac
     """
     shape = np.shape(s)
     s_ = np.atleast_1d(np.asarray(s, dtype=float))
-    path, length = pair.path, pair.line_of_action
+    length = pair.line_of_action
     early, late = off_path(pair, s_)
-    rho1, rho2, gap = s_.copy(), length - s_, np.zeros_like(s_)
-    if not extended:
-        gap[late | early] = np.inf
-        return ContactPoint(rho1.reshape(shape), rho2.reshape(shape), gap.reshape(shape))
+    rho1, rho2, gap = s_.copy(), length - s_, np.where(early | late, np.inf, 0.0)
     first, second = flank_ends(pair)
-    for here, corner, own, other, (lowest, highest) in (
-        (late, pinion_point, rho1, rho2, second),
-        (early, wheel_point, rho2, rho1, first),
-    ):
-        tip = path.e if corner is pinion_point else length - path.a
-        string, advance = corner(pair, s_[here], rho=tip)
-        own[here], other[here] = tip, string
-        gap[here] = np.where((string < lowest) | (string > highest), np.inf, advance)
+    # whose edge it may be: a tip's, or that of the other gear's undercut
+    edges = (
+        (late, pinion_point, rho1, rho2, second, first[1]),
+        (early, wheel_point, rho2, rho1, first, second[1]),
+        (late, wheel_point, rho2, rho1, first, second[0]),
+        (early, pinion_point, rho1, rho2, second, first[0]),
+    )
+    count = (4 if pair.cut_short else 2) if extended else 0
+    for here, corner, own, other, (lowest, highest), edge in edges[:count]:
+        string, advance = corner(pair, s_[here], rho=edge)
+        advance[(string < lowest) | (string > highest)] = np.inf
+        nearer = advance <= gap[here]
+        at = tuple(axis[nearer] for axis in np.nonzero(here))
+        own[at], other[at], gap[at] = edge, string[nearer], advance[nearer]
     return ContactPoint(rho1.reshape(shape), rho2.reshape(shape), gap.reshape(shape))

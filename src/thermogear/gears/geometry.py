@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from thermogear.base import bounds
 from thermogear.base.errors import GeometryError, InputError
 from thermogear.base.materials import MATERIALS, Material
+from thermogear.base.units import ROUNDED, half_digit
 from thermogear.gears.trochoid import Trochoid
 
 Floats = NDArray[np.float64]
@@ -124,8 +125,10 @@ class Gear:
     ``face_width``, ``bore_radius``, ``tip_radius`` [m], ``roughness`` Ra [m] of the flanks.
     ``tip_radius`` left out is pitch radius + (h_aP + x) m; ``face_width`` left out is 5 modules
     and ``bore_radius`` 0.4 pitch radii (our choices). ``rack`` left out is that of ISO 53, with a
-    full round where a steep pressure angle leaves no room for its fillet. An undercut tooth is
-    refused unless ``allow_undercut``.
+    full round where a steep pressure angle leaves no room for its fillet; so is one whose fillet is
+    larger by the rounding of its digits. An undercut tooth meshes
+    where the undercut ends below the flank in use; one that is cut further up only with
+    ``allow_undercut``, and contact then begins where the undercut ends.
 
     >>> gear = Gear(20, 4e-3)
     >>> [f"{1e3 * r:.3f} mm" for r in (gear.pitch_radius, gear.base_radius, gear.tip_radius)]
@@ -154,7 +157,9 @@ class Gear:
         bounds.PRESSURE_ANGLE.require_number("pressure_angle", self.pressure_angle)
         bounds.PROFILE_SHIFT.require_number("profile_shift", self.profile_shift)
         largest = self.rack.largest_fillet_radius(self.pressure_angle)
-        if self.rack is _UNSTATED and 0.0 <= largest < self.rack.fillet_radius:
+        fillet = float(self.rack.fillet_radius)
+        rounding = math.inf if self.rack is _UNSTATED else min(half_digit(repr(fillet)), ROUNDED)
+        if 0.0 <= largest < fillet <= largest + rounding:
             object.__setattr__(self, "rack", replace(self.rack, fillet_radius=largest))
         if self.rack.fillet_radius > largest * (1.0 + 1e-12):
             raise GeometryError(
@@ -191,15 +196,6 @@ class Gear:
             object.__setattr__(self, name, value)
 
     def _check_tooth(self) -> None:
-        needed = self.minimum_profile_shift
-        if self.undercut and not self.allow_undercut:
-            advised = math.ceil(100.0 * needed) / 100.0
-            raise GeometryError(
-                "profile_shift",
-                f"{self.profile_shift:g} for {self.teeth} teeth",
-                why=f"needs x >= {needed:.3f}",
-                fix=f"use x >= {advised:.2f} or >= {self.minimum_teeth} teeth",
-            )
         if not self.root_radius > 0.0:
             raise GeometryError(
                 "profile_shift", f"{self.profile_shift:g}", why="the root circle vanishes"
@@ -219,7 +215,8 @@ class Gear:
                     "profile_shift",
                     f"{self.profile_shift:g} for {self.teeth} teeth",
                     why="the undercut cuts the tooth off",
-                    fix=f"raise the profile shift (no undercut from {needed:.3f})",
+                    fix="raise the profile shift "
+                    f"(no undercut from {self.minimum_profile_shift:.3f})",
                 )
         if not self.tip_thickness > 0.0:
             pointed = self.pointed_radius

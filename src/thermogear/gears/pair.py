@@ -11,9 +11,14 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
+import numpy as np
+
 from thermogear.base import bounds
 from thermogear.base.errors import GeometryError, ValidityWarning
 from thermogear.gears.geometry import LEFT_OUT, Gear, inverse_involute, involute, millimetres
+
+_CLEAR = 1e-5
+"""Modules by which a corner may seem to go into a tooth: what sampling leaves."""
 
 
 class PathPoints(NamedTuple):
@@ -32,6 +37,26 @@ class PathPoints(NamedTuple):
     c: float
     d: float
     e: float
+
+
+def tight_distance(pinion: Gear, wheel: Gear, shift: float | None = None) -> float:
+    """Centre distance a_w [m] without backlash; nan where no position meshes.
+
+    (r_b1 + r_b2)/cos(alpha_w), inv(alpha_w) = inv(alpha) + 2 tan(alpha)(x_1 + x_2)/(z_1 + z_2).
+    ``shift`` x_1 + x_2 [modules] left out is that of the gears. Source: ISO 21771-1.
+
+    >>> f"{1e3 * tight_distance(Gear(20, 4e-3), Gear(40, 4e-3)):.1f} mm"
+    '120.0 mm'
+    """
+    total = pinion.profile_shift + wheel.profile_shift if shift is None else shift
+    if total == 0.0:
+        return pinion.pitch_radius + wheel.pitch_radius
+    alpha = pinion.pressure_angle
+    widened = 2.0 * math.tan(alpha) * total / (pinion.teeth + wheel.teeth)
+    value = float(involute(alpha)) + widened
+    if not value > 0.0:
+        return math.nan
+    return (pinion.base_radius + wheel.base_radius) / math.cos(float(inverse_involute(value)))
 
 
 @dataclass(frozen=True)
@@ -68,7 +93,15 @@ class GearPair:
                     allowed=f"{shown[1]}, the pinion's",
                     why="both gears come from one rack",
                 )
-        tightest = self._zero_backlash_distance()
+        tightest = tight_distance(self.pinion, self.wheel)
+        if math.isnan(tightest):
+            shift = self.pinion.profile_shift + self.wheel.profile_shift
+            raise GeometryError(
+                "wheel.profile_shift",
+                f"{self.wheel.profile_shift:g}",
+                why=f"the sum of the shifts {shift:g} leaves no meshing position",
+                fix="raise a profile shift",
+            )
         if self.centre_distance is LEFT_OUT:
             object.__setattr__(self, "centre_distance", tightest)
         bounds.CENTRE_DISTANCE.require_number("centre_distance", self.centre_distance)
@@ -87,7 +120,8 @@ class GearPair:
                 f"{ratio:.4f}",
                 allowed=">= 1",
                 why="the next pair enters after the last one has left",
-                fix="lengthen the teeth, take more teeth or a smaller centre distance",
+                fix="lengthen the teeth, take more teeth or a smaller centre distance"
+                + ", or raise the profile shift of undercut ones" * self.cut_short,
             )
         if ratio < 1.2:
             warnings.warn(
@@ -96,24 +130,6 @@ class GearPair:
                 ValidityWarning,
                 stacklevel=3,
             )
-
-    def _zero_backlash_distance(self) -> float:
-        """a_w of the mesh without backlash: inv(a_w) = inv(a) + 2 tan(a)(x1 + x2)/(z1 + z2)."""
-        p, w = self.pinion, self.wheel
-        shift = p.profile_shift + w.profile_shift
-        value = float(involute(p.pressure_angle)) + 2.0 * math.tan(p.pressure_angle) * shift / (
-            p.teeth + w.teeth
-        )
-        if not value > 0.0:
-            raise GeometryError(
-                "wheel.profile_shift",
-                f"{w.profile_shift:g}",
-                why=f"the sum of the shifts {shift:g} leaves no meshing position",
-                fix="raise a profile shift",
-            )
-        if shift == 0.0:
-            return p.pitch_radius + w.pitch_radius
-        return (p.base_radius + w.base_radius) / math.cos(float(inverse_involute(value)))
 
     def _check_tips(self) -> None:
         length = self.line_of_action
@@ -125,7 +141,19 @@ class GearPair:
             lowest = other.base_radius * other.junction[1]
             # the tip may come down to the other's form circle, and never past its tangent point
             longest = length - lowest
-            if not reach <= longest * (1.0 + 1e-9):
+            too_long = reach > longest * (1.0 + 1e-9)
+            if too_long and other.undercut and not other.allow_undercut:
+                needed = other.minimum_profile_shift
+                raise GeometryError(
+                    f"{other_name}.profile_shift",
+                    f"{other.profile_shift:g} for {other.teeth} teeth",
+                    why=f"undercut takes {millimetres(reach - longest)} of the path of contact; "
+                    f"no undercut from x = {needed:.3f}",
+                    fix=f"use x >= {math.ceil(100.0 * needed) / 100.0:.2f} or >= "
+                    f"{other.minimum_teeth} teeth, or allow_undercut (`new --allow-undercut`) to "
+                    "have the rest of the path",
+                )
+            if too_long and not (other.undercut and self._clears(mine, other, reach)):
                 where = "tangent point" if reach > length else "form circle"
                 raise GeometryError(
                     f"{name}.tip_radius",
@@ -142,6 +170,30 @@ class GearPair:
                     allowed=f"< {millimetres(self.centre_distance - other.root_radius)}",
                     why=f"the tip hits the {other_name}'s root (clearance {millimetres(gap)})",
                 )
+
+    def _clears(self, mine: Gear, other: Gear, reach: float) -> bool:
+        """Whether the tip corner of ``mine`` stays out of the undercut tooth of ``other``.
+
+        ``reach`` [m]: string length of the corner. Its way past the tooth of ``other``, as
+        :mod:`thermogear.gears.corner` has it, is held against flank and fillet at 2001 places.
+        """
+        r_1, r_2, a = other.base_radius, mine.base_radius, self.centre_distance
+        # angle of the corner from the line of centres, as long as it is below the other's tip
+        ends = (a**2 + mine.tip_radius**2 - other.tip_radius**2) / (2.0 * a * mine.tip_radius)
+        beyond = math.acos(min(ends, 1.0)) * np.linspace(-1.0, 1.0, 2001)
+        turned = math.atan2(reach, r_2) - self.operating_pressure_angle + beyond
+        length = self.line_of_action
+        point = r_1 + r_2 + 1j * length - (r_2 + 1j * reach) * np.exp(-1j * turned)
+        axis = (length - reach + r_2 * turned) / r_1 - other.base_half_angle
+        x, y = other.fillet.point(np.linspace(0.5 * math.pi, other.junction[0], 2001))
+        radius = np.abs(point)
+        half = np.where(
+            radius < other.form_radius,
+            np.interp(radius, np.hypot(x, y), np.arctan2(x, y)),
+            other.half_thickness_angle(np.maximum(radius, other.form_radius)),
+        )
+        deepest = float(np.max(radius * (half - np.angle(point) + axis)))
+        return deepest <= _CLEAR * other.module
 
     @property
     def ratio(self) -> float:
@@ -171,12 +223,26 @@ class GearPair:
         return math.sqrt((self.centre_distance - both) * (self.centre_distance + both))
 
     @cached_property
+    def tip_ends(self) -> tuple[float, float]:
+        """Where the tips alone would have the path begin and end [m]."""
+        reach = [float(g.curvature_radius(g.tip_radius)) for g in (self.wheel, self.pinion)]
+        return self.line_of_action - reach[0], reach[1]
+
+    @cached_property
     def path(self) -> PathPoints:
-        """The points A..E of the path of contact."""
-        start = self.line_of_action - float(self.wheel.curvature_radius(self.wheel.tip_radius))
-        end = float(self.pinion.curvature_radius(self.pinion.tip_radius))
+        """The points A..E of the path of contact, which ends at a tip or where an undercut does."""
+        (start, end), p, w = self.tip_ends, self.pinion, self.wheel
+        if p.undercut:
+            start = max(start, p.base_radius * p.junction[1])
+        if w.undercut:
+            end = min(end, self.line_of_action - w.base_radius * w.junction[1])
         pitch = self.pinion.base_radius * math.tan(self.operating_pressure_angle)
         return PathPoints(start, end - self.base_pitch, pitch, start + self.base_pitch, end)
+
+    @property
+    def cut_short(self) -> bool:
+        """Whether undercut ends the path of contact before a tip does."""
+        return (self.path.a, self.path.e) != self.tip_ends
 
     @property
     def start_radii(self) -> tuple[float, float]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import fft, interpolate, ndimage, signal
+from scipy import fft, ndimage, signal
 
 from thermogear.base.errors import InputError
 from thermogear.signals.spectra import finite_record, positive_rate
@@ -12,29 +12,16 @@ from thermogear.signals.spectra import finite_record, positive_rate
 Floats = NDArray[np.float64]
 
 
-def tacho_times(pulses: ArrayLike, rate: float, level: float | None = None) -> Floats:
+def rising_edges(pulses: ArrayLike, *, rate: float, level: float | None = None) -> Floats:
     """Times [s] of the rising edges of a tacho signal, interpolated between samples.
 
     ``pulses`` [any unit], ``rate`` [samples/s], ``level`` [unit of the pulses].
     An edge counts when the signal rises through ``level`` (default: midway between its 2nd and
     98th percentile) after it has been below the lower quarter of its range: the hysteresis keeps
-    noise at the level from counting twice. Raises InputError when fewer than two edges are found.
+    noise at the level from counting twice.
 
-    >>> pulses = np.arange(400) % 100 >= 50
-    >>> tacho_times(pulses, 1000.0).round(4)
+    >>> rising_edges(np.arange(400) % 100 >= 50, rate=1000.0).round(4)
     array([0.0495, 0.1495, 0.2495, 0.3495])
-    """
-    kept = rising_edges(pulses, rate=rate, level=level)
-    if kept.size < 2:
-        raise InputError("tacho", f"{kept.size} edges", allowed=">= 2 rising edges")
-    return kept
-
-
-def rising_edges(pulses: ArrayLike, *, rate: float, level: float | None = None) -> Floats:
-    """What :func:`tacho_times` gives of the same, however few there are.
-
-    >>> rising_edges(np.zeros(10), rate=1000.0).size
-    0
     """
     values, per_second = finite_record(pulses), positive_rate(rate)
     bottom, top = np.percentile(values, [2.0, 98.0])
@@ -53,25 +40,6 @@ def rising_edges(pulses: ArrayLike, *, rate: float, level: float | None = None) 
             kept.append((edge + (middle - values[edge]) / rise) / per_second)
             last = int(edge)
     return np.asarray(kept, dtype=float)
-
-
-def tacho_angle(times: ArrayLike, pulses_per_turn: float, at: ArrayLike) -> Floats:
-    """Angle [turns] of the shaft at the times ``at`` [s], 0 at the first pulse.
-
-    ``times`` [s] of the pulses, ``pulses_per_turn`` [-]; a cubic spline through (pulse time, pulse
-    number/pulses per turn). Times outside the first and
-    last pulse give NaN: no angle is extrapolated.
-
-    >>> tacho_angle([0.0, 0.1, 0.2, 0.3], 2.0, [0.1, 0.25]).round(3)
-    array([0.5 , 1.25])
-    """
-    edges = finite_record(times, "tacho")
-    if edges.size < 4 or np.any(np.diff(edges) <= 0):
-        raise InputError("tacho", f"{edges.size} pulses", allowed=">= 4 pulses in rising order")
-    if not pulses_per_turn > 0:
-        raise InputError("pulses_per_turn", pulses_per_turn, allowed="> 0")
-    spline = interpolate.CubicSpline(edges, np.arange(edges.size) / pulses_per_turn)
-    return np.asarray(spline(np.asarray(at, dtype=float), extrapolate=False))
 
 
 def line_angle(x: ArrayLike, *, frequency: float, half_width: float) -> tuple[Floats, int]:
@@ -171,14 +139,3 @@ def _finer(values: Floats, factor: int) -> Floats:
     lines = factor * fft.rfft(closed, axis=-1)
     fine = fft.irfft(lines, n=factor * closed.shape[-1], axis=-1)
     return np.asarray(fine[..., : factor * (count - 1) + 1])
-
-
-def sideband_orders(*, centre: float, spacing: float, count: int) -> Floats:
-    """Orders of ``count`` sidebands on each side of ``centre``, lowest first, centre included.
-
-    >>> sideband_orders(centre=20.0, spacing=1.0, count=2)
-    array([18., 19., 20., 21., 22.])
-    """
-    if count < 0 or not spacing > 0:
-        raise InputError("spacing", f"{spacing:g} x {count}", allowed="> 0, count >= 0")
-    return np.asarray(centre + spacing * np.arange(-count, count + 1), float)

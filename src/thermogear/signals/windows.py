@@ -30,7 +30,7 @@ class Window:
     """A cosine-sum window; a line at a bin's centre keeps its amplitude.
 
     The coefficients are those of Harris (1978), flat top as in D'Antona and Ferrero (2006) and
-    ``scipy.signal.windows.flattop``. ``main_lobe`` is the half width of the main lobe in bins.
+    ``scipy.signal.windows.flattop``.
 
     >>> f"{Window('hann').noise_bandwidth:.2f} bins"
     '1.50 bins'
@@ -41,11 +41,6 @@ class Window:
     def __post_init__(self) -> None:
         if self.name not in _COSINES:
             raise InputError("window", repr(self.name), fix=nearest(str(self.name), WINDOWS))
-
-    @property
-    def main_lobe(self) -> int:
-        """Bins from the main lobe's centre to its first zero."""
-        return len(_COSINES[self.name])
 
     def samples(self, count: int) -> Floats:
         """The ``count`` weights over one DFT period, first one at phase 0."""

@@ -10,7 +10,8 @@ from thermogear.case.rexs.attributes import Read
 from thermogear.case.rexs.gearbox import Stage
 from thermogear.case.rexs.lines import READ, Line
 from thermogear.case.rexs.model import Component
-from thermogear.gears.geometry import Gear, inverse_involute, involute
+from thermogear.gears.geometry import Gear
+from thermogear.gears.pair import tight_distance
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,7 +29,8 @@ class Operating:
 class Draft:
     """What is found on the way to a case: lines, loads, and what could not be used.
 
-    ``train``: the sections of shafts and the bearings that lines came from.
+    ``train``: the sections of shafts and the bearings that lines came from; ``seats``: the sections
+    that gave bores.
     """
 
     stage: Stage
@@ -38,6 +40,7 @@ class Draft:
     loads: list[Operating] = field(default_factory=list)
     unused: list[str] = field(default_factory=list)
     train: list[Component] = field(default_factory=list)
+    seats: list[Component] = field(default_factory=list)
 
     def put(self, path: str, value: object, origin: str, note: str = "") -> None:
         """One more line."""
@@ -54,23 +57,13 @@ class Draft:
         return (("pinion", self.pinion), ("wheel", self.wheel))
 
 
-def tightest(made: Draft, *, module: float, angle: float) -> float | None:
-    """Centre distance [m] without backlash by the lines found so far; None where it has none."""
+def tightest(made: Draft, *, module: float, angle: float) -> float:
+    """Centre distance [m] without backlash by the lines found so far; nan where it has none."""
     values = {one.path: one.value for one in made.lines}
-    both = []
-    for name, _ in made.both:
-        shift = values.get(f"gears.{name}.profile_shift", 0.0)
-        teeth = values[f"gears.{name}.teeth"]
-        try:
-            gear = Gear(teeth, module, pressure_angle=angle, allow_undercut=True)
-            both.append((gear, float(shift)))
-        except InputError:
-            return None
-    (pinion, x1), (wheel, x2) = both
-    value = float(involute(angle)) + 2.0 * math.tan(angle) * (x1 + x2) / (
-        pinion.teeth + wheel.teeth
-    )
-    if not value > 0.0:
-        return None
-    base = pinion.base_radius + wheel.base_radius
-    return base / math.cos(float(inverse_involute(value)))
+    teeth = [values[f"gears.{name}.teeth"] for name, _ in made.both]
+    shift = sum(float(values.get(f"gears.{name}.profile_shift", 0.0)) for name, _ in made.both)
+    try:
+        pinion, wheel = (Gear(z, module, pressure_angle=angle) for z in teeth)
+        return tight_distance(pinion, wheel, shift)
+    except InputError:
+        return math.nan

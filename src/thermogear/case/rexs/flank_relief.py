@@ -190,6 +190,6 @@ def _end(
     apart = given.si if given is not None else tightest(made, module=module, angle=angle)
     teeth = sum(reader.whole(one, "number_of_teeth") or 0 for _, one in made.both)
     base = 0.5 * module * teeth * math.cos(angle)
-    if apart is None or apart <= base:
+    if not apart > base:
         raise InputError("center_distance", "none above the base circles", allowed="> 0 mm")
     return math.sqrt((apart - base) * (apart + base)) - tip(other, component)

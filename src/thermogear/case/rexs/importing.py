@@ -293,7 +293,8 @@ def _root(one: Line) -> str:
 def _used(model: Model, made: Draft) -> list[Component]:
     """The components that a stage takes its case from."""
     stage = made.stage.component
-    found: list[Component | None] = [stage, gearbox.lubricant_of(model, stage), *made.train]
+    found: list[Component | None] = [stage, gearbox.lubricant_of(model, stage)]
+    found += [*made.train, *made.seats]
     of_gear = gearbox.shafts_of_gears(model)
     for _, gear in made.both:
         flanks = gearbox.flanks_of(model, gear)

@@ -55,6 +55,36 @@ def train_lines(reader: Reader, made: Draft) -> None:
         made.train += one.used
 
 
+def bore_lines(reader: Reader, made: Draft, module: float) -> None:
+    """Put the bores: the diameter of the shaft's section under each gear, below its root circle."""
+    values = {one.path: one.value for one in made.lines}
+    of_gear = gearbox.shafts_of_gears(reader.model)
+    for name, gear in made.both:
+        shaft = reader.model.at(of_gear.get(gear.id))
+        parts = [] if shaft is None else _sections(reader, shaft)
+        if shaft is None or not parts:
+            continue
+        cut = values.get(f"gears.{name}.rack.dedendum", values.get("gears.rack.dedendum", 1.25))
+        depth = cut - values.get(f"gears.{name}.profile_shift", 0.0)
+        root = module * (values[f"gears.{name}.teeth"] - 2.0 * depth)
+        try:
+            u = _place_of(reader, shaft, gear, "u_coordinate_on_shaft")
+            under = [one for one in _pieces(reader, parts) if one[0] <= u <= one[0] + one[1]]
+            if not under:
+                raise InputError(shaft.called, f"no section at {_mm(u)}, where the gear is")
+            diameter = 1e-3 * float(under[0][2]["diameter"].removesuffix(" mm"))
+            if diameter >= root:
+                raise InputError(
+                    shaft.called, _mm(diameter), allowed=f"< {_mm(root)}, the root circle"
+                )
+        except InputError as error:
+            made.unused.append(f"bore of the {name}: {error}")
+            continue
+        note = f"half the diameter of {shaft.called} under the gear"
+        made.put(f"gears.{name}.bore_radius", _mm(0.5 * diameter), DERIVED, note)
+        made.seats += parts
+
+
 def without_train(made: Draft, error: InputError) -> None:
     """Take shafts and bearings out again, with what was wrong with them."""
     made.lines = [one for one in made.lines if not one.path.startswith(("shafts[", "bearings["))]
@@ -82,16 +112,7 @@ def _sections(reader: Reader, shaft: Component) -> list[Component]:
 def _shaft(reader: Reader, name: str, gear: Component, shaft: Component, *, mirror: bool) -> _Found:
     """The shaft from its least u on; with ``mirror`` from its greatest."""
     parts = _sections(reader, shaft)
-    pieces: list[tuple[float, float, dict[str, str], bool]] = []
-    at = 0.0
-    for part in parts:
-        length = _needed(reader, part, "length")
-        start = reader.number(part, "u_coordinate_on_shaft")
-        at = at if start is None else start.si
-        sizes, cone = _sizes(reader, part)
-        pieces.append((at, length, {"length": _mm(length), **sizes}, cone))
-        at += length
-    pieces.sort(key=lambda one: one[0])
+    pieces = _pieces(reader, parts)
     if not pieces:
         raise InputError(f"{shaft.called}", "no section", allowed="one or more")
     for one, following in pairwise(pieces):
@@ -136,6 +157,22 @@ def _shaft(reader: Reader, name: str, gear: Component, shaft: Component, *, mirr
             allowed="two or more",
         )
     return _Found(rows, bearings, used)
+
+
+def _pieces(
+    reader: Reader, parts: list[Component]
+) -> list[tuple[float, float, dict[str, str], bool]]:
+    """Start u and length [m], sizes and whether it is a cone, of all sections along the shaft."""
+    found = []
+    at = 0.0
+    for part in parts:
+        length = _needed(reader, part, "length")
+        start = reader.number(part, "u_coordinate_on_shaft")
+        at = at if start is None else start.si
+        sizes, cone = _sizes(reader, part)
+        found.append((at, length, {"length": _mm(length), **sizes}, cone))
+        at += length
+    return sorted(found, key=lambda one: one[0])
 
 
 def _sizes(reader: Reader, part: Component) -> tuple[dict[str, str], bool]:

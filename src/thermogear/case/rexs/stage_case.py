@@ -16,7 +16,7 @@ from thermogear.case.rexs.flank_relief import relief_lines
 from thermogear.case.rexs.gearbox import Stage
 from thermogear.case.rexs.lines import DERIVED, GIVEN, READ, Line
 from thermogear.case.rexs.model import Component
-from thermogear.case.rexs.shaft_train import train_lines
+from thermogear.case.rexs.shaft_train import bore_lines, train_lines
 from thermogear.case.rexs.substances import material_lines, oil_lines
 from thermogear.case.rexs.tolerances import accuracy_lines, backlash_lines
 from thermogear.gears.geometry import Rack
@@ -86,6 +86,7 @@ def draft(
     accuracy_lines(reader, made)
     backlash_lines(reader, made)
     train_lines(reader, made)
+    bore_lines(reader, made, module)
     _operating(made, loads, driver, teeth, speed, torque)
     if drive.changed:
         made.lines = [
@@ -180,7 +181,11 @@ def _rack_basics(reader: Reader, made: Draft) -> tuple[float, float]:
     ):
         module = _agreed(made, _all(reader, holders, attribute), attribute)
         if module:
-            made.read("gears.module", module[1], f"{attribute} of {module[0].called}")
+            said, note = module[1], f"{attribute} of {module[0].called}"
+            if said.unit.startswith("in"):  # which a case file takes for a diametral pitch
+                note += f", {said.text}"
+                said = replace(said, number=_tidy(1e3 * said.si), unit="mm")
+            made.read("gears.module", said, note)
             break
     else:
         raise InputError(
@@ -356,7 +361,7 @@ def _centre_distance(reader: Reader, made: Draft, module: float, angle: float) -
         value, text = apart, f"{plain(round(1e3 * apart, 9))} mm"
         origin, note = DERIVED, "distance of the axes by their support vectors"
     tight = tightest(made, module=module, angle=angle)
-    if tight is not None and 1e-12 * value < tight - value <= _ROUNDED * module:
+    if 1e-12 * value < tight - value <= _ROUNDED * module:
         made.put(
             "gears.centre_distance",
             f"{plain(1e3 * tight)} mm",

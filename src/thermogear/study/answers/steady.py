@@ -37,7 +37,7 @@ def mesh(asked: Asked) -> Iterator[Answer]:
         MESH, "contact_ratio", f"The contact ratio is {pair.contact_ratio:.3f}.", pair.contact_ratio
     )
     form = [
-        1e6 * (start - gear.form_radius)
+        max(1e6 * (start - gear.form_radius), 0.0)
         for start, (_, gear) in zip(pair.start_radii, gears, strict=True)
     ]
     least = int(np.argmin(form))
@@ -46,7 +46,9 @@ def mesh(asked: Asked) -> Iterator[Answer]:
         MESH,
         "form_clearance",
         f"The flank in use begins {form[least]:.0f} µm above the involute's end on the "
-        f"{gears[least][0]}" + (f"; undercut: {' and '.join(cut)}." if cut else "; no undercut."),
+        f"{gears[least][0]}"
+        + (f"; undercut: {' and '.join(cut)}" if cut else "; no undercut")
+        + (", which shortens the path of contact." if pair.cut_short else "."),
         form[least],
     )
     tips = [gear.tip_thickness / module for _, gear in gears]

@@ -20,7 +20,7 @@ from thermogear.base.vocabulary import STATUS
 from thermogear.case.case import GearCase
 from thermogear.case.shaft_plan import TrainPlan
 from thermogear.case.thermal_state import HOT, UNDEFORMED, ThermalState
-from thermogear.gears.pair import GearPair
+from thermogear.gears.pair import GearPair, tight_distance
 from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.excite import EXCITES, excitations
 from thermogear.mesh.model import MeshModel
@@ -251,7 +251,7 @@ def moved_apart(pair: GearPair, growth: float) -> GearPair:
 
     Centres that come closer than the mesh without backlash stay at it.
     """
-    tightest = GearPair(pair.pinion, pair.wheel).centre_distance
+    tightest = tight_distance(pair.pinion, pair.wheel)
     try:
         return replace(pair, centre_distance=max(pair.centre_distance + growth, tightest))
     except GeometryError:
