@@ -13,7 +13,8 @@ import numpy as np
 import pytest
 
 from conftest import Compared
-from thermogear.analysis.any_motion import Search, settle
+from thermogear.analysis.any_motion import settle
+from thermogear.analysis.walk import Search
 from thermogear.base.errors import ConvergenceError
 from thermogear.dynamics.return_map import Stretch, Visit, stretched
 
@@ -87,7 +88,7 @@ def test_a_slow_spiral_is_told_by_its_multipliers(decay: float) -> None:
     found = settle(Turning(nu=0.1234, rho=rho, slowest=rho), start)
     assert (found.name, found.period) == ("period-1", 1)
     # long before it has come near by itself
-    assert found.used <= 2048
+    assert found.discarded <= 2048
     assert found.away > 0.1
     assert abs(abs(found.multiplier) - rho) < 1e-9
     # the same decay of a model that decays fast at rest is near one

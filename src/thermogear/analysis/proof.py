@@ -7,6 +7,7 @@ from dataclasses import KW_ONLY, dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.analysis.agreement import same_orbit
 from thermogear.analysis.lyapunov import Lyapunov
 from thermogear.analysis.orbits import Orbit, shoot
 from thermogear.analysis.section import units_of
@@ -55,6 +56,15 @@ class Label:
 
     def __str__(self) -> str:
         return self.words
+
+    def alike(self, other: Label) -> bool:
+        """Whether two labels are of one motion: the same name and, with orbits, the same orbit."""
+        named = (self.name, self.period) == (other.name, other.period)
+        return named and same_orbit(self.orbit, other.orbit)
+
+    def left_open(self, reason: str, discarded: int) -> Label:
+        """The same start, undecided after so many periods."""
+        return Label("undecided", 0, reason, discarded)
 
 
 def proves_chaos(proof: Lyapunov) -> bool:
