@@ -135,9 +135,9 @@ def test_centre_distance_closes_on_its_own_mesh(compared: Compared) -> None:
 
 def test_hot_bearings_have_less_clearance_and_given_rings_show() -> None:
     rings = made("statics").groups["bearings"]
-    ball = rings["radial_clearance"].sel(bearing="ball").values
+    ball = rings["radial_internal_clearance"].sel(bearing="ball").values
     assert np.all(ball[1] < ball[0])
-    assert np.isnan(rings["radial_clearance"].sel(bearing="pinion 2").values).all()
+    assert np.isnan(rings["radial_internal_clearance"].sel(bearing="pinion 2").values).all()
     assert rings["inner_ring_temperature"].sel(bearing="ball").values[1] == pytest.approx(353.15)
     assert np.all(rings["static_safety"].sel(bearing="ball").values > 1.0)
 
@@ -212,8 +212,8 @@ def test_answers_ask_about_the_shafts() -> None:
     tilt = asked["tilt"]
     assert tilt.value is not None
     assert 0.0 < tilt.value < 1.0
-    clearance = made("statics").groups["bearings"]["radial_clearance"].values[1, 1]
-    assert asked["bearing_clearance"].value == pytest.approx(2e6 * np.nanmin(clearance), abs=1e-6)
+    clearance = made("statics").groups["bearings"]["radial_internal_clearance"].values[1, 1]
+    assert asked["bearing_clearance"].value == pytest.approx(1e6 * np.nanmin(clearance), abs=1e-6)
 
 
 def test_a_case_without_shafts_says_what_to_write() -> None:
@@ -250,7 +250,7 @@ def test_a_point_that_did_not_settle_is_a_status_and_no_number(
     assert mesh["status"].values[:, 1] == pytest.approx(STATUS.index("not_converged"))
     for group in result.groups.values():
         for name, values in group.data_vars.items():
-            if "operating" in values.dims and name not in ("status", "radial_clearance"):
+            if "operating" in values.dims and name not in ("status", "radial_internal_clearance"):
                 numbers = values.isel(operating=1).values
                 assert not np.isfinite(numbers).any() or str(name).endswith("temperature"), name
     assert sum("did not settle" in one.text for one in result.notices) == 2

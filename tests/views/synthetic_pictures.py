@@ -368,7 +368,9 @@ def of_moving_trains() -> dict[str, Picture]:
             "mesh_force_line": ((*point, "line_order"), rng.uniform(0.01, 5.0, (2, 1, 8))),
             "mean_bearing_force": ((*point, "bearing"), rng.uniform(1.0, 2.0, (2, 1, 2))),
             "mean_bearing_load": ((*point, "bearing", "axis"), rng.normal(size=(2, 1, 2, 2))),
-            "radial_clearance": ((*point, "bearing"), [[[5e-6, np.nan]], [[-2e-6, np.nan]]]),
+            "radial_internal_clearance": (
+                (*point, "bearing"), [[[10e-6, np.nan]], [[-4e-6, np.nan]]],
+            ),
             "journal_path": (
                 (*point, "bearing", "axis", "sample"), rng.normal(0.0, 1e-5, (2, 1, 2, 2, 32)),
             ),
@@ -414,8 +416,8 @@ def of_moving_trains() -> dict[str, Picture]:
 def of_shafts() -> dict[str, Picture]:
     heat, two = {"state": ["undeformed", "hot"]}, ["left", "right"]
     rings = made(
-        "state operating bearing", "bearing_load", radial_clearance=rising("state", "operating",
-        "bearing", low=-1e-6, high=5e-6),
+        "state operating bearing", "bearing_load",
+        radial_internal_clearance=rising("state", "operating", "bearing", low=-1e-6, high=5e-6),
     ).assign_coords(heat | {"bearing": two})  # fmt: skip
     lines = (
         made("state operating pinion_position", "pinion_x", "pinion_y")

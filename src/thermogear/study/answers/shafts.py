@@ -112,17 +112,17 @@ def _loads(asked: Asked, hot: TrainState, loads: np.ndarray, at: str) -> Answer:
 
 
 def _clearance(asked: Asked, cold: TrainState, hot: TrainState, at: str) -> Answer:
-    if np.isnan(hot.clearances).all():
+    if np.isnan(hot.half_plays).all():
         return undecided(CLEARANCE, "bearing_clearance", "no bearing says its clearance", at=at)
-    least = int(np.nanargmin(hot.clearances))
-    play, before = 2e6 * hot.clearances[least], 2e6 * cold.clearances[least]
+    least = int(np.nanargmin(hot.half_plays))
+    play, before = 2e6 * hot.half_plays[least], 2e6 * cold.half_plays[least]
     assert asked.case.train is not None
     name = asked.case.train.bearing_names[least]
     return answer(
         CLEARANCE,
         "bearing_clearance",
-        f"Bearing {name} has least play: of {before:.1f} µm mounted cold {play:.1f} µm are left "
-        "hot" + ("; it is preloaded." if play < 0.0 else "."),
+        f"Bearing {name} has least radial internal clearance: of {before:.1f} µm mounted cold "
+        f"{play:.1f} µm are left hot" + ("; it is preloaded." if play < 0.0 else "."),
         play,
         at=at,
     )

@@ -217,8 +217,8 @@ def _table(case: GearCase, found: Sequence[Sequence[Moved]]) -> xr.Dataset:
         "bearing_force": ((*POINT, "bearing", "sample"), force, "N", "force on the bearing"),
         "journal_path": ((*POINT, "bearing", "axis", "sample"), over(
             lambda one, r: r.journal_path[:shown].transpose(1, 2, 0), count, 2, shown)),
-        "radial_clearance": ((*POINT, "bearing"), np.reshape(
-            [one.state.clearances for one in flat], (*shape, count))),
+        "radial_internal_clearance": ((*POINT, "bearing"), 2.0 * np.reshape(
+            [one.state.half_plays for one in flat], (*shape, count))),
         "mean_bearing_load": ((*POINT, "bearing", "axis"), over(
             lambda one, r: r.bearing_force.mean(axis=0), count, 2)),
         "bearing_contact_share": ((*POINT, "bearing"), over(
@@ -268,6 +268,10 @@ def _table(case: GearCase, found: Sequence[Sequence[Moved]]) -> xr.Dataset:
         "coordinates": (POINT, np.array(
             [0 if one.train is None else one.train.model.size for one in flat]).reshape(shape), "1",
             "coordinates of the reduced train"),
+        "followed_periods": (POINT, [
+            [0 if m.motion is None else m.motion.followed * cycle for m in row] for row in found]),
+        "followed_starts": (POINT, [
+            [0 if m.motion is None else m.motion.starts for m in row] for row in found]),
         "multiplier_modulus": (POINT, _of(flat, lambda m: abs(m.multiplier)).reshape(shape)),
         "used_periods": (POINT, _of(flat, lambda m: m.discarded).reshape(shape), "1",
                          "periods of the return map run until it was known"),

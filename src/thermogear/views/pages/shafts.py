@@ -67,7 +67,7 @@ def _statics(result: Result) -> Page:
             partial(plots.loads, rings),
             wide=True,
         ),
-        *([] if np.isnan(rings["radial_clearance"].values).all() else [_clearances(rings)]),
+        *([] if np.isnan(plots.internal_clearance(rings).values).all() else [_clearances(rings)]),
         Shown(
             "deflection",
             f"Deflection at {names[last]}",
@@ -89,8 +89,8 @@ def _clearances(rings: xr.Dataset) -> Shown:
     return Shown(
         "clearances",
         "Clearance of the bearings",
-        "Radial clearance as mounted, cold and hot: half of the play. Below the dashed line "
-        "the bearing is preloaded.",
+        "Radial internal clearance (ISO 5753-1) as mounted, cold and hot: the whole play. Below "
+        "the dashed line the bearing is preloaded.",
         partial(plots.clearances, rings),
         wide=True,
     )
@@ -122,7 +122,7 @@ def _mesh_table(data: xr.Dataset, names: list[str]) -> Table:
 
 def _ring_table(data: xr.Dataset, names: list[str]) -> Table:
     head = [
-        "state", "operating point", "bearing", "load [N]", "radial clearance [µm]",
+        "state", "operating point", "bearing", "load [N]", "radial internal clearance [µm]",
         "journal moves [µm]", "stiffness x [N/µm]", "stiffness y [N/µm]", "inner ring [°C]",
         "outer ring [°C]", "static safety", "life L10 [h]",
     ]  # fmt: skip
@@ -138,7 +138,7 @@ def _ring_table(data: xr.Dataset, names: list[str]) -> Table:
                         name,
                         bearing,
                         _told(one["bearing_load"], 1.0, 0),
-                        _told(one["radial_clearance"], 1e6, 2),
+                        _told(plots.internal_clearance(one), 1e6, 2),
                         _told(moved, 1e6, 2),
                         _told(one["bearing_stiffness_x"], 1e-6, 1),
                         _told(one["bearing_stiffness_y"], 1e-6, 1),
@@ -192,12 +192,12 @@ def _static_lines(result: Result) -> list[str]:
     found = []
     for o, name in enumerate(names):
         found.append(name)
-        found.append(f"  {'bearing':<16}{'load [N]':>20}{'radial clearance [um]':>26}")
+        found.append(f"  {'bearing':<16}{'load [N]':>20}{'radial internal clearance [um]':>32}")
         for b, bearing in enumerate(names_of(rings, "bearing")):
             both = rings.isel(operating=o, bearing=b)
             load = " -> ".join(_told(v, 1.0, 0) for v in both["bearing_load"].values)
-            gap = " -> ".join(_told(v, 1e6, 1) for v in both["radial_clearance"].values)
-            found.append(f"  {bearing:<16}{load:>20}{gap:>26}")
+            gap = " -> ".join(_told(v, 1e6, 1) for v in plots.internal_clearance(both).values)
+            found.append(f"  {bearing:<16}{load:>20}{gap:>32}")
         one = mesh.isel(operating=o)
         apart = " -> ".join(_told(v, 1e6, 2) for v in one["centre_distance_growth"].values)
         tilt = " -> ".join(_told(v, 1e6, 2) for v in one["misalignment_across_face"].values)

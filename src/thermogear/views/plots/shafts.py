@@ -145,15 +145,22 @@ def loads(data: xr.Dataset) -> Picture:
     return Picture([[panel]], size=(WIDE, 3.2))
 
 
+def internal_clearance(data: xr.Dataset) -> xr.DataArray:
+    """Radial internal clearance [m], the whole play; older versions stored half of it."""
+    if "radial_internal_clearance" in data:
+        return data["radial_internal_clearance"]
+    return 2.0 * data["radial_clearance"]
+
+
 def clearances(data: xr.Dataset) -> Picture:
-    """Radial clearance of every bearing, cold and hot; below zero it is a preload."""
-    panel = Panel(Axis(""), Axis("radial clearance [µm]"))
+    """Radial internal clearance of every bearing, cold and hot; below zero it is a preload."""
+    panel = Panel(Axis(""), Axis("radial internal clearance [µm]"))
     names = names_of(data, "bearing")
     for state, name in enumerate(names_of(data, "state")):
         for point in range(data.sizes["operating"]):
             panel.points(
                 np.arange(len(names)) + (state - 0.5) * 0.25,
-                1e6 * data["radial_clearance"].values[state, point],
+                1e6 * internal_clearance(data).values[state, point],
                 colour=STATES.get(name, INK),
                 marker="circle" if state else "square",
                 open=not state,
