@@ -440,7 +440,9 @@ def of_shafts() -> dict[str, Picture]:
     curves = made("state stiffness_level pinion_speed mode", "natural_frequency").assign_coords(
         heat | {"pinion_speed": rising("pinion_speed", low=1.0, high=300.0)[1]}
     )
-    met = made("state stiffness_level line mode", "critical_speed", "resonant_force").assign_coords(
+    met = made(
+        "state stiffness_level line mode", "critical_speed", "resonant_force", "lift_off_speed"
+    ).assign_coords(
         heat | {"line": ["mesh", "shaft", "elements"], "order": ("line", [20.0, 1.0, 3.5])}
     )
     answer = made(

@@ -297,20 +297,21 @@ def strain_shares(train: LinearTrain, shape: ArrayLike) -> dict[str, Floats]:
 def resonant_forces(
     train: LinearTrain, shape: ArrayLike, *, frequency: ArrayLike, force: ArrayLike
 ) -> Floats:
-    """Greatest force on a bearing [N] of every mode alone at its resonance, (modes,).
+    """Force on each bearing, and last that of the teeth [N], of every mode alone at its resonance.
 
-    q = phi (phi^H f)/(i w phi^H C phi): ``shape`` phi (n, modes), ``frequency`` w [rad/s] and
-    ``force`` f (modes, n) [N, N m] at it. Infinite where nothing damps.
+    (count + 1, modes). q = phi (phi^H f)/(i w phi^H C phi): ``shape`` phi (n, modes), ``frequency``
+    w [rad/s] and ``force`` f (modes, n) [N, N m] at it. Infinite where nothing damps.
     """
     q, w = np.asarray(shape), np.asarray(frequency, dtype=float)
     push = np.sum(q.conj() * np.asarray(force, dtype=complex).T, axis=0)
     loss = _energy(train.damping, q) + train.slip_damping(w).real * _motor_turn(train, q)
-    felt = np.zeros(w.size)
-    for place, k in zip(train.assembly.bearings, train.bearings, strict=True):
-        each = np.linalg.norm(np.asarray(k) @ (place.directions.T @ q), axis=0)
-        felt = np.maximum(felt, each)
+    felt = [
+        np.linalg.norm(np.asarray(k) @ (place.directions.T @ q), axis=0)
+        for place, k in zip(train.assembly.bearings, train.bearings, strict=True)
+    ]
+    felt.append(np.abs(train.mesh * (train.assembly.drive @ q)))
     with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray(felt * np.abs(push) / (w * loss))
+        return np.asarray(np.array(felt) * np.abs(push) / (w * loss))
 
 
 def _motor_turn(train: LinearTrain, q: NDArray[np.complex128] | Floats) -> Floats:

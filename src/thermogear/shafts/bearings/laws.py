@@ -145,9 +145,9 @@ class ElementLaw:
     """Sum over the rolling elements: Q_i = K <x cos psi_i + y sin psi_i - c_r>^n.
 
     psi_i = ``cage_angle`` + 2 pi i/Z. ``coefficient`` K [N/m^n] of one element between both races,
-    ``elements`` Z, ``exponent`` n (1.5 balls, 10/9 rollers), ``clearance`` c_r [m], half of the play;
-    below zero it is a preload, and every element is loaded at u = 0. Truth: shafts without a cage angle
-    in the load direction bend a little to its side.
+    ``elements`` Z, ``exponent`` n (1.5 balls, 10/9 rollers), ``clearance`` c_r [m], half of the
+    play; below zero it is a preload, and every element is loaded at u = 0. Truth: shafts without a
+    cage angle in the load direction bend a little to its side.
 
     >>> law = ElementLaw(elements=9, coefficient=8e9, exponent=1.5, clearance=6e-6)
     >>> f"{-law.force([2.737013689e-5, 0.0])[0]:.3f} N"

@@ -13,6 +13,7 @@ from thermogear.results.answer import Answer
 from thermogear.study.answers.asked import Asked, answer, undecided
 
 if TYPE_CHECKING:
+    from thermogear.study.shafts.campbell import Critical
     from thermogear.study.shafts.state import TrainState
 
 CRITICAL, LOADS = "Which speeds are critical on the shafts?", "How large are the bearing loads?"
@@ -67,7 +68,9 @@ def _critical(asked: Asked, hot: TrainState, at: str) -> Answer:
     own = np.unique(asked.case.stated.speed)
     found = critical_speeds(asked.case, hot, 1.5 * float(own.max()))
     loads = np.linalg.norm(hot.rest.bearing_force, axis=-1)
-    strong = [one for one in found if one.force >= STRONG * float(loads.max())]
+    # a resonance that lifts a bearing off is one of the strongest, however strong it is
+    least = STRONG * float(loads.max())
+    strong = [one for one in found if one.force >= least or np.isfinite(one.lift_off)]
     if not strong:
         return answer(
             CRITICAL,
@@ -78,17 +81,19 @@ def _critical(asked: Asked, hot: TrainState, at: str) -> Answer:
             at=at,
         )
     away = np.abs(own[:, None] / np.array([one.speed for one in strong]) - 1.0)
-    ranked = sorted(strong, key=lambda one: -one.force)[:TOLD]
+    ranked = sorted(strong, key=lambda one: -np.nan_to_num(one.force, nan=np.inf))[:TOLD]
     told = ", ".join(
         f"{one.speed / RPM:.0f} rpm ({one.order} meets {one.frequency / (2.0 * np.pi):.0f} Hz, "
-        f"{one.mostly}, {_felt(one.force)})"
+        f"{one.mostly}, {_felt(one)})"
         for one in sorted(ranked, key=lambda one: one.speed)
     )
     return answer(CRITICAL, "critical_speed", f"Critical: {told}.", 100.0 * away.min(), at=at)
 
 
-def _felt(force: float) -> str:
-    return f"{force:.0f} N on a bearing" if np.isfinite(force) else "undamped"
+def _felt(met: Critical) -> str:
+    if np.isfinite(met.lift_off):
+        return f"a bearing lifts off or the teeth part from {met.lift_off / RPM:.0f} rpm on"
+    return f"{met.force:.0f} N on a bearing" if np.isfinite(met.force) else "undamped"
 
 
 def _loads(asked: Asked, hot: TrainState, loads: np.ndarray, at: str) -> Answer:

@@ -30,10 +30,10 @@ CAPTION = (
 ORBITS = (
     "Above: where each journal is in its outer ring, seen along the shafts. Inside the dashed "
     "circle, as wide across as the radial internal clearance of that state of heat, nothing holds "
-    "it; what reaches beyond is the contact's deflection. Of rolling elements the free space is the polygon around the "
-    "circle, a side for each element. A preloaded bearing has none. The arrow is the mean force "
-    "on the ring. Below: the same paths, each about its own mean, enlarged; the arrow is the way "
-    "it goes, the dot its place at mesh phase 0, which the dial turns on."
+    "it; what reaches beyond is the contact's deflection. Of rolling elements the free space is "
+    "the polygon around the circle, a side for each element. A preloaded bearing has none. The "
+    "arrow is the mean force on the ring. Below: the same paths, each about its own mean, enlarged; "
+    "the arrow is the way it goes, the dot its place at mesh phase 0, which the dial turns on."
 )
 FORCES = (
     "Amount of the force on each bearing's ring, damping not in it. Dashed: the amount of the "
