@@ -24,6 +24,7 @@ from thermogear.study.shafts.campbell import campbell, orders_of
 from thermogear.study.shafts.modes import modes
 from thermogear.study.shafts.state import Meshing, moved_apart, places_of, settled
 from thermogear.study.shafts.statics import statics
+from thermogear.views.pages.shafts import criticals, page
 from thermogear.views.write import save
 
 CASE = """
@@ -195,6 +196,32 @@ def test_the_response_peaks_at_critical_speeds() -> None:
     step = speed[1] - speed[0]
     for one in met[inside]:
         assert np.abs(peaks - one).min() < 3.0 * step + 0.02 * one
+
+
+def test_no_linear_force_is_told_above_the_static_load() -> None:
+    """There a bearing lifts off or the teeth part: at a resonance and anywhere on the way to it."""
+    result = made("campbell")
+    critical, answer = result.groups["critical"], result.groups["response"]
+    rest, rings = made("statics").groups["statics"], made("statics").groups["bearings"]
+    load = rings["bearing_load"].values[:, -1]
+    felt = np.hypot(*(answer[f"bearing_force_{c}"].values for c in "xy"))
+    assert np.nanmax(felt / load[:, None, None]) <= 1.0
+    teeth = answer["dynamic_mesh_force"].values / rest["mesh_force"].values[:, -1, None, None]
+    assert np.nanmax(teeth) <= 1.0
+    force, lifts = critical["resonant_force"].values, critical["lift_off_speed"].values
+    assert np.nanmax(force / load.max(axis=1)[:, None, None, None]) <= 1.0
+    lifted = np.isfinite(lifts)
+    assert lifted.any()
+    assert np.isnan(force[lifted]).all()
+    assert np.all(lifts[lifted] < critical["critical_speed"].values[lifted])
+    # in the page, the terminal and the file the speed stands where the force would
+    rows = list(criticals(result))
+    words = [line for line in page(result).lines() if "not valid" in line]
+    told = [one for one in rows if one["lifts_off_from_rpm"] is not None]
+    assert len(words) == len(told) > 0
+    for line, one in zip(words, told, strict=True):
+        assert one["bearing_force_N"] is None
+        assert f"not valid: lifts off from {one['lifts_off_from_rpm']:.0f} rpm" in line
 
 
 def test_orders_name_mesh_shafts_and_elements() -> None:

@@ -314,6 +314,20 @@ def resonant_forces(
         return np.asarray(np.array(felt) * np.abs(push) / (w * loss))
 
 
+def lift_off(speed: ArrayLike, *, ratio: ArrayLike, excess: ArrayLike) -> Floats:
+    """Speed below a resonance at which the force of its mode alone reaches ``1/excess`` of its top.
+
+    2 zeta/sqrt((1 - r^2)^2 + (2 zeta r)^2) = 1/excess at r = lift-off over resonance ``speed``;
+    ``ratio`` zeta [-]. The push is taken as constant. 0 where at rest it is as large already, nan
+    where ``excess`` is below 1.
+    """
+    wide, high = 2.0 * np.asarray(ratio), np.asarray(excess, dtype=float)
+    y = 1.0 - 0.5 * wide**2
+    with np.errstate(invalid="ignore"):
+        below = np.maximum(y - np.sqrt(y**2 - 1.0 + (wide * high) ** 2), 0.0)
+    return np.where(high >= 1.0, np.asarray(speed) * np.sqrt(below), np.nan)
+
+
 def _motor_turn(train: LinearTrain, q: NDArray[np.complex128] | Floats) -> Floats:
     """|motor's angle|^2 of every mode where it has a characteristic, else 0."""
     if not train.assembly.slip[0]:

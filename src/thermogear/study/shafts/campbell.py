@@ -21,6 +21,7 @@ from thermogear.shafts.linear import (
     LinearTrain,
     Modes,
     damping_ratios,
+    lift_off,
     resonant_forces,
     strain_shares,
 )
@@ -319,33 +320,27 @@ def _critical(
 
     Speeds [rad/s], forces [N]. An undamped mode has infinite amplification, or nan where the order
     does not drive it. The linear train holds while the dynamic force stays below the static load
-    in every bearing, and in the teeth. Beyond, the force is nan and the lift-off a speed: where
-    F 2 zeta/sqrt((1 - r^2)^2 + (2 zeta r)^2) of the mode alone, r = speed over resonance, reaches
-    the load, 0 where it does so at rest. A preloaded bearing has no clearance to lift off into.
+    in every bearing, and in the teeth. Beyond, the force is nan and the lift-off a speed.
     """
     speed, shape = train.critical(order.order)
     w = speed * order.order
     forces = resonant_forces(train, shape, frequency=w, force=pushes(plan, state, order, w))
     share = participation(train, order, shape)
-    wide = 2.0 * damping_ratios(train, shape, frequency=w)
+    ratio = damping_ratios(train, shape, frequency=w)
     force = forces[:-1].max(axis=0, initial=0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         excess = np.fmax.reduce(forces / held(state)[:, None], axis=0)
-        y = 1.0 - 0.5 * wide**2
-        begin = speed * np.sqrt(np.maximum(y - np.sqrt(y**2 - 1.0 + (wide * excess) ** 2), 0.0))
-        lifts = (excess > 1.0) & np.isfinite(force)
-        rows = [speed, share, share / wide, np.where(lifts, np.nan, force)]
-        return np.stack([*rows, np.where(lifts, begin, np.nan)]), shape
+        gain = share / (2.0 * ratio)
+    begin = lift_off(speed, ratio=ratio, excess=np.where(np.isfinite(force), excess, np.nan))
+    return np.stack([speed, share, gain, np.where(np.isfinite(begin), np.nan, force), begin]), shape
 
 
 def held(state: TrainState) -> Floats:
-    """Dynamic force [N] that each bearing, and last the teeth, bear in contact: the static load.
+    """Static load [N] of each bearing, and last of the teeth: above it the force would turn round.
 
-    Infinite in a preloaded bearing.
+    A preloaded bearing keeps its elements loaded for a while then; its stiffness is another, too.
     """
-    loads = np.linalg.norm(state.rest.bearing_force, axis=-1)
-    bearings = np.where(state.half_plays < 0.0, np.inf, loads)
-    return np.append(bearings, state.rest.mesh_force)
+    return np.append(np.linalg.norm(state.rest.bearing_force, axis=-1), state.rest.mesh_force)
 
 
 def _first(rows: Floats, count: int) -> Floats:

@@ -32,7 +32,7 @@ ORBITS = (
     "circle, as wide across as the radial internal clearance of that state of heat, nothing holds "
     "it; what reaches beyond is the contact's deflection. Of rolling elements the free space is "
     "the polygon around the circle, a side for each element. A preloaded bearing has none. The "
-    "arrow is the mean force on the ring. Below: the same paths, each about its own mean, enlarged; "
+    "arrow is the mean force on the ring. Below: the same paths, each about its mean, enlarged; "
     "the arrow is the way it goes, the dot its place at mesh phase 0, which the dial turns on."
 )
 FORCES = (
