@@ -200,18 +200,18 @@ def test_the_response_peaks_at_critical_speeds() -> None:
 
 def test_no_linear_force_is_told_above_the_static_load() -> None:
     """There a bearing lifts off or the teeth part: at a resonance and anywhere on the way to it."""
-    result = made("campbell")
+    light = case().with_values({"torque": 4.0})
+    result = campbell(light, speeds=(0.0, 6_000 * RPM))
     critical, answer = result.groups["critical"], result.groups["response"]
-    rest, rings = made("statics").groups["statics"], made("statics").groups["bearings"]
-    load = rings["bearing_load"].values[:, -1]
+    at_rest = [row[0].rest for row in settled(light, [1])]
+    load = np.array([np.linalg.norm(one.bearing_force, axis=-1) for one in at_rest])
     felt = np.hypot(*(answer[f"bearing_force_{c}"].values for c in "xy"))
-    assert np.nanmax(felt / load[:, None, None]) <= 1.0
-    teeth = answer["dynamic_mesh_force"].values / rest["mesh_force"].values[:, -1, None, None]
-    assert np.nanmax(teeth) <= 1.0
+    assert 0.5 < np.nanmax(felt / load[:, None, None]) <= 1.0
+    teeth = np.array([one.mesh_force for one in at_rest])[:, None, None]
+    assert 0.5 < np.nanmax(answer["dynamic_mesh_force"].values / teeth) <= 1.0
     force, lifts = critical["resonant_force"].values, critical["lift_off_speed"].values
     assert np.nanmax(force / load.max(axis=1)[:, None, None, None]) <= 1.0
     lifted = np.isfinite(lifts)
-    assert lifted.any()
     assert np.isnan(force[lifted]).all()
     assert np.all(lifts[lifted] < critical["critical_speed"].values[lifted])
     # in the page, the terminal and the file the speed stands where the force would
