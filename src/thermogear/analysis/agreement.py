@@ -7,13 +7,14 @@ which a library adds numbers decides rounding. A label is given where all starts
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import Any, Generic, Protocol, Self, TypeVar, cast
+from dataclasses import KW_ONLY, MISSING, dataclass, fields, replace
+from typing import Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.analysis.orbits import Orbit
+from thermogear.base.vocabulary import label_words
 
 Floats = NDArray[np.float64]
 
@@ -33,28 +34,40 @@ SAME = 1e-6
 """Distance in units of the map below which two orbits are one."""
 
 
-class Told(Protocol):
-    """What a start settles on, as this rule reads it."""
+@dataclass(frozen=True)
+class Told:
+    """What a start settles on: its ``name`` and ``period`` n (0: none), the ``reason`` in words.
+
+    ``discarded`` periods went by before; ``orbit`` where one proves it. ``starts`` that differ by
+    rounding share the label; of a chaotic motion all of them were ``followed`` so many periods and
+    none closed: an estimate, for chaos may end later.
+    """
+
+    name: str
+    period: int
+    reason: str
+    discarded: int
+    orbit: Orbit | None = None
+    _: KW_ONLY
+    followed: int = 0
+    starts: int = 1
 
     @property
-    def name(self) -> str: ...
+    def words(self) -> str:
+        """The name, and for chaos how long and from how many starts it was seen."""
+        return label_words(self.name, followed=self.followed, starts=self.starts)
 
-    @property
-    def period(self) -> int: ...
+    def alike(self, other: Told) -> bool:
+        """Whether two labels are of one motion: the same name and, with orbits, the same orbit.
 
-    @property
-    def reason(self) -> str: ...
-
-    @property
-    def discarded(self) -> int: ...
-
-    def alike(self, other: Any) -> bool:
-        """Whether both are the same motion."""
-        ...
-
-    def left_open(self, reason: str, discarded: int) -> Self:
-        """The same start, undecided."""
-        ...
+        In any of its phases, within :data:`SAME`.
+        """
+        if (self.name, self.period) != (other.name, other.period):
+            return False
+        if self.orbit is None or other.orbit is None:
+            return self.orbit is other.orbit
+        away = self.orbit.section.distance(self.orbit.points, other.orbit.state)
+        return float(np.min(away)) < SAME
 
 
 _Label = TypeVar("_Label", bound=Told)
@@ -80,13 +93,6 @@ def directions(count: int, dimension: int) -> Floats:
 def beside(start: Floats, unit: Floats, count: int) -> Floats:
     """``count`` starts (count, d) that differ from ``start`` (d,) by rounding, :data:`APART`."""
     return start + APART * np.maximum(unit, np.abs(start)) * directions(count, start.size)
-
-
-def same_orbit(one: Orbit | None, other: Orbit | None) -> bool:
-    """Whether both are the same orbit, in any of its phases; without orbits nothing differs."""
-    if one is None or other is None:
-        return one is other
-    return float(np.min(one.section.distance(one.points, other.state))) < SAME
 
 
 def _kinds(first: _Label, ends: Sequence[End[_Label]]) -> list[_Label]:
@@ -116,9 +122,9 @@ def judged(first: _Label, ends: Sequence[End[_Label]]) -> _Label:
         shortest = min(end.periods for end in still)
         if all(end.lively for end in still):
             reason = f"{first.reason}; none of {of} starts closed in {shortest} periods"
-            return _with(first, reason=reason, followed=shortest, starts=of)
+            return replace(first, reason=reason, followed=shortest, starts=of)
         reason = f"neither closed nor chaotic to the end by the exponent after {longest} periods"
-        return _with(first, name="undecided", reason=reason, discarded=longest)
+        return replace(first, name="undecided", reason=reason, discarded=longest)
     different = [kinds[0]]
     for kind in kinds[1:]:
         if not any(kind.alike(other) for other in different):
@@ -127,15 +133,15 @@ def judged(first: _Label, ends: Sequence[End[_Label]]) -> _Label:
         names = sorted({kind.name for kind in different})
         words = " or ".join(names) if len(names) > 1 else f"{len(different)} {names[0]} orbits"
         reason = f"where the transient ends depends on rounding: {words} from {of} starts"
-        return first.left_open(reason, longest)
+        blank = {one.name: value for one in fields(first) if (value := one.default) is not MISSING}
+        return replace(
+            first,
+            **blank | {"name": "undecided", "period": 0, "reason": reason, "discarded": longest},
+        )
     if still:
         reason = (
             f"{len(kinds)} of {of} starts end as {kinds[0].name}, the others not in {longest} "
             "periods"
         )
-        return _with(kinds[0], name="undecided", reason=reason, discarded=longest)
-    return _with(kinds[0], discarded=longest, starts=of)
-
-
-def _with(label: _Label, **changed: Any) -> _Label:
-    return cast(_Label, replace(cast(Any, label), **changed))
+        return replace(kinds[0], name="undecided", reason=reason, discarded=longest)
+    return replace(kinds[0], discarded=longest, starts=of)

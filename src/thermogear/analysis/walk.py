@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.analysis.agreement import APART, FOLLOW, PARTED, SAME, STARTS, beside, same_orbit
+from thermogear.analysis.agreement import APART, FOLLOW, PARTED, SAME, STARTS, Told, beside
 from thermogear.analysis.orbits import Orbit, shoot
 from thermogear.analysis.torus import LONGEST, Torus
 from thermogear.base.errors import ConvergenceError
@@ -68,7 +68,7 @@ class Search:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Motion:
+class Motion(Told):
     """What a start settles on: "period-n", "quasi-periodic", "chaotic", "undecided", "diverged".
 
     ``period`` n (0: none), ``reason`` in words, the last ``state`` (d,), on the ``orbit`` where
@@ -76,17 +76,10 @@ class Motion:
     with its ``lyapunov_error`` and the means of its ``batches``; ``exponents``: as much of the
     spectrum as the label needs, the largest first: all of a periodic orbit, two on a torus; the
     ``torus`` it is on; ``discarded`` periods run; ``away`` how far the motion itself still was from
-    its orbit, in units of the map. ``starts`` that differ by rounding share the label; of a chaotic
-    motion all of them were ``followed`` so many periods and none closed: an estimate, for chaos may
-    end later.
+    its orbit, in units of the map.
     """
 
-    name: str
-    period: int
-    reason: str
     state: Floats
-    discarded: int
-    orbit: Orbit | None = None
     multiplier: complex = complex("nan")
     lyapunov: float = float("nan")
     lyapunov_error: float = float("nan")
@@ -94,23 +87,13 @@ class Motion:
     exponents: Floats = field(default_factory=lambda: np.empty(0))
     torus: Torus | None = None
     away: float = float("nan")
-    followed: int = 0
-    starts: int = 1
 
-    def alike(self, other: Motion) -> bool:
+    def alike(self, other: Told) -> bool:
         """Whether both are the same orbit, or tori whose second frequencies are one."""
-        if (self.name, self.period) != (other.name, other.period):
-            return False
-        if self.torus is None or other.torus is None:
-            return same_orbit(self.orbit, other.orbit)
+        if not isinstance(other, Motion) or self.torus is None or other.torus is None:
+            return super().alike(other)
         apart = abs(self.torus.frequency - other.torus.frequency)
         return apart <= SAME + 4.0 * (self.torus.error + other.torus.error)
-
-    def left_open(self, reason: str, discarded: int) -> Motion:
-        """The same start, undecided after so many periods."""
-        return Motion(
-            name="undecided", period=0, reason=reason, state=self.state, discarded=discarded
-        )
 
 
 class Walk:
