@@ -19,10 +19,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.analysis.any_motion import Search, settle
+from thermogear.analysis.any_motion import settle
 from thermogear.analysis.bifurcations import FLIP, FOLD, TORUS, Bifurcation
 from thermogear.analysis.continuation import Branch, continuation
 from thermogear.analysis.orbits import Orbit, periodic_orbit, shoot
+from thermogear.analysis.walk import Search
 from thermogear.base.errors import ThermogearError
 from thermogear.base.excitation import Periodic
 from thermogear.dynamics.geared import GearedModel, LocalBearing
@@ -169,7 +170,7 @@ def costs(size: int, random: Random) -> Cost:
         settled = time.process_time() - begun
         if found.orbit is None:
             continue
-        start = section.carry(rest, found.used)[-1]
+        start = section.carry(rest, found.discarded)[-1]
         begun = time.process_time()
         orbit = periodic_orbit(model, found.period, start)
         _ = orbit.multipliers
@@ -177,7 +178,7 @@ def costs(size: int, random: Random) -> Cost:
         event = one_event(model, orbit)
         if event is None:
             continue
-        return Cost(size, settled, found.used, proof, event[0], event[1].kind)
+        return Cost(size, settled, found.discarded, proof, event[0], event[1].kind)
 
 
 def one_event(model: GearedModel, orbit: Orbit) -> tuple[float, Bifurcation] | None:

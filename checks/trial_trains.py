@@ -29,7 +29,8 @@ sys.path.insert(0, str(Path(__file__).parent))
 from train_draws import ERRORS, IN_TURN, RATIO, SEED, UNIT_LOAD, Drawn, drawn
 from train_reference import Independent
 
-from thermogear.analysis.any_motion import Motion, settle
+from thermogear.analysis.any_motion import settle
+from thermogear.analysis.walk import Motion
 from thermogear.dynamics.geared_map import GearedMap
 from thermogear.dynamics.ladder import Steps
 from thermogear.study.shafts.motion import search_of
@@ -70,7 +71,7 @@ def told(found: Motion, seconds: float) -> Record:
         "name": found.name,
         "period": found.period,
         "reason": found.reason,
-        "used": found.used,
+        "used": found.discarded,
         "seconds": seconds,
         "state": found.state.tolist(),
         "multiplier": abs(found.multiplier),
@@ -102,7 +103,7 @@ def labelled(number: int) -> Record:
         found |= {what: run.counts[what] for what in ("losses", "impacts", "lifts")}
     late = train.start
     if first.name != "diverged":
-        late = section.carry(train.start, 2 * first.used)[-1]
+        late = section.carry(train.start, 2 * first.discarded)[-1]
     found["transient"] = told(*label_of(section, late))
     found["steps"] = told(*label_of(GearedMap(model=train.model, how=FINER), train.start))
     other = one.train(MODES + MORE_MODES)

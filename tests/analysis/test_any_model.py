@@ -188,7 +188,7 @@ def test_attractors_of_a_model_that_is_no_single_mass():
 def test_a_label_of_any_model_never_calls_a_torus_settled_or_chaotic(mu, name):
     """|mu| = exp(mu T): near 1 nothing is decided; a pair off the circle leaves a torus."""
     model = turning(mu, tolerance=1e-8)
-    found = label(model, initial_state=(0.35, 0.0), discard=16, cap=128, max_period=4)
+    found = label(model, initial_state=(0.35, 0.0), discard=16, cap=128, max_period=4, starts=1)
     assert found.name == name
     if name == "period-1":
         assert found.orbit.model is model
@@ -210,7 +210,7 @@ def test_a_label_of_a_chaotic_model_carries_its_exponent():
         divergence=-0.3,
         tolerance=1e-8,
     )
-    found = label(model, initial_state=(1.0, 0.0), discard=32, cap=96)
+    found = label(model, initial_state=(1.0, 0.0), discard=32, cap=96, starts=1)
     assert found.name == "chaotic"
     assert found.lyapunov.sum == pytest.approx(-0.3)
     assert found.lyapunov.value == pytest.approx(found.lyapunov.batches.mean())

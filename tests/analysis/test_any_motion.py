@@ -10,7 +10,8 @@ import pytest
 from tests.dynamics.geared_trains import from_outputs, moving_six
 from tests.dynamics.test_geared_truth import TRUTH
 
-from thermogear.analysis.any_motion import Search, settle
+from thermogear.analysis.any_motion import settle
+from thermogear.analysis.walk import Search
 from thermogear.dynamics.models import TorsionalModel
 from thermogear.dynamics.return_map import Visit, return_map
 

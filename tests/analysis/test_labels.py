@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from said import numbers
+from thermogear.analysis.agreement import End, judged
 from thermogear.analysis.continuation import continuation
 from thermogear.analysis.labels import (
-    _End,
-    _judged,
     counts,
     label,
     labels,
@@ -261,25 +260,25 @@ def test_a_label_stands_when_all_starts_agree():
     two = Label("period-2", 2, "b", 1500, orbit)
     one, gone = Label("period-1", 1, "a", 500, orbit), Label("diverged", 0, "e", 600)
     chaos = Label("chaotic", 0, "c", 700)
-    on, live, dull = _End(two, 1600), _End(None, 9000, True), _End(None, 9000)
+    on, live, dull = End(two, 1600), End(None, 9000, True), End(None, 9000)
     # the same orbit in another phase is the same motion
-    for ends in ([on], [on, _End(replace(two, orbit=turned), 40)]):
-        found = _judged(two, ends)
+    for ends in ([on], [on, End(replace(two, orbit=turned), 40)]):
+        found = judged(two, ends)
         assert (found.name, found.starts, found.orbit) == ("period-2", 1 + len(ends), orbit)
         assert found.discarded == 1600
-    assert _judged(gone, [_End(gone, 600)]).name == "diverged"
-    assert _judged(chaos, [on, on]).name == "period-2"
-    found = _judged(chaos, [live, live])
+    assert judged(gone, [End(gone, 600)]).name == "diverged"
+    assert judged(chaos, [on, on]).name == "period-2"
+    found = judged(chaos, [live, live])
     assert (found.name, found.followed, found.starts) == ("chaotic", 9000, 2)
     for first, ends, words in (
-        (two, [_End(replace(two, orbit=aside), 40)], "2 period-2 orbits from 2 starts"),
-        (two, [on, _End(one, 40)], "period-1 or period-2 from 3 starts"),
-        (chaos, [on, _End(gone, 40), live], "diverged or period-2 from 3 starts"),
+        (two, [End(replace(two, orbit=aside), 40)], "2 period-2 orbits from 2 starts"),
+        (two, [on, End(one, 40)], "period-1 or period-2 from 3 starts"),
+        (chaos, [on, End(gone, 40), live], "diverged or period-2 from 3 starts"),
         (two, [on, live], "2 of 3 starts end as period-2, the others not in 9000 periods"),
         (chaos, [on, live], "1 of 2 starts end as period-2, the others not in 9000 periods"),
         (chaos, [live, dull], "neither closed nor chaotic to the end"),
     ):
-        found = _judged(first, ends)
+        found = judged(first, ends)
         assert found.name == "undecided"
         assert words in found.reason
 

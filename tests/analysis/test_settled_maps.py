@@ -6,14 +6,18 @@ multipliers that leaves the unit circle, with its resonance p.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from conftest import Compared
-from thermogear.analysis.any_motion import Search, settle
+from said import numbers
+from thermogear.analysis.agreement import End, beside, judged
+from thermogear.analysis.any_motion import settle
+from thermogear.analysis.labels import label
+from thermogear.analysis.walk import Motion, Search
 from thermogear.base.errors import ConvergenceError
 from thermogear.dynamics.return_map import Stretch, Visit, stretched
 
@@ -87,7 +91,7 @@ def test_a_slow_spiral_is_told_by_its_multipliers(decay: float) -> None:
     found = settle(Turning(nu=0.1234, rho=rho, slowest=rho), start)
     assert (found.name, found.period) == ("period-1", 1)
     # long before it has come near by itself
-    assert found.used <= 2048
+    assert found.discarded <= 2048
     assert found.away > 0.1
     assert abs(abs(found.multiplier) - rho) < 1e-9
     # the same decay of a model that decays fast at rest is near one
@@ -144,3 +148,94 @@ def test_a_small_period_2_is_not_taken_for_a_point() -> None:
     found = settle(one, np.array([0.012, 0.0]))
     assert found.period == 2
     assert found.name in ("period-2", "undecided")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Quadratic:
+    """x' = r x (1 - x): at most one stable orbit, which almost every start ends on (Singer)."""
+
+    r: float
+    dimension: int = 1
+    period: float = 1.0
+
+    @property
+    def unit(self) -> Floats:
+        return np.ones(1)
+
+    def determinant(self, periods: int) -> float:
+        return float("nan")
+
+    def distance(self, one: Floats, other: Floats) -> Floats:
+        return np.asarray(np.max(np.abs(one - other), axis=-1))
+
+    def carry(self, start: Floats, periods: int) -> Floats:
+        x, r, found = float(start[0]), self.r, []
+        for _ in range(periods):
+            x = r * x * (1.0 - x)
+            found.append(x)
+        return np.array(found)[:, None]
+
+    def slopes(self, start: Floats, periods: int) -> tuple[Floats, Floats]:
+        path = np.vstack([start[None], self.carry(start, periods)])
+        return path, self.r * (1.0 - 2.0 * path[:-1, 0])
+
+    def stretch(self, start: Floats, *, direction: Floats, periods: int) -> Stretch:
+        path, slopes = self.slopes(start, periods)
+        return Stretch(state=path[-1], direction=direction, growth=np.log(np.abs(slopes)))
+
+    def visit(self, start: Floats, periods: int = 1, *, sampled: bool = False) -> Visit:
+        path, slopes = self.slopes(start, periods)
+        with np.errstate(over="ignore"):
+            slope = np.prod(slopes)
+        return Visit(
+            points=path, jacobian=np.array([[slope]]), contact_losses=0, back_impacts=0,
+            shares=np.zeros(3), samples=np.zeros((0, 1)),
+        )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("r", "n", "all_end"),
+    [
+        (3.813617278546642, 13, True),
+        (3.96867318335792, 11, True),
+        (3.9790291280644086, 11, True),
+        (3.98027268283993, 12, False),
+    ],
+)
+def test_a_transient_is_not_called_chaos(r: float, n: int, all_end: bool) -> None:
+    """At these r the orbit of the maximum closes after n: it is stable, and nothing else is.
+
+    One start is chaotic by its exponent for thousands of periods before it ends there.
+    """
+    one = Quadratic(r=r)
+    assert abs(one.carry(np.array([0.5]), n)[-1, 0] - 0.5) < 1e-9
+    start = np.array([0.3])
+    assert settle(one, start, Search(starts=1)).name == "chaotic"
+    names = set()
+    for near in (start, *beside(start, one.unit, 4)):
+        found = settle(one, near)
+        names.add(found.name)
+        if found.name == "undecided":
+            assert f"of 16 starts end as period-{n}, the others not in" in found.reason
+    assert names <= {f"period-{n}", "undecided"}
+    assert not all_end or f"period-{n}" in names
+
+
+def test_chaos_is_told_with_its_length_and_its_starts() -> None:
+    """r = 4: chaotic for ever, ln 2 a period."""
+    found = label(Quadratic(r=4.0), initial_state=(0.3,), discard=64, cap=1024, starts=4,
+                  follow=2000)  # fmt: skip
+    assert str(found) == "chaotic for 2 000 periods, 4 starts"
+    assert found.lyapunov is not None
+    assert abs(found.lyapunov.value - np.log(2.0)) < 4.0 * found.lyapunov.error
+    assert numbers(found.reason)[-2:] == [4.0, 2000.0]
+
+
+def test_starts_that_end_apart_decide_nothing() -> None:
+    ends = [Motion(name=name, period=n, reason="", state=np.zeros(1), discarded=9)
+            for name, n in (("period-1", 1), ("period-2", 2))]  # fmt: skip
+    wild = replace(ends[0], name="chaotic", period=0, lyapunov=0.1)
+    found = judged(wild, [End(ends[0], 9), End(ends[1], 20), End(None, 30)])
+    assert (found.name, found.period, found.discarded) == ("undecided", 0, 30)
+    assert "period-1 or period-2 from 3 starts" in found.reason
+    assert np.isnan(found.lyapunov)

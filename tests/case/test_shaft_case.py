@@ -138,13 +138,13 @@ pitch_diameter = "60 mm"
 def test_clearances_follow_temperatures_and_fits() -> None:
     found = plan()
     cold = np.full((4, 4), 293.15)
-    even = found.radial_clearances(cold, reference=293.15)
+    even = found.half_plays(cold, reference=293.15)
     hot = cold.copy()
     hot[:, 0] += 15.0
     hot[:, 1] += 8.0
-    warm = found.radial_clearances(hot, reference=293.15)
+    warm = found.half_plays(hot, reference=293.15)
     assert np.all(warm < even)
-    uniform = found.radial_clearances(cold + 40.0, reference=293.15)
+    uniform = found.half_plays(cold + 40.0, reference=293.15)
     # the interference keeps the ring wide, so that only the free part scales
     assert uniform == pytest.approx(even, abs=0.02e-6)
 

@@ -24,6 +24,7 @@ from thermogear.study.shafts.campbell import campbell, orders_of
 from thermogear.study.shafts.modes import modes
 from thermogear.study.shafts.state import Meshing, moved_apart, places_of, settled
 from thermogear.study.shafts.statics import statics
+from thermogear.views.pages.shafts import criticals, page
 from thermogear.views.write import save
 
 CASE = """
@@ -135,9 +136,9 @@ def test_centre_distance_closes_on_its_own_mesh(compared: Compared) -> None:
 
 def test_hot_bearings_have_less_clearance_and_given_rings_show() -> None:
     rings = made("statics").groups["bearings"]
-    ball = rings["radial_clearance"].sel(bearing="ball").values
+    ball = rings["radial_internal_clearance"].sel(bearing="ball").values
     assert np.all(ball[1] < ball[0])
-    assert np.isnan(rings["radial_clearance"].sel(bearing="pinion 2").values).all()
+    assert np.isnan(rings["radial_internal_clearance"].sel(bearing="pinion 2").values).all()
     assert rings["inner_ring_temperature"].sel(bearing="ball").values[1] == pytest.approx(353.15)
     assert np.all(rings["static_safety"].sel(bearing="ball").values > 1.0)
 
@@ -197,6 +198,32 @@ def test_the_response_peaks_at_critical_speeds() -> None:
         assert np.abs(peaks - one).min() < 3.0 * step + 0.02 * one
 
 
+def test_no_linear_force_is_told_above_the_static_load() -> None:
+    """There a bearing lifts off or the teeth part: at a resonance and anywhere on the way to it."""
+    light = case().with_values({"torque": 4.0})
+    result = campbell(light, speeds=(0.0, 6_000 * RPM))
+    critical, answer = result.groups["critical"], result.groups["response"]
+    at_rest = [row[0].rest for row in settled(light, [1])]
+    load = np.array([np.linalg.norm(one.bearing_force, axis=-1) for one in at_rest])
+    felt = np.hypot(*(answer[f"bearing_force_{c}"].values for c in "xy"))
+    assert 0.5 < np.nanmax(felt / load[:, None, None]) <= 1.0
+    teeth = np.array([one.mesh_force for one in at_rest])[:, None, None]
+    assert 0.5 < np.nanmax(answer["dynamic_mesh_force"].values / teeth) <= 1.0
+    force, lifts = critical["resonant_force"].values, critical["lift_off_speed"].values
+    assert np.nanmax(force / load.max(axis=1)[:, None, None, None]) <= 1.0
+    lifted = np.isfinite(lifts)
+    assert np.isnan(force[lifted]).all()
+    assert np.all(lifts[lifted] < critical["critical_speed"].values[lifted])
+    # in the page, the terminal and the file the speed stands where the force would
+    rows = list(criticals(result))
+    words = [line for line in page(result).lines() if "not valid" in line]
+    told = [one for one in rows if one["lifts_off_from_rpm"] is not None]
+    assert len(words) == len(told) > 0
+    for line, one in zip(words, told, strict=True):
+        assert one["bearing_force_N"] is None
+        assert f"not valid: lifts off from {one['lifts_off_from_rpm']:.0f} rpm" in line
+
+
 def test_orders_name_mesh_shafts_and_elements() -> None:
     found = {one.name: one.order for one in orders_of(case())}
     assert found["mesh"] == 26.0
@@ -212,8 +239,8 @@ def test_answers_ask_about_the_shafts() -> None:
     tilt = asked["tilt"]
     assert tilt.value is not None
     assert 0.0 < tilt.value < 1.0
-    clearance = made("statics").groups["bearings"]["radial_clearance"].values[1, 1]
-    assert asked["bearing_clearance"].value == pytest.approx(2e6 * np.nanmin(clearance), abs=1e-6)
+    clearance = made("statics").groups["bearings"]["radial_internal_clearance"].values[1, 1]
+    assert asked["bearing_clearance"].value == pytest.approx(1e6 * np.nanmin(clearance), abs=1e-6)
 
 
 def test_a_case_without_shafts_says_what_to_write() -> None:
@@ -250,7 +277,7 @@ def test_a_point_that_did_not_settle_is_a_status_and_no_number(
     assert mesh["status"].values[:, 1] == pytest.approx(STATUS.index("not_converged"))
     for group in result.groups.values():
         for name, values in group.data_vars.items():
-            if "operating" in values.dims and name not in ("status", "radial_clearance"):
+            if "operating" in values.dims and name not in ("status", "radial_internal_clearance"):
                 numbers = values.isel(operating=1).values
                 assert not np.isfinite(numbers).any() or str(name).endswith("temperature"), name
     assert sum("did not settle" in one.text for one in result.notices) == 2

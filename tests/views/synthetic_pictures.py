@@ -371,7 +371,9 @@ def of_moving_trains() -> dict[str, Picture]:
             "mesh_force_line": ((*point, "line_order"), rng.uniform(0.01, 5.0, (2, 1, 8))),
             "mean_bearing_force": ((*point, "bearing"), rng.uniform(1.0, 2.0, (2, 1, 2))),
             "mean_bearing_load": ((*point, "bearing", "axis"), rng.normal(size=(2, 1, 2, 2))),
-            "radial_clearance": ((*point, "bearing"), [[[5e-6, np.nan]], [[-2e-6, np.nan]]]),
+            "radial_internal_clearance": (
+                (*point, "bearing"), [[[10e-6, np.nan]], [[-4e-6, np.nan]]],
+            ),
             "journal_path": (
                 (*point, "bearing", "axis", "sample"), rng.normal(0.0, 1e-5, (2, 1, 2, 2, 32)),
             ),
@@ -417,8 +419,8 @@ def of_moving_trains() -> dict[str, Picture]:
 def of_shafts() -> dict[str, Picture]:
     heat, two = {"state": ["undeformed", "hot"]}, ["left", "right"]
     rings = made(
-        "state operating bearing", "bearing_load", radial_clearance=rising("state", "operating",
-        "bearing", low=-1e-6, high=5e-6),
+        "state operating bearing", "bearing_load",
+        radial_internal_clearance=rising("state", "operating", "bearing", low=-1e-6, high=5e-6),
     ).assign_coords(heat | {"bearing": two})  # fmt: skip
     lines = (
         made("state operating pinion_position", "pinion_x", "pinion_y")
@@ -441,7 +443,9 @@ def of_shafts() -> dict[str, Picture]:
     curves = made("state stiffness_level pinion_speed mode", "natural_frequency").assign_coords(
         heat | {"pinion_speed": rising("pinion_speed", low=1.0, high=300.0)[1]}
     )
-    met = made("state stiffness_level line mode", "critical_speed", "resonant_force").assign_coords(
+    met = made(
+        "state stiffness_level line mode", "critical_speed", "resonant_force", "lift_off_speed"
+    ).assign_coords(
         heat | {"line": ["mesh", "shaft", "elements"], "order": ("line", [20.0, 1.0, 3.5])}
     )
     answer = made(

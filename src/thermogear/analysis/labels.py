@@ -13,10 +13,23 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.analysis.any_motion import Search, settle
+from thermogear.analysis.agreement import (
+    APART,
+    FOLLOW,
+    PARTED,
+    PATIENCE,
+    STARTS,
+    End,
+    agreed,
+    directions,
+    judged,
+    most,
+)
+from thermogear.analysis.any_motion import settle
 from thermogear.analysis.lyapunov import Lyapunov, lyapunov_exponents
 from thermogear.analysis.proof import NEAR_BORDER, Label, closing, periodic, proves_chaos, returned
 from thermogear.analysis.section import lanes_of, starts_of, units_of
+from thermogear.analysis.walk import Search
 from thermogear.base.bounds import whole
 from thermogear.base.errors import InputError
 from thermogear.dynamics.blocks import Progress
@@ -26,13 +39,6 @@ from thermogear.dynamics.tables import Lanes
 
 Floats = NDArray[np.float64]
 Whole = NDArray[np.int64]
-
-APART = 1e-13
-"""Starts that differ by rounding: in half backlashes, or of the start where that is larger."""
-PARTED = float(np.log(1e6))
-"""Growth of a small difference on the way above which rounding may decide where a motion ends."""
-STARTS = 16
-FOLLOW = 32_000
 
 
 def label(
@@ -82,7 +88,12 @@ def label(
     """
     if _of_any_dimension(model):
         search = Search(
-            first=min(discard, cap), cap=cap, max_period=max_period, near_border=near_border
+            first=min(discard, cap),
+            cap=cap,
+            max_period=max_period,
+            near_border=near_border,
+            starts=starts,
+            follow=follow,
         )
         return _any(model, initial_state, search)
     lanes = lanes_of(model)
@@ -128,7 +139,10 @@ def _any(model: object, initial_state: ArrayLike, search: Search) -> Label:
             state=motion.state,
         )
     orbit = None if motion.orbit is None else replace(motion.orbit, model=model)
-    return Label(motion.name, motion.period, motion.reason, motion.used, orbit, exponent)
+    return Label(
+        motion.name, motion.period, motion.reason, motion.discarded, orbit, exponent,
+        followed=motion.followed, starts=motion.starts,
+    )  # fmt: skip
 
 
 def labels(
@@ -266,14 +280,12 @@ def _confirmed(
     """
     chaotic = np.array([one.name == "chaotic" for one in found], dtype=bool)
     asked = np.array([i for i, one in enumerate(found) if one.name != "undecided"], dtype=int)
-    parted, own = asked[(top > PARTED)[asked] | chaotic[asked]], np.flatnonzero(chaotic)
+    parted, own = asked[(top > np.log(PARTED))[asked] | chaotic[asked]], np.flatnonzero(chaotic)
     unit = np.stack([lanes.half_backlash, 2 * np.pi * lanes.half_backlash / lanes.period], axis=1)
-    number = np.tile(np.arange(1, search.starts - 1), parted.size)
     owner = np.repeat(parted, search.starts - 2)
-    angle = np.pi * (np.sqrt(5.0) - 1.0) * number
-    beside = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    beside = np.tile(directions(search.starts - 2, 2), (parted.size, 1))
     near = start[owner] + APART * np.maximum(unit, np.abs(start))[owner] * beside
-    ends: list[list[_End]] = [[] for _ in found]
+    ends: list[list[End[Label]]] = [[] for _ in found]
     groups = (
         (1, np.concatenate([own, owner]), np.concatenate([start[own], near])),
         (2, asked, start[asked]),
@@ -286,18 +298,7 @@ def _confirmed(
                 progress(len(lanes) + done * len(lanes) // total, 2 * len(lanes))
     if progress is not None:
         progress(2 * len(lanes), 2 * len(lanes))
-    return [
-        _judged(one, theirs) if theirs else one for one, theirs in zip(found, ends, strict=True)
-    ]
-
-
-@dataclass(frozen=True)
-class _End:
-    """Where one start ended: its label, None where it moves on; ``lively``: chaotic to the end."""
-
-    label: Label | None
-    periods: int
-    lively: bool = False
+    return [judged(one, theirs) if theirs else one for one, theirs in zip(found, ends, strict=True)]
 
 
 def _follow(
@@ -307,21 +308,21 @@ def _follow(
     found: Sequence[Label],
     search: _Search,
     refine: int,
-    ends: list[list[_End]],
+    ends: list[list[End[Label]]],
 ) -> Iterator[int]:
     """Follow every start to where it closes, at most to ``follow``; adds to the owners' ends.
 
     Yields how many starts each round was the last for.
 
-    Where most starts of a motion have closed by then, and on one orbit, the others get four times
-    as long: chaos that ends has no fixed length. Where two ended apart, nothing is left to ask.
+    Where most starts of a motion have closed by then, and on one orbit, the others get
+    :data:`PATIENCE` times as long. Where two ended apart, nothing is left to ask.
     """
     state = start.copy()
     waiting = np.arange(owner.size)
     elapsed = 0
     last = max(search.cap, search.follow)
     lively = np.zeros(owner.size, bool)
-    for length in search.rounds(4 * last):
+    for length in search.rounds(PATIENCE * last):
         if waiting.size == 0:
             break
         mine = owner[waiting]
@@ -344,75 +345,18 @@ def _follow(
                     window[row] / units_of(one)[0], search.max_period
                 )
             else:
-                ends[lane].append(_End(verdict, elapsed))
+                ends[lane].append(End(verdict, elapsed))
         left = Counter(owner[open_].tolist())
-        going = {lane for lane, many in left.items() if _agreed(found[lane], ends[lane])}
+        going = {lane for lane, many in left.items() if agreed(found[lane], ends[lane])}
         if parting:
-            going &= {lane for lane, many in left.items() if _most(found[lane], ends[lane], many)}
+            going &= {lane for lane, many in left.items() if most(found[lane], ends[lane], many)}
         over = [row for row in open_ if owner[row] not in going]
         waiting = np.array([row for row in open_ if owner[row] in going], dtype=int)
         for row in over:
-            ends[owner[row]].append(_End(None, elapsed, bool(lively[row])))
+            ends[owner[row]].append(End(None, elapsed, bool(lively[row])))
         yield mine.size - waiting.size
     for row in waiting.tolist():
-        ends[owner[row]].append(_End(None, elapsed, bool(lively[row])))
-
-
-def _same(one: Label, other: Label) -> bool:
-    """Whether two labels are of one motion: the same name and, with orbits, the same orbit."""
-    if (one.name, one.period) != (other.name, other.period):
-        return False
-    if one.orbit is None or other.orbit is None:
-        return one.orbit is other.orbit
-    away = np.abs(one.orbit.points - other.orbit.state) / units_of(one.orbit.lanes)[0]
-    return bool(np.min(np.max(away, axis=1)) < 1e-6)
-
-
-def _agreed(first: Label, ends: Sequence[_End]) -> bool:
-    """Whether all starts that have ended did so on one motion."""
-    kinds = _kinds(first, ends)
-    return all(_same(kinds[0], one) for one in kinds[1:])
-
-
-def _most(first: Label, ends: Sequence[_End], waiting: int) -> bool:
-    """Whether more starts have ended than go on, the ``waiting`` ones and those given up."""
-    return len(_kinds(first, ends)) > waiting + sum(end.label is None for end in ends)
-
-
-def _kinds(first: Label, ends: Sequence[_End]) -> list[Label]:
-    """The labels of all starts that have ended, the first one's too unless it is chaotic."""
-    own = [] if first.name == "chaotic" else [first]
-    return own + [end.label for end in ends if end.label is not None]
-
-
-def _judged(first: Label, ends: Sequence[_End]) -> Label:
-    """The label of a start when the starts near it ended so."""
-    kinds = _kinds(first, ends)
-    still = [end for end in ends if end.label is None]
-    most = max([first.discarded, *(end.periods for end in ends)])
-    of = len(ends) + (first.name != "chaotic")
-    if not kinds:
-        shortest = min(end.periods for end in still)
-        if all(end.lively for end in still):
-            reason = f"{first.reason}; none of {of} starts closed in {shortest} periods"
-            return replace(first, reason=reason, followed=shortest, starts=of)
-        reason = f"neither closed nor chaotic to the end by the exponent after {most} periods"
-        return Label("undecided", 0, reason, most, lyapunov=first.lyapunov)
-    different = [kinds[0]]
-    for one in kinds[1:]:
-        if not any(_same(one, other) for other in different):
-            different.append(one)
-    if len(different) > 1:
-        names = sorted({one.name for one in different})
-        words = " or ".join(names) if len(names) > 1 else f"{len(different)} {names[0]} orbits"
-        reason = f"where the transient ends depends on rounding: {words} from {of} starts"
-        return Label("undecided", 0, reason, most)
-    if still:
-        reason = (
-            f"{len(kinds)} of {of} starts end as {kinds[0].name}, the others not in {most} periods"
-        )
-        return Label("undecided", kinds[0].period, reason, most, kinds[0].orbit)
-    return replace(kinds[0], discarded=most, starts=of)
+        ends[owner[row]].append(End(None, elapsed, bool(lively[row])))
 
 
 def counts(found: Sequence[Label]) -> dict[str, int]:

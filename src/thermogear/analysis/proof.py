@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import KW_ONLY, dataclass, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.analysis.agreement import Told
 from thermogear.analysis.lyapunov import Lyapunov
 from thermogear.analysis.orbits import Orbit, shoot
 from thermogear.analysis.section import units_of
-from thermogear.base.vocabulary import label_words
 from thermogear.dynamics.return_map import return_map
 from thermogear.dynamics.tables import Lanes
 
@@ -22,7 +22,7 @@ CLOSE = 1e-5
 
 
 @dataclass(frozen=True)
-class Label:
+class Label(Told):
     """What a trajectory settles on.
 
     ``name`` is "period-n", "chaotic", "diverged" or "undecided"; ``period`` n (0: none found;
@@ -33,25 +33,12 @@ class Label:
     estimate, for chaos may end later.
     """
 
-    name: str
-    period: int
-    reason: str
-    discarded: int
-    orbit: Orbit | None = None
     lyapunov: Lyapunov | None = None
-    _: KW_ONLY
-    followed: int = 0
-    starts: int = 1
 
     @property
     def multipliers(self) -> NDArray[np.complex128] | None:
         """Floquet multipliers of the orbit, when there is one."""
         return None if self.orbit is None else self.orbit.multipliers
-
-    @property
-    def words(self) -> str:
-        """The name, and for chaos how long and from how many starts it was seen."""
-        return label_words(self.name, followed=self.followed, starts=self.starts)
 
     def __str__(self) -> str:
         return self.words

@@ -275,7 +275,9 @@ QUANTITIES: dict[str, Quantity] = {
     "greatest_displacement": Quantity("m", "greatest displacement on the orbit", "x_max"),
     # drive trains in motion
     "journal_path": Quantity("m", "path of the journal against its outer ring", "u"),
-    "radial_clearance": Quantity("m", "radial clearance, half of the play; below zero a preload"),
+    "radial_internal_clearance": Quantity(
+        "m", "radial internal clearance (ISO 5753-1), the whole play; below zero a preload"
+    ),
     "mean_bearing_load": Quantity("N", "mean force of the journal on its outer ring"),
     "bearing_contact_share": Quantity("1", "share of time in which the bearing carries load"),
     "bearing_contact_losses": Quantity("1", "losses of contact of the bearing per mesh period"),

@@ -116,12 +116,12 @@ def _train(case: GearCase) -> list[Fact]:
         text = f"{1e3 * shaft.length:.6g} mm, gear at {1e3 * shaft.gear_position:.6g} mm"
         found.append(Fact(group, f"{name}'s shaft", text))
     even = np.full((len(plan.bearings), 4), plan.reference)
-    clearances = plan.radial_clearances(even, reference=plan.reference)
-    for one, clearance in zip(plan.bearings, clearances, strict=True):
+    plays = 2.0 * plan.half_plays(even, reference=plan.reference)
+    for one, play in zip(plan.bearings, plays, strict=True):
         kind = "of its own law" if one.rolling is None else one.rolling.designation or "own inside"
         text = f"{kind} at {1e3 * one.position:.6g} mm"
-        if np.isfinite(clearance):
-            text += f", radial clearance {1e6 * clearance:.3g} um mounted and cold"
+        if np.isfinite(play):
+            text += f", radial internal clearance {1e6 * play:.3g} um mounted and cold"
         found.append(Fact(group, one.name, text))
     return found + [Fact(group, "unusual", words) for words in plan.misfits()]
 

@@ -75,7 +75,7 @@ class BearingPlan:
     given: tuple[float | None, float | None] = (None, None)
 
     def clearance(self, temperatures: Floats, reference: float) -> float:
-        """Radial clearance [m] mounted, at (inner, elements, outer ring, housing) [K]."""
+        """Half of the play [m] mounted, at (inner, elements, outer ring, housing) [K]."""
         if self.rolling is None or self.fit is None:
             return self.law.clearance if isinstance(self.law, RingLaw) else math.nan
         return float(
@@ -91,7 +91,7 @@ class BearingPlan:
         )
 
     def placed(self, clearance: float, load: float) -> Bearing:
-        """The bearing with a radial ``clearance`` [m]; ``load`` [N] for a damping left out."""
+        """The bearing with a half play ``clearance`` [m]; ``load`` [N] for a damping left out."""
         law = self.law if self.rolling is None else self.rolling.law(clearance)
         assert law is not None
         damping = LOSS_TIME * loaded_stiffness(law, load) if self.damping is None else self.damping
@@ -143,11 +143,11 @@ class TrainPlan:
             if one.rolling is not None
         ]
 
-    def drive_train(self, *, pair: GearPair, clearances: Floats | None = None) -> DriveTrain:
-        """The train with radial ``clearances`` (bearing,) [m]; left out: mounted, undeformed."""
-        if clearances is None:
+    def drive_train(self, *, pair: GearPair, half_plays: Floats | None = None) -> DriveTrain:
+        """The train with ``half_plays`` (bearing,) [m]; left out: mounted, undeformed."""
+        if half_plays is None:
             even = np.full((len(self.bearings), 4), self.reference)
-            clearances = self.radial_clearances(even, reference=self.reference)
+            half_plays = self.half_plays(even, reference=self.reference)
         frame = MeshFrame(
             base_radii=(pair.pinion.base_radius, pair.wheel.base_radius),
             teeth=(pair.pinion.teeth, pair.wheel.teeth),
@@ -161,7 +161,7 @@ class TrainPlan:
             shafts=self.shafts,
             gears=self.bodies,
             bearings=tuple(
-                one.placed(float(c), half) for one, c in zip(self.bearings, clearances, strict=True)
+                one.placed(float(c), half) for one, c in zip(self.bearings, half_plays, strict=True)
             ),
             discs=self.discs,
             motor=self.motor,
@@ -174,8 +174,8 @@ class TrainPlan:
             least_elements=self.least_elements,
         )
 
-    def radial_clearances(self, temperatures: Floats, *, reference: float) -> Floats:
-        """Radial clearance [m] of every bearing at ``temperatures`` (bearing, 4) [K].
+    def half_plays(self, temperatures: Floats, *, reference: float) -> Floats:
+        """Half of the play [m] of every bearing at ``temperatures`` (bearing, 4) [K].
 
         Inner ring and shaft, elements, outer ring, housing; nan where a bearing has none.
         """

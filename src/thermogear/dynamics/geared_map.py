@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +31,8 @@ class GearedMap:
     model: GearedModel
     how: Steps = field(default_factory=Steps)
     samples: int = 0
+    concurrent: ClassVar[bool] = True
+    """Runs of several states may go on threads: each has its own memory, and no lock is held."""
 
     @cached_property
     def engine(self) -> Engine:

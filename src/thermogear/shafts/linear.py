@@ -297,20 +297,35 @@ def strain_shares(train: LinearTrain, shape: ArrayLike) -> dict[str, Floats]:
 def resonant_forces(
     train: LinearTrain, shape: ArrayLike, *, frequency: ArrayLike, force: ArrayLike
 ) -> Floats:
-    """Greatest force on a bearing [N] of every mode alone at its resonance, (modes,).
+    """Force on each bearing, and last that of the teeth [N], of every mode alone at its resonance.
 
-    q = phi (phi^H f)/(i w phi^H C phi): ``shape`` phi (n, modes), ``frequency`` w [rad/s] and
-    ``force`` f (modes, n) [N, N m] at it. Infinite where nothing damps.
+    (count + 1, modes). q = phi (phi^H f)/(i w phi^H C phi): ``shape`` phi (n, modes), ``frequency``
+    w [rad/s] and ``force`` f (modes, n) [N, N m] at it. Infinite where nothing damps.
     """
     q, w = np.asarray(shape), np.asarray(frequency, dtype=float)
     push = np.sum(q.conj() * np.asarray(force, dtype=complex).T, axis=0)
     loss = _energy(train.damping, q) + train.slip_damping(w).real * _motor_turn(train, q)
-    felt = np.zeros(w.size)
-    for place, k in zip(train.assembly.bearings, train.bearings, strict=True):
-        each = np.linalg.norm(np.asarray(k) @ (place.directions.T @ q), axis=0)
-        felt = np.maximum(felt, each)
+    felt = [
+        np.linalg.norm(np.asarray(k) @ (place.directions.T @ q), axis=0)
+        for place, k in zip(train.assembly.bearings, train.bearings, strict=True)
+    ]
+    felt.append(np.abs(train.mesh * (train.assembly.drive @ q)))
     with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray(felt * np.abs(push) / (w * loss))
+        return np.asarray(np.array(felt) * np.abs(push) / (w * loss))
+
+
+def lift_off(speed: ArrayLike, *, ratio: ArrayLike, excess: ArrayLike) -> Floats:
+    """Speed below a resonance at which the force of its mode alone reaches ``1/excess`` of its top.
+
+    2 zeta/sqrt((1 - r^2)^2 + (2 zeta r)^2) = 1/excess at r = lift-off over resonance ``speed``;
+    ``ratio`` zeta [-]. The push is taken as constant. 0 where at rest it is as large already, nan
+    where ``excess`` is below 1.
+    """
+    wide, high = 2.0 * np.asarray(ratio), np.asarray(excess, dtype=float)
+    y = 1.0 - 0.5 * wide**2
+    with np.errstate(invalid="ignore"):
+        below = np.maximum(y - np.sqrt(y**2 - 1.0 + (wide * high) ** 2), 0.0)
+    return np.where(high >= 1.0, np.asarray(speed) * np.sqrt(below), np.nan)
 
 
 def _motor_turn(train: LinearTrain, q: NDArray[np.complex128] | Floats) -> Floats:

@@ -17,7 +17,8 @@ from importlib.resources import files
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.analysis.any_motion import Search, settle
+from thermogear.analysis.any_motion import settle
+from thermogear.analysis.walk import Search
 from thermogear.base.errors import ThermogearError, ValidityWarning
 from thermogear.base.units import RPM
 from thermogear.base.vocabulary import STATUS
@@ -39,7 +40,7 @@ HELD_MODES = 8
 the first eight stored trains."""
 PERIODS, LONGER = 16, 64
 """Mesh periods of a record: of a proven orbit, of any other motion."""
-SEARCH = Search(first=64, cap=2048, exponent=False)
+SEARCH = Search(first=64, cap=2048, exponent=False, starts=1)
 PRINTED = tuple(line.displacement for line in THESIS_5_2.measured.lines)
 """Measured displacements [m] as printed, by speed."""
 SEEN = ("cap", "housing", "journal", "teeth")

@@ -1,7 +1,7 @@
 """Clearance of a bearing: as delivered, as mounted on its shaft and in its housing, and hot.
 
-Trap: catalogues give the play G_r, the whole way from side to side; the laws take the radial
-clearance c_r = G_r/2.
+Trap: catalogues give the play G_r, the whole way from side to side; the laws take half
+of it, c_r = G_r/2. Radial internal clearance, after ISO 5753-1, is the whole play G_r.
 """
 
 from __future__ import annotations
@@ -128,7 +128,7 @@ def mounted_clearance(
     housing_temperature: ArrayLike,
     reference: float,
 ) -> Floats:
-    """Radial clearance c_r [m] of a mounted bearing, cold or hot, (...).
+    """Half c_r [m] of the play of a mounted bearing, cold or hot, (...).
 
     ``play`` G_r [m] as delivered; ``temperatures`` (..., 3) [K] of inner ring, elements and outer
     ring, ``shaft_temperature`` and ``housing_temperature`` [K] at the seats; ``reference`` [K].

@@ -2,7 +2,7 @@
 
 The displacement u = (x, y) [m] is that of the journal against the outer ring; the force is the one
 the bearing exerts on the journal, so that it opposes u. Shapes: u (..., 2), force (..., 2) [N],
-stiffness -dF/du (..., 2, 2) [N/m]. Clearances are *radial* ones c_r, half of the play G_r that
+stiffness -dF/du (..., 2, 2) [N/m]. A law's clearance c_r is *half* of the play G_r that
 catalogues give.
 """
 
@@ -85,7 +85,7 @@ class RingLaw:
     """F = -k <|u| - c_r>^n u/|u|: a round clearance, then a power law.
 
     ``coefficient`` k [N/m^n], ``exponent`` n (1 linear, 1.5 balls, 10/9 rollers), ``clearance``
-    c_r >= 0 [m], radial. A preload (c_r < 0) is refused: the law would jump at u = 0; use
+    c_r >= 0 [m], half of the play. A preload (c_r < 0) is refused: the law would jump at u = 0; use
     :class:`ElementLaw`.
 
     >>> law = RingLaw(coefficient=1.5e8, clearance=8e-6)
@@ -145,9 +145,9 @@ class ElementLaw:
     """Sum over the rolling elements: Q_i = K <x cos psi_i + y sin psi_i - c_r>^n.
 
     psi_i = ``cage_angle`` + 2 pi i/Z. ``coefficient`` K [N/m^n] of one element between both races,
-    ``elements`` Z, ``exponent`` n (1.5 balls, 10/9 rollers), ``clearance`` c_r [m], radial; below
-    zero it is a preload, and every element is loaded at u = 0. Truth: shafts without a cage angle
-    in the load direction bend a little to its side.
+    ``elements`` Z, ``exponent`` n (1.5 balls, 10/9 rollers), ``clearance`` c_r [m], half of the
+    play; below zero it is a preload, and every element is loaded at u = 0. Truth: shafts without a
+    cage angle in the load direction bend a little to its side.
 
     >>> law = ElementLaw(elements=9, coefficient=8e9, exponent=1.5, clearance=6e-6)
     >>> f"{-law.force([2.737013689e-5, 0.0])[0]:.3f} N"

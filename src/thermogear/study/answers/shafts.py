@@ -13,6 +13,7 @@ from thermogear.results.answer import Answer
 from thermogear.study.answers.asked import Asked, answer, undecided
 
 if TYPE_CHECKING:
+    from thermogear.study.shafts.campbell import Critical
     from thermogear.study.shafts.state import TrainState
 
 CRITICAL, LOADS = "Which speeds are critical on the shafts?", "How large are the bearing loads?"
@@ -67,7 +68,9 @@ def _critical(asked: Asked, hot: TrainState, at: str) -> Answer:
     own = np.unique(asked.case.stated.speed)
     found = critical_speeds(asked.case, hot, 1.5 * float(own.max()))
     loads = np.linalg.norm(hot.rest.bearing_force, axis=-1)
-    strong = [one for one in found if one.force >= STRONG * float(loads.max())]
+    # a resonance that lifts a bearing off is one of the strongest, however strong it is
+    least = STRONG * float(loads.max())
+    strong = [one for one in found if one.force >= least or np.isfinite(one.lift_off)]
     if not strong:
         return answer(
             CRITICAL,
@@ -78,17 +81,19 @@ def _critical(asked: Asked, hot: TrainState, at: str) -> Answer:
             at=at,
         )
     away = np.abs(own[:, None] / np.array([one.speed for one in strong]) - 1.0)
-    ranked = sorted(strong, key=lambda one: -one.force)[:TOLD]
+    ranked = sorted(strong, key=lambda one: -np.nan_to_num(one.force, nan=np.inf))[:TOLD]
     told = ", ".join(
         f"{one.speed / RPM:.0f} rpm ({one.order} meets {one.frequency / (2.0 * np.pi):.0f} Hz, "
-        f"{one.mostly}, {_felt(one.force)})"
+        f"{one.mostly}, {_felt(one)})"
         for one in sorted(ranked, key=lambda one: one.speed)
     )
     return answer(CRITICAL, "critical_speed", f"Critical: {told}.", 100.0 * away.min(), at=at)
 
 
-def _felt(force: float) -> str:
-    return f"{force:.0f} N on a bearing" if np.isfinite(force) else "undamped"
+def _felt(met: Critical) -> str:
+    if np.isfinite(met.lift_off):
+        return f"a bearing lifts off or the teeth part from {met.lift_off / RPM:.0f} rpm on"
+    return f"{met.force:.0f} N on a bearing" if np.isfinite(met.force) else "undamped"
 
 
 def _loads(asked: Asked, hot: TrainState, loads: np.ndarray, at: str) -> Answer:
@@ -112,17 +117,17 @@ def _loads(asked: Asked, hot: TrainState, loads: np.ndarray, at: str) -> Answer:
 
 
 def _clearance(asked: Asked, cold: TrainState, hot: TrainState, at: str) -> Answer:
-    if np.isnan(hot.clearances).all():
+    if np.isnan(hot.half_plays).all():
         return undecided(CLEARANCE, "bearing_clearance", "no bearing says its clearance", at=at)
-    least = int(np.nanargmin(hot.clearances))
-    play, before = 2e6 * hot.clearances[least], 2e6 * cold.clearances[least]
+    least = int(np.nanargmin(hot.half_plays))
+    play, before = 2e6 * hot.half_plays[least], 2e6 * cold.half_plays[least]
     assert asked.case.train is not None
     name = asked.case.train.bearing_names[least]
     return answer(
         CLEARANCE,
         "bearing_clearance",
-        f"Bearing {name} has least play: of {before:.1f} µm mounted cold {play:.1f} µm are left "
-        "hot" + ("; it is preloaded." if play < 0.0 else "."),
+        f"Bearing {name} has least radial internal clearance: of {before:.1f} µm mounted cold "
+        f"{play:.1f} µm are left hot" + ("; it is preloaded." if play < 0.0 else "."),
         play,
         at=at,
     )

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.analysis.any_motion import Motion, Search, settle
+from thermogear.analysis.any_motion import settle
 from thermogear.analysis.continuation import Branch
 from thermogear.analysis.event_curve import EventCurve
 from thermogear.analysis.orbits import Orbit, periodic_orbit, shoot
+from thermogear.analysis.walk import Motion, Search
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.base.parameters import Parameter
 from thermogear.base.progress import Progress, silent

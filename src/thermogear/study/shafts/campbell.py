@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,6 +21,7 @@ from thermogear.shafts.linear import (
     LinearTrain,
     Modes,
     damping_ratios,
+    lift_off,
     resonant_forces,
     strain_shares,
 )
@@ -95,7 +96,8 @@ def orders_of(case: GearCase) -> list[Order]:
 class Critical:
     """A speed [rad/s] of the pinion at which an ``order`` meets a mode of ``frequency`` [rad/s].
 
-    ``force`` [N]: the greatest on a bearing there, by this mode alone.
+    ``force`` [N]: the greatest dynamic one on a bearing there, by this mode alone; nan where a
+    bearing lifts off or the teeth part, by the linear force from the speed ``lift_off`` [rad/s] on.
     """
 
     speed: float
@@ -105,6 +107,7 @@ class Critical:
     mostly: str
     amplification: float
     force: float
+    lift_off: float
 
 
 def critical_speeds(case: GearCase, state: TrainState, highest: float) -> list[Critical]:
@@ -114,7 +117,7 @@ def critical_speeds(case: GearCase, state: TrainState, highest: float) -> list[C
         if order.kind == "bearing":
             continue
         rows, shapes = _critical(plan_of(case), state, state.linear, order)
-        speeds, _, gains, forces = rows
+        speeds, _, gains, forces, lifts = rows
         parts = strain_shares(state.linear, shapes)
         for mode in range(int(np.sum(speeds <= highest))):
             here = {name: float(value[mode]) for name, value in parts.items()}
@@ -127,6 +130,7 @@ def critical_speeds(case: GearCase, state: TrainState, highest: float) -> list[C
                     mostly=name_of(here, rings),
                     amplification=float(gains[mode]),
                     force=float(forces[mode]),
+                    lift_off=float(lifts[mode]),
                 )
             )
     return found
@@ -169,8 +173,7 @@ def campbell(
     orders = orders_of(case)
     rings = bearing_parts(case)
     plan = plan_of(case)
-    curves, participation, gains, levels, responses, names = [], [], [], [], [], []
-    forces: list[Any] = []
+    curves, responses, names, met = [], [], [], []
     fine = np.linspace(max(low, high / FINE), high, FINE)
     for number, state in enumerate(found):
         trains = [state.rest.linear(k) for k in state.band]
@@ -182,13 +185,9 @@ def campbell(
             kept.append(followed)
         curves.append(curve)
         names.append([_name(trains[1], kept[1][0], mode, rings) for mode in range(count)])
-        crossed = [
-            [_first(_critical(plan, state, t, one)[0], count) for one in orders] for t in trains
-        ]
-        forces.append([[one[3] for one in row] for row in crossed])
-        levels.append([[one[0] for one in row] for row in crossed])
-        participation.append([[one[1] for one in row] for row in crossed])
-        gains.append([[one[2] for one in row] for row in crossed])
+        met.append(
+            [[_first(_critical(plan, state, t, one)[0], count) for one in orders] for t in trains]
+        )
         progress("campbell", number * (len(trains) + 1) + len(trains), 2 * (len(trains) + 1))
         responses.append(_responses(case, state, fine, orders))
     progress("campbell", 1, 1)
@@ -197,6 +196,7 @@ def campbell(
         "order": (("line",), [one.order for one in orders], "1", "per turn of the pinion"),
     }
     states = [one.state.kind for one in found]
+    levels, shares, gains, forces, lifts = np.moveaxis(np.array(met), 3, 0)
     numbered = (("mode",), np.arange(1, count + 1), "1", "number of the mode")
     level_names = {"state": states, "stiffness_level": list(LEVELS), "mode": numbered}
     return Result.of(
@@ -225,7 +225,7 @@ def campbell(
                     ),
                     "participation": (
                         ("state", "stiffness_level", "line", "mode"),
-                        participation,
+                        shares,
                         "1",
                         "how much of the mode the order can drive",
                     ),
@@ -240,6 +240,12 @@ def campbell(
                         forces,
                         "N",
                         "greatest dynamic force on a bearing at the resonance, by this mode alone",
+                    ),
+                    "lift_off_speed": (
+                        ("state", "stiffness_level", "line", "mode"),
+                        lifts,
+                        "rad/s",
+                        "speed from which the mode lifts a bearing off or parts the teeth",
                     ),
                 },
                 level_names | lines,
@@ -310,17 +316,31 @@ def pushes(plan: TrainPlan, state: TrainState, order: Order, frequency: Floats) 
 def _critical(
     plan: TrainPlan, state: TrainState, train: LinearTrain, order: Order
 ) -> tuple[Floats, Complexes]:
-    """Speeds [rad/s], participations, amplifications and bearing forces [N], (4, found); shapes.
+    """Speeds, participations, amplifications, bearing forces, lift-off, (5, found); shapes.
 
-    An undamped mode has infinite amplification, or nan where the order does not drive it.
+    Speeds [rad/s], forces [N]. An undamped mode has infinite amplification, or nan where the order
+    does not drive it. The linear train holds while the dynamic force stays below the static load
+    in every bearing, and in the teeth. Beyond, the force is nan and the lift-off a speed.
     """
     speed, shape = train.critical(order.order)
     w = speed * order.order
-    force = resonant_forces(train, shape, frequency=w, force=pushes(plan, state, order, w))
+    forces = resonant_forces(train, shape, frequency=w, force=pushes(plan, state, order, w))
     share = participation(train, order, shape)
     ratio = damping_ratios(train, shape, frequency=w)
+    force = forces[:-1].max(axis=0, initial=0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
-        return np.stack([speed, share, share / (2.0 * ratio), force]), shape
+        excess = np.fmax.reduce(forces / held(state)[:, None], axis=0)
+        gain = share / (2.0 * ratio)
+    begin = lift_off(speed, ratio=ratio, excess=np.where(np.isfinite(force), excess, np.nan))
+    return np.stack([speed, share, gain, np.where(np.isfinite(begin), np.nan, force), begin]), shape
+
+
+def held(state: TrainState) -> Floats:
+    """Static load [N] of each bearing, and last of the teeth: above it the force would turn round.
+
+    A preloaded bearing keeps its elements loaded for a while then; its stiffness is another, too.
+    """
+    return np.append(np.linalg.norm(state.rest.bearing_force, axis=-1), state.rest.mesh_force)
 
 
 def _first(rows: Floats, count: int) -> Floats:
@@ -356,7 +376,10 @@ def participation(train: LinearTrain, order: Order, shape: NDArray[np.complex128
 def _responses(
     case: GearCase, state: TrainState, speeds: Floats, orders: Sequence[Order]
 ) -> list[Response]:
-    """The response to the mesh's harmonics, to the unbalance and to the run-out of either shaft."""
+    """The response to the mesh's harmonics, to the unbalance and to the run-out of either shaft.
+
+    Nan where a bearing lifts off or the teeth part, see :func:`held`.
+    """
     error = state.loaded_error
     found = [
         error_response(
@@ -376,7 +399,19 @@ def _responses(
             0j,
         )
         found.append(error_response(state.linear, speeds, order=turns, error=moved))
-    return found
+    return [_in_contact(one, held(state)) for one in found]
+
+
+def _in_contact(response: Response, most: Floats) -> Response:
+    """The ``response``, nan at speeds where a force of it is above the ``most`` it may be."""
+    rings = np.linalg.norm(response.bearing_force, axis=-1)
+    forces = np.column_stack([rings, np.abs(response.mesh_force)])
+    beyond = np.any(forces > most, axis=1)
+    kept = ("mesh_force", "bearing_force", "ring_acceleration", "casing_acceleration")
+    arrays = {name: np.array(getattr(response, name)) for name in kept}
+    for values in arrays.values():
+        values[beyond] = np.nan
+    return replace(response, **arrays)
 
 
 def _response_table(
@@ -422,5 +457,7 @@ def _response_table(
 LINEAR = Notice(
     "info",
     "Linear about the equilibrium at the greatest power: teeth and bearings stay in contact, "
-    "the mesh has its mean stiffness in the response, its least and greatest in the band.",
+    "the mesh has its mean stiffness in the response, its least and greatest in the band. Where a "
+    "dynamic force exceeds the static load the bearing lifts off, or the teeth part: no linear "
+    "force is valid there and none is given.",
 )

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.analysis.any_motion import Motion, Search, settle
+from thermogear.analysis.any_motion import settle
 from thermogear.analysis.torus import Torus
+from thermogear.analysis.walk import Motion, Search
 from thermogear.base.errors import ConvergenceError
 from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import STATUS, label
@@ -102,7 +103,7 @@ def search_of(cycle: int) -> Search:
     if cycle == 1:
         return Search()
     if cycle > POLISHED:
-        return Search(first=3, cap=24, max_period=2, polish=False, exponent=False)
+        return Search(first=3, cap=24, max_period=2, polish=False, exponent=False, starts=1)
     # as many mesh periods as without
     whole = Search()
     return Search(
@@ -111,6 +112,7 @@ def search_of(cycle: int) -> Search:
         max_period=4,
         batch=max(whole.batch // cycle, 1),
         sections=0,
+        follow=-(-whole.follow // cycle),
     )
 
 
@@ -127,9 +129,9 @@ def _followed(train: MovingTrain) -> Motion:
     try:
         state = Engine(train.model).run(train.start, LONGEST).state
     except ConvergenceError as told:
-        return Motion(name="diverged", period=0, reason=str(told), state=train.start, used=0)
+        return Motion(name="diverged", period=0, reason=str(told), state=train.start, discarded=0)
     reason = f"all shafts come back only after {train.model.cycle} mesh periods"
-    return Motion(name="undecided", period=0, reason=reason, state=state, used=LONGEST)
+    return Motion(name="undecided", period=0, reason=reason, state=state, discarded=LONGEST)
 
 
 def train_motion(
@@ -215,8 +217,8 @@ def _table(case: GearCase, found: Sequence[Sequence[Moved]]) -> xr.Dataset:
         "bearing_force": ((*POINT, "bearing", "sample"), force, "N", "force on the bearing"),
         "journal_path": ((*POINT, "bearing", "axis", "sample"), over(
             lambda one, r: r.journal_path[:shown].transpose(1, 2, 0), count, 2, shown)),
-        "radial_clearance": ((*POINT, "bearing"), np.reshape(
-            [one.state.clearances for one in flat], (*shape, count))),
+        "radial_internal_clearance": ((*POINT, "bearing"), 2.0 * np.reshape(
+            [one.state.half_plays for one in flat], (*shape, count))),
         "mean_bearing_load": ((*POINT, "bearing", "axis"), over(
             lambda one, r: r.bearing_force.mean(axis=0), count, 2)),
         "bearing_contact_share": ((*POINT, "bearing"), over(
@@ -266,8 +268,12 @@ def _table(case: GearCase, found: Sequence[Sequence[Moved]]) -> xr.Dataset:
         "coordinates": (POINT, np.array(
             [0 if one.train is None else one.train.model.size for one in flat]).reshape(shape), "1",
             "coordinates of the reduced train"),
+        "followed_periods": (POINT, [
+            [0 if m.motion is None else m.motion.followed * cycle for m in row] for row in found]),
+        "followed_starts": (POINT, [
+            [0 if m.motion is None else m.motion.starts for m in row] for row in found]),
         "multiplier_modulus": (POINT, _of(flat, lambda m: abs(m.multiplier)).reshape(shape)),
-        "used_periods": (POINT, _of(flat, lambda m: m.used).reshape(shape), "1",
+        "used_periods": (POINT, _of(flat, lambda m: m.discarded).reshape(shape), "1",
                          "periods of the return map run until it was known"),
     }  # fmt: skip
     first = found[0]

@@ -62,7 +62,7 @@ class TrainState:
     """A drive train at rest under its load.
 
     ``mesh`` at the actual centre distance, ``half_backlash`` b' [m] at the drawn one; ``growths``
-    [m] of that distance by the shafts' deflection, round by round; ``clearances`` radial [m] and
+    [m] of that distance by the shafts' deflection, round by round; ``half_plays`` [m] and
     ``temperatures`` [K] (inner ring, elements, outer ring) of every bearing, nan where it has none.
     ``status`` is a place in
     :data:`~thermogear.base.vocabulary.STATUS`; where it is not 0 the ``equilibrium`` may be None.
@@ -76,7 +76,7 @@ class TrainState:
     mesh: Meshing
     half_backlash: float
     growths: tuple[float, ...]
-    clearances: Floats
+    half_plays: Floats
     temperatures: Floats
     equilibrium: Equilibrium | None
     status: int
@@ -178,8 +178,8 @@ def _settled(
     known: bool,
 ) -> TrainState:
     plan, at = plan_of(case), every.point(place)
-    clearances = plan.radial_clearances(temperatures, reference=at.temperatures.reference)
-    assembly = assemble(plan.drive_train(pair=case.pair, clearances=clearances))
+    half_plays = plan.half_plays(temperatures, reference=at.temperatures.reference)
+    assembly = assemble(plan.drive_train(pair=case.pair, half_plays=half_plays))
     mesh = meshing(case, model, case.pair, at)
     backlash = mesh.half_backlash
     growths: list[float] = []
@@ -209,7 +209,7 @@ def _settled(
         mesh=mesh,
         half_backlash=backlash,
         growths=tuple(growths),
-        clearances=clearances,
+        half_plays=half_plays,
         temperatures=temperatures,
         equilibrium=rest,
         status=status,

@@ -168,12 +168,7 @@ def of_bearings(case: GearCase, found: Sequence[Sequence[TrainState]]) -> xr.Dat
             "bearing_load_y": (RING, load[..., 1], "N", "load along y"),
             "journal_x": (RING, moved[..., 0], "m", "journal in its ring along x"),
             "journal_y": (RING, moved[..., 1], "m", "journal in its ring along y"),
-            "radial_clearance": (
-                RING,
-                given("clearances"),
-                "m",
-                "radial clearance, half of the play; below zero a preload",
-            ),
+            "radial_internal_clearance": (RING, 2.0 * given("half_plays")),
             "bearing_stiffness_x": (RING, stiff[..., 0, 0], "N/m", "tangent stiffness along x"),
             "bearing_stiffness_y": (RING, stiff[..., 1, 1], "N/m", "tangent stiffness along y"),
             "inner_ring_temperature": (RING, warm[..., 0], "K", "temperature of the inner ring"),
@@ -267,13 +262,13 @@ def _of_bearings(case: GearCase, found: Sequence[Sequence[TrainState]]) -> Itera
         yield Notice("warning", f"{words}.")
     for row in found:
         tight = [
-            f"{name} {1e6 * c:.1f} um"
+            f"{name} {2e6 * c:.1f} um"
             for place, name in enumerate(plan.bearing_names)
-            if (c := min(float(one.clearances[place]) for one in row)) < 0.0
+            if (c := min(float(one.half_plays[place]) for one in row)) < 0.0
         ]
         if tight:
             yield Notice(
                 "important",
-                f"Preloaded {row[0].state.words} (radial clearance below zero): "
+                f"Preloaded {row[0].state.words} (radial internal clearance below zero): "
                 f"{', '.join(tight)}. A preload adds to the load, and heat adds to the preload.",
             )

@@ -67,7 +67,7 @@ def _statics(result: Result) -> Page:
             partial(plots.loads, rings),
             wide=True,
         ),
-        *([] if np.isnan(rings["radial_clearance"].values).all() else [_clearances(rings)]),
+        *([] if np.isnan(plots.internal_clearance(rings).values).all() else [_clearances(rings)]),
         Shown(
             "deflection",
             f"Deflection at {names[last]}",
@@ -89,8 +89,8 @@ def _clearances(rings: xr.Dataset) -> Shown:
     return Shown(
         "clearances",
         "Clearance of the bearings",
-        "Radial clearance as mounted, cold and hot: half of the play. Below the dashed line "
-        "the bearing is preloaded.",
+        "Radial internal clearance (ISO 5753-1) as mounted, cold and hot: the whole play. Below "
+        "the dashed line the bearing is preloaded.",
         partial(plots.clearances, rings),
         wide=True,
     )
@@ -122,7 +122,7 @@ def _mesh_table(data: xr.Dataset, names: list[str]) -> Table:
 
 def _ring_table(data: xr.Dataset, names: list[str]) -> Table:
     head = [
-        "state", "operating point", "bearing", "load [N]", "radial clearance [µm]",
+        "state", "operating point", "bearing", "load [N]", "radial internal clearance [µm]",
         "journal moves [µm]", "stiffness x [N/µm]", "stiffness y [N/µm]", "inner ring [°C]",
         "outer ring [°C]", "static safety", "life L10 [h]",
     ]  # fmt: skip
@@ -138,7 +138,7 @@ def _ring_table(data: xr.Dataset, names: list[str]) -> Table:
                         name,
                         bearing,
                         _told(one["bearing_load"], 1.0, 0),
-                        _told(one["radial_clearance"], 1e6, 2),
+                        _told(plots.internal_clearance(one), 1e6, 2),
                         _told(moved, 1e6, 2),
                         _told(one["bearing_stiffness_x"], 1e-6, 1),
                         _told(one["bearing_stiffness_y"], 1e-6, 1),
@@ -192,12 +192,12 @@ def _static_lines(result: Result) -> list[str]:
     found = []
     for o, name in enumerate(names):
         found.append(name)
-        found.append(f"  {'bearing':<16}{'load [N]':>20}{'radial clearance [um]':>26}")
+        found.append(f"  {'bearing':<16}{'load [N]':>20}{'radial internal clearance [um]':>32}")
         for b, bearing in enumerate(names_of(rings, "bearing")):
             both = rings.isel(operating=o, bearing=b)
             load = " -> ".join(_told(v, 1.0, 0) for v in both["bearing_load"].values)
-            gap = " -> ".join(_told(v, 1e6, 1) for v in both["radial_clearance"].values)
-            found.append(f"  {bearing:<16}{load:>20}{gap:>26}")
+            gap = " -> ".join(_told(v, 1e6, 1) for v in plots.internal_clearance(both).values)
+            found.append(f"  {bearing:<16}{load:>20}{gap:>32}")
         one = mesh.isel(operating=o)
         apart = " -> ".join(_told(v, 1e6, 2) for v in one["centre_distance_growth"].values)
         tilt = " -> ".join(_told(v, 1e6, 2) for v in one["misalignment_across_face"].values)
@@ -302,7 +302,7 @@ def criticals(result: Result) -> Iterator[dict[str, Any]]:
     limit = float(modes["pinion_speed"].values[-1])
     for s, state in enumerate(names_of(data, "state")):
         found = []
-        every = data["resonant_force"].values[s, 1]
+        every, lifts = data["resonant_force"].values[s, 1], plots.lift_offs(data)[s, 1]
         inside = data["critical_speed"].values[s, 1] <= limit
         known = np.where(inside & np.isfinite(every), every, np.nan)
         most = float(np.nanmax(known, initial=0.0))
@@ -312,7 +312,8 @@ def criticals(result: Result) -> Iterator[dict[str, Any]]:
             gain = data["amplification"].values[s, 1, line]
             force = data["resonant_force"].values[s, 1, line]
             for m in range(mean.size):
-                felt = force[m] >= FELT * most
+                lifted = bool(np.isfinite(lifts[line, m]))
+                felt = lifted or force[m] >= FELT * most
                 if (gain[m] >= NIL or felt) and low[m] <= limit:
                     found.append(
                         {
@@ -326,10 +327,18 @@ def criticals(result: Result) -> Iterator[dict[str, Any]]:
                             "participation": float(share[m]),
                             "amplification": float(gain[m]),
                             "bearing_force_N": float(force[m]) if np.isfinite(force[m]) else None,
+                            "lifts_off_from_rpm": lifts[line, m] / RPM if lifted else None,
                             "mostly": str(modes["mode_name"].values[s, m]),
                         }
                     )
         yield from sorted(found, key=lambda one: one["rpm"])
+
+
+def _force(one: dict[str, Any]) -> str:
+    """The dynamic force of a resonance on a bearing [N], or why there is none."""
+    if one["lifts_off_from_rpm"] is not None:
+        return plots.not_valid(one["lifts_off_from_rpm"] * RPM)
+    return _told(one["bearing_force_N"], 1.0, 1)
 
 
 def _campbell(result: Result) -> Page:
@@ -344,7 +353,8 @@ def _campbell(result: Result) -> Page:
             "Campbell diagram",
             "Natural frequencies (black; the grey band is the mesh stiffness from its least to its "
             "greatest), the orders that excite them, and a dot where an order meets a mode "
-            "and shakes a bearing: the larger, the more. Dashed uprights are the case's speeds.",
+            "and shakes a bearing: the larger, the more, the largest where one lifts off or the "
+            "teeth part. Dashed uprights are the case's speeds.",
             partial(plots.campbell, data, critical, own),
             wide=True,
         ),
@@ -352,7 +362,8 @@ def _campbell(result: Result) -> Page:
             "bearing_forces",
             "Dynamic bearing forces over speed",
             "Amplitude by the loaded transmission error, by unbalance and by run-out, linear; hot "
-            "full, undeformed dashed.",
+            "full, undeformed dashed. A curve ends where a bearing would lift off or the teeth "
+            "part.",
             partial(plots.response, answer, "bearing_force", "force [N]"),
             wide=True,
         ),
@@ -379,7 +390,7 @@ def _campbell(result: Result) -> Page:
             f"{one['frequency_Hz']:.1f}",
             one["order"],
             str(one["mode"]),
-            _told(one["bearing_force_N"], 1.0, 1),
+            _force(one),
             f"{one['participation']:.4f}",
             f"{one['amplification']:.2f}",
             one["mostly"],
@@ -395,10 +406,19 @@ def _campbell(result: Result) -> Page:
             f"{strong['order']} meets {strong['frequency_Hz']:.0f} Hz ({strong['mostly']}): "
             f"{_told(strong['bearing_force_N'], 1.0, 0)} N on a bearing."
         )
+    lost = [one for one in hot if one["lifts_off_from_rpm"] is not None]
+    if lost:
+        first = min(lost, key=lambda one: one["lifts_off_from_rpm"])
+        summary += (
+            f" At {len(lost)} of them a bearing lifts off or the teeth part, first from "
+            f"{first['lifts_off_from_rpm']:.0f} rpm on (that at {first['rpm']:.0f} rpm): no linear "
+            "force is valid there."
+        )
     caption = (
         "Critical speeds: where an order meets a mode that it lifts by 0.1 or more, or that shakes "
         "a bearing with a twentieth of the greatest such force. The force is that of the mode "
-        "alone; the response has all of them together."
+        "alone; the response has all of them together. Above its static load a bearing "
+        "lifts off, or the teeth part, from the speed given on: the linear force is not valid."
     )
     table = Table(caption, head, rows)
     return survey(
@@ -411,13 +431,13 @@ def _critical_numbers(result: Result) -> dict[str, Any]:
 
 
 def _critical_lines(result: Result) -> list[str]:
-    head = f"{'state':<12}{'rpm':>8}{'band [rpm]':>16}{'Hz':>9}{'force [N]':>11}{'rises':>7}"
+    head = f"{'state':<12}{'rpm':>8}{'band [rpm]':>16}{'Hz':>9}{'force [N]':>38}{'rises':>7}"
     found = [f"{head}  by: mostly"]
     for one in criticals(result):
         band = f"{one['rpm_least']:.0f}..{one['rpm_greatest']:.0f}"
         found.append(
             f"{one['state']:<12}{one['rpm']:>8.0f}{band:>16}{one['frequency_Hz']:>9.1f}"
-            f"{_told(one['bearing_force_N'], 1.0, 1):>11}{one['amplification']:>7.2f}"
+            f"{_force(one):>38}{one['amplification']:>7.2f}"
             f"  {one['order']}: {one['mostly']}"
         )
     if len(found) == 1:

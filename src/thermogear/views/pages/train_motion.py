@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from thermogear.base.display import number
+from thermogear.base.vocabulary import told_labels
 from thermogear.results.result import Result
 from thermogear.views.moving import Dial
 from thermogear.views.page import Block, Pictures, Section, Table, Text
 from thermogear.views.picture import Picture
 from thermogear.views.plots import bearings
 from thermogear.views.plots import train_motion as plots
+from thermogear.views.plots.shafts import internal_clearance
 from thermogear.views.style import names_of
 from thermogear.views.typesetting import operating_names
 
@@ -27,11 +29,11 @@ CAPTION = (
 )
 ORBITS = (
     "Above: where each journal is in its outer ring, seen along the shafts. Inside the dashed "
-    "circle, the radial clearance of that state of heat, nothing holds it; what reaches beyond is "
-    "the contact's deflection. Of rolling elements the free space is the polygon around the "
-    "circle, a side for each element. A preloaded bearing has none. The arrow is the mean force "
-    "on the ring. Below: the same paths, each about its own mean, enlarged; the arrow is the way "
-    "it goes, the dot its place at mesh phase 0, which the dial turns on."
+    "circle, as wide across as the radial internal clearance of that state of heat, nothing holds "
+    "it; what reaches beyond is the contact's deflection. Of rolling elements the free space is "
+    "the polygon around the circle, a side for each element. A preloaded bearing has none. The "
+    "arrow is the mean force on the ring. Below: the same paths, each about its mean, enlarged; "
+    "the arrow is the way it goes, the dot its place at mesh phase 0, which the dial turns on."
 )
 FORCES = (
     "Amount of the force on each bearing's ring, damping not in it. Dashed: the amount of the "
@@ -117,7 +119,7 @@ def _closer(data: xr.Dataset) -> list[int]:
 
 def _of_bearings(data: xr.Dataset, place: int, name: str, pictures: Pictures) -> None:
     """Orbits with a dial of the phase, forces over time and over order."""
-    path = ("journal_path", "radial_clearance", "mean_bearing_load")
+    path = ("journal_path", "mean_bearing_load")
     phases = [f"{f / FRAMES:.3f}" for f in range(FRAMES)]
     turned = Dial("mesh phase", phases, [""] * FRAMES, 0, partial(_frame, data, place))
     pictures.add(
@@ -154,7 +156,7 @@ def _table(data: xr.Dataset, names: list[str]) -> Table:
                 [
                     state,
                     name,
-                    str(one["label"].values),
+                    str(told_labels(one)),
                     _told(one["mean_mesh_force"], "{:.0f}"),
                     _told(one["greatest_mesh_force"], "{:.0f}"),
                     _told(one["train_dynamic_factor"], "{:.3f}"),
@@ -169,7 +171,8 @@ def _table(data: xr.Dataset, names: list[str]) -> Table:
 def _rings(data: xr.Dataset, names: list[str]) -> Table:
     head = [
         "state", "operating point", "bearing", "mean force [N]", "greatest force [N]",
-        "radial clearance [µm]", "carries load [% of time]", "contact losses per mesh period",
+        "radial internal clearance [µm]", "carries load [% of time]",
+        "contact losses per mesh period",
     ]  # fmt: skip
     rows = []
     for s, state in enumerate(names_of(data, "state")):
@@ -180,7 +183,7 @@ def _rings(data: xr.Dataset, names: list[str]) -> Table:
                 told = [_told(mean, "{:.0f}"), _told(most, "{:.0f}")]
                 if "journal_path" in data:
                     told += [
-                        _told(1e6 * one["radial_clearance"], "{:.1f}"),
+                        _told(1e6 * internal_clearance(one), "{:.1f}"),
                         _told(100.0 * one["bearing_contact_share"], "{:.1f}"),
                         _told(one["bearing_contact_losses"], "{:.2f}"),
                     ]
@@ -205,7 +208,7 @@ def numbers(result: Result) -> dict[str, Any]:
         for o, name in enumerate(names):
             one = data.isel(state=s, operating=o)
             found[f"{state}, {name}"] = {
-                "motion": str(one["label"].values),
+                "motion": str(told_labels(one)),
                 "reason": str(one["label_reason"].values),
                 "mean_mesh_force_N": _plain(one["mean_mesh_force"]),
                 "greatest_mesh_force_N": _plain(one["greatest_mesh_force"]),
@@ -251,7 +254,7 @@ def lines(result: Result) -> list[str]:
             force = _told(one["greatest_mesh_force"], "{:.0f}")
             ring = float(np.nanmax(one["greatest_bearing_force"].values, initial=0.0))
             told.append(
-                f"{state}: {one['label'].values!s}, mesh up to {force} N, bearings up to "
+                f"{state}: {told_labels(one)}, mesh up to {force} N, bearings up to "
                 f"{number(ring)} N"
             )
         found.append(f"train, {name}: " + "; ".join(told))

@@ -14,6 +14,7 @@ from thermogear.results.result import Result
 from thermogear.views.page import Page, Shown, Table
 from thermogear.views.pages.survey import survey
 from thermogear.views.plots import waterfall as plots
+from thermogear.views.plots.shafts import not_valid
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -94,6 +95,8 @@ def _critical(data: xr.Dataset) -> Table:
             if low <= one["speed"] <= high:
                 force = one["force"]
                 told = number(force) if force is not None and np.isfinite(force) else "–"
+                if np.isfinite(one.get("lift_off", np.nan)):
+                    told = not_valid(one["lift_off"])
                 speed = f"{one['speed'] / RPM:.5g}"
                 hertz = f"{one['frequency'] / (2.0 * np.pi):.5g}"
                 rows.append([state, one["order"], speed, hertz, one["mostly"], told])

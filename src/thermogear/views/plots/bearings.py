@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.display import number
 from thermogear.views.picture import Axis, Panel, Picture
+from thermogear.views.plots.shafts import internal_clearance
 from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
 from thermogear.views.style import (
     ABOVE,
@@ -75,7 +76,7 @@ def _in_clearance(here: xr.Dataset, bearing: int) -> Panel:
     """Clearance circles, orbits and the direction of the load of one bearing."""
     states = names_of(here, "state")
     path = 1e6 * here["journal_path"].values[:, bearing]
-    free = 1e6 * here["radial_clearance"].values[:, bearing]
+    free = 0.5e6 * internal_clearance(here).values[:, bearing]
     far = float(np.nanmax(np.hypot(path[:, 0], path[:, 1]), initial=0.0))
     most = max(far, float(np.nanmax(free, initial=0.0))) or 1.0
     panel = Panel(*_axes("", ROOM * most), names_of(here, "bearing")[bearing], equal=True)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from thermogear.base.display import display
+from thermogear.base.units import RPM
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import (
     FAINT,
@@ -145,15 +146,22 @@ def loads(data: xr.Dataset) -> Picture:
     return Picture([[panel]], size=(WIDE, 3.2))
 
 
+def internal_clearance(data: xr.Dataset) -> xr.DataArray:
+    """Radial internal clearance [m], the whole play; older versions stored half of it."""
+    if "radial_internal_clearance" in data:
+        return data["radial_internal_clearance"]
+    return 2.0 * data["radial_clearance"]
+
+
 def clearances(data: xr.Dataset) -> Picture:
-    """Radial clearance of every bearing, cold and hot; below zero it is a preload."""
-    panel = Panel(Axis(""), Axis("radial clearance [µm]"))
+    """Radial internal clearance of every bearing, cold and hot; below zero it is a preload."""
+    panel = Panel(Axis(""), Axis("radial internal clearance [µm]"))
     names = names_of(data, "bearing")
     for state, name in enumerate(names_of(data, "state")):
         for point in range(data.sizes["operating"]):
             panel.points(
                 np.arange(len(names)) + (state - 0.5) * 0.25,
-                1e6 * data["radial_clearance"].values[state, point],
+                1e6 * internal_clearance(data).values[state, point],
                 colour=STATES.get(name, INK),
                 marker="circle" if state else "square",
                 open=not state,
@@ -225,6 +233,20 @@ def energies(table: xr.Dataset, state: int) -> Picture:
     return Picture([[panel]], size=(WIDE, 0.28 * len(parts) + 1.0), left=2.2)
 
 
+def lift_offs(critical: xr.Dataset) -> Any:
+    """Speed [rad/s] from which each resonance lifts a bearing off or parts the teeth; nan: never.
+
+    Older versions did not ask.
+    """
+    absent = np.nan * critical["resonant_force"]
+    return critical.get("lift_off_speed", absent).values
+
+
+def not_valid(speed: float) -> str:
+    """What stands in place of the force of a resonance that lifts off from ``speed`` [rad/s] on."""
+    return f"not valid: lifts off from {speed / RPM:.0f} rpm"
+
+
 def campbell(data: xr.Dataset, critical: xr.Dataset, speeds: Sequence[float]) -> Picture:
     """Natural frequencies over speed with the band of the mesh, the orders, the critical speeds."""
     rpm = display("pinion_speed")
@@ -232,7 +254,7 @@ def campbell(data: xr.Dataset, critical: xr.Dataset, speeds: Sequence[float]) ->
     panels = []
     states = names_of(data, "state")
     inside = critical["critical_speed"].values <= data["pinion_speed"].values[-1]
-    force = critical["resonant_force"].values
+    force, lifts = critical["resonant_force"].values, lift_offs(critical)
     known = np.where(inside & np.isfinite(force), force, np.nan)
     most = max(float(np.nanmax(known, initial=0.0)), 1e-12)
     for state, name in enumerate(states):
@@ -259,6 +281,7 @@ def campbell(data: xr.Dataset, critical: xr.Dataset, speeds: Sequence[float]) ->
             )
             met = critical["critical_speed"].values[state, 1, line]
             shares = np.minimum(force[state, 1, line] / most, 1.0)
+            shares[np.isfinite(lifts[state, 1, line])] = 1.0
             for speed, share in zip(met, shares, strict=True):
                 if np.isfinite(speed) and share >= LEAST_FORCE and rpm(speed) <= x[-1]:
                     panel.points(
@@ -283,7 +306,7 @@ def response(data: xr.Dataset, quantity: str, words: str, factor: float = 1.0) -
     for number, bearing in enumerate(names_of(data, "bearing")):
         panel = Panel(Axis("pinion speed [rpm]"), Axis(words, log="decades"), bearing)
         parts = [data[f"{quantity}_{c}"].values[..., number] for c in ("x", "y")]
-        floor = LEAST_SHARE * factor * float(np.hypot(*parts).max())
+        floor = LEAST_SHARE * factor * float(np.nanmax(np.hypot(*parts), initial=0.0))
         for place, source in enumerate(names_of(data, "source")):
             for state, name in enumerate(names_of(data, "state")):
                 size = factor * np.hypot(*(part[state, place] for part in parts))
