@@ -263,8 +263,8 @@ def loaded_contact(
     the bore ("bore_clamped", statics) the same load turns the gears farther by a constant.
     Finite elements of whole gears held there agree within 1.3 % for m 5, 25:75, and within 2.3 %
     for pairs of 17:43 to 40:120 with 20 degrees, a thin rim among them; steep flanks with a sharp
-    fillet (25 degrees, rho_fP 0.3) come out up to 5 % too compliant. Contact on tip corners and relief
-    has no such check. Raises InputError for loads < 0 and deviations that do not fit
+    fillet (25 degrees, rho_fP 0.3) come out up to 5 % too compliant. Contact on tip corners and
+    relief has no such check. Raises InputError for loads < 0 and deviations that do not fit
     the gears.
     Source: Weber & Banaschek 1953; ring body by Fourier series; extended contact exact.
 

@@ -109,13 +109,13 @@ def _cascade_lines(s: dict[str, Any]) -> list[str]:
 
 
 def _shared_lines(s: dict[str, Any]) -> list[str]:
-    lines = [s["title"], "  load-shared against one spring, difference"]
+    lines = [s["title"], "  load-shared against one spring, difference (of the transmission error)"]
     for where in ("mean", "light"):
         for words, name in (
             ("mean stiffness", f"stiffness_at_{where}_load"),
-            ("deflection at rest, peak to peak", f"swing_at_rest_{where}_load"),
-            ("motion over speed, median", f"median_swing_in_motion_{where}_load"),
-            ("motion over speed, greatest", f"swing_in_motion_{where}_load"),
+            ("error at rest, peak to peak", f"swing_at_rest_{where}_load"),
+            ("error over speed, median", f"median_swing_in_motion_{where}_load"),
+            ("error over speed, greatest", f"swing_in_motion_{where}_load"),
         ):
             if name in s:
                 lines.append(f"  {where:>5} load: {words:<34} {100 * s[name]:7.2f} %")
