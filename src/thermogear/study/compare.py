@@ -72,7 +72,7 @@ def compare(
     for name, sigma in (tolerances or {}).items():
         if not 0.0 <= sigma <= 1.0:
             raise InputError(f"tolerance of {name}", f"{100 * sigma:g} %", allowed="0..100 %")
-    if tolerances and not _computes(simulated):
+    if tolerances and not computes(simulated):
         raise InputError(
             "tolerances",
             ", ".join(tolerances),
@@ -122,7 +122,7 @@ def _at_places(
     """The drive train of a case against the accelerometers of a record."""
     from thermogear.study.compare_sensors import compare_sensors  # drive trains are not light
 
-    if not _computes(simulated):
+    if not computes(simulated):
         raise InputError(
             "--at",
             ", ".join(at),
@@ -173,7 +173,7 @@ def _printed(
     return Printed(table_of(measured, speed), {})
 
 
-def _computes(simulated: object) -> bool:
+def computes(simulated: object) -> bool:
     """Whether the lines come from a case that is computed here."""
     if isinstance(simulated, (str, Path)):
         if "\n" in str(simulated):
@@ -200,7 +200,12 @@ def _simulated(
         stored = path / "results.nc" if path.is_dir() else path
         if stored.suffix == ".nc":
             if not stored.is_file():
-                raise InputError("simulated", str(simulated), why="there are no results")
+                raise InputError(
+                    "simulated",
+                    str(simulated),
+                    why="there are no results",
+                    fix="make them by `thermogear run`, or name a case",
+                )
             return CaseLines(tree_lines(Result.read(stored)), u_num or 0.0, {}, ())
     if isinstance(simulated, Result):
         return CaseLines(tree_lines(simulated), u_num or 0.0, {}, ())
@@ -248,7 +253,12 @@ def _motion_lines(motion: xr.Dataset) -> dict[str, LineTable]:
                 name = f"{bundle} {state}"
                 found[name] = LineTable(name, tuple(lines.values()), None, "simulation")
     if not found:
-        raise InputError("simulated", "no line", why="no operating point has a motion")
+        raise InputError(
+            "simulated",
+            "no line",
+            why="no operating point has a motion",
+            fix="look for jams by `thermogear check` and `thermogear run`, or change the backlash",
+        )
     return found
 
 
@@ -280,34 +290,35 @@ def case_lines(
                 "info", f"u_num {100 * u_num:.3g} % from {steps} and {steps // 2} steps a period"
             )
         )
+    changed = [
+        [_relative(base, _tables(runs, one)) for one in several]
+        for several in (runs.sampled(tolerances, samples, seed), runs.drawings())
+    ]
     u_input: dict[float, float] = {}
-    if tolerances:
-        rng = np.random.default_rng(seed)
-        spread: dict[float, list[float]] = {}
-        for _ in range(max(2, samples)):
-            factors = {
-                name: float(1.0 + sigma * rng.standard_normal())
-                for name, sigma in tolerances.items()
-            }
-            for speed, value in _relative(base, _tables(runs, runs.changes(factors))).items():
-                spread.setdefault(speed, []).append(value)
-        u_input = {s: float(np.std(v, ddof=1)) for s, v in spread.items() if len(v) > 1}
-    else:
-        notices.append(Notice("warning", "no tolerances of the case are stated: u_input is 0"))
-    return CaseLines(base, u_num, u_input, tuple(notices))
+    for key in dict.fromkeys(key for several in changed for one in several for key in one):
+        sampled, drawn = ([one[key] for one in several if key in one] for several in changed)
+        spread = float(np.std(sampled, ddof=1)) if len(sampled) > 1 else 0.0
+        # the greatest and not a deviation: so no drawing reverses what another decides
+        most = float(np.hypot(spread, max(map(abs, drawn), default=0.0)))
+        u_input[key[1]] = max(u_input.get(key[1], 0.0), most)
+    return CaseLines(base, u_num, u_input, (*notices, *runs.told(tolerances)))
 
 
-def _relative(base: Mapping[str, LineTable], other: Mapping[str, LineTable]) -> dict[float, float]:
-    """Ratio of the displacements less 1 by speed, for the first model common to both."""
-    name = next((n for n in base if n in other), None)
-    if name is None:
-        return {}
-    found = {}
-    for line in base[name].lines:
-        twin = other[name].near(line.speed)
-        if twin is not None:
-            found[line.speed] = twin.displacement / line.displacement - 1.0
-    return found
+def _relative(
+    base: Mapping[str, LineTable], other: Mapping[str, LineTable]
+) -> dict[tuple[str, float], float]:
+    """Ratio of the displacements less 1, by model and speed."""
+    twins = {
+        (name, line.speed): (line, other[name].near(line.speed))
+        for name in base
+        if name in other
+        for line in base[name].lines
+    }
+    return {
+        key: twin.displacement / line.displacement - 1.0
+        for key, (line, twin) in twins.items()
+        if twin is not None
+    }
 
 
 def fit_case(
