@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +12,7 @@ from said import numbers
 from thermogear.base.errors import InputError
 from thermogear.case.case import load_example
 from thermogear.measured.chain import Chain
-from thermogear.measured.comparison import as_json, verdict
+from thermogear.measured.comparison import figures, verdict
 from thermogear.measured.published import (
     RPM,
     LineTable,
@@ -185,7 +184,7 @@ def test_a_table_file_against_tables(encoding: str, tmp_path: Path) -> None:
     assert [2000.0] in [numbers(text) for _, text in found.notices]
     assert all(row.speed == pytest.approx(1000.0 * RPM) for row in found.rows)
     assert set(found.row(1000 * RPM, "frequency").errors) == {0.0}
-    assert json.loads(as_json(found))["rows"][1]["verdict"] == "A better"
+    assert figures(found)["rows"][1]["verdict"] == "A better"
 
 
 def test_refusals_of_tables(tmp_path: Path) -> None:

@@ -135,3 +135,14 @@ def reach(values: ArrayLike, form: str = ".4g", between: str = " .. ") -> str:
         return "-"
     low, high = format(found.min(), form), format(found.max(), form)
     return low if low == high else f"{low}{between}{high}"
+
+
+def in_words(value: object) -> str:
+    """A value of a case file on one line."""
+    if value is None:
+        return "none"
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, list):
+        return ", ".join(in_words(each) for each in value)
+    return f"{value:.9g}" if isinstance(value, float) else " ".join(str(value).split())

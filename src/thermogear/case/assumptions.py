@@ -7,6 +7,7 @@ value, as older files have them, is left out with a warning.
 
 from __future__ import annotations
 
+import re
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -35,6 +36,13 @@ class Assumption:
     def default(self) -> str:
         """What is known of a default left to act; empty where the file declares the value."""
         return self.reason.removeprefix(_LEFT) if self.reason.startswith(_LEFT) else ""
+
+    @property
+    def figure(self) -> dict[str, float | str]:
+        """The value as a number with its unit; another value stays a text without one."""
+        found = re.fullmatch(r"([-+]?\d+\.?\d*(?:e[-+]?\d+)?)(?: (\D.*))?", self.value)
+        number, unit = found.groups() if found else ("", None)
+        return {"value": float(number) if number else self.value, "unit": unit or ""}
 
 
 _LEFT = "not in the file; the default: "

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -42,6 +41,7 @@ def import_(
     from thermogear.base.files import put, require_new_file
     from thermogear.case.rexs.container import read_rexs
     from thermogear.case.rexs.importing import imported
+    from thermogear.results.files import json_text
 
     if output is not None:
         require_new_file(Path(output))
@@ -54,7 +54,7 @@ def import_(
         say("warning", note)
     if as_json:
         content = {"case": found.text, "not used": found.unused, "notes": found.notes}
-        click.echo(json.dumps(content, indent=2, ensure_ascii=False))
+        click.echo(json_text(content), nl=False)
     if output is None:
         if not as_json:
             click.echo(found.text, nl=False)
@@ -78,6 +78,7 @@ def import_(
 def _list(model: Model, file: str, *, as_json: bool) -> None:
     """Shafts, stages and what is left out."""
     from thermogear.case.rexs.importing import left_out, listed, shafts
+    from thermogear.results.files import json_text
 
     found, notes = listed(model)
     turning = shafts(model)
@@ -106,7 +107,7 @@ def _list(model: Model, file: str, *, as_json: bool) -> None:
             "parts": rest,
             "notes": notes,
         }
-        click.echo(json.dumps(content, indent=2, ensure_ascii=False))
+        click.echo(json_text(content), nl=False)
         return
     click.echo(
         f"REXS {model.version}, {model.container}, {model.application or 'an unnamed program'}; "

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -211,7 +210,9 @@ def _print_notes(near: str) -> None:
 
 
 def _print_json(content: dict[str, Any]) -> None:
-    click.echo(json.dumps(content, indent=2, ensure_ascii=False))
+    from thermogear.results.files import json_text
+
+    click.echo(json_text(content), nl=False)
 
 
 def _stiffness_numbers(found: StiffnessCheck) -> dict[str, Any]:

@@ -6,7 +6,6 @@ u_D^2, and one model is better than another only where their errors differ by mo
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -425,8 +424,3 @@ def figures(found: Comparison) -> dict[str, Any]:
         "implied": [vars(item) for item in found.implied],
         "notices": [list(pair) for pair in found.notices],
     }
-
-
-def as_json(found: Comparison) -> str:
-    """:func:`figures` as a JSON text."""
-    return json.dumps(figures(found), indent=2, ensure_ascii=False)

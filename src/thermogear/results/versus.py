@@ -227,7 +227,7 @@ def differences(cases: Sequence[Stored]) -> list[dict[str, Any]]:
         stated = [each.get(name) for each in fields]
         if any(value != stated[0] for value in stated[1:]):
             values = [
-                _shown(each[name]) if name in each
+                each[name] if name in each
                 else f"not stated: {ours[name]}" if name in ours
                 else "not stated"
                 for each, ours in zip(fields, taken, strict=True)
@@ -256,7 +256,7 @@ def choices(
             if any(value != there[0] for value in there[1:]):
                 found.append({
                     "bundle": bundle, "choice": choice,
-                    "values": ["no such bundle" if each is None else _shown(v)
+                    "values": ["no such bundle" if each is None else v
                                for v, each in zip(values, having, strict=True)],
                 })  # fmt: skip
     return found
@@ -278,16 +278,6 @@ def unique_titles(cases: Sequence[Stored]) -> list[str]:
             own = f"{title} ({number})"
         found.append(own)
     return found
-
-
-def _shown(value: object) -> str:
-    if value is None:
-        return "none"
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, list):
-        return ", ".join(_shown(each) for each in value)
-    return f"{value:.9g}" if isinstance(value, float) else " ".join(str(value).split())
 
 
 def _text(case: Stored) -> str:

@@ -11,6 +11,20 @@ Summary = dict[str, Any]
 PLANE = "Where the motion jumps or changes"
 
 
+def shown(point: Summary, digits: int = 8) -> str:
+    """The value of a point with its unit."""
+    return f"{point['shown']:.{digits}g} {point['shown_unit']}".strip()
+
+
+def _second(point: Summary) -> str:
+    return f"{point['second_shown']:.6g} {point['second_unit']}".strip()
+
+
+def _turns(curve: Summary) -> list[str]:
+    """Where a curve turns back, in both parameters."""
+    return [f"{shown(one, 6)} at {_second(one)}" for one in _turns(curve)]
+
+
 def plane_headline(summary: Summary) -> str:
     """How many were followed; "" without a second parameter."""
     if "curves" not in summary:
@@ -39,8 +53,8 @@ def plane_tables(summary: Summary) -> list[Block]:
         name = f"{number} {curve['kind']}, period {curve['period']}"
         for one in curve["asked"]:
             met = "" if one["stable"] else "on an unstable orbit"
-            rows.append([name, one["second_shown"], one["shown"], met])
-        turns = "; ".join(curve["turns"]) or "–"
+            rows.append([name, _second(one), shown(one), met])
+        turns = "; ".join(_turns(curve)) or "–"
         ends.append([name, str(curve["points"]), turns, curve["ended"]])
     head = ["curve", second, page_words(summary["parameter"]), ""]
     return [
@@ -60,8 +74,7 @@ def plane_lines(s: Summary) -> list[str]:
         for one in curve["asked"]:
             met = "" if one["stable"] else "  (on an unstable orbit)"
             lines.append(
-                f"    {s['second']} = {one['second_shown']:<14} {s['parameter']} = "
-                f"{one['shown']}{met}"
+                f"    {s['second']} = {_second(one):<14} {s['parameter']} = {shown(one)}{met}"
             )
-        lines += [f"    turns at {one}" for one in curve["turns"]]
+        lines += [f"    turns at {one}" for one in _turns(curve)]
     return lines

@@ -25,6 +25,7 @@ from thermogear.views.pages.event_plane import (
     plane_caption,
     plane_headline,
     plane_tables,
+    shown,
 )
 from thermogear.views.pages.motion_lines import LINES
 from thermogear.views.picture import Picture
@@ -104,7 +105,7 @@ def csv_tables(kind: str, groups: Groups) -> dict[str, str]:
 
 
 def _cell(value: object) -> str:
-    return f"{value:.12g}" if isinstance(value, float) else quoted(str(value))
+    return f"{value:.15g}" if isinstance(value, float) else quoted(str(value))
 
 
 HEADINGS = {
@@ -246,7 +247,7 @@ def _lyapunov_tables(summary: Summary) -> list[Block]:
 
 def _branch_tables(summary: Summary) -> list[Block]:
     rows = [
-        [b["kind"], f"period {b['period']}", b["shown"], _complex(b["multipliers"][0]), b["note"]]
+        [b["kind"], f"period {b['period']}", shown(b, 10), _complex(b["multipliers"][0]), b["note"]]
         for b in summary["bifurcations"]
     ]
     legs = [

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from thermogear.views.pages.event_plane import plane_lines
+from thermogear.views.pages.event_plane import plane_lines, shown
 
 
 def _orbit_lines(s: dict[str, Any]) -> list[str]:
@@ -74,7 +74,7 @@ def _branch_lines(s: dict[str, Any]) -> list[str]:
         note = f"  {event['note']}" if event["note"] else ""
         lines.append(
             f"  {event['kind']:<16} period {event['period']:<3} {s['parameter']} = "
-            f"{event['shown']:<18} multiplier {mu['real']:+.6f}{imag}{note}"
+            f"{shown(event, 10):<18} multiplier {mu['real']:+.6f}{imag}{note}"
         )
     for branch in s["branches"]:
         lines.append(

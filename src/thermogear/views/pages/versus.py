@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermogear.base.display import Display, display, number, percent
+from thermogear.base.display import Display, display, in_words, number, percent
 from thermogear.base.vocabulary import STATUS
 from thermogear.results.result import Result
 from thermogear.views.csv_files import table_text
@@ -101,7 +101,9 @@ def _differences(data: xr.Dataset) -> Section:
     fields = json.loads(data.attrs["differences"])
     blocks: list[Block] = []
     if fields:
-        rows = [[field_name(row["field"]), *map(prose, row["values"])] for row in fields]
+        rows = [
+            [field_name(row["field"]), *map(prose, map(in_words, row["values"]))] for row in fields
+        ]
         blocks.append(
             Table("Fields of the case files that differ.", ["field", *titles], rows,
                   names=len(titles) + 1, wordy=True)
@@ -111,7 +113,11 @@ def _differences(data: xr.Dataset) -> Section:
     made = json.loads(data.attrs["choices"])
     if made:
         rows = [
-            [row["bundle"], row["choice"].replace("_", " "), *map(prose, row["values"])]
+            [
+                row["bundle"],
+                row["choice"].replace("_", " "),
+                *map(prose, map(in_words, row["values"])),
+            ]
             for row in made
         ]
         blocks.append(
@@ -274,8 +280,13 @@ def _cases(data: xr.Dataset) -> Section:
 
 def _csv_tables(data: xr.Dataset) -> dict[str, tuple[list[str], list[list[str]]]]:
     titles = [str(title) for title in data["case"].values]
-    fields = [[r["field"], *r["values"]] for r in json.loads(data.attrs["differences"])]
-    made = [[r["bundle"], r["choice"], *r["values"]] for r in json.loads(data.attrs["choices"])]
+    fields = [
+        [r["field"], *map(in_words, r["values"])] for r in json.loads(data.attrs["differences"])
+    ]
+    made = [
+        [r["bundle"], r["choice"], *map(in_words, r["values"])]
+        for r in json.loads(data.attrs["choices"])
+    ]
     names = [name for name in FIGURES if name in data and name != "label"]
     units = [f"{name} [{data[name].attrs['units']}]" for name in names]
     rows = []
@@ -285,7 +296,7 @@ def _csv_tables(data: xr.Dataset) -> dict[str, tuple[list[str], list[list[str]]]
             numbers = [float(one[name]) for name in names]
             rows.append([
                 titles[c], str(one["bundle"].item()), str(one["point"].item()), str(state),
-                str(one["label"].item()), *[f"{v:.9g}" if v == v else "" for v in numbers],
+                str(one["label"].item()), *[f"{v:.15g}" if v == v else "" for v in numbers],
             ])  # fmt: skip
     return {
         "differences": (["field", *titles], fields),
