@@ -11,7 +11,18 @@ SHOWN = re.compile(
     rf"[-+−]?\d[\d.,  ]*(?:e[-+]?\d+|·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?(?:\.\.[-+]?\d[\d.e]*)?(?: ?{UNIT})?"
 )
 """A whole text that is a number, with thousands set off, powers of ten, a unit, or two of them."""
-TEXTS = {"thermogear", "unit", "units", "name", "case", "differences", "values", "title"}
+TEXTS = {
+    "thermogear",
+    "unit",
+    "units",
+    "name",
+    "case",
+    "differences",
+    "values",
+    "title",
+    "kind",
+    "version",
+}
 """Keys of names, of units ("1"), of versions and of fields as a case file spells them."""
 
 

@@ -38,13 +38,16 @@ class Assumption:
         return self.reason.removeprefix(_LEFT) if self.reason.startswith(_LEFT) else ""
 
     @property
-    def figure(self) -> dict[str, float | str]:
-        """The value as a number with its unit; another value stays a text without one."""
-        found = re.fullmatch(r"([-+]?\d+\.?\d*(?:e[-+]?\d+)?)(?: (\D.*))?", self.value)
-        number, unit = found.groups() if found else ("", None)
-        return {"value": float(number) if number else self.value, "unit": unit or ""}
+    def figure(self) -> dict[str, Any]:
+        """The value as a number, or a list of them, with its unit; a text stays one."""
+        found = _NUMBERS.fullmatch(self.value)
+        if found is None:
+            return {"value": self.value, "unit": ""}
+        numbers = [float(one) for one in found[1].split(",")]
+        return {"value": numbers if len(numbers) > 1 else numbers[0], "unit": found[2] or ""}
 
 
+_NUMBERS = re.compile(r"([-+]?[\d.]+(?:e[-+]?\d+)?(?:, [-+]?[\d.]+(?:e[-+]?\d+)?)*)(?: (\D.*))?")
 _LEFT = "not in the file; the default: "
 
 

@@ -22,7 +22,7 @@ def _second(point: Summary) -> str:
 
 def _turns(curve: Summary) -> list[str]:
     """Where a curve turns back, in both parameters."""
-    return [f"{shown(one, 6)} at {_second(one)}" for one in _turns(curve)]
+    return [f"{shown(one, 6)} at {_second(one)}" for one in curve["turns"]]
 
 
 def plane_headline(summary: Summary) -> str:
