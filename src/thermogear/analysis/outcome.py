@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,9 +15,6 @@ from thermogear.base.plan import Alive, Arrays, Variable, keep_going
 from thermogear.base.vocabulary import FASTER_RULE, STATUS, status_attributes
 from thermogear.dynamics.plane import plane_of
 from thermogear.dynamics.tables import Lanes
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 Floats = NDArray[np.float64]
 Models = Lanes | Sequence[object] | None
@@ -142,15 +139,6 @@ def settle_with_status(
     if moving.size:
         result.put(moving, settle(taken(lanes, moving), start[moving], rule, keep, alive))
     return result
-
-
-def label_names(data: xr.Dataset) -> NDArray[np.str_]:
-    """ "period-n", "chaotic", ... of every point of a stored result."""
-    names = np.array(LABELS)[data["label"].values].astype("U16")
-    period = data["period"].values
-    periodic = data["label"].values == LABELS.index("periodic")
-    names[periodic] = np.char.add("period-", period[periodic].astype(str))
-    return np.asarray(names)
 
 
 def start_of(initial_state: ArrayLike, dimension: int = 2) -> tuple[float, ...]:

@@ -9,6 +9,7 @@ from dataclasses import KW_ONLY, dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.errors import short
 from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import QUANTITIES
 
@@ -138,11 +139,11 @@ def reach(values: ArrayLike, form: str = ".4g", between: str = " .. ") -> str:
 
 
 def in_words(value: object) -> str:
-    """A value of a case file on one line."""
+    """A value of a case file as a reader would write it on one line, without quotes."""
+    if isinstance(value, dict):
+        return ", ".join(f"{key} = {in_words(each)}" for key, each in value.items())
+    if isinstance(value, list | tuple):
+        return ", ".join(map(in_words, value))
     if value is None:
         return "none"
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, list):
-        return ", ".join(in_words(each) for each in value)
-    return f"{value:.9g}" if isinstance(value, float) else " ".join(str(value).split())
+    return " ".join(value.split()) if isinstance(value, str) else short(value)

@@ -18,6 +18,7 @@ from typing import Any
 from pydantic import BaseModel, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
+from thermogear.base.display import in_words
 from thermogear.base.errors import InputError, ValidityWarning, nearest, short
 from thermogear.case.alike import same
 from thermogear.case.fields import Measure
@@ -189,15 +190,6 @@ def _in_table(data: dict[str, Any], parts: tuple[str, ...]) -> tuple[bool, Any]:
 def _value(data: dict[str, Any], path: str) -> str:
     stated, entry = _in_table(data, _split(path))
     return in_words(entry) if stated else "left out"
-
-
-def in_words(entry: Any) -> str:
-    """A TOML value as a reader would write it, without quotes."""
-    if isinstance(entry, dict):
-        return ", ".join(f"{key} = {in_words(value)}" for key, value in entry.items())
-    if isinstance(entry, list | tuple):
-        return ", ".join(in_words(value) for value in entry)
-    return entry if isinstance(entry, str) else short(entry)
 
 
 def _defaults(

@@ -9,6 +9,7 @@ import click
 
 from thermogear.front import delivery
 from thermogear.front.lines import say
+from thermogear.results.files import json_text
 
 if TYPE_CHECKING:
     from thermogear.case.rexs.model import Model
@@ -41,7 +42,6 @@ def import_(
     from thermogear.base.files import put, require_new_file
     from thermogear.case.rexs.container import read_rexs
     from thermogear.case.rexs.importing import imported
-    from thermogear.results.files import json_text
 
     if output is not None:
         require_new_file(Path(output))
@@ -78,7 +78,6 @@ def import_(
 def _list(model: Model, file: str, *, as_json: bool) -> None:
     """Shafts, stages and what is left out."""
     from thermogear.case.rexs.importing import left_out, listed, shafts
-    from thermogear.results.files import json_text
 
     found, notes = listed(model)
     turning = shafts(model)

@@ -381,11 +381,13 @@ def result_of(found: Comparison) -> Result:
         where=("row", column(rows, "where")),
         verdict=("row", column(rows, "verdict")),
     )
-    gravities = np.array(column(implied, "acceleration_g"))
     said = label(
         {
             "pinion_speed": (("speed",), column(implied, "speed")),
-            "implied_acceleration": (("speed",), gravities * STANDARD_GRAVITY),
+            "implied_acceleration": (
+                ("speed",),
+                np.multiply(column(implied, "acceleration_g"), STANDARD_GRAVITY),
+            ),
             "implied_shaft_speed": (("speed",), column(implied, "shaft_speed")),
             "mesh_line_offset": (("speed",), column(implied, "offset_hertz")),
             "line_bin_offset": (("speed",), column(implied, "offset_bins")),

@@ -67,9 +67,8 @@ class CaseRuns:
 
     def drawings(self) -> list[dict[str, str]]:
         """The overrides of other drawings of the flanks; none where no class draws them."""
-        if self.accuracy is None:
-            return []
-        return [{"flanks.seed": str(number)} for number in range(1, DRAWINGS + 1)]
+        count = 0 if self.accuracy is None else DRAWINGS
+        return [{"flanks.seed": str(number + 1)} for number in range(count)]
 
     def told(self, tolerances: Mapping[str, float]) -> Iterator[Notice]:
         """What u_input holds of the case, and what it lacks."""
@@ -80,8 +79,11 @@ class CaseRuns:
                 f"{self.accuracy} make: which of them the gears have is not known",
             )
         if not tolerances:
-            rest = "is 0" if self.accuracy is None else "holds nothing else"
-            yield Notice("warning", f"no tolerances of the case are stated: u_input {rest}")
+            yield Notice(
+                "warning",
+                "no tolerances of the case are stated: u_input "
+                + ("is 0" if self.accuracy is None else "holds nothing else"),
+            )
 
 
 def _stated(text: str, changes: Mapping[str, str], name: str) -> str:

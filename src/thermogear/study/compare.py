@@ -94,8 +94,8 @@ def compare(
         )  # fmt: skip
     measured = _reduced(measured, teeth, speed)
     printed = _printed(measured, teeth, speed)
-    found_damage = measured.damage if isinstance(measured, Measurement) else ()
-    damage = [Notice(*one) for one in found_damage]
+    worn = measured.damage if isinstance(measured, Measurement) else ()
+    damage = [Notice(*one) for one in worn]
     if isinstance(simulated, str) and simulated in PUBLISHED:
         models = PUBLISHED[simulated].models
         return compared(models, printed, u_data=u_data, u_num=u_num or 0.0, said=damage)
@@ -194,22 +194,22 @@ def _simulated(
         isinstance(table, LineTable) for table in simulated.values()
     ):
         tables = {name: t for name, t in simulated.items() if isinstance(t, LineTable)}
-        return CaseLines(tables, u_num or 0.0, {}, ())
-    if isinstance(simulated, (str, Path)):
-        path = Path(simulated)
+    elif isinstance(simulated, Result):
+        tables = tree_lines(simulated)
+    elif computes(simulated):
+        return case_lines(simulated, tolerances, samples=samples, seed=seed, u_num=u_num)  # type: ignore[arg-type]
+    else:
+        path = Path(simulated)  # type: ignore[arg-type]
         stored = path / "results.nc" if path.is_dir() else path
-        if stored.suffix == ".nc":
-            if not stored.is_file():
-                raise InputError(
-                    "simulated",
-                    str(simulated),
-                    why="there are no results",
-                    fix="make them by `thermogear run`, or name a case",
-                )
-            return CaseLines(tree_lines(Result.read(stored)), u_num or 0.0, {}, ())
-    if isinstance(simulated, Result):
-        return CaseLines(tree_lines(simulated), u_num or 0.0, {}, ())
-    return case_lines(simulated, tolerances, samples=samples, seed=seed, u_num=u_num)  # type: ignore[arg-type]
+        if not stored.is_file():
+            raise InputError(
+                "simulated",
+                str(simulated),
+                why="there are no results",
+                fix="make them by `thermogear run`, or name a case",
+            )
+        tables = tree_lines(Result.read(stored))
+    return CaseLines(tables, u_num or 0.0, {}, ())
 
 
 @dataclass(frozen=True)
@@ -244,11 +244,10 @@ def _motion_lines(motion: xr.Dataset) -> dict[str, LineTable]:
             here = {"bundle": bundle, "state": state}
             amplitude = motion["line_amplitude"].isel(order=first).sel(here)
             lines: dict[float, SpeedLine] = {}
-            for place, speed in enumerate(speeds):
-                x = float(amplitude.values[place])
-                f = float(np.asarray(frequency.values)[place])
-                if np.isfinite(x) and x > 0 and float(speed) not in lines:
-                    lines[float(speed)] = SpeedLine(speed=float(speed), frequency=f, displacement=x)
+            columns = (speeds, frequency.values, amplitude.values)
+            for speed, f, x in zip(*(map(float, one) for one in columns), strict=True):
+                if np.isfinite(x) and x > 0:
+                    lines.setdefault(speed, SpeedLine(speed=speed, frequency=f, displacement=x))
             if lines:
                 name = f"{bundle} {state}"
                 found[name] = LineTable(name, tuple(lines.values()), None, "simulation")
@@ -346,9 +345,10 @@ def fit_case(
     errors = values * np.array([line.uncertainty or u_data for line in lines])
 
     def simulate(factors: Floats) -> Floats:
-        named = zip(names, map(float, factors), strict=True)
-        table = _tables(runs, runs.changes(dict(named)))[chosen]
-        found = [table.near(line.speed) for line in lines]
+        near = _tables(runs, runs.changes(dict(zip(names, map(float, factors), strict=True))))[
+            chosen
+        ].near
+        found = [near(line.speed) for line in lines]
         return np.array([0.0 if line is None else line.displacement for line in found])
 
     return fit(simulate, names, measured=values, uncertainty=errors)

@@ -69,7 +69,10 @@ def compare_sensors(
     runs = CaseRuns.of(case)
     base = runs.case({})
     bearings = plan_of(base).bearing_names
-    rows = _rows(measured, [_sensor(text, bearings, measured) for text in at])
+    rows = _rows(
+        measured,
+        [accelerometer(text, bearings=bearings, channels=measured.channels) for text in at],
+    )
     speed = _speed(measured, base)
     place = _place(base, speed)
     own = tuple(dict.fromkeys(row.sensor for row in rows))
@@ -93,7 +96,7 @@ def compare_sensors(
         cases = (runs.case(one) for one in several)
         tables = [_simulated(one, place, speed, sensors, only=last)[0][last] for one in cases]
         moved = [_picked(one, rows, sensors) - told[last.words] for one in tables]
-        return np.reshape(moved, (-1, real.size)) / real
+        return np.asarray(np.reshape(moved, (-1, real.size)) / real)
 
     sampled = changed(runs.sampled(tolerances or {}, samples, seed))
     spread = np.std(sampled, axis=0, ddof=1) if len(sampled) else 0.0
@@ -127,10 +130,6 @@ def compare_sensors(
         (*_seen(own), *(Notice(*one) for one in measured.damage), *notices),
         f"within {AGREES:g} u_val: {', '.join(counts)} of {len(made)}",
     )
-
-
-def _sensor(text: str, bearings: Sequence[str], measured: Measurement) -> Accelerometer:
-    return accelerometer(text, bearings=bearings, channels=measured.channels)
 
 
 def _rows(measured: Measurement, sensors: Sequence[Accelerometer]) -> list[_Line]:

@@ -113,7 +113,7 @@ class Plane:
                 "shown": float(first.show(p)),
                 "shown_unit": first.shown,
                 "second_shown": float(self.second.show(q)),
-                "second_unit": self.second.shown,
+                "second_shown_unit": self.second.shown,
                 "stable": bool(stable),
             }
             for (p, q), stable in zip(curve.values, curve.stable, strict=True)

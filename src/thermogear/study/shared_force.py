@@ -76,28 +76,26 @@ def shared_results(
     data = at_rest(case, hot, here, drive).merge(free_play(case, hot, here, drive, back))
     resonance = here.natural_frequency / case.pair.pinion.teeth
     low, high = speeds or (resonance / 3.0, 5.0 * resonance / 3.0)
-    rows: dict[str, list[list[float]]] = {"shared_swing": [], "one_spring_swing": []}
-    done: list[float] = []
+    swings: list[list[tuple[float, float]]] = []
+    every = np.linspace(low, high, count)
     cut = False
     try:
-        for number, speed in enumerate(np.linspace(low, high, count).tolist()):
+        for number, speed in enumerate(every.tolist()):
             progress("speeds", number, count)
             turning = replace(here, mesh_frequency=case.pair.pinion.teeth * speed)
-            pairs = [_swings(turning, case, drive, back, part) for part in (1.0, LIGHT)]
-            for name, place in (("shared_swing", 0), ("one_spring_swing", 1)):
-                rows[name].append([pair[place] for pair in pairs])
-            done.append(speed)
+            swings.append([_swings(turning, case, drive, back, part) for part in (1.0, LIGHT)])
         progress("speeds", count, count)
     except KeyboardInterrupt:
         cut = True
+    by_form = np.reshape(swings, (-1, 2, 2))
     swing = {
-        name: (("speed", "part"), np.array(values).reshape(-1, 2), "m")
-        for name, values in rows.items()
+        f"{form}_swing": (("speed", "part"), by_form[..., place], "m")
+        for place, form in enumerate(("shared", "one_spring"))
     }
     moving = label(
         swing,
         {
-            "speed": ("speed", np.array(done), "rad/s", "pinion speed"),
+            "speed": ("speed", every[: len(swings)], "rad/s", "pinion speed"),
             "part": ("part", [1.0, LIGHT], "1", "load over the mean load"),
         },
     )
@@ -161,7 +159,9 @@ def _swings(
     run: dict[str, Any] = {"periods": PERIODS, "discard": DISCARD, "samples_per_period": SAMPLES}
     # the base circles stand still at first: what moves against them is the error
     turn = light.mesh_frequency / (2.0 * np.pi)
-    given, whole = (-turn * e.derivative()(0.0) for e in (case.transmission_error, here.error))
+    given, whole = (
+        -turn * float(e.derivative()(0.0)) for e in (case.transmission_error, here.error)
+    )
     start = shared.rest(), given
     ours = simulate(shared, steps_per_period=STEPS, initial_state=start, **run)
     start = light.half_backlash / length, whole / (length * light.natural_frequency)

@@ -307,16 +307,11 @@ def _csv_tables(data: xr.Dataset) -> dict[str, tuple[list[str], list[list[str]]]
 
 # --- figures as JSON wants them ---------------------------------------------------------------
 
-TOLD = (
-    "half_backlash", "jam_temperature", "proportional_jam_temperature", "mean_stiffness",
-    "thermal_stiffness_ratio", "natural_frequency", "frequency_ratio", "peak_to_peak_displacement",
-)  # fmt: skip
-
 
 def _numbers(result: Result) -> dict[str, Any]:
     """What a machine wants to read of :func:`versus`: texts, and a row for each point."""
     data, rows = result.data, []
-    figures = [n for n in (*TOLD, "greatest_flash_temperature") if n in data]
+    figures = [name for name in FIGURES if name in data and name != "label"]
     for c, title in enumerate(data["case"].values):
         for b, bundle in enumerate(data["bundle"].values):
             for o, point in enumerate(data["point"].values):

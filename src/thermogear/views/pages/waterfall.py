@@ -122,11 +122,11 @@ def numbers(result: Result) -> dict[str, Any]:
         for d, way in enumerate(("up", "down")):
             one = data.isel(state=s, direction=d)
             found[state][way] = {
-                "mesh_force_rms_N": _plain(one["mesh_force_rms"].values),
-                "mesh_force_max_N": _plain(one["mesh_force_max"].values),
-                "contact_loss_share": _plain(one["contact_loss_share"].values),
-                "bearing_force_max_N": _plain(np.nanmax(one["bearing_force_max"].values, axis=1)),
-                "housing_rms_m_per_s2": _plain(one["housing_rms"].values),
+                "mesh_force_rms_N": one["mesh_force_rms"].values.tolist(),
+                "mesh_force_max_N": one["mesh_force_max"].values.tolist(),
+                "contact_loss_share": one["contact_loss_share"].values.tolist(),
+                "bearing_force_max_N": np.nanmax(one["bearing_force_max"].values, axis=1).tolist(),
+                "housing_rms_m_per_s2": one["housing_rms"].values.tolist(),
             }
     return found | {"apart": _apart(data)}
 
@@ -135,17 +135,12 @@ def _span(low: str, high: str) -> str:
     return low if low == high else f"{low} to {high}"
 
 
-def _plain(values: Any) -> list[float | None]:
-    return [float(v) if np.isfinite(v) else None for v in np.ravel(values)]
-
-
 def lines(result: Result) -> list[str]:
     """What the terminal tells."""
     data = result.data
-    found = [summary(data)]
-    for row in map(_shown, _apart(data)):
-        found.append(
-            f"  {row[0]}, {_span(row[1], row[2])} rpm: {row[4]} {row[5]} N rms up, {row[6]} N "
-            f"down, because of {row[7]}"
-        )
-    return found
+    told = [
+        f"  {row[0]}, {_span(row[1], row[2])} rpm: {row[4]} {row[5]} N rms up, {row[6]} N "
+        f"down, because of {row[7]}"
+        for row in map(_shown, _apart(data))
+    ]
+    return [summary(data), *told]
