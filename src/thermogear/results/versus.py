@@ -32,7 +32,8 @@ OWN = "own bundle"
 
 FIGURES = (
     "half_backlash", "jam_temperature", "proportional_jam_temperature", "mean_stiffness",
-    "thermal_stiffness_ratio", "natural_frequency", "frequency_ratio", "peak_to_peak_displacement",
+    "thermal_stiffness_ratio", "natural_frequency", "frequency_ratio", "dte_peak_to_peak",
+    "peak_to_peak_displacement",
 )  # fmt: skip
 CURVES = {
     "path_position": ("friction_coefficient", "flash_temperature", "deformation_sum"),
@@ -347,7 +348,9 @@ def _joined(
         str(name): variable.variable for name, variable in whole.data_vars.items()
     }
     order = (*FIGURES, *(name for curve, names in CURVES.items() for name in (curve, *names)))
-    variables = {name: found[name] for name in order if name in found}
+    # x is what a model does not take for the error: of gears the sum of both is compared
+    own = "peak_to_peak_displacement" if "dte_peak_to_peak" in found else ""
+    variables = {name: found[name] for name in order if name in found and name != own}
     if "flash_temperature" in found:
         flash = found["flash_temperature"]
         variables["greatest_flash_temperature"] = xr.Variable(

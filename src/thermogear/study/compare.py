@@ -223,7 +223,10 @@ class CaseLines:
 
 
 def tree_lines(result: Result) -> dict[str, LineTable]:
-    """The mesh line of the simulated motion, one table per bundle and state ("thesis hot").
+    """The mesh line of the transmission error, one table per bundle and state ("thesis hot").
+
+    That of x + e, the movement of one base circle against the other: what a model takes for the
+    error e of its flanks and what for their deflection x is its own.
 
     Operating points without a motion (jammed, diverged) are left out; of several torques at one
     speed the first stands for it.
@@ -242,7 +245,7 @@ def _motion_lines(motion: xr.Dataset) -> dict[str, LineTable]:
     for bundle in motion["bundle"].values:
         for state in motion["state"].values:
             here = {"bundle": bundle, "state": state}
-            amplitude = motion["line_amplitude"].isel(order=first).sel(here)
+            amplitude = motion.get("dte_line", motion["line_amplitude"]).isel(order=first).sel(here)
             lines: dict[float, SpeedLine] = {}
             columns = (speeds, frequency.values, amplitude.values)
             for speed, f, x in zip(*(map(float, one) for one in columns), strict=True):

@@ -45,6 +45,7 @@ FIGURES = {
     "natural_frequency": "natural frequency of the mean stiffness",
     "frequency_ratio": "frequency ratio",
     "label": "motion",
+    "dte_peak_to_peak": "swing of the transmission error",
     "peak_to_peak_displacement": "swing of x",
 }
 """Figures of a point in the order of the tables."""
