@@ -20,8 +20,10 @@ import pytest
 from markupsafe import Markup
 from numpy.typing import ArrayLike
 
+from plain_numbers import told_as_text
 from thermogear import Gear, GearPair, Operating, Temperatures, __version__
 from thermogear.base.materials import ZERO_CELSIUS, lubricant
+from thermogear.results import files
 
 if TYPE_CHECKING:
     from thermogear.mesh.warm_up import WarmUp
@@ -29,6 +31,18 @@ if TYPE_CHECKING:
 COMPARED, AT_LENGTH = "compared", "at_length"
 Compared = Callable[..., None]
 AtLength = Callable[[int, int, str], int]
+
+
+_as_json = files.json_text
+
+
+def _plain(summary: dict[str, Any]) -> str:
+    """What every command prints by --json and puts beside its pages: numbers are numbers."""
+    assert not (found := list(told_as_text(summary))), found[:5]
+    return _as_json(summary)
+
+
+files.json_text = _plain
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -181,6 +181,12 @@ def test_compare_as_json() -> None:
         ),
         (compare, ["thesis-5.2", "--teeth", 10**20], r"^teeth: got a number of more than"),
         (compare, ["nowhere", "thesis-5.2"], r"^"),
+        (compare, ["rig", "thesis-5.2", "--set", "gears.pinion.teth=9"], r"did you mean 'teeth'"),
+        (
+            compare,
+            ["thesis-5.2", "--set", "gears.pinion.teeth=9"],
+            r"^--set: got gears\.pinion\.teeth=9; stored lines are not comp.*; name the case inst",
+        ),
         (compare, ["rig", "--at", "a=housing:x"], r"^--at: got a=housing:x; there is no record"),
         (compare, ["rig", "FILE", "--at", "a=housing:x"], r"^shafts: got nothing; "),
         (compare, ["motor-train", "FILE", "--at", "a=housing"], r"^--at: got 'a=housing'; "),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from thermogear.results.result import open_results
 from thermogear.study.shafts.motion import train_motion
 from thermogear.study.shafts.state import settled
 from thermogear.study.shafts.waterfall import waterfall
+from thermogear.views.pages.waterfall import lines, numbers
 
 HELD = """
 [temperatures]
@@ -101,6 +103,16 @@ def test_waterfall_leaves_a_store_a_page_and_numbers(
     assert told["hot"]["up"]["mesh_force_rms_N"][0] > 0.0
     result = open_results(out)
     assert result.kind == "waterfall"
+    # where both ways differ a script gets numbers, and a reader the same in words
+    stretch = {"from": 240.0, "to": 250.0, "at": 245.0, "up": 1234567.8, "down": 12.3456}
+    plain = {"state": 0, "part": 1, "held": 1}
+    both = {f"apart_{name}": ("stretch", [value]) for name, value in (stretch | plain).items()}
+    data = result.data.drop_dims("stretch", errors="ignore").assign(both)
+    (one,) = numbers(SimpleNamespace(data=data))["apart"]  # type: ignore[arg-type]
+    assert one["from_rpm"] == pytest.approx(240.0 * 30.0 / np.pi, rel=1e-15)
+    assert (one["up_rms_N"], one["down_rms_N"]) == (1234567.8, 12.3456)
+    told = lines(SimpleNamespace(data=data))[-1]  # type: ignore[arg-type]
+    assert "1.23·10⁶ N rms up, 12.3 N down" in told
     assert (out / "report.html").exists()
 
 

@@ -68,8 +68,8 @@ def test_points_are_matched_by_speed_and_figures_are_those_of_each_run(
         np.testing.assert_array_equal(joined[0].isel(operating=[0, 1]), one)
         np.testing.assert_array_equal(joined[1].isel(operating=[1, 2]), other)
         assert np.isnan(joined[0].isel(operating=2)).all()
-    swing = data["peak_to_peak_displacement"].sel(case=data["case"][1]).isel(operating=[1, 2])
-    np.testing.assert_array_equal(swing, second.groups["motion"]["peak_to_peak_displacement"])
+    swing = data["dte_peak_to_peak"].sel(case=data["case"][1]).isel(operating=[1, 2])
+    np.testing.assert_array_equal(swing, second.groups["motion"]["dte_peak_to_peak"])
     assert np.all(data["label"].isel(case=0, operating=2).values == "")
     assert np.all(data["status"].isel(case=0, operating=2).values == len(STATUS))
     assert data["status"].attrs["flag_meanings"].split()[len(STATUS)] == "absent"
@@ -100,8 +100,8 @@ def test_fields_that_differ_are_named_with_both_values(first: Stored, second: St
     ours = replace(first, texts={**first.texts, "overrides": json.dumps(more)})
     told = json.loads(versus([ours, second]).attrs["differences"])
     assert {row["field"] for row in told} == set(rows)
-    assert rows["grid.path_positions"] == ["41", "31"]
-    assert rows["operating.speed"] == ["1000 rpm, 3000 rpm", "3000 rpm, 4000 rpm"]
+    assert rows["grid.path_positions"] == [41, 31]
+    assert rows["operating.speed"] == [["1000 rpm", "3000 rpm"], ["3000 rpm", "4000 rpm"]]
     assert rows["gears.pinion.roughness"][1] == "0.8 um"
     assert json.loads(data.attrs["choices"]) == []
     texts = " ".join(notice["text"] for notice in json.loads(data.attrs["notices"]))

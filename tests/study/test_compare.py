@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import numpy as np
@@ -11,8 +10,9 @@ import pytest
 from conftest import Compared
 from said import numbers
 from thermogear.base.errors import InputError
+from thermogear.case.case import load_example
 from thermogear.measured.chain import Chain
-from thermogear.measured.comparison import as_json, verdict
+from thermogear.measured.comparison import figures, verdict
 from thermogear.measured.published import (
     RPM,
     LineTable,
@@ -22,7 +22,8 @@ from thermogear.measured.published import (
 )
 from thermogear.measured.record import simulated_record
 from thermogear.measured.reduction import measure
-from thermogear.study.case_runs import scaled
+from thermogear.study import compare as study
+from thermogear.study.case_runs import DRAWINGS, CaseRuns, scaled
 from thermogear.study.compare import compare
 
 
@@ -67,7 +68,7 @@ def test_what_its_lines_imply() -> None:
 def test_its_frequency_column_is_impossible() -> None:
     found = compare("thesis-5.2")
     verdict, _, why = found.row(1000 * RPM, "frequency").verdict.partition(":")
-    assert (verdict, numbers(why)) == ("impossible", [413.0, 411.0, 416.667])
+    assert (verdict, numbers(why)) == ("impossible", [413.0, 411.0, 416.667, 0.72])
     texts = "\n".join(text for _, text in found.notices)
     assert "frequency" in texts
     assert "53.9 g at 2000 rpm, 305.9 g at 3000 rpm" in texts
@@ -97,6 +98,67 @@ def test_the_verdict_turns_exactly_at_u_val() -> None:
     assert verdict([0.04], ("A",), 0.05) == "within u_val"
 
 
+def one_line(name: str, *, rpm: float, hertz: float, micrometres: float = 10.0) -> LineTable:
+    line = SpeedLine(speed=rpm * RPM, frequency=hertz, displacement=1e-6 * micrometres)
+    return LineTable(name, (line,), 25, name, 0.1, processing_stated=True)
+
+
+def test_no_drawing_of_the_flanks_reverses_the_verdict_of_another(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Flanks of a class are known as a class: what is measured lies between the two models."""
+    swings = np.random.default_rng(7).uniform(0.95, 1.05, DRAWINGS + 1)
+
+    def drawn(runs: CaseRuns, changes: dict[str, str]) -> dict[str, LineTable]:
+        number = int({**runs.kept, **changes}["flanks.seed"])
+        return {
+            name: one_line(name, rpm=3000.0, hertz=1250.0, micrometres=size * swings[number])
+            for name, size in (("undeformed", 10.0), ("hot", 9.0))
+        }
+
+    monkeypatch.setattr(study, "_tables", drawn)
+    cases = [
+        load_example("fzg-a", {"flanks.seed": str(number), "flanks.accuracy": "6"})
+        for number in range(1, DRAWINGS + 1)
+    ]
+    said = []
+    for measured in np.linspace(8.0, 11.0, 7):
+        table = one_line("rig", rpm=3000.0, hertz=1250.0, micrometres=float(measured))
+        found = [compare(case, table, u_num=0.0, u_data=0.001) for case in cases]
+        verdicts = {one.row(3000 * RPM, "displacement").verdict for one in found}
+        assert not {"hot better", "undeformed better"} <= verdicts, measured
+        said.append(verdicts)
+    assert said[0] == {"hot better"}
+    assert said[-1] == {"undeformed better"}
+    (told,) = (one.text for one in found[0].notices if "drawings" in one.text)
+    assert numbers(told) == [8.0, 6.0]
+    row = found[0].row(3000 * RPM, "displacement")
+    most = np.abs(swings[1:] / swings[1] - 1.0).max()
+    assert row.u_input == pytest.approx(most * max(row.simulated) / row.measured, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("rpm", "hertz", "said"),
+    [
+        (1000.14, 25 * 1000.14 / 60, "set by the speed, not by the model"),  # its own speed
+        (1000.0, 25 * 1000.14 / 60, "set by the speed, not by the model"),  # 0.014 % off
+        (1000.0, 25 * 1000.00 / 120, "set by the speed, not by the model"),  # a half order
+        (1000.0, 25 * 1003.00 / 60, "impossible: A (417.917 Hz) is no line j/n of the 416.667 Hz "
+         "that forces the model, known to 0.02 %"),
+    ],
+)  # fmt: skip
+def test_a_line_is_impossible_only_beyond_what_the_speeds_are_known_to(
+    rpm: float, hertz: float, said: str
+) -> None:
+    """The measured line is 0.02 % off the speed stated for it."""
+    measured = one_line("rig", rpm=1000.0, hertz=25 * 1000.2 / 60)
+    models = {
+        "A": one_line("A", rpm=rpm, hertz=hertz),
+        "B": one_line("B", rpm=1000.0, hertz=25 * 1000.0 / 60),
+    }
+    assert compare(models, measured).row(1000 * RPM, "frequency").verdict == said
+
+
 def test_unstated_processing_is_the_spread_of_a_uniform_loss() -> None:
     parts = unstated_processing(419.7, highest=1251.6)
     assert parts["window"] == pytest.approx(0.1512 / np.sqrt(12), abs=1e-4)
@@ -122,7 +184,7 @@ def test_a_table_file_against_tables(encoding: str, tmp_path: Path) -> None:
     assert [2000.0] in [numbers(text) for _, text in found.notices]
     assert all(row.speed == pytest.approx(1000.0 * RPM) for row in found.rows)
     assert set(found.row(1000 * RPM, "frequency").errors) == {0.0}
-    assert json.loads(as_json(found))["rows"][1]["verdict"] == "A better"
+    assert figures(found)["rows"][1]["verdict"] == "A better"
 
 
 def test_refusals_of_tables(tmp_path: Path) -> None:
@@ -169,8 +231,6 @@ def test_a_toleranced_value_keeps_its_unit() -> None:
 
 @pytest.mark.slow
 def test_a_case_is_compared_with_numerical_and_input_uncertainty() -> None:
-    from thermogear.case.case import load_example
-
     case = load_example(
         "rig",
         {

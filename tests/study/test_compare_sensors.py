@@ -34,7 +34,9 @@ mount_stiffness = ["60 N/um", "90 N/um"]
 mount_damping = "4000 N s/m"
 """
 GRID = "[grid]\nmesh_positions = 64\nharmonics = 8\n"
-BOX = PAIR + GRID + bare("pinion") + bare("wheel") + HOUSING
+KNOWN = '[transmission_error]\nharmonics = [{order = 1, amplitude = "3 um"}]\n'
+"""Flanks that no class has drawn."""
+BOX = PAIR + GRID + KNOWN + bare("pinion") + bare("wheel") + HOUSING
 HOUSED = BOX + "".join(
     bearing(shaft, place, SPRING + f'\nname = "{shaft} {side}"')
     for shaft in ("pinion", "wheel")

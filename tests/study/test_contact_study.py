@@ -11,6 +11,7 @@ import xarray as xr
 from said import numbers
 from thermogear.base.errors import InputError
 from thermogear.case.case import GearCase, load_example
+from thermogear.case.thermal_state import UNDEFORMED
 from thermogear.gears.loaded import LoadedModel, loaded_contact
 from thermogear.study.contact import PHASES, loaded_survey
 from thermogear.study.relief import relief_survey
@@ -69,12 +70,32 @@ def test_a_relief_needs_a_load() -> None:
 
 def test_cold_contact_is_the_plain_loaded_contact(contact: xr.DataTree) -> None:
     case = rig()
-    plain = loaded_contact(
-        case.pair, 100.0 / case.pair.pinion.base_radius, PHASES, model=LoadedModel()
-    )
+    plain = loaded_contact(case.pair, 100.0 / case.pair.pinion.base_radius, PHASES)
     here = contact["contact"].sel(temperature="undeformed").isel(load=1)
     for name in ("tangent_stiffness", "secant_stiffness", "load_share"):
         np.testing.assert_allclose(here[name].values, plain[name].values, rtol=1e-9, atol=1e-12)
+
+
+def test_function_command_and_case_file_read_the_hub_alike() -> None:
+    case = rig("temperatures.row=[]", "model.bundle=consistent", "grid.mesh_positions=200")
+    torque = case.torques[0]
+    force = torque / case.pair.pinion.base_radius
+    cold = case.cycle(UNDEFORMED.operating(case, case.models[0]), case.models[0])
+    here = loaded_survey(case, (torque,))
+    stiffness = [
+        float(loaded_contact(case.pair, force, PHASES).mean_stiffness),
+        float(here["contact"]["mean_stiffness"].sel(temperature="undeformed")[0]),
+        float(cold["mean_stiffness"][0]),
+    ]
+    assert stiffness == pytest.approx([stiffness[-1]] * 3, rel=1e-9)
+    # a case that holds its bodies at the bore is drawn so without an option
+    held = loaded_survey(rig("temperatures.row=[]", 'model.body="bore-clamped"'), (torque,))
+    assert (here.attrs["body"], held.attrs["body"]) == ("rim", "bore-clamped")
+    softer = float(held["contact"]["mean_stiffness"].sel(temperature="undeformed")[0])
+    clamped = LoadedModel(body="bore_clamped")
+    assert softer == pytest.approx(
+        float(loaded_contact(case.pair, force, PHASES, model=clamped).mean_stiffness), rel=1e-9
+    )
 
 
 def test_shares_add_up_and_tangent_is_the_stiffer(contact: xr.DataTree) -> None:

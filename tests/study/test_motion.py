@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from said import numbers
+from thermogear.base.excitation import Excitations
 from thermogear.case.base import Simulation
+from thermogear.case.case import gear_case, load_example
+from thermogear.case.points import excitations, points_of
+from thermogear.case.thermal_state import UNDEFORMED
 from thermogear.dynamics.models import TorsionalModel
-from thermogear.study.motion import PROOFS, follow
+from thermogear.study.motion import PROOFS, follow, follow_gears
 
 SIMULATION = Simulation(
     periods=8,
@@ -66,3 +72,32 @@ def test_a_complex_pair_is_stored_by_its_upper_half() -> None:
     assert values["multiplier_real"][0] == pytest.approx(expected.real, abs=1e-12)
     assert values["multiplier_imag"][0] == pytest.approx(abs(expected.imag), abs=1e-12)
     assert values["multiplier_modulus"][0] == pytest.approx(abs(expected), abs=1e-12)
+
+
+def test_motion_of_both_bundles_is_static_towards_standstill_and_none_far_above() -> None:
+    """x + e: what a bundle calls error and what deflection is its own, the sum is the gears'."""
+    changes = {
+        "transmission_error.harmonics": '[{order=1, amplitude="6 um", phase="40 deg"}]',
+        "dynamics.damping_ratio": "0.9",
+        "grid.mesh_positions": "64",
+        "model.bundle": "both",
+    }
+    case = gear_case(load_example("rig", changes))
+    phase = np.arange(64) / 64
+    static, every = [], []
+    for model in case.models:
+        cycle = case.cycle(UNDEFORMED.operating(case, model), model)
+        static.append(cycle["transmission_error"].values[0] + case.transmission_error(phase))
+        one = excitations(case, cycle).take([0, 0])
+        every.append(replace(one, mesh_frequency=one.natural_frequency * [1 / 60, 60.0]))
+    found = follow_gears(points_of(Excitations.joined(every)), SIMULATION)
+    assert found is not None
+    swings = np.reshape(found.values["dte_peak_to_peak"], (2, 2))
+    first = int(np.argmin(np.abs(found.motion.order - 1.0)))
+    lines = found.values["dte_line"][:, first].reshape(2, 2)
+    for swing, line, curve in zip(swings, lines, static, strict=True):
+        assert swing[0] == pytest.approx(np.ptp(curve), rel=0.03)
+        assert line[0] == pytest.approx(2.0 * abs(np.fft.rfft(curve)[1]) / 64, rel=0.01)
+        # the damper alone still pulls: 2 zeta e omega_n/omega
+        assert swing[1] < 2.5 * 0.9 / 60.0 * np.ptp(curve)
+        assert line[1] < 2.5 * 0.9 / 60.0 * line[0]

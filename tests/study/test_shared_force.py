@@ -16,16 +16,19 @@ from thermogear.study.shared_force import shared_results
 def test_where_the_two_forms_part() -> None:
     found = shared_results(of_case(load_example("rig")), speeds=(100.0, 400.0), count=3)
     summary, rest = found.summary, found.tree["rest"].to_dataset()
-    assert summary["stiffness_at_mean_load"] < 0.01
+    # at the mean load itself, where both are built, and not at a neighbour of it
+    assert summary["stiffness_at_mean_load"] < 1e-6
     assert summary["swing_at_rest_mean_load"] < 0.06
     assert summary["swing_in_motion_mean_load"] < 0.08
-    assert summary["swing_at_rest_light_load"] > 0.3
     # at light load the springs of the pairs follow the contact, the one spring does not
     light = rest.isel(load=0)
     exact = float(light["exact_stiffness"])
     assert float(light["shared_stiffness"]) == pytest.approx(exact, rel=0.05)
     assert float(light["one_spring_stiffness"]) > 1.5 * exact
     assert np.all(np.diff(rest["exact_stiffness"].values) > 0.0)
+    even = of_case(load_example("rig", ["transmission_error.harmonics=[]"]))
+    bare = shared_results(even, speeds=(200.0, 201.0), count=1)
+    assert bare.summary["swing_at_rest_light_load"] > 0.3
 
 
 def test_deviations_reach_both_forms() -> None:
@@ -54,3 +57,24 @@ def test_without_gears_there_is_no_load_to_share() -> None:
         shared_results(of_numbers({long_name(k): v for k, v in numbers.items()}))
     with pytest.raises(InputError, match="choose the bundle 'consistent'"):
         shared_results(of_case(load_example("rig"), bundle="thesis"))
+
+
+ERROR = 'transmission_error.harmonics=[{order=1, amplitude="6 um", phase="40 deg"}]'
+"""A kinematic error beside that of the springs: a swing that forgets either one shows it."""
+
+
+def test_both_swings_vanish_far_above_resonance_and_are_static_towards_standstill() -> None:
+    """r_b1 theta_1 - r_b2 theta_2: inertia holds it still, slowness lets it follow the load."""
+    # so much damping that nothing rings after a pair has entered
+    case = gear_case(load_case(example_text("rig"), [ERROR, "dynamics.damping_ratio=0.9"]))
+    point = of_case(case)
+    resonance = point.excitation().natural_frequency / case.pair.pinion.teeth
+    ends = resonance / 60.0, 60.0 * resonance
+    found = shared_results(point, speeds=ends, count=2)
+    rest, moving = (found.tree[name].to_dataset() for name in ("rest", "motion"))
+    for form in ("shared", "one_spring"):
+        slow, fast = moving[f"{form}_swing"].sel(part=1.0).values
+        static = float(rest[f"{form}_swing"].sel(load=point.excitation().mean_force))
+        assert slow == pytest.approx(static, rel=0.02)
+        # the damper alone still pulls: 2 zeta e omega_n/omega
+        assert fast < 2.5 * 0.9 / 60.0 * static

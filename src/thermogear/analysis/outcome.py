@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,9 +15,6 @@ from thermogear.base.plan import Alive, Arrays, Variable, keep_going
 from thermogear.base.vocabulary import FASTER_RULE, STATUS, status_attributes
 from thermogear.dynamics.plane import plane_of
 from thermogear.dynamics.tables import Lanes
-
-if TYPE_CHECKING:
-    pass
 
 Floats = NDArray[np.float64]
 Models = Lanes | Sequence[object] | None

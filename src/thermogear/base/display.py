@@ -9,6 +9,7 @@ from dataclasses import KW_ONLY, dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.errors import short
 from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import QUANTITIES
 
@@ -135,3 +136,14 @@ def reach(values: ArrayLike, form: str = ".4g", between: str = " .. ") -> str:
         return "-"
     low, high = format(found.min(), form), format(found.max(), form)
     return low if low == high else f"{low}{between}{high}"
+
+
+def in_words(value: object) -> str:
+    """A value of a case file as a reader would write it on one line, without quotes."""
+    if isinstance(value, dict):
+        return ", ".join(f"{key} = {in_words(each)}" for key, each in value.items())
+    if isinstance(value, list | tuple):
+        return ", ".join(map(in_words, value))
+    if value is None:
+        return "none"
+    return " ".join(value.split()) if isinstance(value, str) else short(value)

@@ -190,6 +190,8 @@ QUANTITIES: dict[str, Quantity] = {
     "order": Quantity("1", "order of the mesh frequency", "f/f_mesh"),
     "line_frequency": Quantity("Hz", "frequency of a spectral line", "f"),
     "line_amplitude": Quantity("m", "amplitude of a spectral line (peak)", "|x|"),
+    "dte_line": Quantity("m", "amplitude of a line of the transmission error (peak)", "|x + e|"),
+    "dte_peak_to_peak": Quantity("m", "dynamic transmission error, peak to peak", "Δ(x + e)"),
     "peak_to_peak_displacement": Quantity("m", "relative displacement, peak to peak", "Δx"),
     "half_order_amplitude": Quantity("m", "amplitude of the line at half the mesh frequency", ""),
     "scaled_displacement": Quantity("1", "relative displacement x/b_c", "X"),

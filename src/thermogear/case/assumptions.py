@@ -7,6 +7,7 @@ value, as older files have them, is left out with a warning.
 
 from __future__ import annotations
 
+import re
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -17,6 +18,7 @@ from typing import Any
 from pydantic import BaseModel, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
+from thermogear.base.display import in_words
 from thermogear.base.errors import InputError, ValidityWarning, nearest, short
 from thermogear.case.alike import same
 from thermogear.case.fields import Measure
@@ -36,7 +38,17 @@ class Assumption:
         """What is known of a default left to act; empty where the file declares the value."""
         return self.reason.removeprefix(_LEFT) if self.reason.startswith(_LEFT) else ""
 
+    @property
+    def figure(self) -> dict[str, Any]:
+        """The value as a number, or a list of them, with its unit; a text stays one."""
+        found = _NUMBERS.fullmatch(self.value)
+        if found is None:
+            return {"value": self.value, "unit": ""}
+        numbers = [float(one) for one in found[1].split(",")]
+        return {"value": numbers if len(numbers) > 1 else numbers[0], "unit": found[2] or ""}
 
+
+_NUMBERS = re.compile(r"([-+]?[\d.]+(?:e[-+]?\d+)?(?:, [-+]?[\d.]+(?:e[-+]?\d+)?)*)(?: (\D.*))?")
 _LEFT = "not in the file; the default: "
 
 
@@ -178,15 +190,6 @@ def _in_table(data: dict[str, Any], parts: tuple[str, ...]) -> tuple[bool, Any]:
 def _value(data: dict[str, Any], path: str) -> str:
     stated, entry = _in_table(data, _split(path))
     return in_words(entry) if stated else "left out"
-
-
-def in_words(entry: Any) -> str:
-    """A TOML value as a reader would write it, without quotes."""
-    if isinstance(entry, dict):
-        return ", ".join(f"{key} = {in_words(value)}" for key, value in entry.items())
-    if isinstance(entry, list | tuple):
-        return ", ".join(in_words(value) for value in entry)
-    return entry if isinstance(entry, str) else short(entry)
 
 
 def _defaults(

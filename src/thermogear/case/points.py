@@ -78,6 +78,12 @@ class Points:
         """Where no clearance is left to move in."""
         return np.asarray(self.status != 0)
 
+    def kinematic(self, phase: Floats) -> Floats:
+        """e [m] at ``phase`` [mesh periods], (point, phase)."""
+        ranks = np.arange(self.error.shape[1])
+        waves = np.exp(2j * np.pi * np.multiply.outer(ranks, phase))
+        return np.asarray((self.error @ waves).real)
+
     def take(self, index: Whole) -> Points:
         """Some of the points."""
         return Points(

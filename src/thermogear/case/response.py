@@ -126,8 +126,7 @@ def _figures(
     points: Points, lane: int, x: Floats, phase: Floats, record: Recording, lines: bool
 ) -> dict[str, Any]:
     length, scale = points.length[lane], points.stiffness[lane] * points.length[lane]
-    ranks = np.arange(points.error.shape[1])
-    error = (points.error[lane] * np.exp(2j * np.pi * phase[:, None] * ranks)).real.sum(axis=1)
+    (error,) = points.take(np.array([lane])).kinematic(phase)
     dte = length * x + np.tile(error, record.periods)
     b = float(points.flat.half_backlash[lane])
     stiffness = points.flat.take(np.array([lane])).values("stiffness", phase)[:, 0]

@@ -152,14 +152,15 @@ def check(case: str, overrides: tuple[str, ...], as_json: bool) -> None:
     from thermogear.case.derived import facts
     from thermogear.case.size import estimated_bytes
     from thermogear.front.taken import defaults
+    from thermogear.results.files import json_text
 
     read = delivery.load(case, overrides)
     found = facts(read)
     if as_json:
         rows = [{"group": f.group, "name": f.name, "value": f.value, "unit": f.unit} for f in found]
-        ours = [{"field": a.field, "value": a.value, "reason": a.reason} for a in read.assumptions]
+        ours = [{"field": a.field, **a.figure, "reason": a.reason} for a in read.assumptions]
         content = {"title": read.title, "kind": read.kind, "facts": rows, "assumptions": ours}
-        click.echo(json.dumps(content, indent=2, ensure_ascii=False))
+        click.echo(json_text(content), nl=False)
         return
     click.echo(read.title)
     group = ""

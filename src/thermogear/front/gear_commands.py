@@ -270,10 +270,8 @@ def relief(
 )
 @click.option(
     "--body",
-    type=click.Choice(["bore_clamped", "rim"]),
-    default="bore_clamped",
-    show_default=True,
-    help="Reading of the hub: held at the bore (statics), or without its wind-up.",
+    type=click.Choice(["bore-clamped", "rim"]),
+    help="Reading of the hub: held at the bore (statics), or without its wind-up [the case's].",
 )
 def contact(
     case: str,
@@ -281,7 +279,7 @@ def contact(
     overrides: tuple[str, ...],
     as_json: bool,
     torques: str | None,
-    body: str,
+    body: str | None,
 ) -> None:
     """Loaded tooth contact of CASE over mesh position, load and temperature.
 

@@ -166,6 +166,7 @@ def measure(
     "a2=housing:y or a3=bearing:wheel left:30 (degrees from x). May be repeated.",
 )
 @click.option("--u-data", type=float, metavar="PERCENT", help="Uncertainty of the measurement.")
+@delivery.overrides
 @delivery.as_json
 @delivery.output("Also write comparison.nc and comparison.html.", required=False)
 def compare(
@@ -175,6 +176,7 @@ def compare(
     samples: int | None,
     at: tuple[str, ...],
     u_data: float | None,
+    overrides: tuple[str, ...],
     as_json: bool,
     output: str | None,
     **options: Any,
@@ -188,8 +190,19 @@ def compare(
     from thermogear.measured.comparison import result_of
     from thermogear.measured.published import PUBLISHED, is_table
     from thermogear.study.compare import compare as study
+    from thermogear.study.compare import computes
 
     _require_gear(options)
+    read: Any = case
+    if computes(case) and measured is not None:
+        read = delivery.load(case, overrides)
+    elif overrides:
+        raise InputError(
+            "--set",
+            overrides[0],
+            why="stored lines are not computed anew",
+            fix="name the case instead of its results",
+        )
     if samples is not None and not tolerances:
         raise InputError("--samples", samples, why="beside no --tolerance", fix="leave it out")
     table = measured in PUBLISHED or (measured is not None and is_table(measured))
@@ -210,10 +223,10 @@ def compare(
         if measured is not None and record:
             known = dict(options)
             if at:
-                known = _expected(case, known)
+                known = _expected(read, known)
             against = measured_by(measured, known)
         found = study(
-            case,
+            read,
             against,
             teeth=options["teeth"],
             speed=None if speed is None else speed * RPM,
@@ -227,16 +240,16 @@ def compare(
     delivery.deliver(make, output, as_json=as_json)
 
 
-def _expected(case: str, options: dict[str, Any]) -> dict[str, Any]:
+def _expected(case: Any, options: dict[str, Any]) -> dict[str, Any]:
     """``options`` with teeth and speed of the case, by which the record's mesh line is found.
 
     What is given stays; a speed is known where the case has one alone.
     """
-    from thermogear.case.case import gear_case, load_case
+    from thermogear.case.case import gear_case
 
-    if Path(case).is_dir() or Path(case).suffix == ".nc":
-        return options
-    read = gear_case(load_case(case))
+    if isinstance(case, str):
+        return options  # results
+    read = gear_case(case)
     speeds = set(read.stated.speed.tolist())
     own = {
         "teeth": read.pair.pinion.teeth,

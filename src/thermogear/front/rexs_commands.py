@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,6 +9,7 @@ import click
 
 from thermogear.front import delivery
 from thermogear.front.lines import say
+from thermogear.results.files import json_text
 
 if TYPE_CHECKING:
     from thermogear.case.rexs.model import Model
@@ -54,7 +54,7 @@ def import_(
         say("warning", note)
     if as_json:
         content = {"case": found.text, "not used": found.unused, "notes": found.notes}
-        click.echo(json.dumps(content, indent=2, ensure_ascii=False))
+        click.echo(json_text(content), nl=False)
     if output is None:
         if not as_json:
             click.echo(found.text, nl=False)
@@ -106,7 +106,7 @@ def _list(model: Model, file: str, *, as_json: bool) -> None:
             "parts": rest,
             "notes": notes,
         }
-        click.echo(json.dumps(content, indent=2, ensure_ascii=False))
+        click.echo(json_text(content), nl=False)
         return
     click.echo(
         f"REXS {model.version}, {model.container}, {model.application or 'an unnamed program'}; "

@@ -2,29 +2,19 @@
 
 from __future__ import annotations
 
-import json
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from thermogear.base.errors import InputError
 from thermogear.base.units import ZERO_CELSIUS
+from thermogear.front import delivery
+from thermogear.results.files import json_text
 
 if TYPE_CHECKING:
-    from thermogear.case.case import GearCase
     from thermogear.verify.checks import GrowthCheck, StiffnessCheck
     from thermogear.verify.pairs import CheckedPair
 
-_case = click.argument("case", metavar="CASE")
-_overrides = click.option(
-    "--set",
-    "overrides",
-    multiple=True,
-    metavar="PATH=VALUE",
-    help="Put a value in place of the file's; PATH= leaves it out. May be repeated.",
-)
-_json = click.option("--json", "as_json", is_flag=True, help="Print the numbers as JSON.")
 _near = click.option(
     "--near",
     default="strain",
@@ -51,8 +41,8 @@ def verify() -> None:
 
 
 @verify.command()
-@_case
-@_overrides
+@delivery.case
+@delivery.overrides
 @click.option(
     "--torque",
     type=float,
@@ -68,7 +58,7 @@ def verify() -> None:
 )
 @_refine
 @_near
-@_json
+@delivery.as_json
 def stiffness(
     case: str,
     overrides: tuple[str, ...],
@@ -82,7 +72,7 @@ def stiffness(
     from thermogear.verify.checks import check_stiffness, inner_phases
     from thermogear.verify.tooth_mesh import Density
 
-    read = _gear_case(case, overrides)
+    read = delivery.load_gears(case, overrides)
     moment = max(read.torques) if torque is None else torque
     if not 0.0 < moment < float("inf"):
         raise InputError("torque", f"{moment:g} N m", allowed="> 0", fix="state --torque")
@@ -96,7 +86,7 @@ def stiffness(
     )
     if as_json:
         content = {"title": read.title, "torque": moment, "near": near, "notes": STIFFNESS_NOTES}
-        _print_json(content | _stiffness_numbers(found))
+        click.echo(json_text(content | _stiffness_numbers(found)), nl=False)
         return
     click.echo(read.title)
     click.echo(f"{moment:g} N m on the pinion, F_n/b = {1e-3 * found.line_load:.4g} N/mm")
@@ -106,12 +96,12 @@ def stiffness(
 
 
 @verify.command()
-@_case
-@_overrides
+@delivery.case
+@delivery.overrides
 @click.option(
     "--bore", default="free", show_default=True, help="Support of the bores: free, rigid, shaft."
 )
-@_json
+@delivery.as_json
 def growth(case: str, overrides: tuple[str, ...], bore: str, as_json: bool) -> None:
     """Thermal growth of both gears' flanks in CASE: model, finite elements, difference."""
     import numpy as np
@@ -119,7 +109,7 @@ def growth(case: str, overrides: tuple[str, ...], bore: str, as_json: bool) -> N
     from thermogear.heat.expansion import RadialField
     from thermogear.verify.checks import check_growth
 
-    read = _gear_case(case, overrides)
+    read = delivery.load_gears(case, overrides)
     heat = read.operating.temperatures
     gears = (
         ("pinion", read.pair.pinion, heat.pinion_bore, heat.pinion_addendum),
@@ -157,13 +147,13 @@ def growth(case: str, overrides: tuple[str, ...], bore: str, as_json: bool) -> N
             f"worst {1e6 * found.difference[worst]:+.3f} um at {1e3 * found.radius[worst]:.4f} mm"
         )
     if as_json:
-        _print_json(content)
+        click.echo(json_text(content), nl=False)
 
 
 @verify.command()
 @_refine
 @_near
-@_json
+@delivery.as_json
 def pairs(refine: int, near: str, as_json: bool) -> None:
     """The fixed pairs: a published one, four of our own, and three at the model's edges."""
     from thermogear.verify.checks import check_stiffness, inner_phases
@@ -196,22 +186,12 @@ def pairs(refine: int, near: str, as_json: bool) -> None:
         if not as_json:
             click.echo(f"\nworst of the {group} pairs: {worst[1]}, {100.0 * worst[0]:.2f} %")
     if as_json:
-        _print_json(content)
-
-
-def _gear_case(case: str, overrides: tuple[str, ...]) -> GearCase:
-    from thermogear.case.case import gear_case, load_case
-
-    return gear_case(load_case(Path(case), overrides))
+        click.echo(json_text(content), nl=False)
 
 
 def _print_notes(near: str) -> None:
     for note in (*STIFFNESS_NOTES, f"around the contacts plane {near}"):
         click.echo(f"- {note}")
-
-
-def _print_json(content: dict[str, Any]) -> None:
-    click.echo(json.dumps(content, indent=2, ensure_ascii=False))
 
 
 def _stiffness_numbers(found: StiffnessCheck) -> dict[str, Any]:

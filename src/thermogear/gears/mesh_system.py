@@ -38,15 +38,15 @@ BODIES = {
 class LoadedModel:
     """The choices of the loaded contact.
 
-    body: reading of the hub, see :data:`BODIES`; contact: see :data:`CONTACT_LAWS`; start: of
-    the tooth's beam, see :data:`STARTS`; extended: contact on tip corners off the path;
-    coupled: a tooth moves under its neighbours' load.
+    body: reading of the hub, see :data:`BODIES`, by default that of a case file; contact: see
+    :data:`CONTACT_LAWS`; start: of the tooth's beam, see :data:`STARTS`; extended: contact on tip
+    corners off the path; coupled: a tooth moves under its neighbours' load.
 
     >>> LoadedModel(contact="palmgren").body
-    'bore_clamped'
+    'rim'
     """
 
-    body: str = "bore_clamped"
+    body: str = "rim"
     contact: str = "weber-banaschek"
     start: str = "30-degree"
     extended: bool = True

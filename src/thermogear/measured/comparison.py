@@ -6,7 +6,6 @@ u_D^2, and one model is better than another only where their errors differ by mo
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -30,6 +29,8 @@ from thermogear.results.result import Notice, Result, now
 
 _IMPLAUSIBLE_G = 50.0
 _DEEPEST_SUBHARMONIC = 16
+_ROUNDING = 1e-4
+"""Relative: how far printed frequencies and speeds are off by their own digits."""
 FAR = 1.0
 """Relative error beyond which no model is called better than another."""
 UNCERTAINTIES = ("u_num", "u_input", "u_data", "u_val")
@@ -132,7 +133,12 @@ def table_of(found: Measurement, speed: float | None = None) -> LineTable:
     lines = [line for line in lines if np.isfinite(line.displacement)]
     withheld = next((line.withheld for line in found.lines if line.withheld), "")
     if not lines and withheld:
-        raise InputError("measured", found.record.source, why=f"its lines are withheld: {withheld}")
+        raise InputError(
+            "measured",
+            found.record.source,
+            why=f"its lines are withheld: {withheld}",
+            fix="read another channel by --channel, or another piece of the record",
+        )
     if not lines:
         raise InputError(
             "measured",
@@ -176,13 +182,14 @@ def compared(
     """Models against measured lines, each within 5 % of a measured speed.
 
     Standard uncertainties, relative: ``u_data`` of the measurement (None: as the table states it),
-    ``u_num`` of the simulation, ``u_input`` by speed [rad/s]; ``said``: notices that come first.
+    ``u_num`` of the simulation and ``u_input`` by speed [rad/s], both relative to the simulated
+    line; ``said``: notices that come first.
     Raises InputError when no speed is common to both sides.
     """
     table = printed.measured
     names = tuple(models)
     if not names:
-        raise InputError("simulated", "nothing", allowed="at least one model")
+        raise InputError("simulated", "nothing", allowed="at least one model", fix="name a case")
     rows: list[Row] = []
     notices: list[Notice] = list(said)
     highest = max(line.frequency for line in table.lines)
@@ -210,7 +217,9 @@ def compared(
             )
             for quantity in ("displacement", "frequency")
         )
-        swing = replace(swing, u_num=u_num, u_input=entered, u_data=u_d)
+        # both are known relative to what is simulated
+        ratio = max(swing.simulated) / swing.measured
+        swing = replace(swing, u_num=ratio * u_num, u_input=ratio * entered, u_data=u_d)
         rows += [
             replace(
                 turns,
@@ -224,6 +233,7 @@ def compared(
             "speeds",
             ", ".join(f"{line.speed / RPM:.0f} rpm" for line in table.lines),
             why="none of them is simulated",
+            fix="give the case one of them within 5 %: --set 'operating.speed=... rpm'",
         )
     implied = tuple(_implied(line, table) for line in table.lines)
     notices += _misprints(rows, names) + _doubts(implied)
@@ -251,25 +261,36 @@ def _data_uncertainty(
 def _frequency_verdict(
     simulated: Sequence[SpeedLine], line: SpeedLine, table: LineTable, names: Sequence[str]
 ) -> str:
-    """A model forced at the mesh frequency answers at j/n of it and nowhere else."""
+    """A model forced at the mesh frequency answers at j/n of it and nowhere else.
+
+    A speed is known no better than the measured line shows it: by how far that line is off j/n of
+    the speed stated for it, and by half a line of its spectrum.
+    """
     teeth = table.teeth
     if teeth is None:
         return "no tooth number: nothing to tell"
-    forced = teeth * line.speed / (2.0 * np.pi)
-    impossible = []
-    for name, item in zip(names, simulated, strict=True):
-        ratio = item.frequency / forced
-        rational = Fraction(ratio).limit_denominator(_DEEPEST_SUBHARMONIC)
-        if abs(float(rational) - ratio) > 1e-4:
-            impossible.append(f"{name} ({item.frequency:g} Hz)")
+    known = max(_ROUNDING, _off(line, teeth), 0.5 * (table.bin_width or 0.0) / line.frequency)
+    impossible = [
+        f"{name} ({item.frequency:g} Hz)"
+        for name, item in zip(names, simulated, strict=True)
+        if _off(item, teeth) > known
+    ]
     if impossible:
+        forced = teeth * line.speed / (2.0 * np.pi)
         return (
             f"impossible: {', '.join(impossible)} is no line j/n of the {forced:.3f} Hz that "
-            "forces the model"
+            f"forces the model, known to {100.0 * known:.2g} %"
         )
     if len({item.frequency for item in simulated}) == 1:
         return "the same by construction: the speed sets it"
     return "set by the speed, not by the model"
+
+
+def _off(line: SpeedLine, teeth: int) -> float:
+    """How far a line is off the nearest j/n of the mesh frequency of its own speed, relative."""
+    ratio = 2.0 * np.pi * line.frequency / (teeth * line.speed)
+    nearest = Fraction(ratio).limit_denominator(_DEEPEST_SUBHARMONIC)
+    return abs(float(nearest) / ratio - 1.0)
 
 
 def _printed(printed: Printed, names: Sequence[str], quantity: str, number: int) -> tuple[str, ...]:
@@ -367,11 +388,13 @@ def result_of(found: Comparison) -> Result:
         where=("row", column(rows, "where")),
         verdict=("row", column(rows, "verdict")),
     )
-    gravities = np.array(column(implied, "acceleration_g"))
     said = label(
         {
             "pinion_speed": (("speed",), column(implied, "speed")),
-            "implied_acceleration": (("speed",), gravities * STANDARD_GRAVITY),
+            "implied_acceleration": (
+                ("speed",),
+                np.multiply(column(implied, "acceleration_g"), STANDARD_GRAVITY),
+            ),
             "implied_shaft_speed": (("speed",), column(implied, "shaft_speed")),
             "mesh_line_offset": (("speed",), column(implied, "offset_hertz")),
             "line_bin_offset": (("speed",), column(implied, "offset_bins")),
@@ -410,8 +433,3 @@ def figures(found: Comparison) -> dict[str, Any]:
         "implied": [vars(item) for item in found.implied],
         "notices": [list(pair) for pair in found.notices],
     }
-
-
-def as_json(found: Comparison) -> str:
-    """:func:`figures` as a JSON text."""
-    return json.dumps(figures(found), indent=2, ensure_ascii=False)

@@ -57,7 +57,7 @@ def figures(found: Measurement) -> dict[str, Any]:
         "source": found.record.source,
         "rate": found.record.rate,
         "rate_half_width": found.record.rate_half_width if found.record.rate else None,
-        "settings": found.settings,
+        "settings": _settings(found),
         "teeth": found.teeth,
         "mesh_position": gearing.mesh_frequency if gearing else None,
         "shaft_speed": _known(first.shaft_speed) if first else None,
@@ -74,6 +74,19 @@ def figures(found: Measurement) -> dict[str, Any]:
         "slices": None if run is None else _slices(run, found.record),
         "notices": [vars(notice) for notice in found.notices],
         "units": units(found.record, found.channels),
+    }
+
+
+def _settings(found: Measurement) -> dict[str, Any]:
+    """The settings with numbers for those that are numbers."""
+    chain, rate = found.chain, found.record.rate
+    words = {name: found.settings[name] for name in ("rate", "window", "method", "amplitudes")}
+    return words | {
+        "samples": found.samples,
+        f"bin_width_{'Hz' if rate else 'cycles_per_sample'}": (rate or 1.0) / found.samples,
+        f"band_{'Hz' if rate else 'cycles_per_sample'}": chain.band,
+        "taps": chain.taps,
+        f"low_cut_{'Hz' if rate else 'cycles_per_sample'}": chain.low_cut,
     }
 
 

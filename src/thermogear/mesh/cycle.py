@@ -54,7 +54,7 @@ def mesh_cycle(
     *,
     deviations: Sequence[Deviation] = (),
     path_positions: int = 201,
-    mesh_positions: int = 512,
+    mesh_positions: int = 240,
     want: Collection[str] = (),
 ) -> xr.Dataset:
     """Everything quasi-static about ``pair`` at its operating points, in SI.

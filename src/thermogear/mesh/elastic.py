@@ -15,7 +15,7 @@ from thermogear.gears.contact import curvature_radii, hertz_half_width, reduced_
 from thermogear.gears.contact import reduced_modulus as _reduced_modulus
 from thermogear.gears.contact_compliance import weber_approach
 from thermogear.gears.deviations import Deviation
-from thermogear.gears.loaded import LEAST_LINE_LOAD, LoadedMesh, LoadedModel, solve_mesh
+from thermogear.gears.loaded import LEAST_LINE_LOAD, LoadedMesh, solve_mesh
 from thermogear.gears.pair import GearPair
 from thermogear.gears.ring import ring_compliance
 from thermogear.gears.sharing import equal_share, stiffness_share
@@ -180,7 +180,7 @@ class LoadedPair(ElasticPair):
             pinion=moduli[0],
             wheel=moduli[1],
             deviations=(*self.deviations, ThermalDeviation(self.hot)),
-            model=LoadedModel(body=self.hot.model.body.replace("-", "_")),
+            model=self.hot.model.loaded,
         )
         return solved if self.hot.operating.varied.face_width is None else solved.wider(wider)
 

@@ -47,7 +47,7 @@ def excitation(
     damping_ratio: float,
     inertias: tuple[float, float] | None = None,
     transmission_error: Periodic = NO_ERROR,
-    harmonics: int = 40,
+    harmonics: int = 24,
     friction: Sequence[FrictionSplit | None] | None = None,
 ) -> list[Excitation | None]:
     """The excitation of every operating point of ``cycle``; None where the pair is jammed.
@@ -88,7 +88,7 @@ def excitations(
     damping_ratio: ArrayLike,
     inertias: ArrayLike | None = None,
     transmission_error: Periodic = NO_ERROR,
-    harmonics: int = 40,
+    harmonics: int = 24,
     friction: Sequence[FrictionSplit | None] | None = None,
 ) -> Excitations:
     """The excitation of every operating point of ``cycle``, in columns.

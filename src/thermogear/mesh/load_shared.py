@@ -14,7 +14,7 @@ from thermogear.base.pair_springs import PairSprings
 from thermogear.gears.candidates import mesh_points
 from thermogear.gears.contact import mirror_position
 from thermogear.gears.deviations import Deviation
-from thermogear.gears.loaded import LoadedMesh, LoadedModel, solve_mesh
+from thermogear.gears.loaded import LoadedMesh, solve_mesh
 from thermogear.gears.stiffness import Moduli
 from thermogear.gears.touch import first_touch
 from thermogear.mesh.elastic import LoadedPair
@@ -107,7 +107,7 @@ def contact_at(
         pinion=moduli[0],
         wheel=moduli[1],
         deviations=(*deviations, ThermalDeviation(one)),
-        model=LoadedModel(body=hot.model.body.replace("-", "_")),
+        model=hot.model.loaded,
         flank=flank,
     )
 

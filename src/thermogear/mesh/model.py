@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, fields, replace
 
 from thermogear.base.errors import InputError, nearest
+from thermogear.gears.mesh_system import LoadedModel
 from thermogear.heat.friction import (
     LAWS,
     MEANINGS,
@@ -133,6 +134,11 @@ class MeshModel:
         if self.friction == ConstantDry.name:
             return ConstantDry(self.dry_coefficient)
         return friction_law(self.friction) if isinstance(self.friction, str) else self.friction
+
+    @property
+    def loaded(self) -> LoadedModel:
+        """The loaded contact with the body of this model."""
+        return LoadedModel(body=self.body.replace("-", "_"))
 
     @classmethod
     def consistent(cls) -> MeshModel:

@@ -50,7 +50,7 @@ def csv_text(frame: pd.DataFrame) -> str:
     """A frame as CSV that a spreadsheet reads safely: no text is a formula."""
     words = frame.select_dtypes(["object", "string"]).columns
     safe = frame.assign(**{str(name): frame[name].map(harmless) for name in words})
-    text: str = safe.to_csv(index=False, float_format="%.9g", lineterminator="\n")
+    text: str = safe.to_csv(index=False, float_format="%.15g", lineterminator="\n")
     return text
 
 

@@ -4,16 +4,23 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from thermogear.base.errors import InputError
 from thermogear.base.toml import literal, overridden, pairs
 from thermogear.case.allowed import gear_parameter
 from thermogear.case.base import Case
 from thermogear.case.case import GearCase, gear_case, load_case
+from thermogear.results.result import Notice
+
+DRAWINGS = 8
+"""Drawings of flanks of a class, seeds 1 to 8, that say how far another pair of gears may be."""
 
 
 @dataclass(frozen=True)
@@ -40,16 +47,64 @@ class CaseRuns:
             changes |= overrides_of(self.text, self.kept, name, factor)
         return changes
 
+    @cached_property
+    def accuracy(self) -> int | None:
+        """The class that the flanks are drawn from; None where none is."""
+        return self.case({}).accuracy
+
+    def sampled(
+        self, tolerances: Mapping[str, float], count: int, seed: int
+    ) -> Iterator[dict[str, str]]:
+        """Overrides of ``count`` cases within relative standard ``tolerances`` of fields."""
+        rng = np.random.default_rng(seed)
+        for _ in range(max(2, count) if tolerances else 0):
+            yield self.changes(
+                {
+                    name: float(1.0 + sigma * rng.standard_normal())
+                    for name, sigma in tolerances.items()
+                }
+            )
+
+    def drawings(self) -> list[dict[str, str]]:
+        """The overrides of other drawings of the flanks; none where no class draws them."""
+        count = 0 if self.accuracy is None else DRAWINGS
+        return [{"flanks.seed": str(number + 1)} for number in range(count)]
+
+    def told(self, tolerances: Mapping[str, float]) -> Iterator[Notice]:
+        """What u_input holds of the case, and what it lacks."""
+        if self.accuracy is not None:
+            yield Notice(
+                "info",
+                f"u_input holds the greatest change that {DRAWINGS} drawings of flanks of class "
+                f"{self.accuracy} make: which of them the gears have is not known",
+            )
+        if not tolerances:
+            yield Notice(
+                "warning",
+                "no tolerances of the case are stated: u_input "
+                + ("is 0" if self.accuracy is None else "holds nothing else"),
+            )
+
 
 def _stated(text: str, changes: Mapping[str, str], name: str) -> str:
     """A field as the case states it, as text."""
     value: Any = overridden(tomllib.loads(text), pairs(changes))
     for part in name.split("."):
         if not isinstance(value, dict) or part not in value:
-            raise InputError("tolerances", repr(name), why="the case states no such field")
+            raise InputError(
+                "tolerances",
+                repr(name),
+                why="the case states no such field",
+                fix=f"state {name} in the case, or leave its tolerance out",
+            )
         value = value[part]
     if not isinstance(value, (str, int, float)) or isinstance(value, bool):
-        raise InputError("tolerances", repr(name), why="it is no single number with a unit")
+        raise InputError(
+            "tolerances",
+            repr(name),
+            why="it is no single number with a unit",
+            fix="name a field with one number, as operating.torque",
+        )
     return str(value)
 
 

@@ -72,7 +72,7 @@ def compare(
     for name, sigma in (tolerances or {}).items():
         if not 0.0 <= sigma <= 1.0:
             raise InputError(f"tolerance of {name}", f"{100 * sigma:g} %", allowed="0..100 %")
-    if tolerances and not _computes(simulated):
+    if tolerances and not computes(simulated):
         raise InputError(
             "tolerances",
             ", ".join(tolerances),
@@ -94,8 +94,8 @@ def compare(
         )  # fmt: skip
     measured = _reduced(measured, teeth, speed)
     printed = _printed(measured, teeth, speed)
-    found_damage = measured.damage if isinstance(measured, Measurement) else ()
-    damage = [Notice(*one) for one in found_damage]
+    worn = measured.damage if isinstance(measured, Measurement) else ()
+    damage = [Notice(*one) for one in worn]
     if isinstance(simulated, str) and simulated in PUBLISHED:
         models = PUBLISHED[simulated].models
         return compared(models, printed, u_data=u_data, u_num=u_num or 0.0, said=damage)
@@ -122,7 +122,7 @@ def _at_places(
     """The drive train of a case against the accelerometers of a record."""
     from thermogear.study.compare_sensors import compare_sensors  # drive trains are not light
 
-    if not _computes(simulated):
+    if not computes(simulated):
         raise InputError(
             "--at",
             ", ".join(at),
@@ -173,7 +173,7 @@ def _printed(
     return Printed(table_of(measured, speed), {})
 
 
-def _computes(simulated: object) -> bool:
+def computes(simulated: object) -> bool:
     """Whether the lines come from a case that is computed here."""
     if isinstance(simulated, (str, Path)):
         if "\n" in str(simulated):
@@ -194,17 +194,22 @@ def _simulated(
         isinstance(table, LineTable) for table in simulated.values()
     ):
         tables = {name: t for name, t in simulated.items() if isinstance(t, LineTable)}
-        return CaseLines(tables, u_num or 0.0, {}, ())
-    if isinstance(simulated, (str, Path)):
-        path = Path(simulated)
+    elif isinstance(simulated, Result):
+        tables = tree_lines(simulated)
+    elif computes(simulated):
+        return case_lines(simulated, tolerances, samples=samples, seed=seed, u_num=u_num)  # type: ignore[arg-type]
+    else:
+        path = Path(simulated)  # type: ignore[arg-type]
         stored = path / "results.nc" if path.is_dir() else path
-        if stored.suffix == ".nc":
-            if not stored.is_file():
-                raise InputError("simulated", str(simulated), why="there are no results")
-            return CaseLines(tree_lines(Result.read(stored)), u_num or 0.0, {}, ())
-    if isinstance(simulated, Result):
-        return CaseLines(tree_lines(simulated), u_num or 0.0, {}, ())
-    return case_lines(simulated, tolerances, samples=samples, seed=seed, u_num=u_num)  # type: ignore[arg-type]
+        if not stored.is_file():
+            raise InputError(
+                "simulated",
+                str(simulated),
+                why="there are no results",
+                fix="make them by `thermogear run`, or name a case",
+            )
+        tables = tree_lines(Result.read(stored))
+    return CaseLines(tables, u_num or 0.0, {}, ())
 
 
 @dataclass(frozen=True)
@@ -218,7 +223,10 @@ class CaseLines:
 
 
 def tree_lines(result: Result) -> dict[str, LineTable]:
-    """The mesh line of the simulated motion, one table per bundle and state ("thesis hot").
+    """The mesh line of the transmission error, one table per bundle and state ("thesis hot").
+
+    That of x + e, the movement of one base circle against the other: what a model takes for the
+    error e of its flanks and what for their deflection x is its own.
 
     Operating points without a motion (jammed, diverged) are left out; of several torques at one
     speed the first stands for it.
@@ -237,18 +245,22 @@ def _motion_lines(motion: xr.Dataset) -> dict[str, LineTable]:
     for bundle in motion["bundle"].values:
         for state in motion["state"].values:
             here = {"bundle": bundle, "state": state}
-            amplitude = motion["line_amplitude"].isel(order=first).sel(here)
+            amplitude = motion.get("dte_line", motion["line_amplitude"]).isel(order=first).sel(here)
             lines: dict[float, SpeedLine] = {}
-            for place, speed in enumerate(speeds):
-                x = float(amplitude.values[place])
-                f = float(np.asarray(frequency.values)[place])
-                if np.isfinite(x) and x > 0 and float(speed) not in lines:
-                    lines[float(speed)] = SpeedLine(speed=float(speed), frequency=f, displacement=x)
+            columns = (speeds, frequency.values, amplitude.values)
+            for speed, f, x in zip(*(map(float, one) for one in columns), strict=True):
+                if np.isfinite(x) and x > 0:
+                    lines.setdefault(speed, SpeedLine(speed=speed, frequency=f, displacement=x))
             if lines:
                 name = f"{bundle} {state}"
                 found[name] = LineTable(name, tuple(lines.values()), None, "simulation")
     if not found:
-        raise InputError("simulated", "no line", why="no operating point has a motion")
+        raise InputError(
+            "simulated",
+            "no line",
+            why="no operating point has a motion",
+            fix="look for jams by `thermogear check` and `thermogear run`, or change the backlash",
+        )
     return found
 
 
@@ -280,34 +292,35 @@ def case_lines(
                 "info", f"u_num {100 * u_num:.3g} % from {steps} and {steps // 2} steps a period"
             )
         )
+    changed = [
+        [_relative(base, _tables(runs, one)) for one in several]
+        for several in (runs.sampled(tolerances, samples, seed), runs.drawings())
+    ]
     u_input: dict[float, float] = {}
-    if tolerances:
-        rng = np.random.default_rng(seed)
-        spread: dict[float, list[float]] = {}
-        for _ in range(max(2, samples)):
-            factors = {
-                name: float(1.0 + sigma * rng.standard_normal())
-                for name, sigma in tolerances.items()
-            }
-            for speed, value in _relative(base, _tables(runs, runs.changes(factors))).items():
-                spread.setdefault(speed, []).append(value)
-        u_input = {s: float(np.std(v, ddof=1)) for s, v in spread.items() if len(v) > 1}
-    else:
-        notices.append(Notice("warning", "no tolerances of the case are stated: u_input is 0"))
-    return CaseLines(base, u_num, u_input, tuple(notices))
+    for key in dict.fromkeys(key for several in changed for one in several for key in one):
+        sampled, drawn = ([one[key] for one in several if key in one] for several in changed)
+        spread = float(np.std(sampled, ddof=1)) if len(sampled) > 1 else 0.0
+        # the greatest and not a deviation: so no drawing reverses what another decides
+        most = float(np.hypot(spread, max(map(abs, drawn), default=0.0)))
+        u_input[key[1]] = max(u_input.get(key[1], 0.0), most)
+    return CaseLines(base, u_num, u_input, (*notices, *runs.told(tolerances)))
 
 
-def _relative(base: Mapping[str, LineTable], other: Mapping[str, LineTable]) -> dict[float, float]:
-    """Ratio of the displacements less 1 by speed, for the first model common to both."""
-    name = next((n for n in base if n in other), None)
-    if name is None:
-        return {}
-    found = {}
-    for line in base[name].lines:
-        twin = other[name].near(line.speed)
-        if twin is not None:
-            found[line.speed] = twin.displacement / line.displacement - 1.0
-    return found
+def _relative(
+    base: Mapping[str, LineTable], other: Mapping[str, LineTable]
+) -> dict[tuple[str, float], float]:
+    """Ratio of the displacements less 1, by model and speed."""
+    twins = {
+        (name, line.speed): (line, other[name].near(line.speed))
+        for name in base
+        if name in other
+        for line in base[name].lines
+    }
+    return {
+        key: twin.displacement / line.displacement - 1.0
+        for key, (line, twin) in twins.items()
+        if twin is not None
+    }
 
 
 def fit_case(
@@ -335,9 +348,10 @@ def fit_case(
     errors = values * np.array([line.uncertainty or u_data for line in lines])
 
     def simulate(factors: Floats) -> Floats:
-        named = zip(names, map(float, factors), strict=True)
-        table = _tables(runs, runs.changes(dict(named)))[chosen]
-        found = [table.near(line.speed) for line in lines]
+        near = _tables(runs, runs.changes(dict(zip(names, map(float, factors), strict=True))))[
+            chosen
+        ].near
+        found = [near(line.speed) for line in lines]
         return np.array([0.0 if line is None else line.displacement for line in found])
 
     return fit(simulate, names, measured=values, uncertainty=errors)

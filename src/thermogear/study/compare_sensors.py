@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -69,7 +69,10 @@ def compare_sensors(
     runs = CaseRuns.of(case)
     base = runs.case({})
     bearings = plan_of(base).bearing_names
-    rows = _rows(measured, [_sensor(text, bearings, measured) for text in at])
+    rows = _rows(
+        measured,
+        [accelerometer(text, bearings=bearings, channels=measured.channels) for text in at],
+    )
     speed = _speed(measured, base)
     place = _place(base, speed)
     own = tuple(dict.fromkeys(row.sensor for row in rows))
@@ -87,12 +90,19 @@ def compare_sensors(
             Notice("info", f"u_num: change of a line with {2 * HELD_MODES} modes of the shafts "
                    f"instead of {HELD_MODES}")
         )  # fmt: skip
-    entered = np.zeros(real.size)
-    if tolerances:
-        entered = _spread(runs, tolerances, samples, seed, (place, speed, sensors, last, rows))
-        entered = entered / real
-    else:
-        notices.append(Notice("warning", "no tolerances of the case are stated: u_input is 0"))
+
+    def changed(several: Iterable[Mapping[str, str]]) -> Floats:
+        """Changes of every line, (run, line), relative to what is measured."""
+        cases = (runs.case(one) for one in several)
+        tables = [_simulated(one, place, speed, sensors, only=last)[0][last] for one in cases]
+        moved = [_picked(one, rows, sensors) - told[last.words] for one in tables]
+        return np.asarray(np.reshape(moved, (-1, real.size)) / real)
+
+    sampled = changed(runs.sampled(tolerances or {}, samples, seed))
+    spread = np.std(sampled, axis=0, ddof=1) if len(sampled) else 0.0
+    drawn = np.abs(changed(runs.drawings())).max(axis=0, initial=0.0)
+    entered = np.hypot(spread, drawn)
+    notices += runs.told(tolerances or {})
     names = tuple(told)
     made = []
     for number, row in enumerate(rows):
@@ -122,16 +132,17 @@ def compare_sensors(
     )
 
 
-def _sensor(text: str, bearings: Sequence[str], measured: Measurement) -> Accelerometer:
-    return accelerometer(text, bearings=bearings, channels=measured.channels)
-
-
 def _rows(measured: Measurement, sensors: Sequence[Accelerometer]) -> list[_Line]:
     """Every mesh line of every sensor's channel."""
     names = [one.channel for one in sensors]
     for name in names:
         if names.count(name) > 1:
-            raise InputError("--at", f"channel {name!r} twice", allowed="one place a channel")
+            raise InputError(
+                "--at",
+                f"channel {name!r} twice",
+                allowed="one place a channel",
+                fix="leave one out",
+            )
     found = []
     for sensor in sensors:
         mine = [one for one in measured.lines if one.channel == sensor.channel]
@@ -147,6 +158,7 @@ def _rows(measured: Measurement, sensors: Sequence[Accelerometer]) -> list[_Line
                 f"channel {sensor.channel!r}",
                 measured.record.source,
                 why=f"its lines are withheld: {withheld}",
+                fix="leave its place out, or read another piece of the record",
             )
         if not all(np.isfinite(one.acceleration) for one in lines):
             unit = measured.record.channel(sensor.channel).unit or "no unit"
@@ -210,32 +222,18 @@ def _simulated(
         felt = sensed(one.train, one.motion.state, vectors=vectors, periods=periods)
         found[state] = lines(felt, orders=np.array(ORDERS, dtype=float))
     if not found:
-        raise InputError("simulated", "no line", why="the drive train has no motion at this speed")
+        raise InputError(
+            "simulated",
+            "no line",
+            why="the drive train has no motion at this speed",
+            fix="see why by `thermogear run`, or name a record of another speed",
+        )
     return found, notices
 
 
 def _picked(table: Floats, rows: Sequence[_Line], sensors: Sequence[Accelerometer]) -> Floats:
     """The amplitudes of ``rows`` out of a table (order, sensor)."""
     return np.array([table[ORDERS.index(one.order), sensors.index(one.sensor)] for one in rows])
-
-
-def _spread(
-    runs: CaseRuns,
-    tolerances: Mapping[str, float],
-    samples: int,
-    seed: int,
-    what: tuple[int, float, tuple[Accelerometer, ...], ThermalState, list[_Line]],
-) -> Floats:
-    """Standard deviation of every line [m/s^2] over cases within their tolerances."""
-    place, speed, sensors, state, rows = what
-    rng = np.random.default_rng(seed)
-    seen = []
-    for _ in range(max(2, samples)):
-        factors = {name: float(1.0 + s * rng.standard_normal()) for name, s in tolerances.items()}
-        case = runs.case(runs.changes(factors))
-        found, _ = _simulated(case, place, speed, sensors, only=state)
-        seen.append(_picked(found[state], rows, sensors))
-    return np.asarray(np.std(seen, axis=0, ddof=1))
 
 
 def _turned(sensor: Accelerometer) -> Accelerometer:

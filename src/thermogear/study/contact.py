@@ -16,7 +16,7 @@ from thermogear.base.vocabulary import dressed, label
 from thermogear.case.case import GearCase
 from thermogear.case.thermal_state import HOT, UNDEFORMED, ThermalState
 from thermogear.gears.iso6336 import iso6336_stiffness
-from thermogear.gears.loaded import LoadedModel, loaded_contact
+from thermogear.gears.loaded import loaded_contact
 from thermogear.gears.stiffness import Moduli
 from thermogear.mesh.elastic import LoadedPair
 from thermogear.mesh.model import MeshModel
@@ -43,14 +43,14 @@ def loaded_survey(
     case: GearCase,
     torques: Sequence[float] = (),
     *,
-    body: str = "bore_clamped",
+    body: str | None = None,
     progress: Progress = silent,
 ) -> Result:
     """Stiffness, transmission error, shares, pressure and double contact of the case's pair.
 
     ``torques`` [N m] of the pinion, by default parts of the case's greatest; ``body``
-    "bore_clamped" (statics) or "rim". Temperatures: undeformed, the case's hot state, and the row
-    of gear temperatures.
+    "bore-clamped" (statics) or "rim", by default the case's own. Temperatures: undeformed, the
+    case's hot state, and the row of gear temperatures.
 
     Groups: ``contact`` over (temperature, load, mesh_phase[, pair]) as :func:`loaded_contact`
     gives it; ``base_pitch`` over (temperature_difference, load) with the hot pair's gears of
@@ -64,14 +64,14 @@ def loaded_survey(
     moments = np.asarray(torques, dtype=float) if torques else most * np.asarray(PARTS)
     if not np.all(np.isfinite(moments) & (moments > 0.0)):
         raise InputError("torques", f"{moments} N m", allowed="> 0 N m, finite")
-    model = case.models[0].override(stiffness="loaded")
+    model = case.models[0].override(stiffness="loaded", body=body or case.models[0].body)
     named = {state.kind: state for state in (UNDEFORMED, HOT)}
     for kelvin in case.gear_temperatures:
         named[f"{kelvin - ZERO_CELSIUS:.4g} degC"] = ThermalState.of(kelvin)
     states = {name: state.operating(case, case.models[0]) for name, state in named.items()}
     progress("loaded contact", 0, 2)
     ones = [one_point(state, float(moments[0])) for state in states.values()]
-    contact = _solve(case, model, stacked(ones), moments, body)
+    contact = _solve(case, model, stacked(ones), moments)
     contact = contact.assign_coords(
         temperature=list(states),
         load=dressed(("load",), moments, "N m", "pinion torque"),
@@ -80,7 +80,7 @@ def loaded_survey(
     unequal = [apart(ones[1], difference) for difference in DIFFERENCES]
     reach = max(most, float(moments.max()))
     light = reach * np.asarray(LIGHT)
-    heated = _solve(case, model, stacked(unequal), light, body)
+    heated = _solve(case, model, stacked(unequal), light)
     progress("loaded contact", 2, 2)
     error = heated["transmission_error"]
     base_pitch = label(
@@ -130,17 +130,15 @@ def loaded_survey(
         KIND,
         f"Loaded contact: {case.title}",
         {"contact": contact, "base_pitch": base_pitch, "iso_6336": compared},
-        _notices(case, body, lost, contact["edge_contact_share"], compared),
+        _notices(case, model.body, lost, contact["edge_contact_share"], compared),
         **case.provenance,
-        body=body,
+        body=model.body,
         base_pitch_length=case.pair.base_pitch,
         path_points={k.upper(): v for k, v in case.pair.path._asdict().items()},
     )
 
 
-def _solve(
-    case: GearCase, model: MeshModel, operating: Operating, moments: Floats, body: str
-) -> xr.Dataset:
+def _solve(case: GearCase, model: MeshModel, operating: Operating, moments: Floats) -> xr.Dataset:
     """The loaded contact over (temperature, load, mesh_phase)."""
     hot = HotPair(case.pair, operating, model)
     first, second = (
@@ -155,7 +153,7 @@ def _solve(
         pinion=first,
         wheel=second,
         deviations=[*case.deviations, Seen(ThermalDeviation(hot), np.s_[:, None])],
-        model=LoadedModel(body=body),
+        model=model.loaded,
         dimensions=("temperature", "load"),
     )
 
@@ -194,7 +192,7 @@ def _notices(
     apart_by = 100.0 * (compared["iso_stiffness"] / compared["loaded_stiffness"] - 1.0).values
     low, high = (f"{value:+.0f}" for value in (apart_by.min(), apart_by.max()))
     standard = f"{low} %" if low == high else f"{low} to {high} %"
-    words = "clamped at the bore: statics" if body == "bore_clamped" else "without hub wind-up"
+    words = "clamped at the bore: statics" if body == "bore-clamped" else "without hub wind-up"
     yield Notice(
         "info",
         f"Body: {words}, plane stress. Contact on tip corners and relief stand without "

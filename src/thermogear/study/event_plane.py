@@ -106,22 +106,20 @@ class Plane:
         }
 
     def _told(self, curve: EventCurve, first: Parameter) -> dict[str, Any]:
-        asked = [
+        points = [
             {
                 "first": float(p),
                 "second": float(q),
-                "shown": f"{first.show(float(p)):.8g} {first.shown}".strip(),
-                "second_shown": f"{self.second.show(float(q)):.6g} {self.second.shown}".strip(),
+                "shown": float(first.show(p)),
+                "shown_unit": first.shown,
+                "second_shown": float(self.second.show(q)),
+                "second_shown_unit": self.second.shown,
                 "stable": bool(stable),
             }
-            for (p, q), mark, stable in zip(curve.values, curve.asked, curve.stable, strict=True)
-            if mark
+            for (p, q), stable in zip(curve.values, curve.stable, strict=True)
         ]
-        turns = [
-            f"{first.show(float(p)):.6g} {first.shown} at "
-            f"{self.second.show(float(q)):.6g} {self.second.shown}".strip()
-            for p, q in curve.values[list(curve.turns)]
-        ]
+        asked = [one for one, mark in zip(points, curve.asked, strict=True) if mark]
+        turns = [points[place] for place in curve.turns]
         ended = curve.ended
         if ended == LOST:
             p, q = map(float, curve.values[-1])

@@ -51,11 +51,13 @@ def follow(
     model: ClearanceModel,
     simulation: Simulation,
     advance: Advance | None = None,
+    error: Floats | None = None,
 ) -> Motion:
     """Label every lane of ``model``, then follow it long enough to draw it.
 
     The transient thrown away is the longest any lane's label needed, at least
-    ``simulation.discard`` periods and at most ``most_discarded``.
+    ``simulation.discard`` periods and at most ``most_discarded``. With ``error`` e (lane, sample)
+    over one mesh period the movement of one base circle against the other, x + e, is told too.
     """
     state = simulation.initial_state
     found = labels(
@@ -85,10 +87,9 @@ def follow(
     shown = simulation.samples * min(simulation.sample_periods, periods)
     diverged = data["status"].values != 0
     status = np.where(diverged, STATUS.index("diverged"), STATUS.index("ok")).astype(np.int8)
-    lanes = x.shape[0]
     share = data["time_share"].sel(side="drive").values if "time_share" in data else None
     impacts = data["back_impacts"].values / periods if "back_impacts" in data else None
-    missing = np.full(lanes, np.nan)
+    missing = np.full(x.shape[0], np.nan)
     values: dict[str, NDArray[np.generic]] = {
         "displacement": x[:, -shown:],
         "velocity": data["v"].values[:, -shown:],
@@ -106,6 +107,12 @@ def follow(
         "label_reason": np.array([one.reason for one in found]),
         **proofs(found),
     }
+    if error is not None:
+        whole = x + np.tile(error, periods)
+        values["dte_peak_to_peak"] = np.ptp(whole, axis=1)
+        values["dte_line"] = amplitude_spectrum(whole, float(simulation.samples)).amplitudes[
+            :, kept
+        ]
     return Motion(
         phase=np.arange(shown) / simulation.samples,
         order=spectrum.frequencies[kept],
@@ -172,15 +179,15 @@ def follow_gears(
     if not alive.size:
         return None
     present = points.take(alive)
-    motion = follow(present, simulation, advance)
     length, rate = present.length, present.rate
+    error = present.kinematic(np.arange(simulation.samples) / simulation.samples)
+    motion = follow(present, simulation, advance, error / length[:, None])
     scales: dict[str, Any] = {"velocity": length * rate, "section_velocity": length * rate}
     plain = {"contact_loss_share", "back_impacts", "status", "label", "label_reason", *PROOFS}
     values: dict[str, NDArray[np.generic]] = {}
     for name, rows in motion.values.items():
         if name not in plain:
-            scale: Any = scales.get(name, length)
-            rows = rows * scale.reshape(-1, *([1] * (rows.ndim - 1)))
+            rows = rows * scales.get(name, length).reshape(-1, *([1] * (rows.ndim - 1)))
         values[name] = _spread(rows, alive, len(points.status), _missing(name))
     return GearMotion(motion, values)
 
@@ -200,10 +207,7 @@ def _spread(
     rows: NDArray[np.generic], places: NDArray[np.int64], count: int, missing: object
 ) -> NDArray[np.generic]:
     """``rows`` put at ``places`` of ``count``, ``missing`` elsewhere."""
-    if rows.dtype.kind == "U":
-        whole = np.full(count, missing, dtype=object)
-        whole[places] = rows
-        return whole.astype(str)
-    spread = np.full((count, *rows.shape[1:]), missing, dtype=rows.dtype)
+    words = rows.dtype.kind == "U"
+    spread = np.full((count, *rows.shape[1:]), missing, dtype=object if words else rows.dtype)
     spread[places] = rows
-    return spread
+    return spread.astype(str) if words else spread

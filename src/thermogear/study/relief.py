@@ -16,7 +16,7 @@ from thermogear.case.case import GearCase
 from thermogear.case.flanks import relief_text
 from thermogear.case.thermal_state import HOT, ThermalState
 from thermogear.gears.deviations import Contacts, Relief
-from thermogear.gears.loaded import LoadedMesh, LoadedModel, solve_mesh
+from thermogear.gears.loaded import LoadedMesh, solve_mesh
 from thermogear.gears.relief import MOST_EVALUATIONS, STARTS, optimise_tip_relief
 from thermogear.gears.stiffness import Moduli
 from thermogear.mesh.elastic import LoadedPair
@@ -67,7 +67,6 @@ def relief_survey(
     moduli = [Moduli(tooth=np.ravel(m.tooth)[0], body=np.ravel(m.body)[0]) for m in elastic.moduli]
     kept = [d for d in case.deviations if not (isinstance(d, Relief) and d.end == "tip")]
     deviations = [*kept, Seen(ThermalDeviation(hot), 0)]
-    loaded = LoadedModel(body="bore_clamped")
     force = moment / case.pair.pinion.base_radius
     most = len(STARTS) * MOST_EVALUATIONS
     design = optimise_tip_relief(
@@ -76,7 +75,7 @@ def relief_survey(
         pinion=moduli[0],
         wheel=moduli[1],
         deviations=deviations,
-        model=loaded,
+        model=model.loaded,
         shape=shape,
         largest=largest,
         symmetric=symmetric,
@@ -93,7 +92,7 @@ def relief_survey(
             pinion=moduli[0],
             wheel=moduli[1],
             deviations=[*deviations, *reliefs],
-            model=loaded,
+            model=model.loaded,
         ).checked()
 
     pairs = {"unrelieved": (), "relieved": (design.pinion, design.wheel)}

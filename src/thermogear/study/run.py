@@ -300,7 +300,7 @@ def _unsettled(motion: xr.Dataset, cycles: Mapping[str, xr.Dataset]) -> xr.Datas
 def _last_axis(name: str) -> tuple[str, ...]:
     if name.startswith("section"):
         return ("section",)
-    if name == "line_amplitude":
+    if name in ("line_amplitude", "dte_line"):
         return ("order",)
     return ("sample",) if name.endswith(("displacement", "velocity")) and "peak" not in name else ()
 
@@ -437,9 +437,13 @@ def _points(case: DimensionlessCase, stage: str, progress: Progress) -> xr.Datas
         variables[plain.get(name, name)] = (("point", *axis), values)
     variables["order"] = (("order",), motion.order)
     data = label(variables, None, _motion_attributes(motion, case))
-    for name in ("section_displacement", "section_velocity", "line_amplitude"):
-        data[name].attrs["units"] = "1"
-    for name in ("half_order_amplitude", "peak_to_peak_displacement"):
+    for name in (
+        "section_displacement",
+        "section_velocity",
+        "line_amplitude",
+        "half_order_amplitude",
+        "peak_to_peak_displacement",
+    ):
         data[name].attrs["units"] = "1"
     texts["row"] = (("point",), [point.row for point in case.points])
     texts["parameter"] = (("point",), [point.parameter for point in case.points])

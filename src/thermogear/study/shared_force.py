@@ -28,10 +28,10 @@ if TYPE_CHECKING:
     import xarray as xr
 
 POSITIONS = 240
-FACTORS = np.geomspace(0.01, 4.0, 25)
-"""Loads over the mean load at which springs are compared at rest."""
 LIGHT = 0.05
 """Part of the mean load that counts as light."""
+FACTORS = LIGHT ** (np.arange(18, -7, -1) / 12.0)
+"""Loads over the mean load at which springs are compared at rest: 1 and LIGHT among them."""
 STEPS, SAMPLES, PERIODS, DISCARD = 1024, 128, 64, 192
 
 
@@ -44,11 +44,14 @@ def shared_results(
 ) -> Result:
     """Both mesh forces of a gear case at rest and in motion.
 
-    At rest over load: mean tangent stiffness and peak to peak deflection of the exact loaded
-    contact, of the pairs' springs and of the one spring. In motion over ``count`` speeds from
-    ``speeds`` first to last [rad/s] (default a third to five thirds of resonance): peak to peak
-    displacement at the mean load and at :data:`LIGHT` of it. Both forms are built at the mean
-    load.
+    At rest over load: mean tangent stiffness and swing of the exact loaded contact, of the pairs'
+    springs and of the one spring. In motion over ``count`` speeds from ``speeds`` first to last
+    [rad/s] (default a third to five thirds of resonance): swing at the mean load and at
+    :data:`LIGHT` of it. Both forms are built at the mean load.
+
+    A swing is that of the transmission error r_b1 theta_1 - r_b2 theta_2 [m], peak to peak: what
+    each form takes for the error is its own split of it, and belongs to no comparison. Towards
+    speed 0 it is the static one, far above resonance it goes to 0, for both.
     """
     if point.operating is None:
         raise InputError(
@@ -73,28 +76,26 @@ def shared_results(
     data = at_rest(case, hot, here, drive).merge(free_play(case, hot, here, drive, back))
     resonance = here.natural_frequency / case.pair.pinion.teeth
     low, high = speeds or (resonance / 3.0, 5.0 * resonance / 3.0)
-    rows: dict[str, list[list[float]]] = {"shared_swing": [], "one_spring_swing": []}
-    done: list[float] = []
+    swings: list[list[tuple[float, float]]] = []
+    every = np.linspace(low, high, count)
     cut = False
     try:
-        for number, speed in enumerate(np.linspace(low, high, count).tolist()):
+        for number, speed in enumerate(every.tolist()):
             progress("speeds", number, count)
             turning = replace(here, mesh_frequency=case.pair.pinion.teeth * speed)
-            pairs = [_swings(turning, case, drive, back, part) for part in (1.0, LIGHT)]
-            for name, place in (("shared_swing", 0), ("one_spring_swing", 1)):
-                rows[name].append([pair[place] for pair in pairs])
-            done.append(speed)
+            swings.append([_swings(turning, case, drive, back, part) for part in (1.0, LIGHT)])
         progress("speeds", count, count)
     except KeyboardInterrupt:
         cut = True
+    by_form = np.reshape(swings, (-1, 2, 2))
     swing = {
-        name: (("speed", "part"), np.array(values).reshape(-1, 2), "m")
-        for name, values in rows.items()
+        f"{form}_swing": (("speed", "part"), by_form[..., place], "m")
+        for place, form in enumerate(("shared", "one_spring"))
     }
     moving = label(
         swing,
         {
-            "speed": ("speed", np.array(done), "rad/s", "pinion speed"),
+            "speed": ("speed", every[: len(swings)], "rad/s", "pinion speed"),
             "part": ("part", [1.0, LIGHT], "1", "load over the mean load"),
         },
     )
@@ -103,21 +104,20 @@ def shared_results(
 
 
 def at_rest(case: GearCase, hot: HotPair, here: Excitation, drive: PairSprings) -> xr.Dataset:
-    """Mean stiffness and peak to peak deflection over load: exact, pair springs, one spring."""
+    """Mean stiffness and swing of the error over load: exact, pair springs, one spring."""
     phase = np.arange(POSITIONS) / POSITIONS + 1e-12
     loads = FACTORS * here.mean_force
     exact = contact_at(hot, 0, loads, phase, case.deviations)
     shared = drive.deflection(loads[:, None], phase)
     k = here.stiffness(phase)
-    # the kinematic error is in neither of the static curves
-    error = here.error + (case.transmission_error * -1.0)
-    one = loads[:, None] / k + error(phase)
+    given = case.transmission_error(phase)
+    one = loads[:, None] / k + here.error(phase)
     values = {
         "exact_stiffness": exact.tangent.mean(axis=1),
         "shared_stiffness": drive.stiffness_at(shared, phase).mean(axis=1),
         "one_spring_stiffness": np.full(loads.size, k.mean()),
-        "exact_swing": np.ptp(exact.deflection, axis=1),
-        "shared_swing": np.ptp(shared, axis=1),
+        "exact_swing": np.ptp(exact.deflection + given, axis=1),
+        "shared_swing": np.ptp(shared + given, axis=1),
         "one_spring_swing": np.ptp(one, axis=1),
     }
     return label(
@@ -152,14 +152,24 @@ def free_play(
 def _swings(
     here: Excitation, case: GearCase, drive: PairSprings, back: PairSprings, part: float
 ) -> tuple[float, float]:
-    """Peak to peak [m] of the settled motion: load-shared, one spring."""
+    """Swing of the settled transmission error [m], load-shared and one spring."""
     light = replace(here, mean_force=part * here.mean_force)
     shared = LoadSharedModel.from_excitation(light, drive, back, case.transmission_error)
     length = here.reference_half_backlash
     run: dict[str, Any] = {"periods": PERIODS, "discard": DISCARD, "samples_per_period": SAMPLES}
-    ours = simulate(shared, steps_per_period=STEPS, initial_state=(shared.rest(), 0.0), **run)
-    one = simulate(from_excitation(light), initial_state=(light.half_backlash / length, 0.0), **run)
-    return float(np.ptp(ours["x"].values)), float(np.ptp(one["x"].values)) * length
+    # the base circles stand still at first: what moves against them is the error
+    turn = light.mesh_frequency / (2.0 * np.pi)
+    given, whole = (
+        -turn * float(e.derivative()(0.0)) for e in (case.transmission_error, here.error)
+    )
+    start = shared.rest(), given
+    ours = simulate(shared, steps_per_period=STEPS, initial_state=start, **run)
+    start = light.half_backlash / length, whole / (length * light.natural_frequency)
+    one = simulate(from_excitation(light), initial_state=start, **run)
+    phase = np.arange(PERIODS * SAMPLES) / SAMPLES
+    by_pairs = ours["x"].values + case.transmission_error(phase)
+    by_one = length * one["x"].values + here.error(phase)
+    return float(np.ptp(by_pairs)), float(np.ptp(by_one))
 
 
 def _summary(rest: xr.Dataset, moving: xr.Dataset) -> dict[str, Any]:

@@ -119,9 +119,9 @@ def _flat(variable: xr.Variable, dims: list[str], shape: tuple[int, ...]) -> lis
 
 
 def _texts(values: NDArray[np.generic]) -> NDArray[np.object_]:
-    """Numbers to nine figures, words in quotes where a reader of CSV wants them."""
+    """Numbers to all fifteen digits of a decimal, words in quotes where CSV wants them."""
     if values.dtype.kind == "f":
-        texts = [f"{v:.9g}" if v == v else "" for v in values.ravel().tolist()]
+        texts = [f"{v:.15g}" if v == v else "" for v in values.ravel().tolist()]
     else:
         texts = [quoted(str(v)) for v in values.ravel().tolist()]
     found = np.empty(values.size, dtype=object)

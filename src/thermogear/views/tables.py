@@ -65,7 +65,7 @@ def key_results(mesh: xr.Dataset, path: xr.Dataset | None, motion: xr.Dataset | 
         Markup("mean k undeformed → hot [10⁸ N/m]"), "change",
         "Δk hot [10⁸ N/m]", Markup("f<sub>n</sub> of undeformed mean k [Hz]"),
         Markup("ω<sub>h</sub> undeformed"),
-        "flash [K]", Markup("motion undeformed → hot"), "swing of x, hot [µm]",
+        "flash [K]", Markup("motion undeformed → hot"), "swing of the transmission error, hot [µm]",
     ]  # fmt: skip
     rows: list[list[Cell]] = []
     marked: set[int] = set()
@@ -74,9 +74,6 @@ def key_results(mesh: xr.Dataset, path: xr.Dataset | None, motion: xr.Dataset | 
             points = mesh.isel(bundle=b, operating=o)
             cold, hot = points.isel(state=0), points.isel(state=-1)
             moved = None if motion is None else motion.isel(bundle=b, operating=o)
-            swing: Cell = "–"
-            if moved is not None:
-                swing = value_of(moved.isel(state=-1), "peak_to_peak_displacement")
             flash = "–"
             if path is not None and "flash_temperature" in path:
                 here = path["flash_temperature"].isel(bundle=b, operating=o, state=-1)
@@ -96,12 +93,12 @@ def key_results(mesh: xr.Dataset, path: xr.Dataset | None, motion: xr.Dataset | 
                 value_of(hot, "peak_to_peak_stiffness"), value_of(cold, "natural_frequency", 4),
                 value_of(cold, "frequency_ratio"), flash,
                 Markup("{} → {}").format(_state_word(cold, moved, 0), _state_word(hot, moved, -1)),
-                swing,
+                "–" if moved is None else value_of(moved.isel(state=-1), "dte_peak_to_peak"),
             ])  # fmt: skip
     caption = (
         "Undeformed and hot differ in the temperatures of gears and housing alone. b′ is the mean "
         "over a mesh period, Δk the peak to peak mesh stiffness, flash the highest rise along the "
-        "path, swing the peak to peak displacement."
+        "path, swing the peak to peak movement of one base circle against the other."
     )
     return Table(caption, head, rows, names=2, marked=frozenset(marked))
 

@@ -8,7 +8,18 @@ from thermogear.views.page import Block, Table, Text
 from thermogear.views.plots.parameters import page_words
 
 Summary = dict[str, Any]
+SECOND = "second_shown"
 PLANE = "Where the motion jumps or changes"
+
+
+def shown(point: Summary, digits: int = 8, which: str = "shown") -> str:
+    """The value of a point with its unit, of the first or the second parameter."""
+    return f"{point[which]:.{digits}g} {point[f'{which}_unit']}".strip()
+
+
+def _turns(curve: Summary) -> list[str]:
+    """Where a curve turns back, in both parameters."""
+    return [f"{shown(one, 6)} at {shown(one, 6, SECOND)}" for one in curve["turns"]]
 
 
 def plane_headline(summary: Summary) -> str:
@@ -39,8 +50,8 @@ def plane_tables(summary: Summary) -> list[Block]:
         name = f"{number} {curve['kind']}, period {curve['period']}"
         for one in curve["asked"]:
             met = "" if one["stable"] else "on an unstable orbit"
-            rows.append([name, one["second_shown"], one["shown"], met])
-        turns = "; ".join(curve["turns"]) or "–"
+            rows.append([name, shown(one, 6, SECOND), shown(one), met])
+        turns = "; ".join(_turns(curve)) or "–"
         ends.append([name, str(curve["points"]), turns, curve["ended"]])
     head = ["curve", second, page_words(summary["parameter"]), ""]
     return [
@@ -60,8 +71,8 @@ def plane_lines(s: Summary) -> list[str]:
         for one in curve["asked"]:
             met = "" if one["stable"] else "  (on an unstable orbit)"
             lines.append(
-                f"    {s['second']} = {one['second_shown']:<14} {s['parameter']} = "
-                f"{one['shown']}{met}"
+                f"    {s['second']} = {shown(one, 6, SECOND):<14} "
+                f"{s['parameter']} = {shown(one)}{met}"
             )
-        lines += [f"    turns at {one}" for one in curve["turns"]]
+        lines += [f"    turns at {one}" for one in _turns(curve)]
     return lines

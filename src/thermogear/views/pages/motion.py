@@ -25,6 +25,7 @@ from thermogear.views.pages.event_plane import (
     plane_caption,
     plane_headline,
     plane_tables,
+    shown,
 )
 from thermogear.views.pages.motion_lines import LINES
 from thermogear.views.picture import Picture
@@ -104,7 +105,7 @@ def csv_tables(kind: str, groups: Groups) -> dict[str, str]:
 
 
 def _cell(value: object) -> str:
-    return f"{value:.12g}" if isinstance(value, float) else quoted(str(value))
+    return f"{value:.15g}" if isinstance(value, float) else quoted(str(value))
 
 
 HEADINGS = {
@@ -117,7 +118,8 @@ HEADINGS = {
 CAPTIONS = {
     "shared": "Above: at rest over the load, the exact loaded contact beside both forms built at "
     "the mean load (dotted). Below: settled motion over the speed, at the mean load and at a "
-    "light one.",
+    "light one. The error is the movement of one base circle against the other: the static one "
+    "towards standstill, none far above resonance.",
     "lyapunov": "The band is one standard error of the mean.",
 }
 
@@ -162,9 +164,13 @@ def _headline(kind: str, summary: Summary) -> str:
         told = f"{events} bifurcation{'s' * (events != 1)} on {legs} branch{'es' * (legs != 1)}."
         return f"{told} {plane_headline(summary)}".strip()
     if kind == "shared":
+        mean, light = (
+            _percent(summary.get(f"median_swing_in_motion_{load}_load"))
+            for load in ("mean", "light")
+        )
         return (
-            "Mean stiffness of the load-shared force and of the one spring differ by "
-            f"{100 * summary['stiffness_at_mean_load']:.2f} % at the mean load."
+            "Load-shared force against one spring: over the speed the swing of the transmission "
+            f"error differs by a median of {mean} at the mean load and {light} at a light one."
         )
     return f"{sum(len(c['flips']) for c in summary['cascades'])} period doublings located."
 
@@ -241,7 +247,7 @@ def _lyapunov_tables(summary: Summary) -> list[Block]:
 
 def _branch_tables(summary: Summary) -> list[Block]:
     rows = [
-        [b["kind"], f"period {b['period']}", b["shown"], _complex(b["multipliers"][0]), b["note"]]
+        [b["kind"], f"period {b['period']}", shown(b, 10), _complex(b["multipliers"][0]), b["note"]]
         for b in summary["bifurcations"]
     ]
     legs = [
@@ -285,9 +291,9 @@ def _shared_tables(summary: Summary) -> list[Block]:
         [words, *(_percent(summary.get(f"{name}_{where}_load")) for where in ("mean", "light"))]
         for words, name in (
             ("mean stiffness", "stiffness_at"),
-            ("deflection at rest, peak to peak", "swing_at_rest"),
-            ("motion over speed, peak to peak, median", "median_swing_in_motion"),
-            ("motion over speed, peak to peak, greatest", "swing_in_motion"),
+            ("transmission error at rest, peak to peak", "swing_at_rest"),
+            ("transmission error over speed, peak to peak, median", "median_swing_in_motion"),
+            ("transmission error over speed, peak to peak, greatest", "swing_in_motion"),
         )
     ]
     head = ["difference", "mean load", "light load"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from thermogear.views.pages.event_plane import plane_lines
+from thermogear.views.pages.event_plane import plane_lines, shown
 
 
 def _orbit_lines(s: dict[str, Any]) -> list[str]:
@@ -74,7 +74,7 @@ def _branch_lines(s: dict[str, Any]) -> list[str]:
         note = f"  {event['note']}" if event["note"] else ""
         lines.append(
             f"  {event['kind']:<16} period {event['period']:<3} {s['parameter']} = "
-            f"{event['shown']:<18} multiplier {mu['real']:+.6f}{imag}{note}"
+            f"{shown(event, 10):<18} multiplier {mu['real']:+.6f}{imag}{note}"
         )
     for branch in s["branches"]:
         lines.append(
@@ -109,13 +109,13 @@ def _cascade_lines(s: dict[str, Any]) -> list[str]:
 
 
 def _shared_lines(s: dict[str, Any]) -> list[str]:
-    lines = [s["title"], "  load-shared against one spring, difference"]
+    lines = [s["title"], "  load-shared against one spring, difference (of the transmission error)"]
     for where in ("mean", "light"):
         for words, name in (
             ("mean stiffness", f"stiffness_at_{where}_load"),
-            ("deflection at rest, peak to peak", f"swing_at_rest_{where}_load"),
-            ("motion over speed, median", f"median_swing_in_motion_{where}_load"),
-            ("motion over speed, greatest", f"swing_in_motion_{where}_load"),
+            ("error at rest, peak to peak", f"swing_at_rest_{where}_load"),
+            ("error over speed, median", f"median_swing_in_motion_{where}_load"),
+            ("error over speed, greatest", f"swing_in_motion_{where}_load"),
         ):
             if name in s:
                 lines.append(f"  {where:>5} load: {words:<34} {100 * s[name]:7.2f} %")

@@ -18,7 +18,7 @@ def measured(result: Result) -> list[str]:
     told = [f"{one.level}: {one.text}" for one in result.notices]
     told += given_and_found(found)
     told += [f"evidence: {text}" for text in found["evidence"]]
-    told += [f"{name}: {value}" for name, value in found["settings"].items()]
+    told += [f"{name}: {value}" for name, value in result.table("settings").items()]
     if found.get("shaft_speed") is not None:
         told.append(_shaft(found))
     head = f"{'channel':12} {'line':22} {'order':>9} {'cyc/sample':>11} {'Hz':>10} {'+- Hz':>9}"

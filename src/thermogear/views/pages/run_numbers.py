@@ -49,6 +49,7 @@ FIGURES = (
 )
 FOLLOWED = ("followed_periods", "followed_starts")
 MOTION_FIGURES = (
+    "dte_peak_to_peak",
     "peak_to_peak_displacement",
     "half_order_amplitude",
     "contact_loss_share",

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermogear.base.display import Display, display, number, percent
+from thermogear.base.display import Display, display, in_words, number, percent
 from thermogear.base.vocabulary import STATUS
 from thermogear.results.result import Result
 from thermogear.views.csv_files import table_text
@@ -45,6 +45,7 @@ FIGURES = {
     "natural_frequency": "natural frequency of the mean stiffness",
     "frequency_ratio": "frequency ratio",
     "label": "motion",
+    "dte_peak_to_peak": "swing of the transmission error",
     "peak_to_peak_displacement": "swing of x",
 }
 """Figures of a point in the order of the tables."""
@@ -101,7 +102,9 @@ def _differences(data: xr.Dataset) -> Section:
     fields = json.loads(data.attrs["differences"])
     blocks: list[Block] = []
     if fields:
-        rows = [[field_name(row["field"]), *map(prose, row["values"])] for row in fields]
+        rows = [
+            [field_name(row["field"]), *map(prose, map(in_words, row["values"]))] for row in fields
+        ]
         blocks.append(
             Table("Fields of the case files that differ.", ["field", *titles], rows,
                   names=len(titles) + 1, wordy=True)
@@ -111,7 +114,11 @@ def _differences(data: xr.Dataset) -> Section:
     made = json.loads(data.attrs["choices"])
     if made:
         rows = [
-            [row["bundle"], row["choice"].replace("_", " "), *map(prose, row["values"])]
+            [
+                row["bundle"],
+                row["choice"].replace("_", " "),
+                *map(prose, map(in_words, row["values"])),
+            ]
             for row in made
         ]
         blocks.append(
@@ -274,8 +281,13 @@ def _cases(data: xr.Dataset) -> Section:
 
 def _csv_tables(data: xr.Dataset) -> dict[str, tuple[list[str], list[list[str]]]]:
     titles = [str(title) for title in data["case"].values]
-    fields = [[r["field"], *r["values"]] for r in json.loads(data.attrs["differences"])]
-    made = [[r["bundle"], r["choice"], *r["values"]] for r in json.loads(data.attrs["choices"])]
+    fields = [
+        [r["field"], *map(in_words, r["values"])] for r in json.loads(data.attrs["differences"])
+    ]
+    made = [
+        [r["bundle"], r["choice"], *map(in_words, r["values"])]
+        for r in json.loads(data.attrs["choices"])
+    ]
     names = [name for name in FIGURES if name in data and name != "label"]
     units = [f"{name} [{data[name].attrs['units']}]" for name in names]
     rows = []
@@ -285,7 +297,7 @@ def _csv_tables(data: xr.Dataset) -> dict[str, tuple[list[str], list[list[str]]]
             numbers = [float(one[name]) for name in names]
             rows.append([
                 titles[c], str(one["bundle"].item()), str(one["point"].item()), str(state),
-                str(one["label"].item()), *[f"{v:.9g}" if v == v else "" for v in numbers],
+                str(one["label"].item()), *[f"{v:.15g}" if v == v else "" for v in numbers],
             ])  # fmt: skip
     return {
         "differences": (["field", *titles], fields),
@@ -296,16 +308,11 @@ def _csv_tables(data: xr.Dataset) -> dict[str, tuple[list[str], list[list[str]]]
 
 # --- figures as JSON wants them ---------------------------------------------------------------
 
-TOLD = (
-    "half_backlash", "jam_temperature", "proportional_jam_temperature", "mean_stiffness",
-    "thermal_stiffness_ratio", "natural_frequency", "frequency_ratio", "peak_to_peak_displacement",
-)  # fmt: skip
-
 
 def _numbers(result: Result) -> dict[str, Any]:
     """What a machine wants to read of :func:`versus`: texts, and a row for each point."""
     data, rows = result.data, []
-    figures = [n for n in (*TOLD, "greatest_flash_temperature") if n in data]
+    figures = [name for name in FIGURES if name in data and name != "label"]
     for c, title in enumerate(data["case"].values):
         for b, bundle in enumerate(data["bundle"].values):
             for o, point in enumerate(data["point"].values):

@@ -61,23 +61,35 @@ def summary(data: xr.Dataset) -> str:
     )
 
 
-def _jumps(data: xr.Dataset) -> Table:
+def _apart(data: xr.Dataset) -> list[dict[str, Any]]:
+    """The stretches on which the ways up and down differ."""
     states = plots.states_of(data)
     parts = ["mesh force", *json.loads(data.attrs["bearing_names"])]
-    rows = []
-    for i in range(data.sizes["stretch"]):
-        one = data.isel(stretch=i)
-        rpm = [f"{float(one[f'apart_{name}']) / RPM:.6g}" for name in ("from", "to", "at")]
-        rows.append(
-            [
-                states[int(one["apart_state"])],
-                *rpm,
-                parts[int(one["apart_part"])],
-                number(float(one["apart_up"])),
-                number(float(one["apart_down"])),
-                "two motions" if int(one["apart_held"]) else "the rate of the run",
-            ]
-        )
+    stretches = [data.isel(stretch=i) for i in range(data.sizes["stretch"])]
+    return [
+        {
+            "state": states[int(one["apart_state"])],
+            **{f"{end}_rpm": float(one[f"apart_{end}"]) / RPM for end in ("from", "to", "at")},
+            "of": parts[int(one["apart_part"])],
+            "up_rms_N": float(one["apart_up"]),
+            "down_rms_N": float(one["apart_down"]),
+            "because_of": "two motions" if int(one["apart_held"]) else "the rate of the run",
+        }
+        for one in stretches
+    ]
+
+
+def _shown(stretch: dict[str, Any]) -> list[str]:
+    """One of them as the cells of a table."""
+    digits = {"rpm": "{:.6g}".format, "N": number}
+    return [
+        value if isinstance(value, str) else digits[name.rpartition("_")[2]](value)
+        for name, value in stretch.items()
+    ]
+
+
+def _jumps(data: xr.Dataset) -> Table:
+    rows = [_shown(one) for one in _apart(data)]
     head = [
         "state", "from [rpm]", "to [rpm]", "most at [rpm]", "of", "up, rms [N]", "down, rms [N]",
         "because of",
@@ -113,32 +125,25 @@ def numbers(result: Result) -> dict[str, Any]:
         for d, way in enumerate(("up", "down")):
             one = data.isel(state=s, direction=d)
             found[state][way] = {
-                "mesh_force_rms_N": _plain(one["mesh_force_rms"].values),
-                "mesh_force_max_N": _plain(one["mesh_force_max"].values),
-                "contact_loss_share": _plain(one["contact_loss_share"].values),
-                "bearing_force_max_N": _plain(np.nanmax(one["bearing_force_max"].values, axis=1)),
-                "housing_rms_m_per_s2": _plain(one["housing_rms"].values),
+                "mesh_force_rms_N": one["mesh_force_rms"].values.tolist(),
+                "mesh_force_max_N": one["mesh_force_max"].values.tolist(),
+                "contact_loss_share": one["contact_loss_share"].values.tolist(),
+                "bearing_force_max_N": np.nanmax(one["bearing_force_max"].values, axis=1).tolist(),
+                "housing_rms_m_per_s2": one["housing_rms"].values.tolist(),
             }
-    names = ("state", "from_rpm", "to_rpm", "at_rpm", "of", "up_rms_N", "down_rms_N", "because_of")
-    found["apart"] = [dict(zip(names, row, strict=True)) for row in _jumps(data).rows]
-    return found
+    return found | {"apart": _apart(data)}
 
 
 def _span(low: str, high: str) -> str:
     return low if low == high else f"{low} to {high}"
 
 
-def _plain(values: Any) -> list[float | None]:
-    return [float(v) if np.isfinite(v) else None for v in np.ravel(values)]
-
-
 def lines(result: Result) -> list[str]:
     """What the terminal tells."""
     data = result.data
-    found = [summary(data)]
-    for row in _jumps(data).rows:
-        found.append(
-            f"  {row[0]}, {_span(row[1], row[2])} rpm: {row[4]} {row[5]} N rms up, {row[6]} N "
-            f"down, because of {row[7]}"
-        )
-    return found
+    told = [
+        f"  {row[0]}, {_span(row[1], row[2])} rpm: {row[4]} {row[5]} N rms up, {row[6]} N "
+        f"down, because of {row[7]}"
+        for row in map(_shown, _apart(data))
+    ]
+    return [summary(data), *told]

@@ -21,7 +21,7 @@ FORMS: dict[str, tuple[str, str, tuple[float, ...]]] = {
 
 
 def shared_picture(rest: xr.Dataset, motion: xr.Dataset) -> Picture:
-    """Stiffness and deflection over load; swing of the motion over speed at two loads."""
+    """Stiffness and error over load; swing of the error in motion over speed at two loads."""
     load = rest["load"].values
     mean = float(load[np.argmin(np.abs(rest["factor"].values - 1.0))])
     stiffness = Panel(
@@ -30,7 +30,7 @@ def shared_picture(rest: xr.Dataset, motion: xr.Dataset) -> Picture:
     )  # fmt: skip
     swing = Panel(
         Axis("normal force [N]", log="full"), Axis("peak to peak [µm]", log="full"),
-        "At rest: deflection",
+        "At rest: transmission error",
     )  # fmt: skip
     for panel, name, scale in ((stiffness, "stiffness", 1e-8), (swing, "swing", 1e6)):
         for form, (words, colour, dash) in FORMS.items():
@@ -41,7 +41,7 @@ def shared_picture(rest: xr.Dataset, motion: xr.Dataset) -> Picture:
     below = []
     for place, part in enumerate(motion["part"].values):
         panel = Panel(
-            Axis("pinion speed [rpm]"), Axis("displacement, peak to peak [µm]"),
+            Axis("pinion speed [rpm]"), Axis("transmission error, peak to peak [µm]"),
             f"In motion at {float(part):g} of the mean load",
         )  # fmt: skip
         for form in ("shared", "one_spring"):
