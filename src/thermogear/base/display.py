@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass
+from string import Formatter
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -115,6 +118,39 @@ def exactly(value: float, digits: int = 6) -> str:
     """A given value without zeros it was not given with."""
     text = number(value, digits)
     return text.rstrip("0").rstrip(".") if "." in text and "·" not in text else text
+
+
+def rounded(value: float, digits: int) -> str:
+    """A number to ``digits`` significant figures, the rest zeros, without a power of ten."""
+    return f"{float(f'{value:.{digits - 1}e}'):.10g}"
+
+
+class _Words(Formatter):
+    """Fields as ``{name:.1f µm}``: a format, or ~3 for so many figures, and perhaps a unit."""
+
+    def format_field(self, value: Any, format_spec: str) -> str:
+        form, _, unit = format_spec.partition(" ")
+        text = rounded(value, int(form[1:])) if form.startswith("~") else format(value, form)
+        return f"{text} {unit}".rstrip()
+
+
+def worded(words: str, figures: Mapping[str, Any]) -> tuple[str, dict[str, str]]:
+    """``words`` with their ``figures`` in place of ``{name:.1f µm}``, and the unit of each name.
+
+    A figure is a number in the unit of its place, or a list of them: ``{name[0]:.1f}``; after a
+    tilde comes the number of significant figures. Without figures the words stay as they are.
+
+    >>> worded("Of {gap[0]:.0f} or {gap[1]:.1f µm}.", {"gap": [129.7, 112.34]})
+    ('Of 130 or 112.3 µm.', {'gap': 'µm'})
+    """
+    if not figures:
+        return words, {}
+    units: dict[str, str] = {}
+    for _, field, form, _ in Formatter().parse(words):
+        if field is not None:
+            name, unit = re.split(r"[.\[]", field)[0], (form or "").partition(" ")[2]
+            units[name] = unit or units.get(name, "")
+    return _Words().vformat(words, (), figures), units
 
 
 def span(values: ArrayLike, digits: int = 3) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 
 from thermogear.analysis.outcome import settle_with_status
 from thermogear.analysis.side_by_side import RULE
+from thermogear.base.display import worded
 from thermogear.base.limits import LIMITS, NO_LIMIT
 from thermogear.base.progress import Progress
 from thermogear.base.units import RPM
@@ -169,26 +171,36 @@ def answer(
     most: float | None = None,
     verdict: str = "",
     at: str = "",
+    figures: Mapping[str, Any] = MappingProxyType({}),
 ) -> Answer:
     """An answer held against its limit in the table.
 
-    ``most`` is the bound where it hangs on the case, ``verdict`` overrules where it must.
+    ``most`` is the bound where it hangs on the case, ``verdict`` overrules where it must. The
+    ``figures`` stand in the ``sentence`` as :func:`~thermogear.base.display.worded` puts them, and
+    are kept beside it: numbers in the unit of their place there, else in that of the limit.
     """
     bound = LIMITS.get(limit or name, NO_LIMIT)
     if most is not None:
         bound = replace(bound, most=most)
+    words, units = worded(sentence, figures)
     return Answer(
         name=name,
         question=question,
-        sentence=sentence,
+        sentence=words,
         value=float(value) if np.isfinite(value) else None,
         unit=bound.unit,
         limit=bound.words,
         source=bound.source,
         verdict=verdict or bound.verdict(value),
         operating=at,
+        figures={
+            key: {"value": number, "unit": units.get(key, bound.unit)}
+            for key, number in figures.items()
+            if not isinstance(number, str)
+        },
     )
 
 
-def undecided(question: str, name: str, why: str, *, limit: str = "", at: str = "") -> Answer:
-    return answer(question, name, f"Not decided: {why}.", float("nan"), limit=limit, at=at)
+def undecided(question: str, name: str, why: str, **about: Any) -> Answer:
+    """An answer without a value, for the reason ``why``; ``about`` as in :func:`answer`."""
+    return answer(question, name, f"Not decided: {why}.", float("nan"), **about)
