@@ -5,6 +5,7 @@ import pytest
 import xarray as xr
 
 from said import numbers
+from thermogear.base.display import worded
 from thermogear.base.units import RPM
 from thermogear.study.speeds import Speeds, rpm, told
 
@@ -53,5 +54,5 @@ def test_speeds_in_words():
     ]  # fmt: skip
     many = [(100.0 * RPM, 200.0 * RPM), (300.0 * RPM, 300.0 * RPM)]
     ends = (50.0 * RPM, 900.0 * RPM)
-    assert numbers(told(many, ends=ends)) == [100.0, 200.0, 300.0]
-    assert numbers(told(many * 3, ends=ends))[-1] == 3.0  # as many more
+    assert numbers(worded(*told(many, ends=ends))[0]) == [100.0, 200.0, 300.0]
+    assert numbers(worded(*told(many * 3, ends=ends))[0])[-1] == 3.0  # as many more

@@ -137,19 +137,15 @@ class _Words(Formatter):
 def worded(words: str, figures: Mapping[str, Any]) -> tuple[str, dict[str, str]]:
     """``words`` with their ``figures`` in place of ``{name:.1f µm}``, and the unit of each name.
 
-    A figure is a number in the unit of its place, or a list of them: ``{name[0]:.1f}``; after a
-    tilde comes the number of significant figures. Without figures the words stay as they are.
+    A figure is a number in the unit of its last place, or a list of them: ``{name[0]:.1f}``; after
+    a tilde comes the number of significant figures. Without figures the words stay as they are.
 
     >>> worded("Of {gap[0]:.0f} or {gap[1]:.1f µm}.", {"gap": [129.7, 112.34]})
     ('Of 130 or 112.3 µm.', {'gap': 'µm'})
     """
     if not figures:
         return words, {}
-    units: dict[str, str] = {}
-    for _, field, form, _ in Formatter().parse(words):
-        if field is not None:
-            name, unit = re.split(r"[.\[]", field)[0], (form or "").partition(" ")[2]
-            units[name] = unit or units.get(name, "")
+    units = dict(re.findall(r"{(\w+)[^:}]*(?::\S*?(?: ([^}]*))?)?}", words))
     return _Words().vformat(words, (), figures), units
 
 

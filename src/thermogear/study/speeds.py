@@ -28,13 +28,12 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
-LOWEST, HIGHEST, STEP = 0.15, 1.8, 0.025
-"""Mesh over natural frequency, and the step of it."""
-QUIET = 10
-"""Steps at an end of the range over which nothing may happen, for the look to end there."""
+LOWEST, HIGHEST, STEP = 0.05, 1.8, 0.025
+"""Mesh over natural frequency, and the step of it. At the lowest the twentieth harmonic of the
+mesh meets the natural frequency: what those above it do, dies out within a mesh period."""
 RECORD = Recording(periods=8, samples=64)
-DEEPEST, FARTHEST = 0.05, 10.0
-"""How far the case's own speeds, or what happens at an end, may widen that range."""
+FARTHEST = 10.0
+"""How far the case's own speeds may widen that range."""
 PEAK = 1.05
 """A peak stands out by this factor from the least between it and the next."""
 LOST = 1e-3
@@ -130,63 +129,23 @@ def _valley(top: Floats, place: int, way: int) -> float:
 def look(mesh: Excitations, *, teeth: int, own: Floats) -> Speeds:
     """Motions of a ``mesh`` of one point over the speed of its pinion of so many ``teeth``.
 
-    Each of about a hundred speeds is started at rest in static contact, with a far throw, and on
-    the back side. Where flanks part, hit back or have a choice near an end of the range, the look
-    goes on beyond it, with the motions of that end, until nothing of it happens over :data:`QUIET`
-    steps, or to :data:`DEEPEST` and :data:`FARTHEST`. ``own``: the case's own speeds [rad/s], kept
-    beside.
+    Each of about 150 speeds is started at rest in static contact, with a far throw, and on
+    the back side. ``own``: the case's own speeds [rad/s], kept beside.
     """
     natural = float(mesh.natural_frequency[0])
-    ends = 0.9 * teeth * own.min() / natural, 1.1 * teeth * own.max() / natural
-    low, high = max(min(LOWEST, ends[0]), DEEPEST), max(HIGHEST, min(ends[1], FARTHEST))
-    count = int(np.ceil(np.log(high / low) / np.log1p(STEP)))
-    ratio = np.geomspace(low, high, count + 1)
-    step = float(ratio[1] / ratio[0])
-    parts = [_motions(mesh, ratio, teeth)]
-    for end, farthest in ((ratio[0], DEEPEST), (ratio[-1], FARTHEST)):
-        # both ways are steps of the logarithm towards the farthest ratio
-        way = step if farthest > end else 1.0 / step
-        left = int(np.log(farthest / end) / np.log(way) + 1e-9)
-        while left > 0 and (held := _restless(parts, end, step**QUIET)).size:
-            more = end * way ** np.arange(1.0, min(left, QUIET) + 1.0)
-            parts.append(_motions(mesh, more, teeth, held))
-            left, end = left - more.size, more[-1]
-    columns = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
-    order = np.argsort(columns["pinion_speed"], kind="stable")
-    del columns["x"], columns["y"]
-    return Speeds({name: v[order] for name, v in columns.items()}, step - 1.0, np.unique(own))
-
-
-def _motions(
-    mesh: Excitations, ratio: Floats, teeth: int, held: ArrayLike = ()
-) -> dict[str, NDArray[Any]]:
-    """The columns of every motion at ``ratio``, from three starts and states ``held`` (n, 2)."""
+    high = max(HIGHEST, min(1.1 * teeth * own.max() / natural, FARTHEST))
+    count = int(np.ceil(np.log(high / LOWEST) / np.log1p(STEP)))
+    ratio = np.geomspace(LOWEST, high, count + 1)
     along = mesh.take(np.zeros(ratio.size, int))
-    lanes = points_of(replace(along, mesh_frequency=float(mesh.natural_frequency[0]) * ratio))
+    lanes = points_of(replace(along, mesh_frequency=natural * ratio))
     gap, force = float(lanes.flat.half_backlash[0]), float(lanes.flat.force[0, 0].real)
-    starts = [[gap + force, 0.0], [gap + 3.0 * force, 0.0], [-gap, 0.0], *np.asarray(held)]
+    starts = [[gap + force, 0.0], [gap + 3.0 * force, 0.0], [-gap, 0.0]]
     motions = motions_along(lanes.flat, starts)
     found = respond(lanes.take(motions.lane), motions.state, RECORD, lines=False)
-    x, y = motions.state.T
-    speed = lanes.mesh_frequency[motions.lane] / teeth
     columns = {name: found[name] for name in VALUES}
-    return columns | {"period": motions.period, "label_code": motions.label,
-                      "pinion_speed": speed, "x": x, "y": y}  # fmt: skip
-
-
-def _restless(parts: list[dict[str, NDArray[Any]]], end: float, reach: float) -> Floats:
-    """States of the motions at the ratio ``end``; none where within a factor ``reach`` of it
-    contact is kept, no back side is hit and each speed has one motion."""
-    ratio, lost, least, x, y = (
-        np.concatenate([part[name] for part in parts])
-        for name in ("frequency_ratio", "contact_loss_share", "mesh_force_min", "x", "y")
-    )
-    near = np.abs(np.log(ratio / end)) < np.log(reach)
-    several = np.unique(ratio[near]).size < near.sum()
-    if not (several or np.any(lost[near] > LOST) or np.any(least[near] < 0.0)):
-        return np.empty((0, 2))
-    here = np.isclose(ratio, end, rtol=1e-9)
-    return np.stack([x[here], y[here]], axis=1)
+    columns |= {"period": motions.period, "label_code": motions.label}
+    columns["pinion_speed"] = lanes.mesh_frequency[motions.lane] / teeth
+    return Speeds(columns, float(ratio[1] / ratio[0] - 1.0), np.unique(own))
 
 
 def rpm(speed: float) -> str:
@@ -205,12 +164,12 @@ def told(
 
     def one(place: int, low: float, high: float) -> str:
         if low <= ends[0] and high >= ends[1]:
-            return "at every speed looked at, {looked[0]:~3} to {looked[1]:~3 rpm}"
+            return "at every speed looked at, {looked[0]:~3 rpm} to {looked[1]:~3 rpm}"
         lower, upper = f"{{ranges[{place}][0]:~3}}", f"{{ranges[{place}][1]:~3 rpm}}"
         if high >= ends[1]:
             return f"from {lower} rpm to the highest speed looked at, {{looked[1]:~3 rpm}}"
         if low <= ends[0]:
-            return f"from the lowest speed looked at, {{looked[0]:~3}}, to {upper}"
+            return f"from the lowest speed looked at, {{looked[0]:~3 rpm}}, to {upper}"
         return f"from {lower} to {upper}" if high > low else f"near {upper}"
 
     words = [one(place, *ends_of) for place, ends_of in enumerate(ranges[:most])]

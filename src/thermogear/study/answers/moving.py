@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,7 +30,7 @@ Floats = NDArray[np.float64]
 SPEEDS = "At which speeds does it resonate?"
 LOADS, ERROR = "How large is the dynamic factor?", "How large is the transmission error?"
 
-LOOKED = "at every speed looked at, {looked[0]:~3} to {looked[1]:~3 rpm}"
+LOOKED = "at every speed looked at, {looked[0]:~3 rpm} to {looked[1]:~3 rpm}"
 DRAWINGS = 16
 """Drawings of flanks of one class whose errors are told."""
 POSITIONS = 60
@@ -95,6 +95,7 @@ def _resonance(asked: Asked, found: Speeds, main: float) -> Answer:
     case itself where the motion there has one: it is off by nothing.
     """
     own, factor = asked.case.stated.speed, asked.motion["dynamic_factor"]
+    factor = np.where(np.isfinite(factor), factor, 0.0)  # without load there is none
     peaks = found.peaks()
     strong = [main, *(speed for speed, top in peaks if top > PARTING)]
     off = 100.0 * np.abs(own[:, None] / np.array(strong) - 1.0)
@@ -109,11 +110,11 @@ def _resonance(asked: Asked, found: Speeds, main: float) -> Answer:
         "off": value,
         "strong": strong[nearest] / RPM,
     }
-    tops = ", ".join(f"{{top[{i}]:.2f}} at {{there[{i}]:~3}}" for i in range(len(peaks[:4])))
-    words = f"greatest dynamic factors: {tops} rpm" if tops else "no peak stands out"
+    tops = [f"{{top[{i}]:.2f}} at {{there[{i}]:~3 rpm}}" for i in range(len(peaks[:4]))]
+    words = f"greatest dynamic factors: {', '.join(tops)}" if tops else "no peak stands out"
     where = "{own:~3 rpm} is {off:.1f %} off {strong:~3 rpm}"
     if value == 0.0:
-        place = np.nanargmax(factor)
+        place = np.argmax(factor)
         figures |= {"own": float(own[place]) / RPM, "factor": float(factor[place])}
         where = "at its own {own:~3 rpm} it is {factor:.2f}"
     return answer(
@@ -145,6 +146,7 @@ def loads(asked: Asked) -> Iterator[Answer]:
         about = {"limit": limit, "most": min(rated, PARTING), "at": at}
         if not np.isfinite(own):
             still = "it turns too slowly to vibrate" if asked.moves(point) else "it does not move"
+            still = still if asked.case.stated.torque[point] > 0.0 else "there is no load"
             why = f"{still}; ISO 6336-1 {words}"
             yield undecided(LOADS, "dynamic_factor", why, figures=figures, **about)
             continue
@@ -157,18 +159,14 @@ def loads(asked: Asked) -> Iterator[Answer]:
 def _rated_factor(asked: Asked, point: int) -> tuple[str, dict[str, Any]]:
     """What method B says of a point, in words with their figures; why not where it does not."""
     torque, speed = (float(asked.hot[f"pinion_{n}"][point]) for n in ("torque", "speed"))
-    flanks = _class(asked.case)
+    grade, edition, whose = _class(asked.case)
     try:
-        rated = dynamic_factor(
-            asked.case.pair, torque, speed, grade=flanks.grade, edition=flanks.edition
-        )
+        rated = dynamic_factor(asked.case.pair, torque, speed, grade=grade, edition=edition)
     except InputError as error:
         return "does not cover it: {why}", {"why": str(error)}
-    figures = {"factor": float(rated.factor), "ratio": float(rated.ratio), "grade": flanks.grade}
-    words = (
-        f"method B {{factor:.2f}} (class {{grade}}{flanks.whose}, resonance ratio {{ratio:.2f}})"
-    )
-    return words, figures
+    figures = {"factor": float(rated.factor), "ratio": float(rated.ratio), "grade": grade}
+    known = f"class {{grade}}{whose}, resonance ratio {{ratio:.2f}}"
+    return f"method B {{factor:.2f}} ({known})", figures
 
 
 def errors(asked: Asked) -> Iterator[Answer]:
@@ -189,43 +187,23 @@ def errors(asked: Asked) -> Iterator[Answer]:
             "Static and loaded it is {cold:.2f µm} peak to peak undeformed, {hot:.2f µm} hot; "
             f"{words}"
         )
-        about = {"most": most, "at": at}
         if point == asked.hardest and (drawn := _drawings(asked)).size:
-            sentence += "; {drawings} drawings of the class have {least:.2f} to {greatest:.2f µm}"
+            sentence += "; {drawings} drawings of the class have {least:~2 µm} to {greatest:~2 µm}"
             figures |= {"drawings": drawn.size, "least": drawn.min(), "greatest": drawn.max()}
-        if "why" in figures:
-            yield undecided(ERROR, "transmission_error", sentence, figures=figures, **about)
-        else:
-            yield answer(
-                ERROR,
-                "transmission_error",
-                f"{sentence}.",
-                figures["hot"],
-                figures=figures,
-                **about,
-            )
+        value = figures["hot"] if np.isfinite(most) else float("nan")
+        yield answer(
+            ERROR, "transmission_error", f"{sentence}.", value, most=most, at=at, figures=figures
+        )
     yield _relief(asked)
 
 
-class _Flanks(NamedTuple):
-    """The class of ISO 1328-1 that the flanks are of, by an edition, and how it is known."""
-
-    grade: int
-    edition: str
-    whose: str
-
-
-def _class(case: GearCase) -> _Flanks:
-    """The worse gear's class; 6 where none is known."""
+def _class(case: GearCase) -> tuple[int, str, str]:
+    """The class of ISO 1328-1 that the flanks are of, the worse gear's and 6 where none is known;
+    the edition that counts so, and how it is known."""
+    drawn = case.file.flanks if case.accuracy is not None else None
     known = [grade for grade in (case.accuracy, case.measured_class) if grade is not None]
-    if not known:
-        return _Flanks(6, EDITIONS[0], ", assumed")
-    drawn = case.accuracy is not None and case.file.flanks
-    return _Flanks(
-        max(known),
-        drawn.edition if drawn else EDITIONS[0],
-        "" if drawn else ", profiles as measured",
-    )
+    whose = "" if drawn else ", profiles as measured" if known else ", assumed"
+    return max(known, default=6), drawn.edition if drawn else EDITIONS[0], whose
 
 
 def _allowed_error(case: GearCase, torque: float) -> tuple[str, dict[str, Any]]:
@@ -234,22 +212,22 @@ def _allowed_error(case: GearCase, torque: float) -> tuple[str, dict[str, Any]]:
     f_Halpha + f_falpha of both gears: flanks within the tolerances of their class lead by no more
     without load. And :data:`~thermogear.base.limits.LOAD_SHARE` of w/c', w at the pitch circle.
     """
-    pair, flanks = case.pair, _class(case)
+    pair, (grade, edition, whose) = case.pair, _class(case)
     load = torque / (pair.pinion.pitch_radius * pair.face_width)
     single = float(iso6336_stiffness(pair, load).single)
     try:
         tolerances = [
-            flank_tolerances(one.teeth, one.module, grade=flanks.grade, edition=flanks.edition)
+            flank_tolerances(one.teeth, one.module, grade=grade, edition=edition)
             for one in (pair.pinion, pair.wheel)
         ]
     except InputError as error:
         return "ISO 1328-1 has no tolerance for it: {why}", {"why": str(error)}
     figures = {
-        "grade": flanks.grade,
+        "grade": grade,
         "made": 1e6 * sum(one.profile_slope + one.profile_form for one in tolerances),
         "load": 1e6 * LOAD_SHARE * load / single if single > 0.0 else 0.0,
     }
-    return f"class {{grade}}{flanks.whose} allows {{made:.1f}}, the load {{load:.1f µm}}", figures
+    return f"class {{grade}}{whose} allows {{made:.1f µm}}, the load {{load:.1f µm}}", figures
 
 
 def _drawings(asked: Asked) -> Floats:
@@ -266,11 +244,10 @@ def _drawings(asked: Asked) -> Floats:
     kept = [one for one in case.deviations if not isinstance(one, WavyProfile)]
     drawn = {one.gear for one in case.deviations if isinstance(one, WavyProfile)}
     found = [1e6 * float(np.ptp(asked.hot["transmission_error"][asked.hardest]))]
-    seeds = [seed for seed in range(1, DRAWINGS + 1) if seed != table.seed][: DRAWINGS - 1]
-    for seed in seeds:
+    for seed in [seed for seed in range(1, DRAWINGS + 1) if seed != table.seed][: DRAWINGS - 1]:
         flanks = graded_flanks(case.pair, case.accuracy, seed=seed, edition=table.edition)
-        own = [one for one in flanks if one.gear in drawn]
-        found.append(_swing(asked, HOT, (*kept, *own), min(case.mesh_positions, POSITIONS)))
+        taken = (*kept, *(one for one in flanks if one.gear in drawn))
+        found.append(_swing(asked, HOT, taken, min(case.mesh_positions, POSITIONS)))
     return np.array(found)
 
 
@@ -310,8 +287,9 @@ def _relief(asked: Asked) -> Answer:
         "left": float(hot[other]),
     }
     sentence = (
-        "A linear tip relief of {relief:.1f µm} on both gears makes it {before:.2f} → {after:.2f "
-        "µm} hot; the best one undeformed, {undeformed:.1f µm}, leaves {left:.2f µm} hot."
+        "A linear tip relief of {relief:.1f µm} on both gears makes it {before:.2f µm} → "
+        "{after:.2f µm} hot; the best one undeformed, {undeformed:.1f µm}, leaves "
+        "{left:.2f µm} hot."
         if gain >= 1.0
         else "No tip relief of both gears makes it smaller, hot: the flanks themselves decide."
     )

@@ -89,9 +89,9 @@ def notices(case: GearCase, found: Sequence[Answer]) -> Iterator[Notice]:
         yield Notice(
             "warning",
             f"Flanks are one drawing from accuracy class {case.accuracy}. {told}, and another "
-            "may part where these flanks do not: try [flanks] seed = 2, 3, 4, or give measured flanks. "
-            "They repeat in every mesh period; pitch errors over a whole turn, which bring lines "
-            "of the shaft, are not modelled.",
+            "may part where these flanks do not: try [flanks] seed = 2, 3, 4, or give measured "
+            "flanks. They repeat in every mesh period; pitch errors over a whole turn, which "
+            "bring lines of the shaft, are not modelled.",
         )
     yield Notice(
         "info",
