@@ -159,6 +159,24 @@ def span(values: ArrayLike, digits: int = 3) -> str:
     return low if low == high else f"{low} to {high}"
 
 
+def stretches(values: ArrayLike, flags: NDArray[np.bool_], most: int = 3) -> str:
+    """Where ``flags`` hold along an axis of rising ``values``, in words: "3 to 5.5, 7".
+
+    An end of the axis says that it is one: what lies beyond was not computed. Of more than ``most``
+    stretches their number of values and whole reach.
+
+    >>> stretches([1.0, 2.0, 3.0, 4.0], np.array([True, True, False, True]))
+    '1 (first computed) to 2, 4 (last computed)'
+    """
+    at = np.asarray(values, dtype=float)
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], flags.astype(int), [0]]))).reshape(-1, 2)
+    if len(edges) > most:
+        return f"{int(flags.sum())} values, {span(at[flags], 6)}"
+    marks = {0: " (first computed)", at.size - 1: " (last computed)"}
+    words = [exactly(float(value)) + marks.get(place, "") for place, value in enumerate(at)]
+    return ", ".join(words[a] if b - a == 1 else f"{words[a]} to {words[b - 1]}" for a, b in edges)
+
+
 def reach(values: ArrayLike, form: str = ".4g", between: str = " .. ") -> str:
     """The least and the greatest of ``values`` in the format ``form``; "-" without any."""
     found = np.asarray(values, dtype=float)
