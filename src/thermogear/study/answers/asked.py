@@ -177,7 +177,7 @@ def answer(
 
     ``most`` is the bound where it hangs on the case, ``verdict`` overrules where it must. The
     ``figures`` stand in the ``sentence`` as :func:`~thermogear.base.display.worded` puts them, and
-    are kept beside it: numbers in the unit of their place there, else in that of the limit.
+    are kept beside it.
     """
     bound = LIMITS.get(limit or name, NO_LIMIT)
     if most is not None:
@@ -193,11 +193,8 @@ def answer(
         source=bound.source,
         verdict=verdict or bound.verdict(value),
         operating=at,
-        figures={
-            key: {"value": number, "unit": units.get(key, bound.unit)}
-            for key, number in figures.items()
-            if not isinstance(number, str)
-        },
+        figures={name: number for name, number in figures.items() if not isinstance(number, str)},
+        units=units,
     )
 
 

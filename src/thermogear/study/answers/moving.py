@@ -187,9 +187,9 @@ def errors(asked: Asked) -> Iterator[Answer]:
             "Static and loaded it is {cold:.2f µm} peak to peak undeformed, {hot:.2f µm} hot; "
             f"{words}"
         )
-        if point == asked.hardest and (drawn := _drawings(asked)).size:
+        if point == asked.hardest and (drawn := _drawings(asked)):
             sentence += "; {drawings} drawings of the class have {least:~2 µm} to {greatest:~2 µm}"
-            figures |= {"drawings": drawn.size, "least": drawn.min(), "greatest": drawn.max()}
+            figures |= {"drawings": len(drawn), "least": min(drawn), "greatest": max(drawn)}
         value = figures["hot"] if np.isfinite(most) else float("nan")
         yield answer(
             ERROR, "transmission_error", f"{sentence}.", value, most=most, at=at, figures=figures
@@ -230,7 +230,7 @@ def _allowed_error(case: GearCase, torque: float) -> tuple[str, dict[str, Any]]:
     return f"class {{grade}}{whose} allows {{made:.1f µm}}, the load {{load:.1f µm}}", figures
 
 
-def _drawings(asked: Asked) -> Floats:
+def _drawings(asked: Asked) -> list[float]:
     """Static error [um] peak to peak at the hardest point, hot, of drawn flanks and of others.
 
     The flanks of the case first, then other seeds of the same class, as many in all as
@@ -240,7 +240,7 @@ def _drawings(asked: Asked) -> Floats:
     case = asked.case
     table = case.file.flanks
     if case.accuracy is None or table is None or asked.model.stiffness != "loaded":
-        return np.empty(0)
+        return []
     kept = [one for one in case.deviations if not isinstance(one, WavyProfile)]
     drawn = {one.gear for one in case.deviations if isinstance(one, WavyProfile)}
     found = [1e6 * float(np.ptp(asked.hot["transmission_error"][asked.hardest]))]
@@ -248,7 +248,7 @@ def _drawings(asked: Asked) -> Floats:
         flanks = graded_flanks(case.pair, case.accuracy, seed=seed, edition=table.edition)
         taken = (*kept, *(one for one in flanks if one.gear in drawn))
         found.append(_swing(asked, HOT, taken, min(case.mesh_positions, POSITIONS)))
-    return np.array(found)
+    return found
 
 
 def _relief(asked: Asked) -> Answer:

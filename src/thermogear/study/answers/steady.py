@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -149,10 +150,11 @@ def gap(asked: Asked) -> Iterator[Answer]:
         yield answer(
             GAP,
             "jam_margin",
-            f"It jams with teeth at {jam:.0f} °C and the housing as it is, {abs(jam - hot):.0f} K "
+            "It jams with teeth at {jam:.0f °C} and the housing as it is, {off:.0f K} "
             f"{'above' if jam > hot else 'below'} what they have.",
             jam - hot,
             at=at,
+            figures={"jam": jam, "off": abs(jam - hot)},
         )
     yield _worst_moment(asked)
 
@@ -187,7 +189,7 @@ def _worst_moment(asked: Asked) -> Answer:
 def film(asked: Asked) -> Iterator[Answer]:
     case, oil = asked.case, asked.bodies[0]
     stage, assumed = load_stage(case)
-    whose = f"stage {stage:g}" + ", assumed" * assumed
+    whose = ", assumed" * assumed
     for point in asked.points:
         at = asked.at(point)
         film = asked.hot["film_parameter"][point]
@@ -226,34 +228,47 @@ def unrated(case: GearCase, torque: float, oil: float) -> str:
     return "" if np.isfinite(oil) else UNSETTLED
 
 
-def _rated(name: str, make: Callable[[], tuple[str, float]], at: str) -> Answer:
+def _rated(name: str, make: Callable[[], tuple[str, float, dict[str, Any]]], at: str) -> Answer:
     try:
-        sentence, value = make()
+        sentence, value, figures = make()
     except InputError as error:
         return undecided(FILM, name, str(error), at=at)
-    return answer(FILM, name, sentence, value, at=at)
+    return answer(FILM, name, sentence, value, at=at, figures=figures)
 
 
 def _flash_words(
     case: GearCase, torque: float, speed: float, state: Scuffing, whose: str
-) -> tuple[str, float]:
+) -> tuple[str, float, dict[str, Any]]:
     found = flash_rating(case.pair, torque, speed, state)
-    contact, limit = float(found.contact) - ZERO_CELSIUS, found.limit - ZERO_CELSIUS
+    figures = {
+        "contact": float(found.contact) - ZERO_CELSIUS,
+        "limit": found.limit - ZERO_CELSIUS,
+        "stage": state.load_stage,
+        "margin": float(found.margin),
+        "safety": float(found.safety),
+    }
     return (
-        f"By flash temperature, with the standard's friction and bulk, the contact reaches "
-        f"{contact:.0f} °C of {limit:.0f} °C ({whose}): margin {float(found.margin):.0f} K, safety "
-        f"{float(found.safety):.2f}.",
-        float(found.margin),
+        "By flash temperature, with the standard's friction and bulk, the contact reaches "
+        f"{{contact:.0f °C}} of {{limit:.0f °C}} (stage {{stage:g}}{whose}): margin {{margin:.0f "
+        "K}, safety {safety:.2f}.",
+        figures["margin"],
+        figures,
     )
 
 
 def _integral_words(
     case: GearCase, torque: float, speed: float, state: Scuffing, whose: str
-) -> tuple[str, float]:
+) -> tuple[str, float, dict[str, Any]]:
     found = integral_rating(case.pair, torque, speed, state)
-    total, limit = float(found.integral) - ZERO_CELSIUS, found.limit - ZERO_CELSIUS
+    figures = {
+        "integral": float(found.integral) - ZERO_CELSIUS,
+        "limit": found.limit - ZERO_CELSIUS,
+        "stage": state.load_stage,
+        "safety": float(found.safety),
+    }
     return (
-        f"By integral temperature it is {total:.0f} °C of {limit:.0f} °C ({whose}): safety "
-        f"{float(found.safety):.2f}.",
-        float(found.safety),
+        "By integral temperature it is {integral:.0f °C} of {limit:.0f °C} (stage {stage:g}"
+        f"{whose}): safety {{safety:.2f}}.",
+        figures["safety"],
+        figures,
     )

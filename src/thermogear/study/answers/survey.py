@@ -83,9 +83,9 @@ def notices(case: GearCase, found: Sequence[Answer]) -> Iterator[Notice]:
         )
     if case.accuracy is not None:
         drawn: Mapping[str, Any] = next((a.figures for a in found if "drawings" in a.figures), {})
-        words = "{drawings[value]} drawings have a static error of {least[value]:.2g} to "
-        words += "{greatest[value]:.2g µm} hot, this one {hot[value]:.2g µm}"
-        told, _ = worded(words if drawn else "Another may have another error", drawn)
+        words = "{drawings} drawings have a static error of {least:~2} to "
+        words += "{greatest:~2 µm} hot, this one {hot:~2 µm}"
+        told = worded(words if drawn else "Another may have another error", drawn)[0]
         yield Notice(
             "warning",
             f"Flanks are one drawing from accuracy class {case.accuracy}. {told}, and another "
