@@ -61,7 +61,7 @@ def shown_as(text: str, value: float) -> bool:
     number = float(text.replace("−", "-"))
     digits, _, power = text.lower().partition("e")
     places = len(digits.partition(".")[2])
-    trailing = len(digits) - len(digits.rstrip("0")) if places == 0 else 0
+    trailing = len(digits) - len(digits.rstrip("0")) if number and not places else 0
     # zeros at the end of a whole number may stand in for what was rounded away
     step = 10.0 ** (trailing - places + (int(power) if power else 0))
     step = min(step, 10.0 ** (math.floor(math.log10(abs(number))) - 1)) if trailing else step
@@ -117,10 +117,9 @@ def _each_other(answers: tuple[Answer, ...]) -> Iterator[str]:
     if worst > 1e3 and parted.verdict == FINE:
         yield f"contact is kept at a dynamic factor of {worst:.4g}"
     for gap, jam in zip(by["backlash"], by["jam_margin"], strict=True):
-        if gap.value is not None and jam.value is not None:
-            # neither is exact: a margin is linear in the growth
-            if gap.value > 0.5 and jam.value < -0.5 or gap.value < -0.5 and jam.value > 0.5:
-                yield f"{gap.value:.3g} um left beside a margin of {jam.value:.3g} K"
+        left, margin = gap.value or 0.0, jam.value or 0.0
+        if abs(left) > 0.5 and abs(margin) > 0.5 and left * margin < 0.0:
+            yield f"{left:.3g} um left beside a margin of {margin:.3g} K"
 
 
 def _drawn(result: Result) -> Iterator[str]:
@@ -160,7 +159,8 @@ def _speeds(result: Result) -> Iterator[str]:
         for low, high in figures["ranges"]:
             hit |= (grid >= low * (1.0 - 1e-9)) & (grid <= high * (1.0 + 1e-9))
         wrong = hit & ~np.isin(grid, there)
-        if wrong.any() or (np.isin(grid, there) & ~hit).any() and figures["more"] == 0:
+        left_out = (np.isin(grid, there) & ~hit).any() and figures["more"] == 0
+        if wrong.any() or left_out:
             yield f"{name}: {figures['ranges']} are not the stored ranges"
     most = 100.0 * float(data["contact_loss_share"].max())
     if not math.isclose(getattr(by["contact_loss"], "figures", {}).get("most", most), most):
