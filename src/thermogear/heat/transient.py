@@ -140,8 +140,9 @@ def follow(
     to be stored with some ``moments`` of each stretch; ``tolerance`` [K] of one step's error, a
     tenth of it relative (the course may err by ten times as much); a stretch without end runs
     until its slowest mode has no more than ``settled_within`` [K] to go; ``events`` [K or m, any]
-    of the state and the place of its stretch that are located where they fall through 0. Raises InputError for stretches that
-    do not follow each other, and ConvergenceError where the steps fail.
+    of the state and the place of its stretch that are located where they fall through 0. Raises
+    InputError for stretches that do not follow each other, and ConvergenceError where the steps
+    fail.
     """
     ends = np.array([one.end for one in stretches])
     if not ends.size or not np.all(np.diff(np.concatenate([[0.0], ends])) > 0.0):

@@ -61,11 +61,12 @@ def drawn_gears(
     Over (gear, outline_point): ``tight_radius``, ``tight_angle``; over (state, operating, gear,
     outline_point): ``outline_radius``, ``outline_angle`` [m, rad] of one pitch, flanks with the
     shapes among ``deviations``, grown by heat and speed. The backlash that the centre distance does
-    not open is taken off all four flanks alike: nobody says which gear is the thinner. Over (state, operating): ``centre_distance``, and over the mesh phase ``lag`` [m], how
-    far the wheel stays behind until the first pair of drive flanks touches without load. Over
-    (mesh_phase, contact_pair): where a pair touches, ``contact_x``, ``contact_y`` [m]; with state
-    and operating point its ``load_share``, and the gaps [m] left between its drive and its back
-    flanks, ``drive_gap`` and ``back_gap``, nan where the pair cannot touch.
+    not open is taken off all four flanks alike: nobody says which gear is the thinner. Over (state,
+    operating): ``centre_distance``, and over the mesh phase ``lag`` [m], how far the wheel stays
+    behind until the first pair of drive flanks touches without load. Over (mesh_phase,
+    contact_pair): where a pair touches, ``contact_x``, ``contact_y`` [m]; with state and operating
+    point its ``load_share``, and the gaps [m] left between its drive and its back flanks,
+    ``drive_gap`` and ``back_gap``, nan where the pair cannot touch.
 
     Growth is that of :func:`~thermogear.heat.expansion.flank_growth` whatever flank the ``model``
     has; load share, body, housing and bore are the model's.

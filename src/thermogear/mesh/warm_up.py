@@ -361,6 +361,7 @@ class _Chain:
                 at.oil_temperature,
                 around,
                 dict(self.held),
+                self.nodes(state)["housing"],
             )
             known = {name: np.asarray(t) for name, t in bare.fixed.items()} | dict(state)
             full = {name: known.get(name, np.asarray(around.ambient)) for name in bare.nodes}

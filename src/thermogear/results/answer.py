@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import asdict, dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass, field
 
 from thermogear.base.limits import FINE, LOOK, OPEN
 
@@ -15,7 +15,7 @@ class Answer:
     ``name`` of the figure and its ``question``; ``sentence`` for a reader; ``value`` in ``unit``
     as shown, None where there is none; ``limit`` in words and its ``source``; ``verdict`` one of
     :data:`~thermogear.base.limits.VERDICTS`; ``operating`` "3000 rpm, 80 N m", empty where it is
-    not of one point.
+    not of one point; ``figures``: what else the sentence names, by name, in the unit shown there.
     """
 
     name: str
@@ -27,6 +27,7 @@ class Answer:
     source: str
     verdict: str
     operating: str = ""
+    figures: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def row(self) -> dict[str, object]:

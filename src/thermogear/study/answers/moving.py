@@ -38,8 +38,9 @@ RELIEFS = (0.25, 0.5, 0.75, 1.0, 1.25, 1.5)
 def speeds(asked: Asked) -> Iterator[Answer]:
     found = asked.speeds
     if found is None:
+        why = asked.still(asked.hardest) or "its mesh has no stiffness that moves"
         for name in ("resonance", "contact_loss", "back_contact", "coexisting"):
-            yield undecided(SPEEDS, name, "the hot pair is jammed or did not settle")
+            yield undecided(SPEEDS, name, why)
         return
     place = asked.hardest
     natural = float(np.sqrt(asked.hot["mean_stiffness"][place] / asked.case.equivalent_mass))
@@ -102,7 +103,7 @@ def loads(asked: Asked) -> Iterator[Answer]:
         own = float(asked.motion["dynamic_factor"][point]) if asked.moves(point) else float("nan")
         rated = _rated_factor(asked, point, grade)
         if isinstance(rated, str) or not np.isfinite(own):
-            still = "it turns too slowly to vibrate" if asked.moves(point) else "it does not move"
+            still = asked.still(point) or "it turns too slowly to vibrate"
             why = rated if isinstance(rated, str) else still
             mine = f"computed {own:.2f}; " if np.isfinite(own) else ""
             yield undecided(LOADS, "dynamic_factor", f"{mine}{why}", at=at)
@@ -134,8 +135,7 @@ def errors(asked: Asked) -> Iterator[Answer]:
         for name, cycle in (("cold", asked.cold), ("hot", asked.hot))
     }
     for point in asked.points:
-        if not asked.settled(point):
-            why = "the heat balance did not settle"
+        if why := asked.unsettled(point):
             yield undecided(ERROR, "transmission_error", why, at=asked.at(point))
             continue
         warm = float(swing["hot"][point])
@@ -171,8 +171,8 @@ def _usual_error(case: GearCase, torque: float) -> float:
 def _relief(asked: Asked) -> Answer:
     """The best of a few tip reliefs at the hardest point, hot, and the same one undeformed."""
     case, model, point = asked.case, asked.model, asked.hardest
-    if not asked.moves(point):
-        return undecided(ERROR, "relief", "the hot pair is jammed or did not settle")
+    if why := asked.still(point):
+        return undecided(ERROR, "relief", why)
     if any(isinstance(one, Relief) for one in case.deviations):
         return answer(
             ERROR, "relief", "The flanks have one; `thermogear relief` looks for a better.",
