@@ -233,8 +233,9 @@ def _worst_moment(asked: Asked) -> Answer:
         return answer(
             GAP, "warm_up_backlash",
             f"{words} at least {least:.0f} µm {rest}; no steady state is known.",
-            least, limit="backlash", at=at, verdict=OPEN if least > 0.0 else LOOK,
-            figures={"start": start, "end_minutes": end},
+            np.nan if least > 0.0 else least,
+            limit="backlash", at=at, verdict=OPEN if least > 0.0 else LOOK,
+            figures={"least": least, "start": start, "end_minutes": end},
         )  # fmt: skip
     sentence = f"{words} never less than when steady, {least:.0f} µm."
     if least < steady - 0.005 * abs(steady) - 0.05:
