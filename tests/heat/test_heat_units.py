@@ -220,6 +220,7 @@ DECLARED = {
     "infrared_signal": "up to a constant factor",
     "face_conductance": "the oil's own line",
     "free_face_convection": "the earth's gravity, m/s^2",
+    "still_air_coefficient": "the earth's gravity, m/s^2; properties of air",
     "oil_expansion": "the oil's own line",
     "oil_prandtl": "the oil's own line",
     "with_free_convection": "the oil's own line",

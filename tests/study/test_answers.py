@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import re
 import subprocess
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 
 import numpy as np
 import pytest
 
 from thermogear.base.limits import FINE, LIMITS, LOOK, OPEN, Limit
+from thermogear.base.progress import silent
 from thermogear.case.case import GearCase, load_case
+from thermogear.case.thermal_state import HOT
 from thermogear.mesh.scuffing_rating import Scuffing, flash_rating, integral_rating
 from thermogear.results.answer import Answer, worst
+from thermogear.study.answers import steady
+from thermogear.study.answers.asked import OF_HOT, Asked
 from thermogear.study.answers.survey import answers
 
 pytestmark = pytest.mark.filterwarnings("ignore::thermogear.base.errors.ValidityWarning")
@@ -118,11 +123,85 @@ def test_every_question_is_answered_of_every_pair(name: str) -> None:
             assert one.value is None
 
 
+def asked_of(case: GearCase, make: Callable[[Asked], Iterator[Answer]]) -> dict[str, Answer]:
+    """The answers to one question alone."""
+    hot = HOT.quantities(case, case.models[0], OF_HOT)
+    asked = Asked(case, case.models[0], {}, hot, silent)
+    return {one.name: one for one in make(asked)}
+
+
+def test_the_parts_of_the_backlash_add_up_to_what_is_left() -> None:
+    for name in CASES:
+        one = verdicts(name)["backlash"]
+        if one.value is None:
+            continue
+        assert sum(one.figures.values()) == pytest.approx(one.value, abs=1e-9), name
+        told = dict(re.findall(r"(deviations|growth|heat) ([-+][0-9.]+) µm", one.sentence))
+        for part, words in (("deviations", "deviations"), ("speed", "growth"), ("heat", "heat")):
+            assert float(told.get(words, 0.0)) == pytest.approx(one.figures[part], abs=0.05)
+        assert f"Of {one.figures['nominal']:.1f} µm nominal" in one.sentence
+
+
+def test_where_all_is_as_drawn_deviations_alone_take_backlash() -> None:
+    bodies = ("pinion_addendum", "wheel_addendum", "pinion_bore", "wheel_bore", "housing")
+    given = [f"temperatures.{name}=20 degC" for name in bodies]
+    case = read(*given, "operating.speed=30 rpm")
+    one = asked_of(case, lambda asked: itertools.islice(steady.gap(asked), 1))["backlash"]
+    assert one.figures["heat"] == 0.0
+    assert abs(one.figures["speed"]) < 1e-5
+    assert one.figures["deviations"] < -1.0
+    assert "heat" not in one.sentence
+
+
+def test_what_is_not_steady_is_not_stated() -> None:
+    """Nothing of an unsettled pair is called steady; one line says why, and what to give."""
+    text = FIVE.replace('temperature = "80 degC"\n', "").replace("80 N m", "900 N m")
+    found = {one.name: one for one in answers(read(text=text)).answers}
+    oil, course = found["oil_temperature"], found["warm_up_backlash"]
+    watts = [f"{oil.figures[name]:.3g} kW" for name in ("made_kW", "carried_kW")]
+    assert oil.sentence == (
+        f"Not decided: the heat balance did not settle; {watts[0]} are made and the bath carries "
+        f"{watts[1]} with oil at 120 °C: give oil.temperature, gearbox.oil_flow or "
+        "gearbox.housing_area."
+    )
+    assert oil.figures["made_kW"] > oil.figures["carried_kW"] > 0.0
+    for name, one in found.items():
+        if name not in ("contact_ratio", "form_clearance", "tip_thickness", "tip_clearance"):
+            assert one.verdict != FINE, one
+            assert "when steady" not in one.sentence
+            assert "jammed or" not in one.sentence
+    assert "no steady state is known" in course.sentence
+    assert found["relief"].sentence == "Not decided: the heat balance did not settle."
+    jam = verdicts("jammed")
+    assert jam["resonance"].sentence == "Not decided: the hot pair is jammed."
+
+
+def test_an_oil_bath_above_its_flash_point_is_called_impossible() -> None:
+    hot = FIVE.replace('temperature = "80 degC"\n', "").replace("80 N m", "240 N m")
+    found = asked_of(read(text=hot), steady.heat)
+    oil, teeth = found["oil_temperature"], found["tooth_temperature"]
+    assert oil.verdict == LOOK
+    assert 150.0 < oil.value < 389.0  # by a housing that stays at 15 W/(m^2 K): 389
+    assert oil.figures["hottest_bath"] == 150.0
+    assert "no oil bath exists above 150 °C, where its flash point is not known" in oil.sentence
+    # the band of the wetted share, told and stored
+    other = teeth.figures["with_0.5_wetted"]
+    assert f"computed with 0.3 of the gears wetted, a guess; {other:.0f} °C with 0.5" in (
+        teeth.sentence
+    )
+    assert other < teeth.value
+    given = asked_of(read("gearbox.wetted_share=0.5", text=hot), steady.heat)
+    assert given["tooth_temperature"].value == pytest.approx(other, abs=1e-3)
+    assert "wetted" not in given["tooth_temperature"].sentence
+    known = asked_of(read("oil.flash_point=255 degC", text=hot), steady.heat)
+    assert "exists" not in known["oil_temperature"].sentence
+
+
 # --- a sentence holds its number ----------------------------------------------------------
 
 PLACES = {
     "contact_ratio": 3, "form_clearance": 0, "tip_thickness": 2, "tip_clearance": 3,
-    "oil_temperature": 0, "tooth_temperature": 0, "backlash": 0, "warm_up_backlash": 0,
+    "oil_temperature": 0, "tooth_temperature": 0, "backlash": 1, "warm_up_backlash": 0,
     "film": 2, "dynamic_factor": 2, "transmission_error": 2, "jam_margin": 0,
 }  # fmt: skip
 

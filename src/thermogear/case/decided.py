@@ -32,6 +32,10 @@ def decided(
         "gearbox.housing_mass": shown(around.housing_mass, "mass", 3),
         "gearbox.oil_mass": shown(around.oil_mass, "mass", 3),
     }
+    if around.housing_coefficient_at is not None:
+        usual = shown(around.housing_coefficient, "heat transfer coefficient")
+        warm = shown(around.housing_coefficient_at, "temperature")
+        found["gearbox.housing_coefficient"] = f"{usual} with the housing at {warm}"
     if around.train is not None:
         drawn = "none: the shafts are drawn"
         found |= {"gearbox.shaft_length": drawn, "gearbox.bearing_conductance": drawn}

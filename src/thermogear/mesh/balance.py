@@ -340,6 +340,7 @@ class _Loop:
             here.oil_temperature,
             self.box.surroundings,
             {name: values[index] for name, values in self.measured.items()},
+            self.named(nodes)["housing"],
         )
         return network, losses, known
 

@@ -45,8 +45,9 @@ RELIEFS = (0.25, 0.5, 0.75, 1.0, 1.25, 1.5)
 def speeds(asked: Asked) -> Iterator[Answer]:
     found = asked.speeds
     if found is None:
+        why = asked.still(asked.hardest) or "its mesh has no stiffness that moves"
         for name in ("resonance", "contact_loss", "back_contact", "coexisting"):
-            yield undecided(SPEEDS, name, "the hot pair is jammed or did not settle")
+            yield undecided(SPEEDS, name, why)
         return
     place = asked.hardest
     natural = float(np.sqrt(asked.hot["mean_stiffness"][place] / asked.case.equivalent_mass))
@@ -145,9 +146,9 @@ def loads(asked: Asked) -> Iterator[Answer]:
         limit = "dynamic_factor" if rated < PARTING else "parting"
         about = {"limit": limit, "most": min(rated, PARTING), "at": at}
         if not np.isfinite(own):
-            still = "it turns too slowly to vibrate" if asked.moves(point) else "it does not move"
-            still = still if asked.case.stated.torque[point] > 0.0 else "there is no load"
-            why = f"{still}; ISO 6336-1 {words}"
+            loaded = asked.case.stated.torque[point] > 0.0
+            slow = "it turns too slowly to vibrate" if loaded else "there is no load"
+            why = f"{asked.still(point) or slow}; ISO 6336-1 {words}"
             yield undecided(LOADS, "dynamic_factor", why, figures=figures, **about)
             continue
         sentence = f"The vibration computed gives {{own:.2f}}; ISO 6336-1 {words}."
@@ -178,8 +179,7 @@ def errors(asked: Asked) -> Iterator[Answer]:
         at = asked.at(point)
         words, figures = _allowed_error(asked.case, float(asked.hot["pinion_torque"][point]))
         most = figures.get("made", np.inf) + figures.get("load", np.inf)
-        if not asked.settled(point):
-            why = "the heat balance did not settle"
+        if why := asked.unsettled(point):
             yield undecided(ERROR, "transmission_error", why, most=most, at=at)
             continue
         figures |= {name: float(values[point]) for name, values in swing.items()}
@@ -254,8 +254,8 @@ def _drawings(asked: Asked) -> list[float]:
 def _relief(asked: Asked) -> Answer:
     """The best of a few tip reliefs at the hardest point, hot, and the same one undeformed."""
     case, point = asked.case, asked.hardest
-    if not asked.moves(point):
-        return undecided(ERROR, "relief", "the hot pair is jammed or did not settle")
+    if why := asked.still(point):
+        return undecided(ERROR, "relief", why)
     if any(isinstance(one, Relief) for one in case.deviations):
         return answer(
             ERROR, "relief", "The flanks have one; `thermogear relief` looks for a better.",

@@ -35,15 +35,15 @@ NUMBERS: dict[str, _Number] = {
     "scuffing_safety": _Number("1", "safety by integral temperature, ISO/TR 13989-2"),
     "backlash": _Number("m", "least backlash, whole gap, along the line of action"),
     "jam_temperature": _Number(
-        "K", "temperature of the teeth at which the pair jams, housing as it is"
+        "K", "temperature of the pinion's teeth at which the pair jams, housing as it is"
     ),
-    "jam_margin": _Number("K", "jam temperature less temperature of the teeth"),
+    "jam_margin": _Number("K", "jam temperature less temperature of the pinion's teeth"),
     "static_error": _Number("m", "transmission error, static and loaded, peak to peak"),
 }
 """Every number with its unit and words; those of the motion are sweeps' own."""
 WANT = (
-    "oil_temperature", "tooth_temperature", "flash_temperature", "film_parameter",
-    "least_half_backlash", "jam_temperature", "transmission_error",
+    "oil_temperature", "tooth_temperature", "pinion_temperature", "flash_temperature",
+    "film_parameter", "least_half_backlash", "jam_temperature", "transmission_error",
 )  # fmt: skip
 UNRATED = ("pinion_speed", "pinion_torque", "gear_temperature", "cold_half_backlash",
            "damping_ratio", "operating.torque", *BESIDE, *LANE)  # fmt: skip
@@ -70,17 +70,17 @@ def answer_numbers(family: GearFamily, rows: ArrayLike) -> dict[str, Floats]:
     found = family.quasi_static(points, WANT, path_positions=case.path_positions)
     flash, film = found["flash_temperature"], found["film_parameter"]
     margin, safety = _scuffing(family, points, found)
-    teeth, jam = found["tooth_temperature"], found["jam_temperature"]
+    jam = found["jam_temperature"]
     return {
         "oil_temperature": found["oil_temperature"],
-        "tooth_temperature": teeth,
+        "tooth_temperature": found["tooth_temperature"],
         "greatest_flash": flash.max(axis=1),
         "least_film_parameter": _least(film),
         "scuffing_margin": margin,
         "scuffing_safety": safety,
         "backlash": 2.0 * found["least_half_backlash"],
         "jam_temperature": jam,
-        "jam_margin": jam - teeth,
+        "jam_margin": jam - found["pinion_temperature"],
         "static_error": np.ptp(found["transmission_error"], axis=1),
     }
 
