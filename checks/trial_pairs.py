@@ -482,6 +482,8 @@ def page(count: int, refused: Counter[str], found: Sequence[Found], seconds: flo
 
 
 ANSWERS_SEED = 19_2026
+GRID = "[grid]\npath_positions = 41\nmesh_positions = 48\nharmonics = 12\n"
+"""Sentences do not know how fine a mesh is."""
 ANSWERS_PAGE = PAGE.with_name("trial_answers.md")
 
 
@@ -534,7 +536,7 @@ def drawn_text(number: int, seed: int = ANSWERS_SEED) -> str:
     if rng.random() < 0.5:
         text += f"[dynamics]\ndamping_ratio = {spread(0.01, 0.1)!r}\n"
     shown = ", ".join(f'"{speed!r} rpm"' for speed in speeds)
-    return f'{text}[operating]\nspeed = [{shown}]\ntorque = "{torque!r} N m"\n'
+    return f'{text}[operating]\nspeed = [{shown}]\ntorque = "{torque!r} N m"\n{GRID}'
 
 
 def answered(number: int, whole: bool = False, seed: int = ANSWERS_SEED) -> Found:

@@ -7,20 +7,26 @@ import math
 import re
 import subprocess
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import asdict, replace
 from functools import cache
 
 import numpy as np
 import pytest
+from scripts import script
 
 from thermogear.base.limits import FINE, LIMITS, LOOK, OPEN, Limit
 from thermogear.base.progress import silent
 from thermogear.case.case import GearCase, load_case
-from thermogear.case.thermal_state import HOT
+from thermogear.case.thermal_state import HOT, UNDEFORMED
+from thermogear.gears.accuracy import flank_tolerances
+from thermogear.gears.graded_flanks import graded_flanks
+from thermogear.gears.iso6336 import iso6336_stiffness
 from thermogear.mesh.scuffing_rating import Scuffing, flash_rating, integral_rating
 from thermogear.results.answer import Answer, worst
-from thermogear.study.answers import steady
-from thermogear.study.answers.asked import OF_HOT, Asked
+from thermogear.results.result import Notice, Result
+from thermogear.study.answers import moving, steady
+from thermogear.study.answers.asked import OF_COLD, OF_HOT, Asked
 from thermogear.study.answers.survey import answers
 
 pytestmark = pytest.mark.filterwarnings("ignore::thermogear.base.errors.ValidityWarning")
@@ -39,6 +45,7 @@ speed = "3000 rpm"
 torque = "80 N m"
 """
 SMALL = ("grid.path_positions=41", "grid.mesh_positions=48", "grid.harmonics=12")
+WORDS = script("answer_words")
 POLISHED = ("gears.pinion.roughness=0.02 um", "gears.wheel.roughness=0.02 um")
 WHOLE = ("backlash.direction=normal", "backlash.extent=total")
 CASES: dict[str, tuple[str, ...]] = {
@@ -91,8 +98,12 @@ def read(*changes: str, text: str = FIVE) -> GearCase:
 
 
 @cache
+def result_of(name: str) -> Result:
+    return answers(read(*CASES[name]))
+
+
 def of(name: str) -> tuple[Answer, ...]:
-    return answers(read(*CASES[name])).answers
+    return result_of(name).answers
 
 
 @cache
@@ -123,10 +134,11 @@ def test_every_question_is_answered_of_every_pair(name: str) -> None:
             assert one.value is None
 
 
-def asked_of(case: GearCase, make: Callable[[Asked], Iterator[Answer]]) -> dict[str, Answer]:
+def asked_of(case: GearCase, make: Callable[[Asked], Iterable[Answer]]) -> dict[str, Answer]:
     """The answers to one question alone."""
     hot = HOT.quantities(case, case.models[0], OF_HOT)
-    asked = Asked(case, case.models[0], {}, hot, silent)
+    cold = UNDEFORMED.quantities(case, case.models[0], OF_COLD)
+    asked = Asked(case, case.models[0], cold, hot, silent)
     return {one.name: one for one in make(asked)}
 
 
@@ -245,6 +257,107 @@ def test_the_gain_of_a_relief_is_that_of_its_sentence() -> None:
     one = verdicts("plain")["relief"]
     before, after = (float(v) for v in re.findall(r"([0-9.]+) µm → ([0-9.]+)", one.sentence)[0])
     assert one.value == pytest.approx(100.0 * (1.0 - after / before), abs=0.5)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_no_sentence_contradicts_the_data_beside_it(name: str) -> None:
+    assert list(WORDS.contradictions(result_of(name))) == []
+
+
+def test_what_contradicts_its_data_is_found() -> None:
+    """One planted wrong at a time: a figure, a verdict, a number that is none, a neighbour."""
+    good = result_of("plain")
+
+    def found(name: str, **changed: object) -> list[str]:
+        rows = [asdict(a) | (changed if a.name == name else {}) for a in good.answers]
+        return list(WORDS.contradictions(good.with_(answers=rows)))
+
+    assert found("") == []
+    factor, error = verdicts("plain")["dynamic_factor"], verdicts("plain")["transmission_error"]
+    for name, changed in (
+        ("dynamic_factor", {"verdict": FINE}),
+        ("dynamic_factor", {"sentence": factor.sentence.replace("1.44", "1.45")}),
+        ("dynamic_factor", {"value": 2.29, "figures": {**factor.figures, "own": 2.29}}),
+        ("transmission_error", {"sentence": "It is nan µm."}),
+        ("transmission_error", {"figures": {**error.figures, "least": 3.9}}),
+        ("contact_loss", {"figures": {**verdicts("plain")["contact_loss"].figures,
+                                      "ranges": [[16000.0, 22700.0]]}}),
+        ("film", {"verdict": OPEN}),
+    ):  # fmt: skip
+        assert found(name, **changed), (name, changed)
+    wrong = [Notice("info", "the mean is nan")]
+    assert list(WORDS.contradictions(replace(good, notices=wrong))) == ["notice: the mean is nan"]
+
+
+def test_a_dynamic_factor_above_two_is_never_fine_nor_off_resonance() -> None:
+    """Whatever the rating counts with: a light pair for which the standard gives far more."""
+    light = ("operating.torque=0.5 N m", "operating.speed=15000 rpm")
+    case = read(*light, *CASES["plain"])
+    found = asked_of(case, lambda asked: [*moving.speeds(asked), *moving.loads(asked)])
+    factor, resonance = found["dynamic_factor"], found["resonance"]
+    assert factor.figures["factor"] > factor.figures["own"] > 2.0
+    assert (factor.verdict, factor.limit) == (LOOK, "at most 2, ours")
+    assert factor.source == LIMITS["parting"].source
+    assert (resonance.verdict, resonance.value) == (LOOK, 0.0)
+    assert f"at its own 15000 rpm it is {factor.value:.2f}." in resonance.sentence
+    kept = verdicts("plain")["dynamic_factor"]
+    assert kept.limit == f"at most {kept.figures['factor']:.4g}"
+
+
+def test_the_limit_of_the_error_is_what_class_and_load_allow() -> None:
+    """f_Halpha + f_falpha of both gears by hand, sqrt(2) a class; 3/7 of w/c' of the load."""
+    for changes, grade in (((), 6), (("flanks.accuracy=0", 'flanks.edition="1995"'), 0)):
+        case = read(*changes)
+        one = asked_of(case, moving.errors)["transmission_error"]
+        both = [
+            flank_tolerances(z, 3e-3, grade=grade, edition="1995" if grade == 0 else "2013")
+            for z in (20, 40)
+        ]
+        made = 1e6 * sum(t.profile_slope + t.profile_form for t in both)
+        w = 80.0 / (case.pair.pinion.pitch_radius * 0.03)
+        load = 1e6 * 3.0 / 7.0 * w / float(iso6336_stiffness(case.pair, w).single)
+        assert (one.figures["made"], one.figures["load"]) == pytest.approx((made, load), rel=1e-9)
+        assert one.limit == f"at most {made + load:.4g} µm, ours"
+        assert f"class {grade} allows {made:.1f} µm, the load {load:.1f} µm" in one.sentence
+    tiny = ("gears.module=0.2 mm", "gears.face_width=2 mm", "operating.torque=0.05 N m")
+    one = asked_of(read(*tiny), moving.errors)["transmission_error"]
+    assert (one.verdict, one.value, one.limit) == (OPEN, None, "no limit known")
+
+
+def test_the_range_of_drawings_is_that_of_other_seeds() -> None:
+    """Each of 16 seeds as a case of its own has an error in the range, and two have its ends."""
+    own = verdicts("plain")["transmission_error"].figures
+    case = read()
+    swings = []
+    for seed in range(1, 17):
+        drawn = replace(case, deviations=graded_flanks(case.pair, 6, seed=seed))
+        curve = HOT.quantities(drawn, drawn.models[0], ("transmission_error",))
+        swings.append(1e6 * float(np.ptp(curve["transmission_error"][0])))
+    assert own["drawings"] == 16
+    assert (own["least"], own["greatest"]) == pytest.approx((min(swings), max(swings)), rel=0.03)
+    assert own["greatest"] > 4.0 * own["least"]
+    (notice,) = (one.text for one in result_of("plain").notices if one.level == "warning")
+    assert f"16 drawings have a static error of {own['least']:.2g} to " in notice
+
+
+def test_a_jam_is_told_by_the_pinion_however_warm_the_wheel_is() -> None:
+    """Both gears warmer by the margin, no backlash is left; with backlash the margin is > 0."""
+    bodies = ("pinion_addendum", "pinion_bore", "wheel_addendum", "wheel_bore")
+    for warm, other in ((60.0, 110.0), (110.0, 60.0)):
+
+        def heated(rise: float, warm: float = warm, other: float = other) -> GearCase:
+            at = [warm + rise] * 2 + [other + rise] * 2
+            given = [f"temperatures.{n}={t!r} degC" for n, t in zip(bodies, at, strict=True)]
+            return read(*given, "temperatures.housing=40 degC", "backlash.value=0.05 mm", *WHOLE)
+
+        found = asked_of(heated(0.0), lambda asked: itertools.islice(steady.gap(asked), 2))
+        margin, left = found["jam_margin"].value, found["backlash"].value
+        assert margin is not None
+        assert left is not None
+        assert margin * left > 0.0
+        there = heated(margin)
+        gone = HOT.quantities(there, there.models[0], ("least_half_backlash",))
+        assert abs(float(gone["least_half_backlash"][0])) < 2e-9
 
 
 # --- laws ---------------------------------------------------------------------------------

@@ -239,7 +239,8 @@ class GearFamily:
 
         ``want`` names them (:func:`~thermogear.mesh.cycle.mesh_cycle`), and "oil_temperature",
         "tooth_temperature" (the hotter addendum), "pinion_temperature" (its addendum) [K]; only
-        they are computed. ``path_positions`` along the path of contact, where a quantity runs over it.
+        they are computed. ``path_positions`` along the path of contact, where a quantity runs over
+        it.
         With them ``status``: a row that no case could have, or whose heat or mesh does not
         settle, is "not_converged" and nan, and the others do not notice.
         """
