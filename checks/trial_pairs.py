@@ -542,18 +542,16 @@ def drawn_text(number: int, seed: int = ANSWERS_SEED) -> str:
 def answered(number: int, whole: bool = False, seed: int = ANSWERS_SEED) -> Found:
     """One case through the answers, or the ``whole`` run: what its sentences contradict."""
     found = Found()
+    began = time.perf_counter()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:
-            case = load_case(drawn_text(number, seed))
+            result = (run if whole else answers)(load_case(drawn_text(number, seed)))
+            page_of(result).lines()
+            found.notes += contradictions(result)
         except InputError as error:
             found.counts[f"refused: {reason(error)}"] += 1
             return found
-        began = time.perf_counter()
-        try:
-            result = (run if whole else answers)(case)
-            page_of(result).lines()
-            found.notes += contradictions(result)
         except Exception as error:  # the trial counts every kind
             found.counts["exceptions"] += 1
             found.notes.append(f"{type(error).__name__}: {error}")
@@ -561,9 +559,9 @@ def answered(number: int, whole: bool = False, seed: int = ANSWERS_SEED) -> Foun
             found.counts["sentences"] += len(result.answers)
             found.counts["sentences with a figure"] += with_figures(result)
             found.counts.update(one.verdict for one in result.answers)
-        found.counts["cases"] += 1
-        found.see("seconds", time.perf_counter() - began)
+    found.counts["cases"] += 1
     found.counts["contradictions"] += len(found.notes)
+    found.see("seconds", time.perf_counter() - began)
     return found
 
 

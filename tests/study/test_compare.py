@@ -10,6 +10,7 @@ import pytest
 
 from conftest import Compared
 from said import numbers
+from simulated import simulated_record
 from thermogear.base.errors import InputError
 from thermogear.measured.chain import Chain
 from thermogear.measured.comparison import as_json, verdict
@@ -20,7 +21,6 @@ from thermogear.measured.published import (
     read_lines,
     unstated_processing,
 )
-from thermogear.measured.record import simulated_record
 from thermogear.measured.reduction import measure
 from thermogear.study.case_runs import scaled
 from thermogear.study.compare import compare

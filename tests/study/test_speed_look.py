@@ -10,12 +10,12 @@ import pytest
 
 from thermogear.analysis.settle import settle
 from thermogear.analysis.side_by_side import RULE
-from thermogear.base.display import worded
+from thermogear.base.display import rounded, worded
 from thermogear.base.excitation import Excitation, Excitations, Periodic
 from thermogear.base.units import RPM
 from thermogear.case.points import points_of
 from thermogear.case.response import respond
-from thermogear.study.speeds import RECORD, Speeds, look, rpm, told
+from thermogear.study.speeds import RECORD, Speeds, look, told
 
 TEETH = 20
 MASS, STIFFNESS, FORCE = 0.5, 2e8, 2000.0
@@ -148,4 +148,4 @@ def test_ranges_are_told_in_rpm() -> None:
     assert words((500.0, 600.0)) == "from the lowest speed looked at, 500 rpm, to 600 rpm"
     assert words((8000.0, 9000.0)) == "from 8000 rpm to the highest speed looked at, 9000 rpm"
     assert words((500.0, 9000.0)) == "at every speed looked at, 500 rpm to 9000 rpm"
-    assert [rpm(v * RPM) for v in (2.2712, 99.96, 12345.0)] == ["2.27", "100", "12300"]
+    assert [rounded(v, 3) for v in (2.2712, 99.96, 12345.0)] == ["2.27", "100", "12300"]

@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.side_by_side import motions_along
-from thermogear.base.display import rounded
 from thermogear.base.excitation import Excitations
 from thermogear.base.units import RPM
 from thermogear.base.vocabulary import label
@@ -146,11 +145,6 @@ def look(mesh: Excitations, *, teeth: int, own: Floats) -> Speeds:
     columns |= {"period": motions.period, "label_code": motions.label}
     columns["pinion_speed"] = lanes.mesh_frequency[motions.lane] / teeth
     return Speeds(columns, float(ratio[1] / ratio[0] - 1.0), np.unique(own))
-
-
-def rpm(speed: float) -> str:
-    """A speed [rad/s] in rpm, to three figures: finer than the steps of a look."""
-    return rounded(speed / RPM, 3)
 
 
 def told(

@@ -58,32 +58,38 @@ def speeds(asked: Asked) -> Iterator[Answer]:
     struck = asked.motion["mesh_force_min"][moving] < 0.0
     ends = (float(speed.min()), float(speed.max()))
     most = ", for up to {most:.0f %} of the time"
-    for name, ranges, happens, never, here in (
+    for name, ranges, happens, never, apart in (
         ("contact_loss", found.lost, ("Flanks lose contact", most), "Flanks keep contact", parted),
         ("back_contact", found.back, ("Teeth hit the back side", ""), "No tooth hits the back side",
          struck),
     ):  # fmt: skip
         words, figures = told(ranges, ends=ends)
         sentence = f"{happens[0]} {words}{happens[1]}" if ranges else f"{never} {LOOKED}"
-        if here.any():
+        if apart.any():
             sentence += (
                 f"{'; so at' if ranges else ', yet not at'} {{points}} of {{of}} operating points"
             )
         figures["most"] = 100.0 * float(share.max())
-        figures |= {"points": int(here.sum()), "of": here.size}
-        if not here.size:
+        figures |= {"points": int(apart.sum()), "of": apart.size}
+        if not apart.size:
             words = f"{sentence[0].lower()}{sentence[1:]}"
             sentence = f"Not decided at its own speeds, too slow to vibrate; faster, {words}"
-        value = 100.0 * float(np.mean(here)) if here.size else float("nan")
+        value = 100.0 * float(np.mean(apart)) if apart.size else float("nan")
         yield answer(SPEEDS, name, f"{sentence}.", value, figures=figures)
     words, figures = told(found.several, ends=ends)
+    half = 0.5 * found.step
+    here = any(
+        low * (1.0 - half) <= own <= high * (1.0 + half)
+        for low, high in found.several
+        for own in asked.case.stated.speed
+    )
     yield answer(
         SPEEDS,
         "coexisting",
         f"Two motions exist {words}: it may jump there, up and down elsewhere."
         if found.several
         else f"One motion exists {LOOKED}: no jump.",
-        2.0 if _here(asked.case.stated.speed, found.several) else 1.0,
+        2.0 if here else 1.0,
         figures=figures,
     )
 
@@ -126,12 +132,6 @@ def _resonance(asked: Asked, found: Speeds, main: float) -> Answer:
         value,
         figures=figures,
     )
-
-
-def _here(own: Floats, ranges: list[tuple[float, float]]) -> float:
-    """Share of the case's own speeds that lie in one of the ranges, half a step allowed."""
-    inside = [any(low * 0.9875 <= v <= high * 1.0125 for low, high in ranges) for v in own]
-    return float(np.mean(inside)) if inside else 0.0
 
 
 # --- dynamic factor and error -------------------------------------------------------------------
