@@ -3,9 +3,6 @@
 ``make trial-pairs`` draws until 2 000 pairs are valid (seed fixed before the first run), computes
 each cold and hot with deviations of every kind, designs a relief, moves it, exchanges and scales
 it, and writes docs/trial_pairs.md. ``python checks/trial_pairs.py 50`` prints a short one.
-``python checks/trial_pairs.py answers 300 60`` puts other random pairs, as case files, through
-the answers and some of them through a run, and holds every sentence against the data beside it;
-it writes docs/trial_answers.md.
 """
 
 from __future__ import annotations
@@ -22,25 +19,12 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from answer_words import contradictions, with_figures
 from numpy.typing import NDArray
 
-from thermogear import (
-    Gear,
-    GearPair,
-    MeshModel,
-    Operating,
-    Temperatures,
-    answers,
-    load_case,
-    mesh_cycle,
-    run,
-    simulate,
-)
+from thermogear import Gear, GearPair, MeshModel, Operating, Temperatures, mesh_cycle, simulate
 from thermogear.base.errors import InputError
-from thermogear.base.limits import FINE, LOOK, OPEN
 from thermogear.base.materials import LUBRICANTS
-from thermogear.base.units import RPM, ZERO_CELSIUS
+from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import STATUS
 from thermogear.dynamics.models import from_excitation
 from thermogear.gears.deviations import (
@@ -56,7 +40,6 @@ from thermogear.gears.loaded import loaded_contact
 from thermogear.gears.relief import optimise_tip_relief
 from thermogear.mesh.excite import excitation
 from thermogear.mesh.thermal import HotPair, ThermalDeviation
-from thermogear.views.write import page_of
 
 Floats = NDArray[np.float64]
 Random = np.random.Generator
@@ -481,135 +464,7 @@ def page(count: int, refused: Counter[str], found: Sequence[Found], seconds: flo
     return "\n".join(lines)
 
 
-ANSWERS_SEED = 19_2026
-GRID = "[grid]\npath_positions = 41\nmesh_positions = 48\nharmonics = 12\n"
-"""Sentences do not know how fine a mesh is."""
-ANSWERS_PAGE = PAGE.with_name("trial_answers.md")
-
-
-def drawn_text(number: int, seed: int = ANSWERS_SEED) -> str:
-    """Case file ``number`` of the seed: what people state, and what they leave out."""
-    rng = np.random.default_rng([seed, number])
-
-    def spread(low: float, high: float) -> float:
-        return float(np.exp(rng.uniform(np.log(low), np.log(high))))
-
-    module, load, pace = spread(0.5, 20.0), spread(0.03, 15.0), spread(0.3, 60.0)
-    teeth, shifts = rng.integers(12, 121, 2), rng.uniform(-0.3, 0.7, 2)
-    width = module * float(rng.uniform(4.0, 15.0))
-    torque = load * width * module * 0.5e-3 * module * float(teeth[0])
-    rpm = pace / (0.5e-3 * module * float(teeth[0])) / RPM
-    speeds = [rpm] if rng.random() < 0.8 else [rpm, rpm * float(rng.uniform(1.2, 3.0))]
-    text = (
-        f'[gears]\nmodule = "{module!r} mm"\nface_width = "{width!r} mm"\n'
-        f'pressure_angle = "{float(rng.choice([20.0, 20.0, 17.5, 22.5, 25.0]))} deg"\n'
-    )
-    for name, z, x in zip(("pinion", "wheel"), teeth, shifts, strict=True):
-        text += f"[gears.{name}]\nteeth = {z}\nprofile_shift = {float(x)!r}\n"
-        if rng.random() < 0.2:
-            text += (
-                f'tip_relief = {{ amount = "{module * float(rng.uniform(0.5, 8.0))!r} um", '
-                f'length = "{module * float(rng.uniform(0.1, 0.6))!r} mm" }}\n'
-            )
-        if rng.random() < 0.1:
-            text += 'material = "POM"\n'
-    if rng.random() < 0.7:
-        text += f"[flanks]\naccuracy = {rng.integers(3, 11)}\nseed = {rng.integers(1, 100)}\n"
-        text += 'edition = "1995"\n' * (rng.random() < 0.3)
-    heat = float(rng.uniform(30.0, 130.0))
-    text += f'[oil]\nname = "{sorted(LUBRICANTS)[int(rng.integers(len(LUBRICANTS)))]}"\n'
-    given = rng.random()
-    if given < 0.5:
-        text += f'temperature = "{heat!r} degC"\n'
-    if given < 0.2:
-        bodies = heat + rng.uniform(-20.0, 40.0, 4)
-        places = ("pinion_addendum", "pinion_bore", "wheel_addendum", "wheel_bore")
-        text += "[temperatures]\n" + "".join(
-            f'{place} = "{float(t)!r} degC"\n' for place, t in zip(places, bodies, strict=True)
-        )
-        text += f'housing = "{heat - 15.0!r} degC"\n'
-    if rng.random() < 0.4:
-        text += (
-            f'[backlash]\nvalue = "{module * float(rng.uniform(0.01, 0.1))!r} mm"\n'
-            'direction = "normal"\nextent = "total"\n'
-        )
-    if rng.random() < 0.5:
-        text += f"[dynamics]\ndamping_ratio = {spread(0.01, 0.1)!r}\n"
-    shown = ", ".join(f'"{speed!r} rpm"' for speed in speeds)
-    return f'{text}[operating]\nspeed = [{shown}]\ntorque = "{torque!r} N m"\n{GRID}'
-
-
-def answered(number: int, whole: bool = False, seed: int = ANSWERS_SEED) -> Found:
-    """One case through the answers, or the ``whole`` run: what its sentences contradict."""
-    found = Found()
-    began = time.perf_counter()
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        try:
-            result = (run if whole else answers)(load_case(drawn_text(number, seed)))
-            page_of(result).lines()
-            found.notes += contradictions(result)
-        except InputError as error:
-            found.counts[f"refused: {reason(error)}"] += 1
-            return found
-        except Exception as error:  # the trial counts every kind
-            found.counts["exceptions"] += 1
-            found.notes.append(f"{type(error).__name__}: {error}")
-        else:
-            found.counts["sentences"] += len(result.answers)
-            found.counts["sentences with a figure"] += with_figures(result)
-            found.counts.update(one.verdict for one in result.answers)
-    found.counts["cases"] += 1
-    found.counts["contradictions"] += len(found.notes)
-    found.see("seconds", time.perf_counter() - began)
-    return found
-
-
-def trial_answers(count: int, runs: int) -> int:
-    """``count`` cases through the answers, the first ``runs`` of them through a run too."""
-    lines, failed = [], 0
-    for name, whole, wanted in (("answers", False, count), ("run", True, runs)):
-        counts: Counter[str] = Counter()
-        number = 0
-        while counts["cases"] < wanted:
-            one = answered(number, whole)
-            counts += one.counts
-            for note in one.notes:
-                print(f"{name} {number}: {note}", flush=True)
-            number += 1
-        refused = {what: n for what, n in counts.items() if what.startswith("refused")}
-        failed += counts["contradictions"]
-        lines += [
-            f"| {name}: {what} | {counts[what]} |"
-            for what in ("cases", "sentences", "sentences with a figure", FINE, LOOK, OPEN,
-                         "contradictions", "exceptions")
-        ]  # fmt: skip
-        lines.append(f"| {name}: cases refused before | {sum(refused.values())} |")
-    text = "\n".join([ANSWERS_HEAD, "| what | times |", "|---|---:|", *lines, ""])
-    ANSWERS_PAGE.write_text(text, "utf-8")
-    print(text)
-    return int(failed > 0)
-
-
-ANSWERS_HEAD = f"""---
-orphan: true
----
-# Trial of the answers
-
-Made by `python checks/trial_pairs.py answers 300 60` (seed {ANSWERS_SEED}, fixed before the first
-run): case files of 12 to 120 teeth, modules of 0.5 to 20 mm, profile shifts of -0.3 to 0.7, five
-pressure angles, classes 3 to 10 by both editions or none, 0.03 to 15 N per mm of width and mm of
-module, 0.3 to 60 m/s, heat given, half given or computed, backlash, damping, relief and plastics.
-
-Each goes through the answers, some through a whole run. Counted as a contradiction: a number of
-a sentence that is no figure beside it, a verdict against its limit, a figure that the stored
-groups have otherwise, two answers that cannot both hold, a number that is none, any exception.
-"""
-
-
 def main(words: Sequence[str]) -> int:
-    if words[:1] == ["answers"]:
-        return trial_answers(*(int(word) for word in words[1:3]))
     count = int(words[0]) if words else 2000
     began = time.perf_counter()
     drawn, refused = draws(count)

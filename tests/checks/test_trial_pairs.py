@@ -36,21 +36,6 @@ def test_twenty_random_pairs_go_through_the_whole_chain() -> None:
     assert worst["exchange, tangent stiffness"] < 1e-6
 
 
-@pytest.mark.parametrize(("number", "whole"), [(4, False), (7, False), (13, False), (14, True)])
-def test_random_cases_say_what_their_data_say(number: int, whole: bool) -> None:
-    found = script("trial_pairs").answered(number, whole)
-    assert found.notes == []
-    assert found.counts["cases"] == 1
-    assert found.counts["sentences with a figure"] >= found.counts["sentences"] - 4
-
-
-def test_the_committed_table_of_the_answers_has_no_contradiction() -> None:
-    text = script("trial_pairs").ANSWERS_PAGE.read_text("utf-8")
-    for name in ("answers", "run"):
-        for what in ("contradictions", "exceptions"):
-            assert f"| {name}: {what} | 0 |" in text
-
-
 def test_the_committed_table_is_that_of_this_trial() -> None:
     trial = script("trial_pairs")
     text = trial.PAGE.read_text("utf-8")

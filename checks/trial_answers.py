@@ -1,4 +1,8 @@
-"""Answers held against the data beside them: what no sentence, verdict or notice may say.
+"""Random cases through answers and runs, every sentence held against the data beside it.
+
+``make trial-answers`` puts 300 case files (seed fixed before the first run) through the answers
+and 60 of them through a run, and writes docs/trial_answers.md; ``python checks/trial_answers.py 20
+4`` prints a short one.
 
 :func:`contradictions` reads a result as its reader does. Every number of a sentence is a figure of
 its answer, or its value, as it would be rounded there; every verdict is that of the value and the
@@ -10,16 +14,30 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterator, Mapping
+import sys
+import time
+import warnings
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from thermogear import answers, load_case, run
+from thermogear.base.errors import InputError
 from thermogear.base.limits import FINE, LOOK, OPEN, PARTING
+from thermogear.base.materials import LUBRICANTS
 from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.results.answer import Answer
 from thermogear.results.result import Result
+from thermogear.views.write import page_of
 
+SEED = 19_2026
+PAGE = Path(__file__).parents[1] / "docs" / "trial_answers.md"
+GRID = "[grid]\npath_positions = 41\nmesh_positions = 48\nharmonics = 12\n"
+"""Sentences do not know how fine a mesh is."""
 NUMBER = re.compile(r"(?<![\w.^])[-−+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w.]*\d)")
 NAMES = re.compile(
     r"ISO[/ A-Z]*\d+-\d+(?::\d+)?|L10|Bearing \S+|\[flanks\] seed = [\d, ]+|`[^`]*`|'[^']*'|"
@@ -213,3 +231,145 @@ def _stored(result: Result) -> Iterator[str]:
         fine = mesh["status"].values == 0
         if not np.isfinite(mesh[name].values[fine]).all():
             yield f"NaN in {name} of a point that is ok"
+
+
+@dataclass
+class Found:
+    """What one case showed: counts, and its contradictions in words."""
+
+    counts: Counter[str] = field(default_factory=Counter)
+    notes: list[str] = field(default_factory=list)
+    seconds: float = 0.0
+
+
+def drawn_text(number: int, seed: int = SEED) -> str:
+    """Case file ``number`` of the seed: what people state, and what they leave out."""
+    rng = np.random.default_rng([seed, number])
+
+    def spread(low: float, high: float) -> float:
+        return float(np.exp(rng.uniform(np.log(low), np.log(high))))
+
+    module, load, pace = spread(0.5, 20.0), spread(0.03, 15.0), spread(0.3, 60.0)
+    teeth, shifts = rng.integers(12, 121, 2), rng.uniform(-0.3, 0.7, 2)
+    width = module * float(rng.uniform(4.0, 15.0))
+    torque = load * width * module * 0.5e-3 * module * float(teeth[0])
+    rpm = pace / (0.5e-3 * module * float(teeth[0])) / RPM
+    speeds = [rpm] if rng.random() < 0.8 else [rpm, rpm * float(rng.uniform(1.2, 3.0))]
+    text = (
+        f'[gears]\nmodule = "{module!r} mm"\nface_width = "{width!r} mm"\n'
+        f'pressure_angle = "{float(rng.choice([20.0, 20.0, 17.5, 22.5, 25.0]))} deg"\n'
+    )
+    for name, z, x in zip(("pinion", "wheel"), teeth, shifts, strict=True):
+        text += f"[gears.{name}]\nteeth = {z}\nprofile_shift = {float(x)!r}\n"
+        if rng.random() < 0.2:
+            text += (
+                f'tip_relief = {{ amount = "{module * float(rng.uniform(0.5, 8.0))!r} um", '
+                f'length = "{module * float(rng.uniform(0.1, 0.6))!r} mm" }}\n'
+            )
+        if rng.random() < 0.1:
+            text += 'material = "POM"\n'
+    if rng.random() < 0.7:
+        text += f"[flanks]\naccuracy = {rng.integers(3, 11)}\nseed = {rng.integers(1, 100)}\n"
+        text += 'edition = "1995"\n' * (rng.random() < 0.3)
+    heat = float(rng.uniform(30.0, 130.0))
+    text += f'[oil]\nname = "{sorted(LUBRICANTS)[int(rng.integers(len(LUBRICANTS)))]}"\n'
+    given = rng.random()
+    if given < 0.5:
+        text += f'temperature = "{heat!r} degC"\n'
+    if given < 0.2:
+        bodies = heat + rng.uniform(-20.0, 40.0, 4)
+        places = ("pinion_addendum", "pinion_bore", "wheel_addendum", "wheel_bore")
+        text += "[temperatures]\n" + "".join(
+            f'{place} = "{float(t)!r} degC"\n' for place, t in zip(places, bodies, strict=True)
+        )
+        text += f'housing = "{heat - 15.0!r} degC"\n'
+    if rng.random() < 0.4:
+        text += (
+            f'[backlash]\nvalue = "{module * float(rng.uniform(0.01, 0.1))!r} mm"\n'
+            'direction = "normal"\nextent = "total"\n'
+        )
+    if rng.random() < 0.5:
+        text += f"[dynamics]\ndamping_ratio = {spread(0.01, 0.1)!r}\n"
+    shown = ", ".join(f'"{speed!r} rpm"' for speed in speeds)
+    return f'{text}[operating]\nspeed = [{shown}]\ntorque = "{torque!r} N m"\n{GRID}'
+
+
+def answered(number: int, whole: bool = False, seed: int = SEED) -> Found:
+    """One case through the answers, or the ``whole`` run: what its sentences contradict."""
+    found = Found()
+    began = time.perf_counter()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            result = (run if whole else answers)(load_case(drawn_text(number, seed)))
+            page_of(result).lines()
+            found.notes += contradictions(result)
+        except InputError:
+            found.counts["refused"] += 1
+            return found
+        except Exception as error:  # the trial counts every kind
+            found.counts["exceptions"] += 1
+            found.notes.append(f"{type(error).__name__}: {error}")
+        else:
+            found.counts["sentences"] += len(result.answers)
+            found.counts["sentences with a figure"] += with_figures(result)
+            found.counts.update(one.verdict for one in result.answers)
+    found.counts["cases"] += 1
+    found.counts["contradictions"] += len(found.notes)
+    found.seconds = time.perf_counter() - began
+    return found
+
+
+HEAD = f"""---
+orphan: true
+---
+# Trial of the answers
+
+Made by `make trial-answers` (seed {SEED}, fixed before the first
+run): case files of 12 to 120 teeth, modules of 0.5 to 20 mm, profile shifts of -0.3 to 0.7, four
+pressure angles, classes 3 to 10 by both editions or none, 0.03 to 15 N per mm of width and mm of
+module, 0.3 to 60 m/s, heat given, half given or computed, backlash, damping, relief and plastics.
+
+Each goes through the answers, some through a whole run. Counted as a contradiction: a number of
+a sentence that is no figure beside it, a verdict against its limit, a figure that the stored
+groups have otherwise, two answers that cannot both hold, a number that is none, any exception.
+"""
+
+
+def table(name: str, found: Sequence[Found]) -> list[str]:
+    """The rows of the page for one command."""
+    counts = sum((one.counts for one in found), Counter[str]())
+    what = ("cases", "refused", "sentences", "sentences with a figure", FINE, LOOK, OPEN,
+            "contradictions", "exceptions")  # fmt: skip
+    return [f"| {name}: {one} | {counts[one]} |" for one in what]
+
+
+def trial(whole: bool, wanted: int) -> Iterator[Found]:
+    """So many cases that are not refused, in order."""
+    number = left = 0
+    while left < wanted:
+        one = answered(number, whole)
+        for note in one.notes:
+            print(f"{'run' if whole else 'answers'} {number}: {note}", flush=True)
+        yield one
+        number, left = number + 1, left + one.counts["cases"]
+
+
+def page(rows: Sequence[str]) -> str:
+    """The text of docs/trial_answers.md."""
+    return "\n".join([HEAD, "| what | times |", "|---|---:|", *rows, ""])
+
+
+def main(words: Sequence[str]) -> int:
+    count, runs = (int(word) for word in words) if words else (300, 60)
+    rows = []
+    for name, whole, wanted in (("answers", False, count), ("run", True, runs)):
+        rows += table(name, list(trial(whole, wanted)))
+    print(page(rows))
+    if not words:
+        PAGE.write_text(page(rows), "utf-8")
+    return int(any("contradictions | 0" not in row for row in rows if "contradictions" in row))
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
