@@ -107,7 +107,8 @@ def _resonance(asked: Asked, found: Speeds, main: float) -> Answer:
     strong = [main, *(speed for speed, top in peaks if top > PARTING)]
     off = 100.0 * np.abs(own[:, None] / np.array(strong) - 1.0)
     place, nearest = np.unravel_index(int(off.argmin()), off.shape)
-    value = 0.0 if np.any(factor > PARTING) else float(off.min())
+    shaken = bool(np.any(factor > PARTING))
+    value = 0.0 if shaken else float(off.min())
     figures = {
         "natural": main * asked.case.pair.pinion.teeth / (2e3 * np.pi),
         "main": main / RPM,
@@ -120,7 +121,7 @@ def _resonance(asked: Asked, found: Speeds, main: float) -> Answer:
     tops = [f"{{top[{i}]:.2f}} at {{there[{i}]:~3 rpm}}" for i in range(len(peaks[:4]))]
     words = f"greatest dynamic factors: {', '.join(tops)}" if tops else "no peak stands out"
     where = "{own:~3 rpm} is {off:.1f %} off {strong:~3 rpm}"
-    if value == 0.0:
+    if shaken:
         place = np.argmax(factor)
         figures |= {"own": float(own[place]) / RPM, "factor": float(factor[place])}
         where = "at its own {own:~3 rpm} it is {factor:.2f}"

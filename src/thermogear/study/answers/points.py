@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -19,26 +17,20 @@ from thermogear.study.scuffing import load_stage
 Floats = NDArray[np.float64]
 
 
-class _Number(NamedTuple):
-    unit: str
-    words: str
-
-
-NUMBERS: dict[str, _Number] = {
-    "oil_temperature": _Number("K", "oil temperature"),
-    "tooth_temperature": _Number("K", "temperature of the hotter teeth, without the flash"),
-    "greatest_flash": _Number("K", "greatest flash temperature along the path"),
-    "least_film_parameter": _Number("1", "least film parameter along the path"),
-    "scuffing_margin": _Number(
-        "K", "scuffing temperature less contact temperature, ISO/TR 13989-1"
+NUMBERS: dict[str, tuple[str, str]] = {
+    "oil_temperature": ("K", "oil temperature"),
+    "tooth_temperature": ("K", "temperature of the hotter teeth, without the flash"),
+    "greatest_flash": ("K", "greatest flash temperature along the path"),
+    "least_film_parameter": ("1", "least film parameter along the path"),
+    "scuffing_margin": ("K", "scuffing temperature less contact temperature, ISO/TR 13989-1"),
+    "scuffing_safety": ("1", "safety by integral temperature, ISO/TR 13989-2"),
+    "backlash": ("m", "least backlash, whole gap, along the line of action"),
+    "jam_temperature": (
+        "K",
+        "temperature of the pinion's teeth at which the pair jams, housing as it is",
     ),
-    "scuffing_safety": _Number("1", "safety by integral temperature, ISO/TR 13989-2"),
-    "backlash": _Number("m", "least backlash, whole gap, along the line of action"),
-    "jam_temperature": _Number(
-        "K", "temperature of the pinion's teeth at which the pair jams, housing as it is"
-    ),
-    "jam_margin": _Number("K", "jam temperature less temperature of the pinion's teeth"),
-    "static_error": _Number("m", "transmission error, static and loaded, peak to peak"),
+    "jam_margin": ("K", "jam temperature less temperature of the pinion's teeth"),
+    "static_error": ("m", "transmission error, static and loaded, peak to peak"),
 }
 """Every number with its unit and words; those of the motion are sweeps' own."""
 WANT = (
@@ -53,8 +45,8 @@ UNRATED = ("pinion_speed", "pinion_torque", "gear_temperature", "cold_half_backl
 def answer_variables(dims: tuple[str, ...]) -> dict[str, Variable]:
     """How the numbers are stored over ``dims``."""
     return {
-        name: Variable(dims, "float64", float("nan"), {"units": one.unit, "long_name": one.words})
-        for name, one in NUMBERS.items()
+        name: Variable(dims, "float64", float("nan"), {"units": unit, "long_name": words})
+        for name, (unit, words) in NUMBERS.items()
     }
 
 
