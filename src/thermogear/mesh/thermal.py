@@ -141,7 +141,7 @@ class HotPair:
 
         The thesis's flank knows no such pull.
         """
-        felt = 0.0 if self.model.flank == "thesis" else self.operating.pulled
+        felt = 0.0 if self.model.flank == "thesis" else np.asarray(self.operating.pulled, float)
         over = 1.0 if gear is self.pair.pinion else self.pair.ratio
         varied = self._own("modulus", gear)
         stiffer = 1.0 if varied is None else varied[:, None] / gear.material.youngs_modulus
@@ -154,11 +154,12 @@ class HotPair:
         :func:`~thermogear.heat.thesis_profile.deformed_points`, and straight outward by the pull.
         """
         times, (speed, stiffer) = self.expansion(gear), self._pull(gear)
-        far, turned = deformed_points(gear, self.field(gear), radius, angle, self.model.bore)
-        pulled = centrifugal_displacement(gear, radius, speed, self.model.bore) / stiffer
+        r, theta = np.asarray(radius, dtype=float), np.asarray(angle, dtype=float)
+        far, turned = deformed_points(gear, self.field(gear), r, theta, self.model.bore)
+        pulled = centrifugal_displacement(gear, r, speed, self.model.bore) / stiffer
         return (
-            np.asarray(radius + times * (far - radius) + pulled),
-            np.asarray(angle + times * (turned - angle) - angle * pulled / radius),
+            np.asarray(r + times * (far - r) + pulled),
+            np.asarray(theta + times * (turned - theta) - theta * pulled / r),
         )
 
     def pulled_material(self, s: ArrayLike) -> tuple[Floats, Floats]:
