@@ -101,20 +101,6 @@ def pressure_viscosity(lubricant: Lubricant, temperature: ArrayLike) -> Floats:
     return pressure_viscosity_gold(kinematic_viscosity(lubricant, temperature), lubricant.kind)
 
 
-def barus(viscosity: ArrayLike, pressure: ArrayLike, coefficient: ArrayLike) -> Floats:
-    """Viscosity under pressure by Barus, eta = eta_0 exp(alpha p) [Pa s].
-
-    ``viscosity`` eta_0 [Pa s], ``pressure`` p [Pa], ``coefficient`` alpha [1/Pa]. Any shape.
-    Far too high above about 0.5 GPa: use :func:`roelands` there.
-
-    >>> f"{barus(0.1, 100e6, 20e-9):.3f} Pa s"
-    '0.739 Pa s'
-    """
-    return np.asarray(
-        np.asarray(viscosity) * np.exp(np.asarray(coefficient) * np.asarray(pressure))
-    )
-
-
 def roelands(viscosity: ArrayLike, pressure: ArrayLike, coefficient: ArrayLike) -> Floats:
     """Viscosity under pressure by Roelands, isothermal [Pa s].
 
