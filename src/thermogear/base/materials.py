@@ -154,11 +154,6 @@ class Lubricant:
                 allowed="0 K < lower < upper",
             )
 
-    @property
-    def hottest_bath(self) -> float:
-        """Temperature [K] above which no bath of it exists: its flash point, or 150 C."""
-        return NO_BATH if self.flash_point is None else self.flash_point
-
     def part(self, places: Any) -> Lubricant:
         """The oils of some operating points; an index with a new axis shapes them otherwise."""
         lines = {n: getattr(self, n) for n in ("walther_a", "walther_b", "density_15")}

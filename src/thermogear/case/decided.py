@@ -34,8 +34,7 @@ def decided(
     }
     if around.housing_coefficient_at is not None:
         usual = shown(around.housing_coefficient, "heat transfer coefficient")
-        warm = shown(around.housing_coefficient_at, "temperature")
-        found["gearbox.housing_coefficient"] = f"{usual} with the housing at {warm}"
+        found["gearbox.housing_coefficient"] = usual
     if around.train is not None:
         drawn = "none: the shafts are drawn"
         found |= {"gearbox.shaft_length": drawn, "gearbox.bearing_conductance": drawn}

@@ -120,9 +120,9 @@ class GearboxTable(Table):
         | None
     ) = Field(
         default=None,
-        description="middle of the customary 10 to 25 to still air; grows with the housing's "
-        "temperature by free convection and radiation, a number given does not. Decides, with its "
-        "area, how warm all becomes",
+        description="middle of the customary 10 to 25 to still air, with the housing at 60 degC; "
+        "it grows with the housing's temperature by free convection and radiation, a number given "
+        "does not. Decides, with its area, how warm all becomes",
     )
     oil_housing_coefficient: Annotated[
         float,

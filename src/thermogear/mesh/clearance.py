@@ -23,7 +23,7 @@ from thermogear.mesh.thermal import HotPair, ThermalDeviation
 Floats = NDArray[np.float64]
 
 
-Gaps = tuple[Floats, Floats, Floats]
+Gaps = tuple[Floats, ...]
 """Gaps [m] of one side's flanks by deviations, by the centrifugal pull and by heat, each
 (count, phases, pair) by broadcast."""
 PARTS = ("deviations", "speed", "heat")
@@ -64,7 +64,7 @@ class Clearance:
         return drive, back
 
     @property
-    def gaps(self) -> Gaps:
+    def gaps(self) -> tuple[Floats, Floats]:
         """(e_j, e_j^c) [m] of every candidate pair, (count, phases, pair), heat among them.
 
         Where the drive flanks of the tightest pair touch, e_j - min_j e_j is left between those of

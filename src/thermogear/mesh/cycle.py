@@ -335,12 +335,8 @@ SPRINGS = (
 """The springs of one tooth pair, in the order of storage."""
 
 
-def _spring(name: str, c: _Cycle) -> Floats:
-    return c.parts[name]
-
-
-def _part(name: str, c: _Cycle) -> Floats:
-    return c.gap.parts[name]
+def _one_of(of: Callable[[_Cycle], dict[str, Floats]], name: str, c: _Cycle) -> Floats:
+    return of(c)[name]
 
 
 TABLE: dict[str, tuple[tuple[str, ...], Made]] = {
@@ -371,7 +367,7 @@ TABLE: dict[str, tuple[tuple[str, ...], Made]] = {
     "pinion_shaft_heat": (POINT, lambda c: c.shaft_heat(c.hot.pair.pinion)),
     "wheel_base_growth": (POINT, lambda c: c.base_growth(c.hot.pair.wheel)),
     "wheel_shaft_heat": (POINT, lambda c: c.shaft_heat(c.hot.pair.wheel)),
-    **{name: (PATH, partial(_spring, name)) for name in SPRINGS},
+    **{name: (PATH, partial(_one_of, lambda c: c.parts, name)) for name in SPRINGS},
     "pair_stiffness": (PATH, lambda c: c.elastic.pair_stiffness(c.s)),
     "elastic_stiffness": (PHASE, lambda c: c.curves.stiffness),
     "thermal_stiffness": (PHASE, lambda c: c.thermal),
@@ -401,7 +397,10 @@ TABLE: dict[str, tuple[tuple[str, ...], Made]] = {
     ),
     "cold_half_backlash": (POINT, lambda c: c.hot.half_backlash),
     "least_half_backlash": (POINT, lambda c: c.least),
-    **{f"half_backlash_by_{name}": (POINT, partial(_part, name)) for name in PARTS},
+    **{
+        f"half_backlash_by_{name}": (POINT, partial(_one_of, lambda c: c.gap.parts, name))
+        for name in PARTS
+    },
     "jam_temperature": (POINT, lambda c: c.gap.jam_temperature),
     "proportional_jam_temperature": (POINT, lambda c: c.gap.proportional_jam_temperature),
     "edge_contact_share": (POINT, lambda c: c.curves.edge_share),

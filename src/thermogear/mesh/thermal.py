@@ -136,16 +136,16 @@ class HotPair:
         return replace(self, operating=replace(self.operating, temperatures=hotter))
 
     # --- growth ---------------------------------------------------------------------
-    def _pull(self, gear: Gear) -> tuple[Floats, float | Floats]:
-        """(speed [rad/s] whose centrifugal pull is felt, E over the material's), (count, 1).
+    def _pull(self, gear: Gear) -> Floats:
+        """Speed [rad/s] at which ``gear`` as its material is grows as it does, (count, 1).
 
-        The thesis's flank knows no such pull.
+        Growth goes as rho omega^2/E; the thesis's flank knows none.
         """
-        felt = 0.0 if self.model.flank == "thesis" else self.operating.pulled
+        felt = 0.0 if self.model.flank == "thesis" else np.asarray(self.operating.pulled, float)
         over = 1.0 if gear is self.pair.pinion else self.pair.ratio
         varied = self._own("modulus", gear)
-        stiffer = 1.0 if varied is None else varied[:, None] / gear.material.youngs_modulus
-        return _column(felt * self.operating.speed / over, self.count), stiffer
+        stiffer = 1.0 if varied is None else varied / gear.material.youngs_modulus
+        return _column(felt * self.operating.speed / (over * np.sqrt(stiffer)), self.count)
 
     def grown(self, gear: Gear, radius: ArrayLike, angle: ArrayLike) -> tuple[Floats, Floats]:
         """Where points of a gear's tooth are when it is hot and turns, (count, points).
@@ -153,23 +153,24 @@ class HotPair:
         ``radius`` [m], ``angle`` [rad] from the tooth's centre line: by heat as
         :func:`~thermogear.heat.thesis_profile.deformed_points`, and straight outward by the pull.
         """
-        times, (speed, stiffer) = self.expansion(gear), self._pull(gear)
-        far, turned = deformed_points(gear, self.field(gear), radius, angle, self.model.bore)
-        pulled = centrifugal_displacement(gear, radius, speed, self.model.bore) / stiffer
+        times = self.expansion(gear)
+        r, theta = np.asarray(radius, dtype=float), np.asarray(angle, dtype=float)
+        far, turned = deformed_points(gear, self.field(gear), r, theta, self.model.bore)
+        pulled = centrifugal_displacement(gear, r, self._pull(gear), self.model.bore)
         return (
-            np.asarray(radius + times * (far - radius) + pulled),
-            np.asarray(angle + times * (turned - angle) - angle * pulled / radius),
+            np.asarray(r + times * (far - r) + pulled),
+            np.asarray(theta + times * (turned - theta) - theta * pulled / r),
         )
 
     def pulled_material(self, s: ArrayLike) -> tuple[Floats, Floats]:
         """Normal growth [m] of both flanks at ``s`` [m] by that pull, (count, positions)."""
-
-        def grown(gear: Gear, radius: Floats) -> Floats:
-            speed, stiffer = self._pull(gear)
-            return centrifugal_flank_growth(gear, radius, speed, self.model.bore) / stiffer
-
-        r1, r2 = flank_radii(self.pair, s)
-        return grown(self.pair.pinion, r1), grown(self.pair.wheel, r2)
+        first, second = (
+            centrifugal_flank_growth(gear, radius, self._pull(gear), self.model.bore)
+            for gear, radius in zip(
+                (self.pair.pinion, self.pair.wheel), flank_radii(self.pair, s), strict=True
+            )
+        )
+        return first, second
 
     def growth(self, s: ArrayLike, taken_off: ArrayLike = 0.0) -> tuple[Floats, Floats]:
         """Normal growth [m] of pinion and wheel flank at ``s`` [m] by heat, (count, positions).

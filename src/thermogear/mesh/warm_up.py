@@ -178,7 +178,7 @@ def warm_up(
     >>> duty = Duty(time=[0.0, 600.0], speed=[100.0], torque=[200.0], ambient=[293.15])
     >>> course = warm_up(pair, duty, lubricant("FVA3"), 60e-6)
     >>> f"{course.temperatures['oil'][-1] - 273.15:.1f} C"
-    '24.0 C'
+    '24.1 C'
     """
     box = Gearbox() if gearbox is None else gearbox
     chosen = _Chain(

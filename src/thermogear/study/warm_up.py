@@ -278,7 +278,8 @@ def _steady(case: GearCase, duty: Duty, factors: Mapping[str, float]) -> xr.Data
 
 def _least_gap(case: GearCase, pair: HotPair) -> Floats:
     """Least half backlash over the mesh phase [m], (count,)."""
-    return Clearance(pair, np.arange(PHASES) / PHASES, case.deviations).half_backlash.min(axis=1)
+    gap = Clearance(pair, np.arange(PHASES) / PHASES, case.deviations).half_backlash
+    return np.asarray(gap.min(axis=1))
 
 
 def _worst(case: GearCase, course: WarmUp, steady: xr.Dataset) -> dict[str, Any]:

@@ -23,6 +23,7 @@ from thermogear.case.duty import chosen_point, point_duty
 from thermogear.case.points import excitations, points_of
 from thermogear.case.response import respond
 from thermogear.mesh.balance import Gearbox, HeatBalance
+from thermogear.mesh.balance_table import LOSSES
 from thermogear.mesh.clearance import PARTS
 from thermogear.mesh.excite import EXCITES
 from thermogear.mesh.model import MeshModel
@@ -143,7 +144,7 @@ class Asked:
         box = self.case.gearbox
         found = self._balance(replace(box, measured={**box.measured, "oil": WARMEST_USUAL}))
         losses = found.losses
-        made = losses.mesh + losses.churning + losses.bearing_1 + losses.bearing_2
+        made = sum(np.asarray(getattr(losses, name)) for name in LOSSES)
         made = np.where(found.settled, made, np.nan)
         return made, made - found.steady.heat_out["oil"]
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError, ThermogearError
 from thermogear.base.limits import FINE, LIMITS, LOOK, OPEN
-from thermogear.base.materials import NEVER, Material
+from thermogear.base.materials import NEVER, NO_BATH, Material
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.case.case import GearCase
 from thermogear.heat.transient import HOTTEST
@@ -80,8 +80,10 @@ def mesh(asked: Asked) -> Iterator[Answer]:
 
 
 def heat(asked: Asked) -> Iterator[Answer]:
-    oil, teeth = asked.bodies
-    kind = f"oil_{asked.case.stated.lubricant.kind}"
+    (oil, teeth), used = asked.bodies, asked.case.stated.lubricant
+    kind, flash_point = f"oil_{used.kind}", used.flash_point
+    burning = (flash_point or NO_BATH) - ZERO_CELSIUS
+    bound = "its flash point" if flash_point else "where its flash point is not known"
     held = "oil" in asked.case.gearbox.measured
     of_teeth = _tooth_limit(asked.case)
     for point in asked.points:
@@ -95,10 +97,7 @@ def heat(asked: Asked) -> Iterator[Answer]:
             continue
         how, figures = ("given", {}) if held else _how(asked, point, 0)
         sentence = f"The oil is at {warm:.0f} °C ({how})."
-        burning = asked.case.stated.lubricant.hottest_bath - ZERO_CELSIUS
         if warm > burning:
-            known = asked.case.stated.lubricant.flash_point is not None
-            bound = "its flash point" if known else "where its flash point is not known"
             excess, more = _excess(asked, point)
             sentence = f"{sentence[:-1]}: no oil bath exists above {burning:.0f} °C, {bound}"
             sentence += f"; {excess}." if excess else "."
