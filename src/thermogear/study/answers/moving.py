@@ -49,17 +49,16 @@ def speeds(asked: Asked) -> Iterator[Answer]:
         for name in ("resonance", "contact_loss", "back_contact", "coexisting"):
             yield undecided(SPEEDS, name, why)
         return
-    place = asked.hardest
-    natural = float(np.sqrt(asked.hot["mean_stiffness"][place] / asked.case.equivalent_mass))
-    yield _resonance(asked, found, natural / asked.case.pair.pinion.teeth)
+    natural = np.sqrt(asked.hot["mean_stiffness"][asked.hardest] / asked.case.equivalent_mass)
+    yield _resonance(asked, found, float(natural) / asked.case.pair.pinion.teeth)
     speed, share = found.column("pinion_speed"), found.column("contact_loss_share")
     moving = np.isfinite(asked.motion["contact_loss_share"])
     parted = asked.motion["contact_loss_share"][moving] > LOST
     struck = asked.motion["mesh_force_min"][moving] < 0.0
     ends = (float(speed.min()), float(speed.max()))
-    most = ", for up to {most:.0f %} of the time"
     for name, ranges, happens, never, apart in (
-        ("contact_loss", found.lost, ("Flanks lose contact", most), "Flanks keep contact", parted),
+        ("contact_loss", found.lost, ("Flanks lose contact", ", for up to {most:.0f %} of the time"),
+         "Flanks keep contact", parted),
         ("back_contact", found.back, ("Teeth hit the back side", ""), "No tooth hits the back side",
          struck),
     ):  # fmt: skip
@@ -69,8 +68,9 @@ def speeds(asked: Asked) -> Iterator[Answer]:
             sentence += (
                 f"{'; so at' if ranges else ', yet not at'} {{points}} of {{of}} operating points"
             )
-        figures["most"] = 100.0 * float(share.max())
-        figures |= {"points": int(apart.sum()), "of": apart.size}
+        figures |= {
+            "most": 100.0 * float(share.max()), "points": int(apart.sum()), "of": apart.size
+        }  # fmt: skip
         if not apart.size:
             words = f"{sentence[0].lower()}{sentence[1:]}"
             sentence = f"Not decided at its own speeds, too slow to vibrate; faster, {words}"
