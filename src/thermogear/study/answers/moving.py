@@ -57,8 +57,9 @@ def speeds(asked: Asked) -> Iterator[Answer]:
     struck = asked.motion["mesh_force_min"][moving] < 0.0
     ends = (float(speed.min()), float(speed.max()))
     for name, ranges, happens, never, apart in (
-        ("contact_loss", found.lost, ("Flanks lose contact", ", for up to {most:.0f %} of the time"),
-         "Flanks keep contact", parted),
+        ("contact_loss", found.lost,
+         ("Flanks lose contact", ", for up to {most:.0f %} of the time"), "Flanks keep contact",
+         parted),
         ("back_contact", found.back, ("Teeth hit the back side", ""), "No tooth hits the back side",
          struck),
     ):  # fmt: skip
