@@ -14,7 +14,7 @@ BENCH_STAMP := .bench-venv/.installed
 AUDIT_BIN := .audit-venv/bin
 AUDIT_STAMP := .audit-venv/.installed
 
-.PHONY: audit bench bench-coordinates bench-geared bench-measure bench-paths bench-shafts bench-train-map check chromium clean compile demo friction-evidence house licences lint lock look mutate same sbom test trial-app trial-attacks trial-base-sets trial-branches trial-coverage trial-damage trial-defects trial-experiment trial-heat trial-hostile trial-labels trial-located trial-long trial-pairs trial-public trial-shafts trial-stamps trial-swings trial-teeth trial-trains trial-turning unit
+.PHONY: audit bench bench-coordinates bench-geared bench-measure bench-paths bench-shafts bench-train-map check chromium clean compile demo friction-evidence house licences lint lock look mutate same sbom test trial-answers trial-app trial-attacks trial-base-sets trial-branches trial-coverage trial-damage trial-defects trial-experiment trial-heat trial-hostile trial-labels trial-located trial-long trial-pairs trial-public trial-shafts trial-stamps trial-swings trial-teeth trial-trains trial-turning unit
 
 demo: $(STAMP)  ## the main job: the rig's case file to a report
 	$(BIN)/thermogear example rig > .venv/rig.toml
@@ -148,6 +148,9 @@ trial-trains: $(STAMP)  ## 200 random drive trains: every label asked four ways,
 
 trial-attacks: $(STAMP)  ## what a stranger may try with the app, each attempt at a real server, a minute; docs/trial_attacks.md
 	@$(BIN)/python checks/trial_attacks.py
+
+trial-answers: $(STAMP)  ## 300 random cases through the answers, 60 through a run: no sentence against its data; docs/trial_answers.md
+	@$(BIN)/python checks/trial_answers.py
 
 trial-app: $(STAMP)  ## the app walked through in a browser: actions, times, the pictures of its page (docs/trial_app.md)
 	$(BIN)/python checks/app_walk.py

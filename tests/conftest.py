@@ -247,7 +247,10 @@ def celsius(value: float) -> float:
 
 @pytest.fixture(scope="session")
 def hot_rig() -> Operating:
-    """1000, 2000, 3000 rpm at 100 N m; addenda 140 C, bores 120 C, housing 100 C, T0 20 C."""
+    """1000, 2000, 3000 rpm at 100 N m; addenda 140 C, bores 120 C, housing 100 C, T0 20 C.
+
+    Grown by heat alone, so that laws of heat hold to the last bit.
+    """
     return Operating(
         speed=np.array([1000.0, 2000.0, 3000.0]) * np.pi / 30.0,
         torque=np.array(100.0),
@@ -262,4 +265,5 @@ def hot_rig() -> Operating:
             housing=celsius(100),
         ),
         half_backlash=125e-6,
+        pulled=0.0,
     )

@@ -16,8 +16,9 @@ from thermogear.base.vocabulary import STATUS
 from thermogear.case.case import GearCase, load_case
 from thermogear.case.derived import facts
 from thermogear.case.examples import example_text
+from thermogear.heat.gearbox import Surroundings
 from thermogear.heat.measured_temperature import InfraredReading
-from thermogear.mesh.balance import heat_balance
+from thermogear.mesh.balance import Gearbox, heat_balance
 from thermogear.study.run import balances, carried_uncertainty, run
 
 GIVEN = r"^(pinion_addendum|wheel_addendum|\w+_below_addendum) = .*\n"
@@ -58,6 +59,7 @@ def test_left_out_temperatures_are_those_of_the_heat_balance(tree: xr.DataTree) 
         case.stated.lubricant,
         case.cold_backlash.half,
         case.models[0],
+        gearbox=Gearbox(surroundings=Surroundings(housing_coefficient_at=None)),
     )
     balance = tree["balance"].isel(bundle=0)
     np.testing.assert_allclose(

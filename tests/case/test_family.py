@@ -81,7 +81,7 @@ def test_jammed_points_are_a_status(rig):
 
 
 def test_table_between_speeds_is_exact_where_nothing_depends_on_speed(rig):
-    family = GearFamily(rig, ("pinion_speed",))
+    family = GearFamily(rig, ("pinion_speed",), state="undeformed")
     table = Tabulated.of(family, np.linspace(100.0, 1200.0, 5))
     at = np.array([[150.0], [555.5], [1200.0]])
     for name in ("period", "stiffness", "force", "half_backlash"):
@@ -134,19 +134,21 @@ def test_standstill_is_refused(rig):
         GearFamily(rig, ("pinion_speed",))(np.array([[0.0]]))
 
 
-def test_speeds_that_share_heat_and_load_share_a_mesh_cycle(rig):
-    """Springs of given temperatures do not know the speed: row by row gives the same numbers."""
+@pytest.mark.parametrize("state", ["hot", "undeformed"])
+def test_speeds_that_share_heat_and_load_share_a_mesh_cycle(rig, state):
+    """Row by row gives the same numbers; gears as drawn do not know the speed at all."""
     rows = np.array([[50.0, 80.0], [300.0, 120.0], [900.0, 80.0], [90.0, 120.0]])
-    whole = GearFamily(rig, ("pinion_speed", "pinion_torque"))
+    whole = GearFamily(rig, ("pinion_speed", "pinion_torque"), state=state)
     together = whole(rows)
     for place, row in enumerate(rows):
-        alone = GearFamily(rig, ("pinion_speed", "pinion_torque"))(row[None])
+        alone = GearFamily(rig, ("pinion_speed", "pinion_torque"), state=state)(row[None])
         for name in ("period", "damping", "half_backlash", "stiffness", "force"):
             one, all_ = getattr(alone.flat, name), getattr(together.flat, name)
             assert np.array_equal(one[0], all_[place]), name
     assert len(whole._springs) == 1
     again = whole(rows[:, :] * [2.0, 1.0])
-    assert np.array_equal(again.flat.stiffness, together.flat.stiffness)
+    same = np.array_equal(again.flat.stiffness, together.flat.stiffness)
+    assert same == (state == "undeformed")
     assert again.mesh_frequency == pytest.approx(2.0 * together.mesh_frequency, rel=1e-15)
 
 

@@ -61,9 +61,13 @@ def test_computed_heat_stays_along_speed_and_torque() -> None:
     case = load_example("rig", FEW)
     assert isinstance(case, GearCase)
     point = of_case(case, operating=1, state="computed")
-    slow, fast = point.points, point.along("rpm")(3.0 * point.value("rpm"))
-    assert fast.half_backlash == slow.half_backlash
-    assert fast.stiffness == slow.stiffness
+    slow, mid, fast = (point.along("rpm")(f * point.value("rpm")) for f in (1.0, 2.0, 3.0))
+    assert slow.half_backlash == point.points.half_backlash
+    # only what the speed itself pulls the gears outward by, with its square
+    assert (slow.half_backlash - fast.half_backlash) == pytest.approx(
+        8.0 / 3.0 * (slow.half_backlash - mid.half_backlash), rel=1e-6
+    )
+    assert fast.stiffness == pytest.approx(slow.stiffness, rel=1e-3)
     swept = family(case, ("rpm",), state="computed")
     rows = swept(np.array([[point.value("rpm")], [3.0 * point.value("rpm")]]))
     assert rows.half_backlash[0] == slow.half_backlash[0]

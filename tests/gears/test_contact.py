@@ -8,11 +8,9 @@ import numpy as np
 import pytest
 
 from thermogear.gears.contact import (
-    FILM_POINTS,
     back_flank_position,
     curvature_radii,
     entrainment_velocity,
-    film_points,
     flank_radii,
     hertz_half_width,
     hertz_pressure,
@@ -156,11 +154,3 @@ def test_back_flank_of_a_shifted_pair_by_turning_the_tooth() -> None:
     assert (got - s) / pair.base_pitch == pytest.approx(
         round((got - s) / pair.base_pitch), abs=1e-9
     )
-
-
-def test_film_points_stand_in_order_on_the_path() -> None:
-    pair = GearPair(Gear(25, 5e-3), Gear(75, 5e-3))
-    points = dict(zip(FILM_POINTS, film_points(pair), strict=True))
-    assert list(points.values()) == sorted(points.values())
-    assert (points["A"], points["C"], points["E"]) == (pair.path.a, pair.path.c, pair.path.e)
-    assert points["AB"] - points["A"] == pytest.approx(points["B"] - points["AB"])

@@ -113,7 +113,6 @@ def solved(g: Given) -> loaded.LoadedMesh:
 Formula = Callable[[Given], object]
 FORMULAS: dict[str, tuple[tuple[int, int, int], Formula]] = {
     "path_of_contact": (LENGTH, lambda g: contact.path_of_contact(g.pair)),
-    "film_points": (LENGTH, lambda g: contact.film_points(g.pair)),
     "pair_positions": (LENGTH, lambda g: contact.pair_positions(g.pair, g.phase)),
     "mirror_position": (LENGTH, lambda g: contact.mirror_position(g.pair)),
     "back_flank_position": (LENGTH, lambda g: contact.back_flank_position(g.pair, g.s)),

@@ -136,6 +136,24 @@ def test_exchanging_the_gears_changes_nothing() -> None:
     assert np.sort(forth.min(axis=-1)) == pytest.approx(np.sort(back.min(axis=-1)), abs=1e-10)
 
 
+@pytest.mark.parametrize(("module", "teeth", "edition"), [(0.6e-3, (19, 90), "1995"),
+                                                      (12e-3, (31, 44), "2013")])  # fmt: skip
+def test_no_drawing_leads_by_more_than_its_tolerances(
+    module: float, teeth: tuple[int, int], edition: str
+) -> None:
+    """Unloaded, peak to peak: at most f_Halpha + f_falpha of both gears, whatever the seed."""
+    pair = GearPair(*(Gear(z, module) for z in teeth))
+    limits = [flank_tolerances(z, module, grade=7, edition=edition) for z in teeth]
+    allowed = sum(one.profile_slope + one.profile_form for one in limits)
+    points = mesh_points(pair, np.arange(60) / 60.0)
+    swings = []
+    for seed in range(10):
+        flanks = graded_flanks(pair, 7, seed=seed, edition=edition)
+        swings.append(float(np.ptp(first_touch(points, flanks).gap.min(axis=-1))))
+    assert max(swings) <= allowed
+    assert max(swings) > 0.3 * allowed
+
+
 def test_what_is_refused() -> None:
     for call, message in (
         (

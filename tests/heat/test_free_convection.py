@@ -8,12 +8,9 @@ from scipy.integrate import solve_bvp
 
 from thermogear import GearPair, Surroundings, thermal_network
 from thermogear.base.materials import lubricant
-from thermogear.heat.free_convection import (
-    free_face_convection,
-    oil_expansion,
-    with_free_convection,
-)
+from thermogear.heat.free_convection import oil_expansion, with_free_convection
 from thermogear.heat.gearbox import Losses
+from thermogear.heat.still_air import free_face_convection
 
 OIL = lubricant("M100")
 K, NU, PR = 0.135, 40e-6, 500.0

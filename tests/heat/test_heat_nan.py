@@ -8,7 +8,6 @@ import pytest
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.heat import convection
 from thermogear.heat.convection import disc_nusselt, rotating_disc_gradient
-from thermogear.heat.expansion import jam_temperature
 from thermogear.heat.film import film_parameter, regime, regime_shares
 from thermogear.heat.gearbox import Losses
 from thermogear.heat.measured_temperature import infrared_temperature
@@ -40,14 +39,6 @@ def test_a_warm_up_wants_numbers_everywhere() -> None:
     empty = ThermalNetwork((LINK,), {"body": 50.0}, AMBIENT, {"body": NAN})
     with pytest.raises(InputError, match=r"^capacity: got \[nan\]; allowed > 0 J/K$"):
         empty.transient([0.0, 1.0], {"body": 293.15})
-
-
-def test_a_backlash_that_is_unknown_has_no_jam_temperature() -> None:
-    """nan says that the backlash never closes: that must have been seen."""
-    with pytest.raises(ConvergenceError, match=r"^half backlash at 350 K: nan, so nobody can say"):
-        jam_temperature(lambda t: NAN if t > 340.0 else 1e-4, low=300.0, high=400.0, scan=3)
-    with pytest.raises(ConvergenceError, match=r"^half backlash at 300 K: nan"):
-        jam_temperature(lambda t: NAN, low=300.0, high=400.0)
 
 
 def test_an_unknown_film_is_in_no_regime() -> None:

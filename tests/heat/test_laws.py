@@ -28,7 +28,6 @@ from thermogear.heat.laws import (
     iso_13989_1,
     iso_13989_2,
     lubricant_factor,
-    matsumoto_share,
     schlenk,
     xu_kahraman,
 )
@@ -120,7 +119,6 @@ def test_shares_of_boundary_friction() -> None:
     step = 1e-6
     slope = (doleschel_share(2.0 - step) - doleschel_share(2.0)) / step
     assert abs(float(slope)) < 1e-6  # no kink
-    assert matsumoto_share([0.5, 1.0, 10.0, 100.0, 1e4]).tolist() == [0.0, 0.0, 0.5, 1.0, 1.0]
 
 
 def state(**changed: object) -> ContactState:

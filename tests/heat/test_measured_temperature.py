@@ -7,12 +7,10 @@ import pytest
 
 from thermogear.base.errors import InputError
 from thermogear.base.materials import ZERO_CELSIUS
-from thermogear.heat.expansion import RadialField
 from thermogear.heat.measured_temperature import (
     InfraredReading,
     ThermocoupleReading,
     band_radiance,
-    field_uncertainty,
     infrared_signal,
     infrared_temperature,
     surface_temperature,
@@ -113,26 +111,6 @@ def test_infrared_uncertainty_is_the_sum_of_squares_and_short_waves_win() -> Non
     assert one.uncertainty() == pytest.approx(abs(slope) * 0.05, rel=1e-5)
     black = InfraredReading(indicated=380.0, emissivity=1.0, surroundings=300.0, u_emissivity=0.05)
     assert black.uncertainty() == pytest.approx((380.0**4 - 300.0**4) / (4 * 380.0**3) * 0.05)
-
-
-def test_uncertainty_carries_into_the_field() -> None:
-    """T at the pitch circle weighs T_a and T_x by its logarithmic place."""
-    place = math.log(0.0625 / 0.025) / math.log(0.0675 / 0.025)
-
-    def at_pitch(addendum: float, bore: float) -> float:
-        return float(
-            RadialField(
-                bore_radius=0.025,
-                tip_radius=0.0675,
-                bore_temperature=bore,
-                addendum_temperature=addendum,
-                reference=293.15,
-            ).temperature(0.0625)
-        )
-
-    spread = field_uncertainty(at_pitch, addendum=(380.0, 2.0), bore=(360.0, 1.0))
-    assert spread == pytest.approx(math.hypot(2.0 * place, 1.0 - place), rel=1e-8)
-    assert field_uncertainty(at_pitch, addendum=(380.0, 0.0), bore=(360.0, 0.0)) == 0.0
 
 
 @pytest.mark.parametrize(

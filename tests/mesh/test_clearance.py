@@ -10,9 +10,10 @@ import pytest
 
 from conftest import Compared
 from thermogear import Gear, GearPair, MeshModel, Operating, Temperatures, mesh_cycle
-from thermogear.base.materials import MATERIALS, ZERO_CELSIUS
+from thermogear.base.materials import MATERIALS, ZERO_CELSIUS, lubricant
 from thermogear.base.vocabulary import STATUS
 from thermogear.dynamics.load_shared import LoadSharedModel
+from thermogear.gears.centrifugal import centrifugal_displacement
 from thermogear.gears.deviations import (
     BasePitchDifference,
     Deviation,
@@ -147,10 +148,17 @@ def test_both_forms_of_the_mesh_force_leave_one_clearance(
 def test_at_its_jam_temperature_a_pair_has_no_clearance_left(
     hot_rig: Operating, kind: str, compared: Compared
 ) -> None:
-    """Both readings: gears over a housing as it is, and everything in proportion."""
+    """Both readings: gears over a housing as it is, and everything in proportion.
+
+    At a speed that takes backlash too, which no temperature changes.
+    """
     devices = DEVIATIONS[kind]
     state = warm(120.0, 95.0, 50.0)
-    before = mesh_cycle(SMALL, point(hot_rig, state), deviations=devices, mesh_positions=24)
+    fast = replace(point(hot_rig, state), speed=np.array([3000.0]), pulled=1.0)
+    before = mesh_cycle(SMALL, fast, deviations=devices, mesh_positions=24)
+    parts = [float(before[f"half_backlash_by_{n}"][0]) for n in ("deviations", "speed", "heat")]
+    assert parts[1] < -1e-6
+    assert 60e-6 + sum(parts) == pytest.approx(float(before["least_half_backlash"][0]), abs=1e-18)
     rise = float(before["jam_temperature"][0] - state.pinion_addendum)
     factor = float(before["proportional_jam_temperature"][0] - T0) / 100.0
     bodies = ("pinion_addendum", "pinion_bore", "wheel_addendum", "wheel_bore")
@@ -160,11 +168,40 @@ def test_at_its_jam_temperature_a_pair_has_no_clearance_left(
         **{name: T0 + factor * (getattr(state, name) - T0) for name in (*bodies, "housing")},
     )
     for jammed in (alone, together):
-        there = mesh_cycle(SMALL, point(hot_rig, jammed), deviations=devices, mesh_positions=24)
+        at_jam = replace(fast, temperatures=jammed)
+        there = mesh_cycle(SMALL, at_jam, deviations=devices, mesh_positions=24)
         least = float(there["half_backlash_curve"].min())
         compared("least half backlash at the jam", "0", least / 60e-6, 1e-9)
     assert factor > 1.0
     assert rise > 0.0
+
+
+def test_centrifugal_growth_takes_backlash_along_the_line_of_action() -> None:
+    """j = sum 2 u (sin a - psi cos a) of both flanks; none as drawn, none in the thesis."""
+    pair = GearPair(Gear(40, 4e-3), Gear(80, 4e-3))
+    cold = Operating(
+        speed=[2618.0], torque=[100.0], lubricant=lubricant("M100"), oil_temperature=T0,
+        temperatures=Temperatures.uniform(T0, reference=T0), half_backlash=100e-6,
+    )  # fmt: skip
+    model = MeshModel.consistent().override(bore="shaft", stiffness="textbook-30-degree",
+                                            sharing="equal")  # fmt: skip
+    alpha, lost = np.radians(20.0), 0.0
+    for gear, speed in ((pair.pinion, 2618.0), (pair.wheel, 1309.0)):
+        u = centrifugal_displacement(gear, gear.pitch_radius, speed, "shaft")
+        lost += float(u) * (np.sin(alpha) - 0.5 * np.pi / gear.teeth * np.cos(alpha))
+    # 23 and 47 um outward, 48 of 200 um of backlash in both discs alike without their teeth's width
+    assert 2e6 * lost == pytest.approx(46.4, abs=0.3)
+    found = mesh_cycle(pair, cold, model, mesh_positions=24)
+    curve = found["half_backlash_curve"].values[0]
+    assert np.abs(100e-6 - lost - curve).max() < 0.05 * lost
+    assert float(found["half_backlash_by_heat"][0]) == 0.0
+    assert float(found["pinion_deformation"].max()) > 0.0
+    for still in (
+        mesh_cycle(pair, cold.as_drawn(), model, mesh_positions=24),
+        mesh_cycle(pair, cold, MeshModel.thesis(), mesh_positions=24),
+    ):
+        assert float(still["half_backlash_by_speed"][0]) == 0.0
+        assert np.all(still["half_backlash_curve"].values == 100e-6)
 
 
 @pytest.mark.parametrize(

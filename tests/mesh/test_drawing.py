@@ -194,6 +194,7 @@ def test_the_gears_of_one_temperature_are_the_drawn_ones_larger() -> None:
         oil_temperature=cold.oil_temperature,
         temperatures=Temperatures.uniform(T0 + 100.0, reference=T0),
         half_backlash=60e-6,
+        pulled=0.0,
     )
     drawing = Drawn(pair, {"undeformed": cold, "hot": warm}).drawing
     first, last = drawing.states

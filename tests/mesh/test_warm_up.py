@@ -64,6 +64,16 @@ def steadily(rig: GearPair) -> WarmUp:
     return run(rig)
 
 
+def test_a_leap_of_the_speed_jams_at_once() -> None:
+    """Centrifugal growth belongs to the piece: the jam is told where the faster one begins."""
+    pair = GearPair(Gear(40, 4e-3), Gear(80, 4e-3))
+    work = duty((0.0, 100.0, 1.0), (1.0, 2600.0, 1.0), (1.02, 0.0, 0.0))
+    course = warm_up(pair, work, OIL, 25e-6, MODEL, tolerance=0.1)
+    assert course.jams.tolist() == [60.0]
+    assert course.worst.piece == 1
+    assert course.half_backlash[course.piece == 0].min() > 24e-6
+
+
 def test_starts_at_the_ambient_and_ends_at_the_steady_state(
     rig: GearPair, steadily: WarmUp
 ) -> None:

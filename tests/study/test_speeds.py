@@ -5,8 +5,9 @@ import pytest
 import xarray as xr
 
 from said import numbers
+from thermogear.base.display import rounded, worded
 from thermogear.base.units import RPM
-from thermogear.study.speeds import Speeds, rpm, told
+from thermogear.study.speeds import Speeds, told
 
 
 def speeds(speed, factor, lost, least):
@@ -48,10 +49,10 @@ def test_two_motions_of_one_speed_make_a_range():
 
 
 def test_speeds_in_words():
-    assert [rpm(value * RPM) for value in (20123.0, 1994.0, 340.4, 12.34)] == [
+    assert [rounded(value, 3) for value in (20123.0, 1994.0, 340.4, 12.34)] == [
         "20100", "1990", "340", "12.3"
     ]  # fmt: skip
     many = [(100.0 * RPM, 200.0 * RPM), (300.0 * RPM, 300.0 * RPM)]
     ends = (50.0 * RPM, 900.0 * RPM)
-    assert numbers(told(many, ends=ends)) == [100.0, 200.0, 300.0]
-    assert numbers(told(many * 3, ends=ends))[-1] == 3.0  # as many more
+    assert numbers(worded(*told(many, ends=ends))[0]) == [100.0, 200.0, 300.0]
+    assert numbers(worded(*told(many * 3, ends=ends))[0])[-1] == 3.0  # as many more

@@ -45,7 +45,12 @@ def tree() -> xr.DataTree:
 def test_a_point_of_the_map_is_the_point_alone(tree: xr.DataTree) -> None:
     case = rig()
     alone = heat_balance(
-        case.pair, SPEEDS[1], TORQUES[1], case.stated.lubricant, case.cold_backlash.half
+        case.pair,
+        SPEEDS[1],
+        TORQUES[1],
+        case.stated.lubricant,
+        case.cold_backlash.half,
+        gearbox=case.gearbox,
     )
     cycle = mesh_cycle(
         case.pair,
@@ -99,7 +104,9 @@ def test_conclusion_one_on_the_rig(tree: xr.DataTree) -> None:
     np.testing.assert_array_equal(rising.sel(quantity="growth").values, 1.0)
     flash = rising.sel(quantity="flash")
     np.testing.assert_array_equal(flash.sel(lubrication="dry").values, 1.0)
-    np.testing.assert_array_equal(flash.sel(lubrication="mixed").values, 1.0)
+    # at 50 N m and 2500 rpm by 0.05 % less than at 1500 rpm: both gears grow with their speed
+    mixed = flash.sel(lubrication="mixed")
+    np.testing.assert_array_equal(mixed.sel(axis=["speed", "torque"]).values, [0.75, 1.0])
     # mixed friction falls with speed here; dry is constant
     friction = rising.sel(quantity="friction")
     assert float(friction.sel(lubrication="mixed", axis="speed")) == 0.0
@@ -108,7 +115,8 @@ def test_conclusion_one_on_the_rig(tree: xr.DataTree) -> None:
     assert np.isnan(float(rank.sel(lubrication="dry")))
     np.testing.assert_array_equal(checked["mixed_below_dry"].values, 1.0)
     claims = {row["claim"]: row["verdict"] for row in json.loads(tree.attrs["verdicts"])}
-    assert claims["flash temperature rises with speed, mixed"] == "holds"
+    partly = "holds in part"
+    assert claims["flash temperature rises with speed, mixed"] == partly
     assert claims["flash temperature rises with speed, dry"] == "holds"
     assert claims["friction coefficient rises with speed, dry"] == "does not hold"
 

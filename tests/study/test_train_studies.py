@@ -63,8 +63,9 @@ NOTHING = "Nothing loses contact."
 UNKNOWN = "Of no point it is known what loses contact."
 SCATTERED = "The drive flank parts at 17 % of the points."
 SAID = (
-    "The drive flank parts from 3000 rpm on, from 80 °C on; the back flank is hit from 3300 rpm "
-    "on, from 100 °C on; bearing pinion right is unloaded at times up to 40 °C."
+    "The drive flank parts from 3000 to 3300 rpm (last computed), from 80 to 100 °C (last "
+    "computed); the back flank is hit at 3300 rpm (last computed), at 100 °C (last computed); "
+    "bearing pinion right is unloaded at times at 40 °C (first computed)."
 )
 CLASSES = [
     "unloaded at times: pinion left",

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass
+from string import Formatter
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -118,6 +121,35 @@ def exactly(value: float, digits: int = 6) -> str:
     return text.rstrip("0").rstrip(".") if "." in text and "·" not in text else text
 
 
+def rounded(value: float, digits: int) -> str:
+    """A number to ``digits`` significant figures, the rest zeros, without a power of ten."""
+    return f"{float(f'{value:.{digits - 1}e}'):.10g}"
+
+
+class _Words(Formatter):
+    """Fields as ``{name:.1f µm}``: a format, or ~3 for so many figures, and perhaps a unit."""
+
+    def format_field(self, value: Any, format_spec: str) -> str:
+        form, _, unit = format_spec.partition(" ")
+        text = rounded(value, int(form[1:])) if form.startswith("~") else format(value, form)
+        return f"{text} {unit}".rstrip()
+
+
+def worded(words: str, figures: Mapping[str, Any]) -> tuple[str, dict[str, str]]:
+    """``words`` with their ``figures`` in place of ``{name:.1f µm}``, and the unit of each name.
+
+    A figure is a number in the unit of its last place, or a list of them: ``{name[0]:.1f}``; after
+    a tilde comes the number of significant figures. Without figures the words stay as they are.
+
+    >>> worded("Of {gap[0]:.0f} or {gap[1]:.1f µm}.", {"gap": [129.7, 112.34]})
+    ('Of 130 or 112.3 µm.', {'gap': 'µm'})
+    """
+    if not figures:
+        return words, {}
+    units = dict(re.findall(r"{(\w+)[^:}]*(?::\S*?(?: ([^}]*))?)?}", words))
+    return _Words().vformat(words, (), figures), units
+
+
 def span(values: ArrayLike, digits: int = 3) -> str:
     """The range of ``values`` as one number, or "low to high"."""
     found = np.asarray(values, dtype=float)
@@ -126,6 +158,24 @@ def span(values: ArrayLike, digits: int = 3) -> str:
         return "–"
     low, high = exactly(float(found.min()), digits), exactly(float(found.max()), digits)
     return low if low == high else f"{low} to {high}"
+
+
+def stretches(values: ArrayLike, flags: NDArray[np.bool_], most: int = 3) -> str:
+    """Where ``flags`` hold along an axis of rising ``values``, in words: "3 to 5.5, 7".
+
+    An end of the axis says that it is one: what lies beyond was not computed. Of more than ``most``
+    stretches their number of values and whole reach.
+
+    >>> stretches([1.0, 2.0, 3.0, 4.0], np.array([True, True, False, True]))
+    '1 (first computed) to 2, 4 (last computed)'
+    """
+    at = np.asarray(values, dtype=float)
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], flags.astype(int), [0]]))).reshape(-1, 2)
+    if len(edges) > most:
+        return f"{int(flags.sum())} values, {span(at[flags], 6)}"
+    marks = {0: " (first computed)", at.size - 1: " (last computed)"}
+    words = [exactly(float(value)) + marks.get(place, "") for place, value in enumerate(at)]
+    return ", ".join(words[a] if b - a == 1 else f"{words[a]} to {words[b - 1]}" for a, b in edges)
 
 
 def reach(values: ArrayLike, form: str = ".4g", between: str = " .. ") -> str:

@@ -89,6 +89,10 @@ LUBRICANT_KINDS: dict[str, str] = {
 }
 """Base oil families: what pressure-viscosity and lubricant factors are tabulated by."""
 
+NO_BATH = ZERO_CELSIUS + 150.0
+"""Temperature [K] above which no oil bath is kept whose flash point is not known (ours: flash
+points of gear oils are 180 to 260 C, and oil that hot lasts days)."""
+
 _WALTHER_SHIFT = 0.7  # mm^2/s, ASTM D341 above 2 mm^2/s (DIN 51563 prints 0.8)
 
 
@@ -100,7 +104,8 @@ class Lubricant:
     kg/m^3 (form of ISO/TR 15144-1 eq. 20, whose slope is 0.7 kg/(m^3 K)). ``kind`` is one of
     :data:`LUBRICANT_KINDS`. ``thermal_conductivity`` [W/(m K)] and ``specific_heat``
     [J/(kg K)] are taken constant. ``temperature_range`` [K] is where the line is trusted;
-    outside it the viscosity functions warn. ``walther_a``, ``walther_b`` and ``density_15`` may be
+    outside it the viscosity functions warn; ``flash_point`` [K], None where it is not known.
+    ``walther_a``, ``walther_b`` and ``density_15`` may be
     arrays, one entry for each operating point: oils side by side.
 
     >>> oil = Lubricant.from_two_points("oil", (313.15, 100e-6), (373.15, 11e-6))
@@ -118,6 +123,7 @@ class Lubricant:
     thermal_conductivity: float = 0.135
     specific_heat: float = 2000.0
     temperature_range: tuple[float, float] = (ZERO_CELSIUS - 20.0, ZERO_CELSIUS + 150.0)
+    flash_point: float | None = None
 
     def __post_init__(self) -> None:
         if self.kind not in LUBRICANT_KINDS:

@@ -125,12 +125,20 @@ QUANTITIES: dict[str, Quantity] = {
     "half_backlash_curve": Quantity("m", "half backlash along the line of action", "b′(φ)"),
     "half_backlash": Quantity("m", "half backlash, mean over a mesh period", "b′"),
     "least_half_backlash": Quantity("m", "half backlash, least over a mesh period", "b′_min"),
+    **{
+        f"half_backlash_by_{name}": Quantity("m", f"what {words} to the cold half backlash")
+        for name, words in (
+            ("deviations", "flank deviations add"),
+            ("speed", "the centrifugal growth of both gears adds, after the deviations,"),
+            ("heat", "heat adds, after deviations and centrifugal growth,"),
+        )
+    },
     "edge_contact_share": Quantity(
         "1", "share of the mesh period in which a tip corner carries load"
     ),
     "cold_half_backlash": Quantity("m", "cold half backlash, flanks without deviations", "b"),
     "kinematic_error": Quantity(
-        "m", "unloaded error of both flanks' touch, by deviations and heat", "e_k"
+        "m", "unloaded error of both flanks' touch, by deviations, speed and heat", "e_k"
     ),
     "spring_error": Quantity(
         "m", "error of the one-spring mesh force, mean removed (elasticity not in it)", "e_0"

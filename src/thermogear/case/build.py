@@ -8,7 +8,7 @@ from __future__ import annotations
 import cmath
 import warnings
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, TypeVar
 
@@ -22,6 +22,7 @@ from thermogear.base.materials import MATERIALS, Lubricant, Material
 from thermogear.base.units import ROUNDED, ZERO_CELSIUS
 from thermogear.case.backlash import Backlash, from_tolerances, from_value, recommended
 from thermogear.case.fields import BODY
+from thermogear.case.material_schema import OilTable
 from thermogear.case.schema import GearFile, GearTable
 from thermogear.case.units import rounding, shown
 from thermogear.gears.geometry import LEFT_OUT, Gear, Rack
@@ -275,8 +276,11 @@ def named_oil(name: str) -> Lubricant:
 
 
 def lubricant(file: GearFile) -> Lubricant:
-    """The named oil, or the one through the two viscosities."""
-    oil = file.oil
+    """The named oil, or the one through the two viscosities, with the flash point given."""
+    return replace(_of_viscosity(file.oil), flash_point=file.oil.flash_point)
+
+
+def _of_viscosity(oil: OilTable) -> Lubricant:
     if oil.viscosity_40 is None or oil.viscosity_100 is None:
         return named_oil(oil.name)
     cold, hot = (

@@ -45,7 +45,7 @@ from thermogear.case.samples import (
     takes,
     with_error,
 )
-from thermogear.case.thermal_state import HOT, StateLike, ThermalState
+from thermogear.case.thermal_state import HOT, UNDEFORMED, StateLike, ThermalState
 from thermogear.dynamics.models import TorsionalModel
 from thermogear.dynamics.tables import Lanes
 from thermogear.mesh.excite import EXCITES, NO_ERROR
@@ -238,8 +238,9 @@ class GearFamily:
         """Stored quantities of the mesh cycle of every row, in SI: name -> (row, ...).
 
         ``want`` names them (:func:`~thermogear.mesh.cycle.mesh_cycle`), and "oil_temperature",
-        "tooth_temperature" (the hotter addendum) [K]; only they are computed. ``path_positions``
-        along the path of contact, where a quantity runs over it.
+        "tooth_temperature" (the hotter addendum), "pinion_temperature" (its addendum) [K]; only
+        they are computed. ``path_positions`` along the path of contact, where a quantity runs over
+        it.
         With them ``status``: a row that no case could have, or whose heat or mesh does not
         settle, is "not_converged" and nan, and the others do not notice.
         """
@@ -318,16 +319,18 @@ class GearFamily:
         if self.state.hangs_on_the_load(case):
             springs = self._meshed(group)
         else:
-            # where the heat is given, springs and backlash know neither speed nor damping
+            # where the heat is given, springs and backlash do not know the damping, and the speed
+            # alone by the growth that it causes
             known = {name: values for name, values in columns.items() if name not in BESIDE}
-            every = np.stack([*known.values(), np.zeros(count)])
+            turning = samples.case.stated.speed
+            speed = np.sign(turning) if self.state == UNDEFORMED else turning
+            every = np.stack([*known.values(), speed])
             _, first, which = np.unique(every, axis=1, return_index=True, return_inverse=True)
-            slow = float(samples.case.stated.speed.min())
-            key = (group.values, every[:, first].tobytes(), slow > 0.0)
+            key = (group.values, every[:, first].tobytes())
             each = self._springs.get(key)
             if each is None:
                 some = {name: values[first] for name, values in known.items()}
-                some["operating.speed"] = np.full(first.size, slow)
+                some["operating.speed"] = speed[first]
                 each = self._meshed(replace(group, columns=some, index=first))
                 _keep(self._springs, key, each)
             springs = each.take(which.ravel())

@@ -24,6 +24,7 @@ STATED = {
 }
 """Temperatures of the file's table that hold a node where the addenda are computed."""
 
+_OURS = Surroundings()
 ROOM = 293.15
 """Window temperature [K] of an infrared reading that gives none."""
 
@@ -83,12 +84,13 @@ def gearbox(
         held |= table.measured.model_dump(exclude_none=True)
     if file.temperatures.computed:
         held |= _stated(file, held)
-    wetted = table.wetted_share
+    wetted, given = table.wetted_share, table.housing_coefficient
     box = housing_box(pair, table.shaft_length, table.immersion, housing)
     around = Surroundings(
         ambient=table.ambient,
         housing_area=box.area if table.housing_area is None else table.housing_area,
-        housing_coefficient=table.housing_coefficient,
+        housing_coefficient=_OURS.housing_coefficient if given is None else given,
+        housing_coefficient_at=_OURS.housing_coefficient_at if given is None else None,
         oil_housing_coefficient=table.oil_housing_coefficient,
         wetted_share=(wetted[0], wetted[-1]),
         shaft_length=table.shaft_length,

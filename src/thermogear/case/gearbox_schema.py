@@ -115,13 +115,14 @@ class GearboxTable(Table):
         description="that of a box around the gears, 20 mm from their tips and as "
         "wide as face and shafts. Decides, with its coefficient, how warm all becomes",
     )
-    housing_coefficient: Annotated[
-        float, Measure("heat transfer coefficient", "0.1 W/(m^2 K)", "10000 W/(m^2 K)")
-    ] = Field(
-        default=_AROUND.housing_coefficient,
-        description="15 W/(m^2 K), middle of the customary 10 to 25 to still air. Decides, "
-        "with its "
-        "area, how warm all becomes",
+    housing_coefficient: (
+        Annotated[float, Measure("heat transfer coefficient", "0.1 W/(m^2 K)", "10000 W/(m^2 K)")]
+        | None
+    ) = Field(
+        default=None,
+        description="middle of the customary 10 to 25 to still air, with the housing at 60 degC; "
+        "it grows with the housing's temperature by free convection and radiation, a number given "
+        "does not. Decides, with its area, how warm all becomes",
     )
     oil_housing_coefficient: Annotated[
         float,

@@ -76,6 +76,9 @@ class OilTable(Table):
     ] = Field(default=None, title="from the named set")
     temperature: Body | None = None
     temperature_below_addendum: Below | None = None
+    flash_point: Body | None = Field(
+        default=None, title="unknown: no oil bath is taken to exist above 150 degC"
+    )
     scuffing_load_stage: Annotated[
         float | None,
         Number(low=1.0, high=14.0, example="12", why="load stages of the FZG test A/8.3/90"),

@@ -59,6 +59,7 @@ OF_MATERIAL = ("youngs_modulus", "thermal_expansion")
 
 BODIES_OF: dict[str, Callable[[Operating], ArrayLike]] = {
     "oil_temperature": lambda at: at.oil_temperature,
+    "pinion_temperature": lambda at: at.temperatures.pinion_addendum,
     "tooth_temperature": lambda at: np.maximum(
         at.temperatures.pinion_addendum, at.temperatures.wheel_addendum
     ),

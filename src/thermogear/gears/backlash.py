@@ -31,39 +31,6 @@ def normal_from_circumferential(circumferential: _Lengths, pair: GearPair) -> _L
     return circumferential * math.cos(pair.operating_pressure_angle)
 
 
-def circumferential_from_normal(normal: float, pair: GearPair) -> float:
-    """j_wt = j_n/cos(alpha_w) [m] on the operating pitch circles. Source: ISO 21771-1.
-
-    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
-    >>> f"{1e6 * circumferential_from_normal(100e-6, pair):.2f} um"
-    '106.42 um'
-    """
-    return normal / math.cos(pair.operating_pressure_angle)
-
-
-def radial_from_normal(normal: float, pair: GearPair) -> float:
-    """j_r = j_n/(2 sin(alpha_w)) [m]: how far the axes may close until both flanks touch.
-
-    The slope at the operating distance, j_wt/(2 tan(alpha_w)); :func:`normal_from_distance` has
-    the curve. Source: ISO 21771-1.
-
-    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
-    >>> f"{1e6 * radial_from_normal(100e-6, pair):.2f} um"
-    '146.19 um'
-    """
-    return normal / (2.0 * math.sin(pair.operating_pressure_angle))
-
-
-def play_angles(normal: float, pair: GearPair) -> tuple[float, float]:
-    """j_n/r_b [rad] that the pinion turns with the wheel held, and the wheel with the pinion.
-
-    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
-    >>> [round(1e3 * angle, 3) for angle in play_angles(100e-6, pair)]  # mrad
-    [2.66, 1.33]
-    """
-    return normal / pair.pinion.base_radius, normal / pair.wheel.base_radius
-
-
 def normal_from_thickness(allowance: float, pair: GearPair) -> float:
     """j_n = -E_s cos(alpha) [m] that a tooth-thickness allowance E_s [m] (< 0 thinner) opens.
 

@@ -25,22 +25,6 @@ def path_of_contact(pair: GearPair, count: int = 201) -> Floats:
     return np.linspace(pair.path.a, pair.path.e, count)
 
 
-FILM_POINTS = ("A", "AB", "B", "C", "D", "DE", "E")
-
-
-def film_points(pair: GearPair) -> Floats:
-    """s [m] of :data:`FILM_POINTS`, where ISO/TS 6336-22 asks for the film.
-
-    AB and DE lie in the middle of A-B and D-E.
-
-    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
-    >>> (1e3 * film_points(pair)).round(1)
-    array([ 3.6,  7.3, 11.1, 13.7, 15.4, 19.1, 22.9])
-    """
-    a, b, c, d, e = pair.path
-    return np.array([a, 0.5 * (a + b), b, c, d, 0.5 * (d + e), e])
-
-
 def pair_positions(pair: GearPair, phase: ArrayLike) -> Floats:
     """Positions s_j [m] of the tooth pairs at mesh phase phi; a pair enters at A at phase 0.
 

@@ -12,7 +12,6 @@ last bit.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -21,7 +20,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.base.errors import ConvergenceError, InputError, nearest
+from thermogear.base.errors import InputError, nearest
 from thermogear.base.materials import Material
 from thermogear.heat.temperature import radial_temperature
 
@@ -459,41 +458,3 @@ def hot_half_backlash(
     """
     lost = np.asarray(growth_1, dtype=float) + np.asarray(growth_2)
     return np.asarray(np.asarray(half_backlash) - lost + np.asarray(axis_opening))
-
-
-def jam_temperature(
-    half_backlash: Callable[[float], float], *, low: float, high: float, scan: int = 65
-) -> float:
-    """The lowest temperature [K] in [low, high] at which the half backlash reaches 0.
-
-    ``half_backlash``: b' [m] at a temperature [K], the least along the path. The interval is
-    scanned at ``scan`` points; the first change of sign is refined to 1e-9 K. nan when b' stays
-    positive; ``low`` when it jams there already. Raises ConvergenceError where b' is no number.
-
-    >>> half_backlash = lambda t: 60e-6 - 0.5e-6 * (t - 293.15)
-    >>> f"{jam_temperature(half_backlash, low=293.15, high=493.15):.2f} K"
-    '413.15 K'
-    """
-    if not 0.0 < low < high:
-        raise InputError("temperature range", f"{low} .. {high} K", allowed="0 K < low < high")
-    if scan < 2:
-        raise InputError("scan", scan, allowed=">= 2 points")
-
-    def known(kelvin: float) -> float:
-        left = half_backlash(kelvin)
-        if np.isnan(left):
-            raise ConvergenceError(
-                f"half backlash at {kelvin:g} K: nan, so nobody can say where it is used up"
-            )
-        return left
-
-    before = low
-    if known(low) <= 0.0:
-        return low
-    for after in np.linspace(low, high, scan)[1:]:
-        if known(float(after)) <= 0.0:
-            from scipy.optimize import brentq
-
-            return float(brentq(known, before, float(after), xtol=1e-9))
-        before = float(after)
-    return float("nan")

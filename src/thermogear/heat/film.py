@@ -101,28 +101,15 @@ def pressure_viscosity(lubricant: Lubricant, temperature: ArrayLike) -> Floats:
     return pressure_viscosity_gold(kinematic_viscosity(lubricant, temperature), lubricant.kind)
 
 
-def barus(viscosity: ArrayLike, pressure: ArrayLike, coefficient: ArrayLike) -> Floats:
-    """Viscosity under pressure by Barus, eta = eta_0 exp(alpha p) [Pa s].
-
-    ``viscosity`` eta_0 [Pa s], ``pressure`` p [Pa], ``coefficient`` alpha [1/Pa]. Any shape.
-    Far too high above about 0.5 GPa: use :func:`roelands` there.
-
-    >>> f"{barus(0.1, 100e6, 20e-9):.3f} Pa s"
-    '0.739 Pa s'
-    """
-    return np.asarray(
-        np.asarray(viscosity) * np.exp(np.asarray(coefficient) * np.asarray(pressure))
-    )
-
-
 def roelands(viscosity: ArrayLike, pressure: ArrayLike, coefficient: ArrayLike) -> Floats:
     """Viscosity under pressure by Roelands, isothermal [Pa s].
 
     eta = eta_0 exp{ (ln eta_0 + 9.67) [ (1 + 5.1e-9 p)^Z - 1 ] },
     Z = alpha/[5.1e-9 (ln eta_0 + 9.67)].
 
-    Arguments as :func:`barus`, eta_0 in Pa s, p in Pa. Meets Barus at low pressure, where its
-    slope is alpha eta_0. Source: form of Stachowiak and Batchelor, Engineering Tribology.
+    ``viscosity`` eta_0 [Pa s], ``pressure`` p [Pa], ``coefficient`` alpha [1/Pa]. Meets Barus,
+    eta_0 exp(alpha p), at low pressure, where its slope is alpha eta_0. Source: form of Stachowiak
+    and Batchelor, Engineering Tribology.
 
     >>> f"{roelands(0.1, 100e6, 20e-9):.3f} Pa s"
     '0.609 Pa s'

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.materials import Lubricant
-from thermogear.base.units import STANDARD_GRAVITY
 from thermogear.heat.gearbox import BodyLike, Surroundings, oil_prandtl
 from thermogear.heat.lubrication import density, kinematic_viscosity
 from thermogear.heat.network import ThermalNetwork
+from thermogear.heat.still_air import free_face_convection
 
 Floats = NDArray[np.float64]
 
@@ -27,39 +27,6 @@ def oil_expansion(lubricant: Lubricant, temperature: ArrayLike) -> Floats:
     return np.asarray(lubricant.density_slope / density(lubricant, temperature))
 
 
-def free_face_convection(
-    difference: ArrayLike,
-    height: ArrayLike,
-    viscosity: ArrayLike,
-    conductivity: ArrayLike,
-    prandtl: ArrayLike,
-    *,
-    expansion: ArrayLike,
-) -> Floats:
-    """Heat transfer coefficient of a vertical face by free convection, its mean [W/(m^2 K)].
-
-    h = (k/L) {0.825 + 0.387 Ra^(1/6)/[1 + (0.492/Pr)^(9/16)]^(8/27)}^2,
-    Ra = g beta |dT| L^3 Pr/nu^2.
-
-    ``difference`` dT [K] of face and fluid (either sign), ``height`` L [m], ``viscosity`` nu
-    [m^2/s], ``conductivity`` k [W/(m K)] and ``prandtl`` Pr [-] of the fluid, ``expansion`` beta
-    [1/K]. Any shape; 0.681 k/L where nothing drives a flow. Made for Ra 0.1..1e12, all Pr; up to
-    a third above the laminar similarity solution near Ra 1e8. Source: Churchill and Chu 1975, as
-    Bergman, Lavine, Incropera and DeWitt print it.
-
-    >>> h = free_face_convection(40.0, 80e-3, 50e-6, 0.13, 700.0, expansion=0.7e-3)
-    >>> f"{h:.1f} W/(m^2 K)"
-    '102.1 W/(m^2 K)'
-    """
-    drop, tall, nu, k, pr, beta = (
-        np.asarray(a, dtype=float)
-        for a in (difference, height, viscosity, conductivity, prandtl, expansion)
-    )
-    rayleigh = STANDARD_GRAVITY * beta * np.abs(drop) * tall**3 * pr / nu**2
-    shape = (1.0 + (0.492 / pr) ** (9.0 / 16.0)) ** (8.0 / 27.0)
-    return np.asarray(k / tall * (0.825 + 0.387 * rayleigh ** (1.0 / 6.0) / shape) ** 2)
-
-
 def with_free_convection(
     network: ThermalNetwork,
     gears: Mapping[str, BodyLike],
@@ -71,10 +38,11 @@ def with_free_convection(
 
     The convection of a rotating face is 0 at rest; a hot gear in its bath then still cools. Each
     conductance [W/K] between a gear's tooth or body and the oil is the greater of its own and of
-    the wetted share of flanks and faces times :func:`free_face_convection`, the tip diameter as
-    height: the customary estimate where forced and free convection meet. Where a gear turns at
-    more than a few rpm nothing changes. Shafts conduct into the housing, and the oil's walls keep
-    the coefficient they are given.
+    the wetted share of flanks and faces times
+    :func:`~thermogear.heat.still_air.free_face_convection`, the tip diameter as height: the
+    customary estimate where forced and free convection meet. Where a gear turns at more than a few
+    rpm nothing changes. Shafts conduct into the housing, and the oil's walls keep the coefficient
+    they are given.
 
     ``gears`` by "pinion" and "wheel", ``temperatures`` [K] by node, arrays over operating points.
     """

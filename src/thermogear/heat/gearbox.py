@@ -24,8 +24,12 @@ from thermogear.heat.expansion import GearLike
 from thermogear.heat.lubrication import density, kinematic_viscosity
 from thermogear.heat.network import Link, ThermalNetwork
 from thermogear.heat.shaft_heat import BearingLoss, ShaftHeat
+from thermogear.heat.still_air import still_air_coefficient
 
 Floats = NDArray[np.float64]
+
+ROOM = 293.15
+"""The room [K] in which the customary coefficient of a housing is meant."""
 
 
 class BodyLike(GearLike, Protocol):
@@ -49,7 +53,9 @@ class Surroundings:
     """Housing, oil bath, shafts and ambient of a gear pair; every default is ours.
 
     ``ambient`` [K]; ``housing_area`` [m^2] outside and in touch with the oil mist;
-    ``housing_coefficient`` [W/(m^2 K)] to the air (10..25 by installation);
+    ``housing_coefficient`` [W/(m^2 K)] to the air (10..25 by installation) with the housing at
+    ``housing_coefficient_at`` [K] in a room of 20 C, from where it grows as in still air
+    (:meth:`outside`); None there: it stays;
     ``oil_housing_coefficient`` [W/(m^2 K)]; ``wetted_share`` of a gear's surface that oil
     covers (0..1), pinion and wheel; ``shaft_length`` [m] from the gear to its bearings on
     each side; ``bearing_conductance`` [W/K] of one bearing into the housing; ``oil_mass``,
@@ -65,6 +71,7 @@ class Surroundings:
     ambient: float = 293.15
     housing_area: float = 0.6
     housing_coefficient: float = 15.0
+    housing_coefficient_at: float | None = 333.15
     oil_housing_coefficient: float = 200.0
     wetted_share: tuple[float, float] = (0.3, 0.3)
     shaft_length: float = 0.06
@@ -80,7 +87,7 @@ class Surroundings:
         for name in ("ambient", "supply_temperature"):
             BODY.require(f"surroundings.{name}", getattr(self, name))
         for entry in fields(self):
-            if entry.name == "train":
+            if getattr(self, entry.name) is None or entry.name == "train":
                 continue
             values = np.asarray(getattr(self, entry.name), dtype=float)
             least = values >= 0.0 if entry.name == "oil_flow" else values > 0.0
@@ -88,6 +95,24 @@ class Surroundings:
                 raise InputError(f"surroundings.{entry.name}", values, allowed="> 0, finite")
         if max(self.wetted_share) > 1.0:
             raise InputError("surroundings.wetted_share", self.wetted_share, allowed="0 < x <= 1")
+
+    def outside(self, housing: ArrayLike) -> Floats:
+        """Coefficient [W/(m^2 K)] to the air of a housing at ``housing`` [K], any shape.
+
+        h = h_0 g(T, T_0)/g(T_h, 20 C), g of
+        :func:`~thermogear.heat.still_air.still_air_coefficient` for a cube of the housing's area,
+        h_0 the coefficient at T_h and T_0 the ambient: ribs and the room's draught, which make h_0
+        more than a bare wall has, count at every temperature alike (ours).
+
+        >>> f"{Surroundings().outside(573.15):.1f} W/(m^2 K)"
+        '34.1 W/(m^2 K)'
+        """
+        if self.housing_coefficient_at is None:
+            return np.full(np.shape(housing), self.housing_coefficient)
+        height = np.sqrt(self.housing_area / 6.0)
+        usual = still_air_coefficient(self.housing_coefficient_at, ambient=ROOM, height=height)
+        here = still_air_coefficient(housing, ambient=self.ambient, height=height)
+        return np.asarray(self.housing_coefficient * here / usual)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -310,6 +335,7 @@ def thermal_network(
     oil_temperature: ArrayLike,
     surroundings: Surroundings | None = None,
     measured: dict[str, ArrayLike] | None = None,
+    housing_temperature: ArrayLike | None = None,
 ) -> ThermalNetwork:
     """The heat balance of a gear pair as a :class:`ThermalNetwork`.
 
@@ -319,7 +345,9 @@ def thermal_network(
 
     ``speed`` pinion [rad/s], ``losses``, ``oil_temperature`` [K] at which the oil's properties
     are taken (a guess; repeat with the result), ``surroundings`` (default: ours), ``measured``
-    temperatures [K] that hold single nodes, such as {"oil": 353.15} of a tempered bath.
+    temperatures [K] that hold single nodes, such as {"oil": 353.15} of a tempered bath,
+    ``housing_temperature`` [K] at which it gives heat to the air (a guess too; left out: where its
+    coefficient holds).
     Arrays over operating points of one shape. Flanks and faces give heat to the oil by the
     boundary layer's solution over the wetted share, teeth with the coefficient at their node;
     the flanks exchange heat through their contact.
@@ -333,9 +361,14 @@ def thermal_network(
     around = surroundings or Surroundings()
     omega_1 = np.asarray(speed, dtype=float)
     omegas = omega_1, omega_1 * pinion.teeth / wheel.teeth
+    outside = (
+        around.housing_coefficient
+        if housing_temperature is None
+        else around.outside(housing_temperature)
+    )
     links = [
         Link("oil", "housing", around.oil_housing_coefficient * around.housing_area),
-        Link("housing", "ambient", around.housing_coefficient * around.housing_area),
+        Link("housing", "ambient", outside * around.housing_area),
     ]
     fixed: dict[str, ArrayLike] = {"ambient": around.ambient}
     if around.oil_flow > 0.0:

@@ -272,15 +272,3 @@ def doleschel_share(film_parameter: ArrayLike) -> Floats:
     """
     reach = 1.0 - 0.5 * np.minimum(np.asarray(film_parameter, dtype=float), 2.0)
     return np.asarray(reach**2)
-
-
-def matsumoto_share(peak_ratio: ArrayLike) -> Floats:
-    """Share of boundary friction by Matsumoto and Morikawa, zeta = 0.5 log10 D, in 0..1 [-].
-
-    ``peak_ratio`` D = (Rz1 + Rz2)/h_min [-] > 0, any shape: 0 for D <= 1, 1 from D = 100 on.
-
-    >>> matsumoto_share([1.0, 10.0, 100.0])
-    array([0. , 0.5, 1. ])
-    """
-    ratio = np.maximum(np.asarray(peak_ratio, dtype=float), 1.0)
-    return np.asarray(np.minimum(0.5 * np.log10(ratio), 1.0))

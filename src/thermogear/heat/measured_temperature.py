@@ -327,33 +327,3 @@ class ThermocoupleReading:
         best = {"indicated": self.indicated, "flux": self.flux, "depth": self.depth}
         spread = {name: getattr(self, f"u_{name}") for name in best}
         return _propagate(value, best, spread)[0]
-
-
-def field_uncertainty(
-    function: Callable[[float, float], float],
-    *,
-    addendum: tuple[float, float],
-    bore: tuple[float, float],
-) -> float:
-    """Standard uncertainty of anything computed from T_a and T_x, independent readings.
-
-    ``function`` (T_a, T_x) [K] -> value, ``addendum`` and ``bore`` each (temperature,
-    uncertainty) [K]. Central differences over one hundredth of a sigma: first order.
-
-    >>> u = field_uncertainty(lambda a, x: a - x, addendum=(373.15, 3.0), bore=(333.15, 4.0))
-    >>> f"{u:.2f} K"
-    '5.00 K'
-    """
-    total = 0.0
-    pairs = (addendum, bore)
-    for index, (_, sigma) in enumerate(pairs):
-        if sigma == 0.0:
-            continue
-        step = 0.01 * sigma
-        ends = []
-        for sign in (1.0, -1.0):
-            point = [p[0] for p in pairs]
-            point[index] += sign * step
-            ends.append(function(point[0], point[1]))
-        total += ((ends[0] - ends[1]) / (2.0 * step) * sigma) ** 2
-    return float(np.sqrt(total))

@@ -126,7 +126,7 @@ def follow(
     moments: int = 60,
     tolerance: float = 1e-3,
     settled_within: float = 0.01,
-    events: Mapping[str, Callable[[State], float]] | None = None,
+    events: Mapping[str, Callable[[State, int], float]] | None = None,
     progress: Progress = silent,
 ) -> Course:
     """Temperatures of a network whose conductances and sources depend on them, over time.
@@ -140,8 +140,9 @@ def follow(
     to be stored with some ``moments`` of each stretch; ``tolerance`` [K] of one step's error, a
     tenth of it relative (the course may err by ten times as much); a stretch without end runs
     until its slowest mode has no more than ``settled_within`` [K] to go; ``events`` [K or m, any]
-    of the state that are located where they fall through 0. Raises InputError for stretches that
-    do not follow each other, and ConvergenceError where the steps fail.
+    of the state and the place of its stretch that are located where they fall through 0. Raises
+    InputError for stretches that do not follow each other, and ConvergenceError where the steps
+    fail.
     """
     ends = np.array([one.end for one in stretches])
     if not ends.size or not np.all(np.diff(np.concatenate([[0.0], ends])) > 0.0):
@@ -170,7 +171,7 @@ def follow(
             rests = rest(begun, y) <= 0.0
             slowest = _slowest(law.network(y[:, None]), capacity)
             end = begun + (1.0 if rests else _SLOWEST) * slowest
-        crossings = _crossings(law, watched, progress, begun, end)
+        crossings = _crossings(law, watched, place, progress, begun, end)
         if endless and not rests:
             crossings.append(rest)
         solved = solve_ivp(
@@ -241,7 +242,8 @@ def _slowest(network: ThermalNetwork, capacity: Floats) -> float:
 
 def _crossings(
     law: _Law,
-    watched: Mapping[str, Callable[[State], float]],
+    watched: Mapping[str, Callable[[State, int], float]],
+    place: int,
     progress: Progress,
     begun: float,
     end: float,
@@ -256,8 +258,8 @@ def _crossings(
     found: list[Callable[[float, Floats], float]] = [heat]
     for one in watched.values():
 
-        def falling(t: float, y: Floats, one: Callable[[State], float] = one) -> float:
-            return one(law.temperatures(y[:, None]))
+        def falling(t: float, y: Floats, one: Callable[[State, int], float] = one) -> float:
+            return one(law.temperatures(y[:, None]), place)
 
         falling.direction = -1.0  # type: ignore[attr-defined]
         found.append(falling)

@@ -250,29 +250,3 @@ class Record:
     def noting(self, level: str, text: str) -> Record:
         """The record with one more notice."""
         return replace(self, notices=(*self.notices, Notice(level, text)))
-
-
-def simulated_record(
-    displacement: Floats, periods: int, *, mesh_frequency: float, rate: float, samples: int
-) -> Record:
-    """A periodic motion as the acceleration record that a sensor would give of it [m/s^2].
-
-    ``displacement`` [m]: uniform samples over ``periods`` whole mesh periods, the first at phase
-    0; ``mesh_frequency`` [Hz]; ``rate`` [1/s] and ``samples`` those of the record it is to be
-    compared with: then ``measure`` with that record's chain reads like from like. Lines above
-    half the rate do not reach the record, as behind an anti-alias filter.
-    """
-    x = np.asarray(displacement, dtype=float)
-    if x.ndim != 1 or x.size < 4 or periods < 1:
-        raise InputError("displacement", f"shape {x.shape}", allowed="one motion, >= 4 samples")
-    lines = np.fft.rfft(x) * (2.0 / x.size)
-    t = np.arange(samples) / rate
-    total = np.zeros(samples)
-    strongest = float(np.max(np.abs(lines[1:])))
-    for rank in range(1, (x.size + 1) // 2):
-        frequency = rank * mesh_frequency / periods
-        if frequency >= 0.5 * rate or abs(lines[rank]) <= 1e-12 * strongest:
-            continue
-        omega = 2.0 * np.pi * frequency
-        total -= omega**2 * np.real(lines[rank] * np.exp(1j * omega * t))
-    return Record((Channel("simulated", total, "m/s^2"),), "simulation", rate, "simulated")

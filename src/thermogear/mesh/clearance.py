@@ -1,4 +1,4 @@
-"""The clearance of the mesh: deviations and heat on both flanks, and where none is left.
+"""The clearance of the mesh: deviations, speed and heat on both flanks, and where none is left.
 
 Both forms of the mesh force, the jam and the pictures take it from here, and here it comes
 from the one gap function of :mod:`thermogear.gears.touch`: at every mesh phase the tightest
@@ -23,8 +23,11 @@ from thermogear.mesh.thermal import HotPair, ThermalDeviation
 Floats = NDArray[np.float64]
 
 
-Gaps = tuple[Floats, Floats]
-"""Gaps [m] of one side's flanks by deviations and by heat, (count, phases, pair) by broadcast."""
+Gaps = tuple[Floats, ...]
+"""Gaps [m] of one side's flanks by deviations, by the centrifugal pull and by heat, each
+(count, phases, pair) by broadcast."""
+PARTS = ("deviations", "speed", "heat")
+"""What takes or gives backlash, in that order."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,9 +36,10 @@ class Clearance:
 
     b'(phi) = b + (min_j e_j + min_j e_j^c)/2 and e(phi) = (min_j e_j - min_j e_j^c)/2.
 
-    e_j is the gap of pair j of the drive flanks by ``deviations``, tip corners and heat, e_j^c
-    that of the back flanks; between the two touches the gears move freely by 2 b'. Growth is
-    linear in the temperatures, so both jams are exact. The thesis's flank has no error of heat.
+    e_j is the gap of pair j of the drive flanks by ``deviations``, tip corners, the centrifugal
+    pull and heat, e_j^c that of the back flanks; between the two touches the gears move freely by
+    2 b'. Growth is linear in the temperatures, so both jams are exact. The thesis's flank has no
+    error of heat, and knows no pull.
     """
 
     hot: HotPair
@@ -48,7 +52,7 @@ class Clearance:
         drive, back = (
             (
                 first_touch(points, self.deviations).gap,
-                ThermalDeviation(self.hot).gap(points.contacts),
+                *ThermalDeviation(self.hot).gaps(points.contacts),
             )
             for points in self._points
         )
@@ -60,27 +64,44 @@ class Clearance:
         return drive, back
 
     @property
-    def gaps(self) -> Gaps:
+    def gaps(self) -> tuple[Floats, Floats]:
         """(e_j, e_j^c) [m] of every candidate pair, (count, phases, pair), heat among them.
 
         Where the drive flanks of the tightest pair touch, e_j - min_j e_j is left between those of
         pair j and 2 b + e_k^c + min_j e_j between the back flanks of pair k.
         """
-        drive, back = (np.asarray(plain + heat) for plain, heat in self._gaps)
+        drive, back = (np.asarray(sum(parts)) for parts in self._gaps)
         return drive, back
 
     @cached_property
     def half_backlash(self) -> Floats:
         """b' [m], (count, phases); b' <= 0 is jammed."""
-        one, two = (np.min(plain + heat, axis=-1) for plain, heat in self._gaps)
-        return np.asarray(self.hot.half_backlash[:, None] + 0.5 * (one + two))
+        return self._left(len(PARTS))
+
+    def _left(self, parts: int) -> Floats:
+        """b' [m] with the first ``parts`` of :data:`PARTS` alone, (count, phases)."""
+        drive, back = (np.min(sum(gaps[:parts]), axis=-1) for gaps in self._gaps)
+        return np.asarray(self.hot.half_backlash[:, None] + 0.5 * (drive + back))
+
+    @cached_property
+    def parts(self) -> dict[str, Floats]:
+        """What each of :data:`PARTS` adds to the least b' over the phase [m], each (count,).
+
+        With those before it there already, so that the cold half backlash and all of them add up
+        to the least one; below 0 it takes.
+        """
+        levels = [self.hot.half_backlash]
+        levels += [self._left(k + 1).min(axis=1) for k in range(len(PARTS))]
+        return dict(zip(PARTS, np.diff(levels, axis=0), strict=True))
 
     @cached_property
     def error(self) -> Floats:
         """e [m], (count, phases)."""
         felt = 0.0 if self.hot.model.flank == "thesis" else 1.0
-        one, two = (np.min(plain + felt * heat, axis=-1) for plain, heat in self._gaps)
-        return np.asarray(0.5 * (one - two))
+        drive, back = (
+            np.min(plain + pull + felt * heat, axis=-1) for plain, pull, heat in self._gaps
+        )
+        return np.asarray(0.5 * (drive - back))
 
     @cached_property
     def _jams(self) -> tuple[Floats, Floats]:
@@ -88,7 +109,7 @@ class Clearance:
         # growth is linear: what a kelvin takes is the same from the drawing on
         kelvin = ThermalDeviation(hot.drawn().warmed(1.0))
         slope, slope_c = (-kelvin.gap(points.contacts) for points in self._points)
-        (plain, heat), (plain_c, heat_c) = self._gaps
+        (plain, heat), (plain_c, heat_c) = ((own + pull, heat) for own, pull, heat in self._gaps)
         base = hot.temperatures.reference
         addendum = np.broadcast_to(
             np.asarray(hot.temperatures.pinion_addendum, dtype=float), (hot.count,)

@@ -27,7 +27,7 @@ from thermogear.heat.expansion import base_circle_growth
 from thermogear.heat.gearbox import body_radius
 from thermogear.heat.losses import efficiency
 from thermogear.heat.temperature import conduction_power, contact_temperature
-from thermogear.mesh.clearance import Clearance
+from thermogear.mesh.clearance import PARTS, Clearance
 from thermogear.mesh.elastic import ElasticPair, MeshCurves, elastic_pair, mean_stiffness_of_body
 from thermogear.mesh.friction_path import FrictionPath
 from thermogear.mesh.mesh_heat import MeshHeat, mesh_heat
@@ -190,7 +190,8 @@ class _Cycle:
 
     @cached_property
     def growth(self) -> tuple[Floats, Floats]:
-        return self.hot.growth(self.s)
+        by_heat, by_pull = self.hot.growth(self.s), self.hot.pulled_material(self.s)
+        return by_heat[0] + by_pull[0], by_heat[1] + by_pull[1]
 
     @cached_property
     def parts(self) -> dict[str, Floats]:
@@ -334,8 +335,8 @@ SPRINGS = (
 """The springs of one tooth pair, in the order of storage."""
 
 
-def _spring(name: str, c: _Cycle) -> Floats:
-    return c.parts[name]
+def _one_of(of: Callable[[_Cycle], dict[str, Floats]], name: str, c: _Cycle) -> Floats:
+    return of(c)[name]
 
 
 TABLE: dict[str, tuple[tuple[str, ...], Made]] = {
@@ -366,7 +367,7 @@ TABLE: dict[str, tuple[tuple[str, ...], Made]] = {
     "pinion_shaft_heat": (POINT, lambda c: c.shaft_heat(c.hot.pair.pinion)),
     "wheel_base_growth": (POINT, lambda c: c.base_growth(c.hot.pair.wheel)),
     "wheel_shaft_heat": (POINT, lambda c: c.shaft_heat(c.hot.pair.wheel)),
-    **{name: (PATH, partial(_spring, name)) for name in SPRINGS},
+    **{name: (PATH, partial(_one_of, lambda c: c.parts, name)) for name in SPRINGS},
     "pair_stiffness": (PATH, lambda c: c.elastic.pair_stiffness(c.s)),
     "elastic_stiffness": (PHASE, lambda c: c.curves.stiffness),
     "thermal_stiffness": (PHASE, lambda c: c.thermal),
@@ -396,6 +397,10 @@ TABLE: dict[str, tuple[tuple[str, ...], Made]] = {
     ),
     "cold_half_backlash": (POINT, lambda c: c.hot.half_backlash),
     "least_half_backlash": (POINT, lambda c: c.least),
+    **{
+        f"half_backlash_by_{name}": (POINT, partial(_one_of, lambda c: c.gap.parts, name))
+        for name in PARTS
+    },
     "jam_temperature": (POINT, lambda c: c.gap.jam_temperature),
     "proportional_jam_temperature": (POINT, lambda c: c.gap.proportional_jam_temperature),
     "edge_contact_share": (POINT, lambda c: c.curves.edge_share),

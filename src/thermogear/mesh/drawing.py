@@ -31,7 +31,6 @@ from thermogear.gears.deviations import Deviation, FlankShape
 from thermogear.gears.geometry import Gear
 from thermogear.gears.outline import LAND, outline, span_over_teeth
 from thermogear.gears.pair import GearPair
-from thermogear.heat.thesis_profile import deformed_points
 from thermogear.mesh.clearance import Clearance
 from thermogear.mesh.elastic import LoadedPair, elastic_pair
 from thermogear.mesh.model import MeshModel
@@ -61,13 +60,13 @@ def drawn_gears(
 
     Over (gear, outline_point): ``tight_radius``, ``tight_angle``; over (state, operating, gear,
     outline_point): ``outline_radius``, ``outline_angle`` [m, rad] of one pitch, flanks with the
-    shapes among ``deviations``, grown by heat (:func:`deformed_points`). The backlash that the
-    centre distance does not open is taken off all four flanks alike: nobody says which gear is the
-    thinner. Over (state, operating): ``centre_distance``, and over the mesh phase ``lag`` [m], how
-    far the wheel stays behind until the first pair of drive flanks touches without load. Over
-    (mesh_phase, contact_pair): where a pair touches, ``contact_x``, ``contact_y`` [m]; with state
-    and operating point its ``load_share``, and the gaps [m] left between its drive and its back
-    flanks, ``drive_gap`` and ``back_gap``, nan where the pair cannot touch.
+    shapes among ``deviations``, grown by heat and speed. The backlash that the centre distance does
+    not open is taken off all four flanks alike: nobody says which gear is the thinner. Over (state,
+    operating): ``centre_distance``, and over the mesh phase ``lag`` [m], how far the wheel stays
+    behind until the first pair of drive flanks touches without load. Over (mesh_phase,
+    contact_pair): where a pair touches, ``contact_x``, ``contact_y`` [m]; with state and operating
+    point its ``load_share``, and the gaps [m] left between its drive and its back flanks,
+    ``drive_gap`` and ``back_gap``, nan where the pair cannot touch.
 
     Growth is that of :func:`~thermogear.heat.expansion.flank_growth` whatever flank the ``model``
     has; load share, body, housing and bore are the model's.
@@ -216,9 +215,7 @@ def _outlines(
         )
     radius = np.stack([one.radius for one in found])
     angle = np.stack([one.angle for one in found])
-    field, bore, times = hot.field(gear), hot.model.bore, hot.expansion(gear)
-    far, turned = deformed_points(gear, field, radius, angle, bore)
-    far, turned = radius + times * (far - radius), angle + times * (turned - angle)
+    far, turned = hot.grown(gear, radius, angle)
     # the ring grows straight outward: along the root land the tooth's own turn fades away
     kept, steps = np.ones(radius.shape[-1]), LAND * fineness + 1
     kept[:steps] = np.linspace(0.0, 1.0, steps)

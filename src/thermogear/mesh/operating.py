@@ -119,7 +119,8 @@ class Operating:
     ``oil_temperature`` [K] of the oil supply; ``housing`` the material that moves the axes apart
     when it is warm. ``flank_temperature`` [K] where the film forms, for a model whose inlet is the
     body's; left out, the mean of both addenda. ``varied``: what of the pair itself differs between
-    the points, in place of the pair's and of ``half_backlash``.
+    the points, in place of the pair's and of ``half_backlash``. ``pulled``: 1 where the gears grow
+    by the centrifugal pull of their speed, 0 where they have the drawing's sizes.
 
     >>> from thermogear import lubricant
     >>> warm = Temperatures.uniform(353.15, reference=293.15)
@@ -140,6 +141,7 @@ class Operating:
     housing: Material = MATERIALS["steel"]
     flank_temperature: ArrayLike | None = None
     varied: Varied = ALIKE
+    pulled: ArrayLike = 1.0
 
     def __post_init__(self) -> None:
         t = self.temperatures
@@ -187,6 +189,7 @@ class Operating:
             temperatures=replace(self.temperatures, **bodies),
             flank_temperature=None if self.flank_temperature is None else at(self.flanks),
             lubricant=self.lubricant.part(places),
+            pulled=at(self.pulled),
             varied=self.varied.part(places),
         )
 
@@ -198,9 +201,9 @@ class Operating:
         return np.asarray(mean if self.flank_temperature is None else self.flank_temperature, float)
 
     def as_drawn(self) -> Operating:
-        """The same points with the drawing's sizes, oil and film unchanged: heat moves nothing."""
+        """The same points with the drawing's sizes, oil and film unchanged: nothing has grown."""
         cold = self.temperatures.cold()
-        return replace(self, temperatures=cold, flank_temperature=self.flanks)
+        return replace(self, temperatures=cold, flank_temperature=self.flanks, pulled=0.0)
 
     def with_gears_at(self, gear_temperature: ArrayLike) -> Operating:
         """The same points with both addenda at ``gear_temperature`` [K], the rest in proportion.

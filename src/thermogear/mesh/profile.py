@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.vocabulary import label
 from thermogear.gears.pair import GearPair
-from thermogear.heat.thesis_profile import deformed_profile, profile_as_printed
+from thermogear.heat.thesis_profile import profile_as_printed
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair
@@ -33,10 +33,9 @@ def profiles(pair: GearPair, operating: Operating, *, printed: bool) -> xr.Datas
     for gear in (pair.pinion, pair.wheel):
         r = np.linspace(max(gear.form_radius, gear.base_radius), gear.tip_radius, POINTS)
         psi = gear.half_thickness_angle(r)
-        field = hot.field(gear)
-        drawn = {"involute": (r, psi), "consistent": deformed_profile(gear, field, r)}
+        drawn = {"involute": (r, psi), "consistent": hot.grown(gear, r, psi)}
         if printed:
-            drawn["printed"] = profile_as_printed(gear, field, r)
+            drawn["printed"] = profile_as_printed(gear, hot.field(gear), r)
         for name, curve in drawn.items():
             radius, angle = (np.atleast_2d(v)[0] for v in curve)
             columns.setdefault(f"{name}_x", []).append(radius * np.sin(angle))

@@ -1,4 +1,4 @@
-"""Where heat joins the mesh: added flank material and moduli.
+"""Where heat and the centrifugal pull join the mesh: added flank material and moduli.
 
 Positions s [m] are measured from the pinion's tangent point; the last axis is the position,
 the first the operating point.
@@ -14,13 +14,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.gears.centrifugal import centrifugal_displacement, centrifugal_flank_growth
 from thermogear.gears.contact import flank_radii, pair_positions
 from thermogear.gears.deviations import Contacts
 from thermogear.gears.geometry import Gear
 from thermogear.gears.pair import GearPair
 from thermogear.heat.expansion import RadialField, centre_distance_growth, flank_growth
 from thermogear.heat.gearbox import body_places
-from thermogear.heat.thesis_profile import thesis_flank_growth
+from thermogear.heat.thesis_profile import deformed_points, thesis_flank_growth
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating, Temperatures
 
@@ -121,11 +122,9 @@ class HotPair:
         )
 
     def drawn(self) -> HotPair:
-        """The same pair at one operating point with everything at the reference temperature."""
-        cold = replace(self.operating.point(0), temperatures=self.temperatures.cold())
-        if self.operating.varied.grows:
-            cold = replace(self.operating, temperatures=self.temperatures.cold())
-        return replace(self, operating=cold)
+        """The same pair at one operating point with nothing grown, by heat or speed."""
+        points = self.operating if self.operating.varied.grows else self.operating.point(0)
+        return replace(self, operating=points.as_drawn())
 
     def warmed(self, rise: float) -> HotPair:
         """The same pair with both gears hotter by ``rise`` [K] everywhere, housing as it is."""
@@ -137,8 +136,44 @@ class HotPair:
         return replace(self, operating=replace(self.operating, temperatures=hotter))
 
     # --- growth ---------------------------------------------------------------------
+    def _pull(self, gear: Gear) -> Floats:
+        """Speed [rad/s] at which ``gear`` as its material is grows as it does, (count, 1).
+
+        Growth goes as rho omega^2/E; the thesis's flank knows none.
+        """
+        felt = 0.0 if self.model.flank == "thesis" else np.asarray(self.operating.pulled, float)
+        over = 1.0 if gear is self.pair.pinion else self.pair.ratio
+        varied = self._own("modulus", gear)
+        stiffer = 1.0 if varied is None else varied / gear.material.youngs_modulus
+        return _column(felt * self.operating.speed / (over * np.sqrt(stiffer)), self.count)
+
+    def grown(self, gear: Gear, radius: ArrayLike, angle: ArrayLike) -> tuple[Floats, Floats]:
+        """Where points of a gear's tooth are when it is hot and turns, (count, points).
+
+        ``radius`` [m], ``angle`` [rad] from the tooth's centre line: by heat as
+        :func:`~thermogear.heat.thesis_profile.deformed_points`, and straight outward by the pull.
+        """
+        times = self.expansion(gear)
+        r, theta = np.asarray(radius, dtype=float), np.asarray(angle, dtype=float)
+        far, turned = deformed_points(gear, self.field(gear), r, theta, self.model.bore)
+        pulled = centrifugal_displacement(gear, r, self._pull(gear), self.model.bore)
+        return (
+            np.asarray(r + times * (far - r) + pulled),
+            np.asarray(theta + times * (turned - theta) - theta * pulled / r),
+        )
+
+    def pulled_material(self, s: ArrayLike) -> tuple[Floats, Floats]:
+        """Normal growth [m] of both flanks at ``s`` [m] by that pull, (count, positions)."""
+        first, second = (
+            centrifugal_flank_growth(gear, radius, self._pull(gear), self.model.bore)
+            for gear, radius in zip(
+                (self.pair.pinion, self.pair.wheel), flank_radii(self.pair, s), strict=True
+            )
+        )
+        return first, second
+
     def growth(self, s: ArrayLike, taken_off: ArrayLike = 0.0) -> tuple[Floats, Floats]:
-        """Normal growth [m] of pinion and wheel flank at ``s`` [m], (count, positions).
+        """Normal growth [m] of pinion and wheel flank at ``s`` [m] by heat, (count, positions).
 
         ``taken_off`` [-] is a uniform strain that is not counted (flank growth only).
         """
@@ -217,7 +252,7 @@ class HotPair:
 
 @dataclass(frozen=True, eq=False)
 class ThermalDeviation:
-    """The added material of both hot flanks as a deviation of the loaded contact."""
+    """What heat and speed add to both flanks as a deviation of the loaded contact."""
 
     hot: HotPair
 
@@ -227,9 +262,15 @@ class ThermalDeviation:
         A tip corner off the path carries the growth of the path's end: what shifts every flank
         alike then changes nothing.
         """
+        by_pull, by_heat = self.gaps(at)
+        return by_pull + by_heat
+
+    def gaps(self, at: Contacts) -> tuple[Floats, Floats]:
+        """:meth:`gap` by the centrifugal pull and by heat, apart."""
         s = np.clip(at.s, at.pair.path.a, at.pair.path.e)
-        added = self.hot.added_material(s.ravel())
-        return np.asarray(-added.reshape(self.hot.count, *s.shape))
+        shape, flat = (self.hot.count, *s.shape), s.ravel()
+        pulled = np.add(*self.hot.pulled_material(flat))
+        return -pulled.reshape(shape), -self.hot.added_material(flat).reshape(shape)
 
 
 def _carried(

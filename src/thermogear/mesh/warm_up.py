@@ -178,7 +178,7 @@ def warm_up(
     >>> duty = Duty(time=[0.0, 600.0], speed=[100.0], torque=[200.0], ambient=[293.15])
     >>> course = warm_up(pair, duty, lubricant("FVA3"), 60e-6)
     >>> f"{course.temperatures['oil'][-1] - 273.15:.1f} C"
-    '24.0 C'
+    '24.1 C'
     """
     box = Gearbox() if gearbox is None else gearbox
     chosen = _Chain(
@@ -211,6 +211,8 @@ def warm_up(
         )
         worst = chosen.worst(course)
     left, margin = chosen.clearance_of(course.temperatures, course.stretch)
+    # a leap of the speed may use up the backlash at once
+    leaps = np.flatnonzero((left[1:] <= 0.0) & (left[:-1] > 0.0) & (np.diff(course.time) == 0.0))
     losses = chosen.losses_of(course)
     held = {name: np.full(course.time.size, t) for name, t in chosen.held.items()}
     ambient = duty.ambient[course.stretch]
@@ -225,7 +227,7 @@ def warm_up(
         operating=chosen.operating(course.temperatures, course.stretch),
         course=course,
         worst=worst,
-        jams=course.events["jam"],
+        jams=np.sort(np.concatenate([course.events["jam"], course.time[leaps]])),
         held=chosen.held,
     )
 
@@ -359,6 +361,7 @@ class _Chain:
                 at.oil_temperature,
                 around,
                 dict(self.held),
+                self.nodes(state)["housing"],
             )
             known = {name: np.asarray(t) for name, t in bare.fixed.items()} | dict(state)
             full = {name: known.get(name, np.asarray(around.ambient)) for name in bare.nodes}
@@ -390,9 +393,9 @@ class _Chain:
         hot = HotPair(self.pair, at, self.model)
         return Clearance(hot, np.arange(PHASES) / PHASES, self.deviations)
 
-    def gap(self, state: State) -> float:
-        """Least half backlash [m] of one state; what it does not depend on is no matter."""
-        return float(self._clearance(self.operating(state, 0)).half_backlash.min())
+    def gap(self, state: State, piece: int) -> float:
+        """Least half backlash [m] of one state in ``piece`` of the duty."""
+        return float(self._clearance(self.operating(state, piece)).half_backlash.min())
 
     def worst(self, course: Course) -> Worst:
         """The least half backlash of the course, located between the stored moments."""
@@ -401,23 +404,23 @@ class _Chain:
         left, _ = self.clearance_of(course.temperatures, course.stretch)
         place = int(np.argmin(left))
         ends = course.time[max(place - 1, 0)], course.time[min(place + 1, left.size - 1)]
-        when = float(course.time[place])
+        when, piece = float(course.time[place]), int(course.stretch[place])
         if ends[0] < when < ends[1]:
             found = minimize_scalar(
-                lambda t: self.gap({n: x[None] for n, x in course.at(t).items()}),
+                lambda t: self.gap({n: x[None] for n, x in course.at(t).items()}, piece),
                 bounds=ends,
                 method="bounded",
                 options={"xatol": 1e-4 * (ends[1] - ends[0])},
             )
             when = float(found.x) if found.fun <= left[place] else when
         state = {name: np.atleast_1d(t) for name, t in course.at(when).items()}
-        gap, margin = self.clearance_of(state, int(course.stretch[place]))
+        gap, margin = self.clearance_of(state, piece)
         return Worst(
             time=when,
             half_backlash=float(gap[0]),
             margin=float(margin[0]),
             temperatures={name: float(t[0]) for name, t in state.items()},
-            piece=int(course.stretch[place]),
+            piece=piece,
         )
 
     def losses_of(self, course: Course) -> Losses:

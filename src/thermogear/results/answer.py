@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import asdict, dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass, field
+from typing import Any
 
 from thermogear.base.limits import FINE, LOOK, OPEN
 
@@ -15,7 +16,8 @@ class Answer:
     ``name`` of the figure and its ``question``; ``sentence`` for a reader; ``value`` in ``unit``
     as shown, None where there is none; ``limit`` in words and its ``source``; ``verdict`` one of
     :data:`~thermogear.base.limits.VERDICTS`; ``operating`` "3000 rpm, 80 N m", empty where it is
-    not of one point.
+    not of one point. ``figures``: the numbers in the sentence by name, in whole precision, a list
+    where they are several of a kind; ``units`` of them as shown.
     """
 
     name: str
@@ -27,6 +29,8 @@ class Answer:
     source: str
     verdict: str
     operating: str = ""
+    figures: Mapping[str, Any] = field(default_factory=dict)
+    units: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def row(self) -> dict[str, object]:

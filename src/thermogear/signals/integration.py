@@ -46,19 +46,6 @@ def integrate_twice_trapezoid(x: ArrayLike, rate: float) -> Floats:
     return np.asarray(integrate.cumulative_trapezoid(once, dx=step, axis=-1, initial=0.0))
 
 
-def integrate_twice_simpson(x: ArrayLike, rate: float) -> Floats:
-    """Two running Simpson sums from zero (``scipy.integrate.cumulative_simpson``).
-
-    ``x`` [any unit], time last; ``rate`` [samples/s].
-
-    >>> integrate_twice_simpson([2.0, 2.0, 2.0], 1.0).round(9)
-    array([0., 1., 4.])
-    """
-    values, step = finite_record(x), 1.0 / positive_rate(rate)
-    once = integrate.cumulative_simpson(values, dx=step, axis=-1, initial=0.0)
-    return np.asarray(integrate.cumulative_simpson(once, dx=step, axis=-1, initial=0.0))
-
-
 def integrate_twice(x: ArrayLike, rate: float, *, low_cut: float) -> Floats:
     """Displacement from acceleration by division by -omega^2, nothing below ``low_cut``.
 

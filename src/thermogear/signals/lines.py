@@ -63,33 +63,6 @@ def hann_offset(around: Floats) -> float:
     return float(np.clip(2.0 * (right - left) / total, -0.5, 0.5)) if total > 0.0 else 0.0
 
 
-def line_at(
-    x: ArrayLike, rate: float, *, frequency: float, window: str | Window = "flattop"
-) -> complex:
-    """Complex amplitude of the line at exactly ``frequency``: no bin, so no scalloping.
-
-    c = 2 sum w_j x_j exp(-2 pi i f j/rate) / sum w_j;  |c| is the peak amplitude.
-
-    A flat-top window makes |c| insensitive to an error of ``frequency`` (0.1 % half a bin off).
-    ``x`` [any unit] is one channel, ``rate`` [samples per unit of time]. Raises InputError
-    outside 0 < f < rate/2.
-
-    >>> t = np.arange(1000) / 1000.0
-    >>> f"{abs(line_at(2.0 * np.cos(2 * np.pi * 50.0 * t), 1000.0, frequency=50.0)):.3f}"
-    '2.000'
-    """
-    values, per_second = finite_record(x), positive_rate(rate)
-    if values.ndim != 1:
-        raise InputError("record", f"shape {values.shape}", allowed="one channel")
-    if not 0 < frequency < per_second / 2:
-        raise InputError("frequency", frequency, allowed=f"0 < f < {per_second / 2:g}")
-    weights = windows.window(window).samples(values.size)
-    # the mean stands below a low line's main lobe; taken away with the window's own weight
-    centred = values - float(np.dot(weights, values) / weights.sum())
-    turn = np.exp(-2j * np.pi * (frequency / per_second) * np.arange(values.size))
-    return complex(2.0 * np.dot(weights * centred, turn) / weights.sum())
-
-
 def floor_around(amplitudes: Floats, index: int, *, lobe: int, reach: int = 60) -> float:
     """Median amplitude of ``reach`` bins on each side, without the main lobe and without bin 0.
 

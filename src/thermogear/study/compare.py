@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.analysis.fit import Fit, fit
 from thermogear.base.errors import InputError, nearest
 from thermogear.case.base import Case
 from thermogear.case.case import gear_case, load_case
@@ -321,37 +320,3 @@ def _relative(
         for key, (line, twin) in twins.items()
         if twin is not None
     }
-
-
-def fit_case(
-    case: Case | str | Path,
-    measured: LineTable,
-    names: Sequence[str] = ("dynamics.damping_ratio",),
-    model: str | None = None,
-    u_data: float = 0.05,
-) -> Fit:
-    """Fields of a case fitted to the displacements of a table of lines.
-
-    ``names``: dotted fields with one number each, or "transmission_error.amplitude" for all its
-    amplitudes together. ``model`` as "consistent hot" (default: the last of the case);
-    ``u_data`` the relative uncertainty of lines that state none.
-    """
-    runs = CaseRuns.of(case)
-    base = _tables(runs, {})
-    chosen = model or list(base)[-1]
-    if chosen not in base:
-        raise InputError("model", repr(chosen), allowed=", ".join(base))
-    lines = [line for line in measured.lines if base[chosen].near(line.speed) is not None]
-    if not lines:
-        raise InputError("speeds", measured.name, why="none of them is simulated")
-    values = np.array([line.displacement for line in lines])
-    errors = values * np.array([line.uncertainty or u_data for line in lines])
-
-    def simulate(factors: Floats) -> Floats:
-        near = _tables(runs, runs.changes(dict(zip(names, map(float, factors), strict=True))))[
-            chosen
-        ].near
-        found = [near(line.speed) for line in lines]
-        return np.array([0.0 if line is None else line.displacement for line in found])
-
-    return fit(simulate, names, measured=values, uncertainty=errors)

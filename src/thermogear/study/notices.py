@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.settle import PERIODIC
-from thermogear.base.display import CELSIUS, reach
+from thermogear.base.display import CELSIUS, reach, stretches
 from thermogear.base.units import RPM
 from thermogear.case.case import GearCase
 from thermogear.heat.friction import LUBRICATED, beyond
@@ -48,7 +48,7 @@ def contact_notices(data: xr.Dataset) -> list[str]:
     ):
         here = np.asarray(flags.any(axis=others))
         if here.any():
-            found.append(f"{yes} at {_stretches(speeds, here)} rpm (in any state, up or down)")
+            found.append(f"{yes} at {stretches(speeds, here)} rpm (in any state, up or down)")
         elif no:
             found.append(no)
     return found
@@ -74,17 +74,7 @@ def difference_notices(data: xr.Dataset) -> list[str]:
     if not here.any():
         return []
     speeds = data["pinion_speed"].values / RPM
-    return [f"up and down differ at {_stretches(speeds, here)} rpm (in any state)"]
-
-
-def _stretches(values: NDArray[np.float64], flags: NDArray[np.bool_]) -> str:
-    """The stretches of ascending values on which a flag holds, in words."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], flags.astype(int), [0]])))
-    words = []
-    for first, last in edges.reshape(-1, 2):
-        low, high = (f"{values[i]:.6g}" for i in (first, last - 1))
-        words.append(low if low == high else f"{low} .. {high}")
-    return ", ".join(words)
+    return [f"up and down differ at {stretches(speeds, here)} rpm (in any state)"]
 
 
 def range_notices(case: GearCase, data: xr.Dataset) -> list[str]:

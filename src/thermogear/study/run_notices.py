@@ -74,7 +74,7 @@ def notices(case: GearCase, groups: Mapping[str, xr.Dataset]) -> Iterator[Notice
         )
     yield Notice(
         "info",
-        "Undeformed and hot differ in the temperatures of gears and housing alone; oil and "
+        "Undeformed and hot differ in the growth of gears and housing alone; oil and "
         "film are equally warm in both: friction and flash can be compared.",
     )
     yield from friction_notices(case, groups)

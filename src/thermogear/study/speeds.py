@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -27,10 +27,11 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
-LOWEST, HIGHEST, STEP = 0.15, 1.8, 0.025
-"""Mesh over natural frequency, and the step of it."""
+LOWEST, HIGHEST, STEP = 0.05, 1.8, 0.025
+"""Mesh over natural frequency, and the step of it. At the lowest the twentieth harmonic of the
+mesh meets the natural frequency: what those above it do, dies out within a mesh period."""
 RECORD = Recording(periods=8, samples=64)
-DEEPEST, FARTHEST = 0.05, 10.0
+FARTHEST = 10.0
 """How far the case's own speeds may widen that range."""
 PEAK = 1.05
 """A peak stands out by this factor from the least between it and the next."""
@@ -127,14 +128,13 @@ def _valley(top: Floats, place: int, way: int) -> float:
 def look(mesh: Excitations, *, teeth: int, own: Floats) -> Speeds:
     """Motions of a ``mesh`` of one point over the speed of its pinion of so many ``teeth``.
 
-    Each of about a hundred speeds is started at rest in static contact, with a far throw, and on
+    Each of about 150 speeds is started at rest in static contact, with a far throw, and on
     the back side. ``own``: the case's own speeds [rad/s], kept beside.
     """
     natural = float(mesh.natural_frequency[0])
-    ends = 0.9 * teeth * own.min() / natural, 1.1 * teeth * own.max() / natural
-    low, high = max(min(LOWEST, ends[0]), DEEPEST), max(HIGHEST, min(ends[1], FARTHEST))
-    count = int(np.ceil(np.log(high / low) / np.log1p(STEP)))
-    ratio = np.geomspace(low, high, count + 1)
+    high = max(HIGHEST, min(1.1 * teeth * own.max() / natural, FARTHEST))
+    count = int(np.ceil(np.log(high / LOWEST) / np.log1p(STEP)))
+    ratio = np.geomspace(LOWEST, high, count + 1)
     along = mesh.take(np.zeros(ratio.size, int))
     lanes = points_of(replace(along, mesh_frequency=natural * ratio))
     gap, force = float(lanes.flat.half_backlash[0]), float(lanes.flat.force[0, 0].real)
@@ -147,25 +147,27 @@ def look(mesh: Excitations, *, teeth: int, own: Floats) -> Speeds:
     return Speeds(columns, float(ratio[1] / ratio[0] - 1.0), np.unique(own))
 
 
-def rpm(speed: float) -> str:
-    """A speed [rad/s] in rpm, to three figures: finer than the steps of a look."""
-    value = speed / RPM
-    size = max(int(np.floor(np.log10(value))) - 2, 0)
-    return f"{round(value, -size):.0f}" if value >= 100.0 else f"{value:.3g}"
+def told(
+    ranges: list[tuple[float, float]], *, ends: tuple[float, float], most: int = 3
+) -> tuple[str, dict[str, Any]]:
+    """The first few ``ranges`` of speed [rad/s] in words, with their figures [rpm].
 
+    A range that reaches one of the ``ends`` [rad/s] of the look says so: what is beyond, no one
+    has looked at. Words and figures as :func:`~thermogear.base.display.worded` takes them.
+    """
 
-def told(ranges: list[tuple[float, float]], *, ends: tuple[float, float], most: int = 3) -> str:
-    """``ranges`` of speed [rad/s] in rpm, the first few; ``ends`` [rad/s] of the look stay open."""
-
-    def one(low: float, high: float) -> str:
+    def one(place: int, low: float, high: float) -> str:
         if low <= ends[0] and high >= ends[1]:
-            return "at every speed looked at"
+            return "at every speed looked at, {looked[0]:~3 rpm} to {looked[1]:~3 rpm}"
+        lower, upper = f"{{ranges[{place}][0]:~3}}", f"{{ranges[{place}][1]:~3 rpm}}"
         if high >= ends[1]:
-            return f"from {rpm(low)} rpm on"
+            return f"from {lower} rpm to the highest speed looked at, {{looked[1]:~3 rpm}}"
         if low <= ends[0]:
-            return f"up to {rpm(high)} rpm"
-        return f"from {rpm(low)} to {rpm(high)} rpm" if high > low else f"near {rpm(low)} rpm"
+            return f"from the lowest speed looked at, {{looked[0]:~3 rpm}}, to {upper}"
+        return f"from {lower} to {upper}" if high > low else f"near {upper}"
 
-    words = [one(low, high) for low, high in ranges[:most]]
-    more = len(ranges) - most
-    return ", ".join(words) + (f" and {more} more" if more > 0 else "")
+    words = [one(place, *ends_of) for place, ends_of in enumerate(ranges[:most])]
+    more = max(len(ranges) - most, 0)
+    shown = [[low / RPM, high / RPM] for low, high in ranges[:most]]
+    figures = {"ranges": shown, "looked": [end / RPM for end in ends], "more": more}
+    return ", ".join(words) + " and {more} more" * (more > 0), figures

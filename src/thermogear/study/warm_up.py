@@ -111,7 +111,6 @@ def warm_up_survey(
         choices=case.models[0].choices(),
         held=dict(course.held),
         duty="one point until steady" if duty is None else "table",
-        cold_half_backlash=case.cold_backlash.half,
         worst=worst,
         jams=[float(t) for t in course.jams],
         sensors={one.name: one.words for one in shown},
@@ -244,14 +243,13 @@ def _steady(case: GearCase, duty: Duty, factors: Mapping[str, float]) -> xr.Data
         around = replace(surroundings, ambient=float(ambient))
         box = replace(case.gearbox, surroundings=around)
         balance = case.balance_of(model, unique[here, 1], unique[here, 2], gearbox=box)
-        hot = HotPair(case.pair, balance.operating, model)
-        gap = Clearance(hot, np.arange(PHASES) / PHASES, case.deviations).half_backlash
+        gap = _least_gap(case, HotPair(case.pair, balance.operating, model))
         # at rest the balance knows no free convection: it matters where anything but the ambient
         # has a temperature of its own
         runs = (unique[here, 1] > 0.0) | (around.oil_flow == 0.0 and not case.gearbox.measured)
         settled_here = balance.settled & known & runs
         twice[here] = balance.several & settled_here
-        values[here] = np.where(settled_here, gap.min(axis=1), np.nan)
+        values[here] = np.where(settled_here, gap, np.nan)
         fine[here] = settled_here
         for name, t in balance.steady.temperatures.items():
             whole = temperatures.setdefault(name, np.full(len(unique), np.nan))
@@ -278,15 +276,22 @@ def _steady(case: GearCase, duty: Duty, factors: Mapping[str, float]) -> xr.Data
     )
 
 
+def _least_gap(case: GearCase, pair: HotPair) -> Floats:
+    """Least half backlash over the mesh phase [m], (count,)."""
+    gap = Clearance(pair, np.arange(PHASES) / PHASES, case.deviations).half_backlash
+    return np.asarray(gap.min(axis=1))
+
+
 def _worst(case: GearCase, course: WarmUp, steady: xr.Dataset) -> dict[str, Any]:
     """The least half backlash, the steady one of the same piece, and the end."""
-    one, cold = course.worst, case.stated.half_backlash
-    rest = float(steady["half_backlash"][one.piece])
+    one, rest = course.worst, float(steady["half_backlash"][course.worst.piece])
+    cold = float(_least_gap(case, HotPair(case.pair, case.stated, case.models[0]).drawn())[0])
     lost, lost_for_good = cold - one.half_backlash, cold - rest
     ratio = lost / lost_for_good - 1.0 if lost_for_good > LEAST_LOSS else np.nan
     return {
         "time_s": one.time,
         "half_backlash_m": one.half_backlash,
+        "undeformed_half_backlash_m": cold,
         "margin_K": one.margin,
         "steady_half_backlash_m": rest,
         "below_steady_m": rest - one.half_backlash,

@@ -96,7 +96,7 @@ def key_results(mesh: xr.Dataset, path: xr.Dataset | None, motion: xr.Dataset | 
                 "–" if moved is None else value_of(moved.isel(state=-1), "dte_peak_to_peak"),
             ])  # fmt: skip
     caption = (
-        "Undeformed and hot differ in the temperatures of gears and housing alone. b′ is the mean "
+        "Undeformed and hot differ in the growth of gears and housing alone. b′ is the mean "
         "over a mesh period, Δk the peak to peak mesh stiffness, flash the highest rise along the "
         "path, swing the peak to peak movement of one base circle against the other."
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -12,14 +13,18 @@ from numpy.typing import NDArray
 
 from thermogear.analysis.outcome import settle_with_status
 from thermogear.analysis.side_by_side import RULE
+from thermogear.base.display import worded
 from thermogear.base.limits import LIMITS, NO_LIMIT
 from thermogear.base.progress import Progress
-from thermogear.base.units import RPM
+from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import STATUS
 from thermogear.case.case import GearCase
 from thermogear.case.duty import chosen_point, point_duty
 from thermogear.case.points import excitations, points_of
 from thermogear.case.response import respond
+from thermogear.mesh.balance import Gearbox, HeatBalance
+from thermogear.mesh.balance_table import LOSSES
+from thermogear.mesh.clearance import PARTS
 from thermogear.mesh.excite import EXCITES
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.warm_up import WarmUp, warm_up
@@ -38,6 +43,7 @@ OF_HOT = (
     "transmission_error",
     "mean_stiffness",
     "least_half_backlash",
+    *(f"half_backlash_by_{part}" for part in PARTS),
     "jam_temperature",
 )
 """What the answers take from the mesh cycle, undeformed and hot."""
@@ -46,6 +52,10 @@ MOST_POINTS = 60
 SLOWEST = 1e-3
 """Mesh over natural frequency below which no motion is followed: vibrations die out within a small
 part of a mesh period."""
+WARMEST_USUAL = ZERO_CELSIUS + 120.0
+"""Oil [K] at which it is said what a bath carries: above the limits of all kinds of oil."""
+MOST_WETTED = 0.5
+"""The other end of the band in which the wetted share of a gear is guessed (ours)."""
 WARM_UP_TOLERANCE = 0.1
 """Of a step's error [K]."""
 
@@ -86,9 +96,20 @@ class Asked:
     def moves(self, point: int) -> bool:
         return STATUS[int(self.hot["status"][point])] == "ok"
 
-    def settled(self, point: int) -> bool:
-        """Whether the heat balance of a point closed."""
-        return STATUS[int(self.hot["status"][point])] != "not_converged"
+    def unsettled(self, point: int) -> str:
+        """Why nothing hot is known of a point; empty where it is."""
+        if STATUS[int(self.hot["status"][point])] != "not_converged":
+            return ""
+        balance = self.case.balance(self.model) if self.case.computed else None
+        if balance is None or balance.settled[point]:
+            return "the loaded contact did not settle"
+        why = balance.lost.get(point)
+        return "the heat balance did not settle" + (f": {why}" if why else "")
+
+    def still(self, point: int) -> str:
+        """Why the hot pair does not move at a point; empty where it does."""
+        jammed = STATUS[int(self.hot["status"][point])] == "jammed"
+        return "the hot pair is jammed" if jammed else self.unsettled(point)
 
     @cached_property
     def hardest(self) -> int:
@@ -103,6 +124,47 @@ class Asked:
         teeth = np.maximum(at.temperatures.pinion_addendum, at.temperatures.wheel_addendum)
         shape = (self.count,)
         return np.broadcast_to(at.oil_temperature, shape), np.broadcast_to(teeth, shape)
+
+    @property
+    def pinion(self) -> Floats:
+        """The pinion's teeth [K] of every point: a jam is told by them."""
+        at = self.case.operating_of(self.model).temperatures
+        return np.broadcast_to(np.asarray(at.pinion_addendum), (self.count,))
+
+    def _balance(self, box: Gearbox) -> HeatBalance:
+        """The heat balance of every point in another gearbox, reached from cold."""
+        at = self.case.stated
+        return self.case.balance_of(
+            self.model, at.speed, at.torque, gearbox=box, varied=at.varied, from_hot=False
+        )
+
+    @cached_property
+    def bath(self) -> tuple[Floats, Floats]:
+        """(heat made, heat that the bath carries off) [W] with its oil at 120 C, every point."""
+        box = self.case.gearbox
+        found = self._balance(replace(box, measured={**box.measured, "oil": WARMEST_USUAL}))
+        losses = found.losses
+        made = sum(np.asarray(getattr(losses, name)) for name in LOSSES)
+        made = np.where(found.settled, made, np.nan)
+        return made, made - found.steady.heat_out["oil"]
+
+    @cached_property
+    def wetter(self) -> tuple[Floats, Floats] | None:
+        """(oil, hotter teeth) [K] with half of the gears wetted, nan where nothing settles.
+
+        None where the share is given, or nothing is computed with it.
+        """
+        left_out = (a.field for a in self.case.assumptions if a.default)
+        if not self.case.computed or "gearbox.wetted_share" not in left_out:
+            return None
+        box = self.case.gearbox
+        around = replace(box.surroundings, wetted_share=(MOST_WETTED, MOST_WETTED))
+        found = self._balance(replace(box, surroundings=around))
+        oil, first, second = (
+            np.where(found.settled, found.steady[name], np.nan)
+            for name in ("oil", "pinion_tooth", "wheel_tooth")
+        )
+        return oil, np.maximum(first, second)
 
     @cached_property
     def warming(self) -> WarmUp:
@@ -169,26 +231,33 @@ def answer(
     most: float | None = None,
     verdict: str = "",
     at: str = "",
+    figures: Mapping[str, Any] = MappingProxyType({}),
 ) -> Answer:
     """An answer held against its limit in the table.
 
-    ``most`` is the bound where it hangs on the case, ``verdict`` overrules where it must.
+    ``most`` is the bound where it hangs on the case, ``verdict`` overrules where it must. The
+    ``figures`` stand in the ``sentence`` as :func:`~thermogear.base.display.worded` puts them, and
+    are kept beside it.
     """
     bound = LIMITS.get(limit or name, NO_LIMIT)
     if most is not None:
         bound = replace(bound, most=most)
+    words, units = worded(sentence, figures)
     return Answer(
         name=name,
         question=question,
-        sentence=sentence,
+        sentence=words,
         value=float(value) if np.isfinite(value) else None,
         unit=bound.unit,
         limit=bound.words,
         source=bound.source,
         verdict=verdict or bound.verdict(value),
         operating=at,
+        figures={name: number for name, number in figures.items() if not isinstance(number, str)},
+        units=units,
     )
 
 
-def undecided(question: str, name: str, why: str, *, limit: str = "", at: str = "") -> Answer:
-    return answer(question, name, f"Not decided: {why}.", float("nan"), limit=limit, at=at)
+def undecided(question: str, name: str, why: str, **about: Any) -> Answer:
+    """An answer without a value, for the reason ``why``; ``about`` as in :func:`answer`."""
+    return answer(question, name, f"Not decided: {why}.", float("nan"), **about)

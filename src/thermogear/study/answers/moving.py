@@ -2,32 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
-from thermogear.base.limits import FINE, USUAL_ERROR
+from thermogear.base.limits import FINE, LOAD_SHARE, PARTING
+from thermogear.base.units import RPM
 from thermogear.case.case import GearCase
-from thermogear.case.thermal_state import HOT, UNDEFORMED
-from thermogear.gears.deviations import Relief
-from thermogear.gears.dynamic_factor import DynamicFactor, dynamic_factor
+from thermogear.case.thermal_state import HOT, UNDEFORMED, ThermalState
+from thermogear.gears.accuracy import EDITIONS, flank_tolerances
+from thermogear.gears.deviations import GEARS, Deviation, Relief
+from thermogear.gears.dynamic_factor import dynamic_factor
+from thermogear.gears.graded_flanks import WavyProfile, graded_flanks
 from thermogear.gears.iso6336 import iso6336_stiffness
 from thermogear.mesh.elastic import elastic_pair
-from thermogear.mesh.model import MeshModel
-from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair
 from thermogear.results.answer import Answer
 from thermogear.study.answers.asked import Asked, answer, undecided
-from thermogear.study.speeds import LOST, rpm, told
+from thermogear.study.speeds import LOST, Speeds, told
 
 Floats = NDArray[np.float64]
 
 SPEEDS = "At which speeds does it resonate?"
 LOADS, ERROR = "How large is the dynamic factor?", "How large is the transmission error?"
 
+LOOKED = "at every speed looked at, {looked[0]:~3 rpm} to {looked[1]:~3 rpm}"
+DRAWINGS = 16
+"""Drawings of flanks of one class whose errors are told."""
+POSITIONS = 60
+"""Mesh phases at which another drawing is solved: enough for two figures of its error."""
 RELIEFS = (0.25, 0.5, 0.75, 1.0, 1.25, 1.5)
 """Tip reliefs that are tried, over the mean deflection of the loaded teeth."""
 
@@ -38,94 +45,131 @@ RELIEFS = (0.25, 0.5, 0.75, 1.0, 1.25, 1.5)
 def speeds(asked: Asked) -> Iterator[Answer]:
     found = asked.speeds
     if found is None:
+        why = asked.still(asked.hardest) or "its mesh has no stiffness that moves"
         for name in ("resonance", "contact_loss", "back_contact", "coexisting"):
-            yield undecided(SPEEDS, name, "the hot pair is jammed or did not settle")
+            yield undecided(SPEEDS, name, why)
         return
-    place = asked.hardest
-    natural = float(np.sqrt(asked.hot["mean_stiffness"][place] / asked.case.equivalent_mass))
-    main = natural / asked.case.pair.pinion.teeth
-    own = asked.case.stated.speed
-    nearest = float(own[np.argmin(np.abs(own / main - 1.0))])
-    tops = ", ".join(f"{factor:.2f} at {rpm(speed)}" for speed, factor in found.peaks()[:4])
-    peaks = f"; greatest dynamic factors: {tops} rpm" if tops else "; no peak stands out"
-    yield answer(
-        SPEEDS,
-        "resonance",
-        f"The mesh frequency meets the natural one, {natural / (2e3 * np.pi):.2f} kHz, at "
-        f"{rpm(main)} rpm{peaks}.",
-        100.0 * abs(nearest / main - 1.0),
-    )
+    natural = np.sqrt(asked.hot["mean_stiffness"][asked.hardest] / asked.case.equivalent_mass)
+    yield _resonance(asked, found, float(natural) / asked.case.pair.pinion.teeth)
     speed, share = found.column("pinion_speed"), found.column("contact_loss_share")
     moving = np.isfinite(asked.motion["contact_loss_share"])
     parted = asked.motion["contact_loss_share"][moving] > LOST
     struck = asked.motion["mesh_force_min"][moving] < 0.0
     ends = (float(speed.min()), float(speed.max()))
-    for name, ranges, happens, never, own_points in (
-        ("contact_loss", found.lost, "Flanks lose contact", "Flanks keep contact",
+    for name, ranges, happens, never, apart in (
+        ("contact_loss", found.lost,
+         ("Flanks lose contact", ", for up to {most:.0f %} of the time"), "Flanks keep contact",
          parted),
-        ("back_contact", found.back, "Teeth hit the back side", "No tooth hits the back side",
+        ("back_contact", found.back, ("Teeth hit the back side", ""), "No tooth hits the back side",
          struck),
     ):  # fmt: skip
-        over = f"from {rpm(speed.min())} to {rpm(speed.max())} rpm"
-        most = f", for up to {100.0 * share.max():.0f} % of the time" * (name == "contact_loss")
-        sentence = f"{happens} {told(ranges, ends=ends)}{most}." if ranges else f"{never} {over}."
-        value = 100.0 * float(np.mean(own_points)) if own_points.size else float("nan")
-        if not own_points.size:
+        words, figures = told(ranges, ends=ends)
+        sentence = f"{happens[0]} {words}{happens[1]}" if ranges else f"{never} {LOOKED}"
+        if apart.any():
+            sentence += (
+                f"{'; so at' if ranges else ', yet not at'} {{points}} of {{of}} operating points"
+            )
+        figures |= {
+            "most": 100.0 * float(share.max()), "points": int(apart.sum()), "of": apart.size
+        }  # fmt: skip
+        if not apart.size:
             words = f"{sentence[0].lower()}{sentence[1:]}"
             sentence = f"Not decided at its own speeds, too slow to vibrate; faster, {words}"
-        yield answer(SPEEDS, name, sentence, value)
-    several = found.several
+        value = 100.0 * float(np.mean(apart)) if apart.size else float("nan")
+        yield answer(SPEEDS, name, f"{sentence}.", value, figures=figures)
+    words, figures = told(found.several, ends=ends)
+    half = 0.5 * found.step
+    here = any(
+        low * (1.0 - half) <= own <= high * (1.0 + half)
+        for low, high in found.several
+        for own in asked.case.stated.speed
+    )
     yield answer(
         SPEEDS,
         "coexisting",
-        f"Two motions exist {told(several, ends=ends)}: it may jump there, up and down elsewhere."
-        if several
-        else "One motion exists at every speed looked at: no jump.",
-        2.0 if _here(own, several) else 1.0,
+        f"Two motions exist {words}: it may jump there, up and down elsewhere."
+        if found.several
+        else f"One motion exists {LOOKED}: no jump.",
+        2.0 if here else 1.0,
+        figures=figures,
     )
 
 
-def _here(own: Floats, ranges: list[tuple[float, float]]) -> float:
-    """Share of the case's own speeds that lie in one of the ranges, half a step allowed."""
-    inside = [any(low * 0.9875 <= v <= high * 1.0125 for low, high in ranges) for v in own]
-    return float(np.mean(inside)) if inside else 0.0
+def _resonance(asked: Asked, found: Speeds, main: float) -> Answer:
+    """How far the case's speeds are off the resonances.
+
+    These are ``main`` [rad/s], where the mesh frequency meets the natural one, the peaks of the
+    look with a dynamic factor above :data:`~thermogear.base.limits.PARTING`, and a speed of the
+    case itself where the motion there has one: it is off by nothing.
+    """
+    own, factor = asked.case.stated.speed, asked.motion["dynamic_factor"]
+    factor = np.where(np.isfinite(factor), factor, 0.0)  # without load there is none
+    peaks = found.peaks()
+    strong = [main, *(speed for speed, top in peaks if top > PARTING)]
+    off = 100.0 * np.abs(own[:, None] / np.array(strong) - 1.0)
+    place, nearest = np.unravel_index(int(off.argmin()), off.shape)
+    shaken = bool(np.any(factor > PARTING))
+    value = 0.0 if shaken else float(off.min())
+    figures = {
+        "natural": main * asked.case.pair.pinion.teeth / (2e3 * np.pi),
+        "main": main / RPM,
+        "top": [top for _, top in peaks[:4]],
+        "there": [speed / RPM for speed, _ in peaks[:4]],
+        "own": float(own[place]) / RPM,
+        "off": value,
+        "strong": strong[nearest] / RPM,
+    }
+    tops = [f"{{top[{i}]:.2f}} at {{there[{i}]:~3 rpm}}" for i in range(len(peaks[:4]))]
+    words = f"greatest dynamic factors: {', '.join(tops)}" if tops else "no peak stands out"
+    where = "{own:~3 rpm} is {off:.1f %} off {strong:~3 rpm}"
+    if shaken:
+        place = np.argmax(factor)
+        figures |= {"own": float(own[place]) / RPM, "factor": float(factor[place])}
+        where = "at its own {own:~3 rpm} it is {factor:.2f}"
+    return answer(
+        SPEEDS,
+        "resonance",
+        "The mesh frequency meets the natural one, {natural:.2f kHz}, at {main:~3 rpm}; "
+        f"{words}; {where}.",
+        value,
+        figures=figures,
+    )
 
 
 # --- dynamic factor and error -------------------------------------------------------------------
 
 
 def loads(asked: Asked) -> Iterator[Answer]:
-    case = asked.case
-    grade = _class(case)
     for point in asked.points:
         at = asked.at(point)
         own = float(asked.motion["dynamic_factor"][point]) if asked.moves(point) else float("nan")
-        rated = _rated_factor(asked, point, grade)
-        if isinstance(rated, str) or not np.isfinite(own):
-            still = "it turns too slowly to vibrate" if asked.moves(point) else "it does not move"
-            why = rated if isinstance(rated, str) else still
-            mine = f"computed {own:.2f}; " if np.isfinite(own) else ""
-            yield undecided(LOADS, "dynamic_factor", f"{mine}{why}", at=at)
+        words, figures = _rated_factor(asked, point)
+        rated = figures.get("factor", np.inf)
+        limit = "dynamic_factor" if rated < PARTING else "parting"
+        about = {"limit": limit, "most": min(rated, PARTING), "at": at}
+        if not np.isfinite(own):
+            loaded = asked.case.stated.torque[point] > 0.0
+            slow = "it turns too slowly to vibrate" if loaded else "there is no load"
+            why = f"{asked.still(point) or slow}; ISO 6336-1 {words}"
+            yield undecided(LOADS, "dynamic_factor", why, figures=figures, **about)
             continue
-        said = "" if case.accuracy else ", profiles as measured"
-        words = f"class {grade}" + (said if case.accuracy or case.measured_class else ", assumed")
+        sentence = f"The vibration computed gives {{own:.2f}}; ISO 6336-1 {words}."
         yield answer(
-            LOADS,
-            "dynamic_factor",
-            f"The vibration computed gives {own:.2f}; ISO 6336-1 method B "
-            f"{float(rated.factor):.2f} ({words}, resonance ratio {float(rated.ratio):.2f}).",
-            own,
-            most=float(rated.factor),
-            at=at,
+            LOADS, "dynamic_factor", sentence, own, figures=figures | {"own": own}, **about
         )
 
 
-def _rated_factor(asked: Asked, point: int, grade: int) -> DynamicFactor | str:
+def _rated_factor(asked: Asked, point: int) -> tuple[str, dict[str, Any]]:
+    """What method B says of a point, in words with their figures; why not where it does not."""
     torque, speed = (float(asked.hot[f"pinion_{n}"][point]) for n in ("torque", "speed"))
+    grade, edition, whose = _class(asked.case)
     try:
-        return dynamic_factor(asked.case.pair, torque, speed, grade=grade)
+        rated = dynamic_factor(asked.case.pair, torque, speed, grade=grade, edition=edition)
     except InputError as error:
-        return f"ISO 6336-1 does not cover it: {error}"
+        return "does not cover it: {why}", {"why": str(error)}
+    figures = {"factor": float(rated.factor), "ratio": float(rated.ratio), "grade": grade}
+    known = f"class {{grade}}{whose}, resonance ratio {{ratio:.2f}}"
+    return f"method B {{factor:.2f}} ({known})", figures
 
 
 def errors(asked: Asked) -> Iterator[Answer]:
@@ -134,45 +178,86 @@ def errors(asked: Asked) -> Iterator[Answer]:
         for name, cycle in (("cold", asked.cold), ("hot", asked.hot))
     }
     for point in asked.points:
-        if not asked.settled(point):
-            why = "the heat balance did not settle"
-            yield undecided(ERROR, "transmission_error", why, at=asked.at(point))
+        at = asked.at(point)
+        words, figures = _allowed_error(asked.case, float(asked.hot["pinion_torque"][point]))
+        most = figures.get("made", np.inf) + figures.get("load", np.inf)
+        if why := asked.unsettled(point):
+            yield undecided(ERROR, "transmission_error", why, most=most, at=at)
             continue
-        warm = float(swing["hot"][point])
+        figures |= {name: float(values[point]) for name, values in swing.items()}
         sentence = (
-            f"Static and loaded it is {float(swing['cold'][point]):.2f} µm peak to peak "
-            f"undeformed, {warm:.2f} µm hot."
+            "Static and loaded it is {cold:.2f µm} peak to peak undeformed, {hot:.2f µm} hot; "
+            f"{words}"
         )
+        if point == asked.hardest and (drawn := _drawings(asked)):
+            sentence += "; {drawings} drawings of the class have {least:~2 µm} to {greatest:~2 µm}"
+            figures |= {"drawings": len(drawn), "least": min(drawn), "greatest": max(drawn)}
+        value = figures["hot"] if np.isfinite(most) else float("nan")
         yield answer(
-            ERROR,
-            "transmission_error",
-            sentence,
-            warm,
-            most=_usual_error(asked.case, float(asked.hot["pinion_torque"][point])),
-            at=asked.at(point),
+            ERROR, "transmission_error", f"{sentence}.", value, most=most, at=at, figures=figures
         )
     yield _relief(asked)
 
 
-def _class(case: GearCase) -> int:
-    """The class of ISO 1328-1 that the flanks are of, the worse gear's; 6 where none is known."""
-    return max((one for one in (case.accuracy, case.measured_class) if one), default=6)
+def _class(case: GearCase) -> tuple[int, str, str]:
+    """The class of ISO 1328-1 that the flanks are of, the worse gear's and 6 where none is known;
+    the edition that counts so, and how it is known."""
+    drawn = case.file.flanks if case.accuracy is not None else None
+    known = [grade for grade in (case.accuracy, case.measured_class) if grade is not None]
+    whose = "" if drawn else ", profiles as measured" if known else ", assumed"
+    return max(known, default=6), drawn.edition if drawn else EDITIONS[0], whose
 
 
-def _usual_error(case: GearCase, torque: float) -> float:
-    """What a pair of the accuracy class usually has [um]: unloaded, and 0.43 w/c' of the load."""
-    classes, errors_of = zip(*USUAL_ERROR, strict=True)
-    unloaded = float(np.interp(float(_class(case)), classes, errors_of))
-    load = torque / (case.pair.pinion.pitch_radius * case.pair.face_width)
-    single = float(iso6336_stiffness(case.pair, load).single)
-    return unloaded + (0.43e6 * load / single if single > 0.0 else 0.0)
+def _allowed_error(case: GearCase, torque: float) -> tuple[str, dict[str, Any]]:
+    """What manufacture and the load leave of transmission error, in words with figures [um].
+
+    f_Halpha + f_falpha of both gears: flanks within the tolerances of their class lead by no more
+    without load. And :data:`~thermogear.base.limits.LOAD_SHARE` of w/c', w at the pitch circle.
+    """
+    pair, (grade, edition, whose) = case.pair, _class(case)
+    load = torque / (pair.pinion.pitch_radius * pair.face_width)
+    single = float(iso6336_stiffness(pair, load).single)
+    try:
+        tolerances = [
+            flank_tolerances(one.teeth, one.module, grade=grade, edition=edition)
+            for one in (pair.pinion, pair.wheel)
+        ]
+    except InputError as error:
+        return "ISO 1328-1 has no tolerance for it: {why}", {"why": str(error)}
+    figures = {
+        "grade": grade,
+        "made": 1e6 * sum(one.profile_slope + one.profile_form for one in tolerances),
+        "load": 1e6 * LOAD_SHARE * load / single if single > 0.0 else 0.0,
+    }
+    return f"class {{grade}}{whose} allows {{made:.1f µm}}, the load {{load:.1f µm}}", figures
+
+
+def _drawings(asked: Asked) -> list[float]:
+    """Static error [um] peak to peak at the hardest point, hot, of drawn flanks and of others.
+
+    The flanks of the case first, then other seeds of the same class, as many in all as
+    :data:`DRAWINGS`, each at up to :data:`POSITIONS` phases; empty where nothing is drawn, or where
+    the model's springs do not feel flanks.
+    """
+    case = asked.case
+    table = case.file.flanks
+    if case.accuracy is None or table is None or asked.model.stiffness != "loaded":
+        return []
+    kept = [one for one in case.deviations if not isinstance(one, WavyProfile)]
+    drawn = {one.gear for one in case.deviations if isinstance(one, WavyProfile)}
+    found = [1e6 * float(np.ptp(asked.hot["transmission_error"][asked.hardest]))]
+    for seed in [seed for seed in range(1, DRAWINGS + 1) if seed != table.seed][: DRAWINGS - 1]:
+        flanks = graded_flanks(case.pair, case.accuracy, seed=seed, edition=table.edition)
+        taken = (*kept, *(one for one in flanks if one.gear in drawn))
+        found.append(_swing(asked, HOT, taken, min(case.mesh_positions, POSITIONS)))
+    return found
 
 
 def _relief(asked: Asked) -> Answer:
     """The best of a few tip reliefs at the hardest point, hot, and the same one undeformed."""
-    case, model, point = asked.case, asked.model, asked.hardest
-    if not asked.moves(point):
-        return undecided(ERROR, "relief", "the hot pair is jammed or did not settle")
+    case, point = asked.case, asked.hardest
+    if why := asked.still(point):
+        return undecided(ERROR, "relief", why)
     if any(isinstance(one, Relief) for one in case.deviations):
         return answer(
             ERROR, "relief", "The flanks have one; `thermogear relief` looks for a better.",
@@ -182,37 +267,43 @@ def _relief(asked: Asked) -> Answer:
     deflection = force / float(asked.hot["mean_stiffness"][point])
     length = case.pair.path.e - case.pair.path.d
     states = {}
+    cuts: list[tuple[Deviation, ...]] = [()]
+    for share in RELIEFS:
+        amount = share * deflection
+        cuts.append(tuple(Relief(gear, amount=amount, length=length) for gear in GEARS))
     for number_of, (name, state) in enumerate((("cold", UNDEFORMED), ("hot", HOT))):
         asked.progress("relief", number_of, 2)
-        operating = state.operating(case, model).part(slice(point, point + 1))
         states[name] = [
-            _swing(case, model, operating, amount=share * deflection, length=length)
-            for share in (0.0, *RELIEFS)
+            _swing(asked, state, (*case.deviations, *cut), case.mesh_positions) for cut in cuts
         ]
     asked.progress("relief", 2, 2)
     cold, hot = (np.array(states[name]) for name in ("cold", "hot"))
     best, other = int(np.argmin(hot)), int(np.argmin(cold))
     amounts = np.array([0.0, *RELIEFS]) * 1e6 * deflection
     gain = 100.0 * (1.0 - hot[best] / hot[0])
-    if gain < 1.0:
-        sentence = (
-            "No tip relief of both gears makes it smaller, hot: the flanks themselves decide."
-        )
-    else:
-        sentence = (
-            f"A linear tip relief of {amounts[best]:.1f} µm on both gears makes it "
-            f"{hot[0]:.2f} → {hot[best]:.2f} µm hot; the best one undeformed, {amounts[other]:.1f} "
-            f"µm, leaves {hot[other]:.2f} µm hot."
-        )
-    return answer(ERROR, "relief", sentence, gain, at=asked.at(point))
+    figures = {
+        "relief": float(amounts[best]),
+        "before": float(hot[0]),
+        "after": float(hot[best]),
+        "undeformed": float(amounts[other]),
+        "left": float(hot[other]),
+    }
+    sentence = (
+        "A linear tip relief of {relief:.1f µm} on both gears makes it {before:.2f µm} → "
+        "{after:.2f µm} hot; the best one undeformed, {undeformed:.1f µm}, leaves "
+        "{left:.2f µm} hot."
+        if gain >= 1.0
+        else "No tip relief of both gears makes it smaller, hot: the flanks themselves decide."
+    )
+    return answer(ERROR, "relief", sentence, gain, at=asked.at(point), figures=figures)
 
 
 def _swing(
-    case: GearCase, model: MeshModel, operating: Operating, amount: float, length: float
+    asked: Asked, state: ThermalState, deviations: Sequence[Deviation], positions: int
 ) -> float:
-    """Static error peak to peak [um] with a tip relief of ``amount`` [m] on both gears."""
-    cut = tuple(Relief(gear, amount=amount, length=length) for gear in ("pinion", "wheel"))
-    hot = HotPair(case.pair, replace(operating, housing=case.housing), model)
-    loaded = elastic_pair(hot, (*case.deviations, *(cut if amount else ())))
-    curves = loaded.over(np.arange(case.mesh_positions) / case.mesh_positions)
+    """Static error peak to peak [um] at the hardest point, with these ``deviations``."""
+    point = asked.hardest
+    operating = state.operating(asked.case, asked.model).part(slice(point, point + 1))
+    hot = HotPair(asked.case.pair, replace(operating, housing=asked.case.housing), asked.model)
+    curves = elastic_pair(hot, deviations).over(np.arange(positions) / positions)
     return float(1e6 * np.ptp(curves.transmission_error[0]))

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -19,31 +17,25 @@ from thermogear.study.scuffing import load_stage
 Floats = NDArray[np.float64]
 
 
-class _Number(NamedTuple):
-    unit: str
-    words: str
-
-
-NUMBERS: dict[str, _Number] = {
-    "oil_temperature": _Number("K", "oil temperature"),
-    "tooth_temperature": _Number("K", "temperature of the hotter teeth, without the flash"),
-    "greatest_flash": _Number("K", "greatest flash temperature along the path"),
-    "least_film_parameter": _Number("1", "least film parameter along the path"),
-    "scuffing_margin": _Number(
-        "K", "scuffing temperature less contact temperature, ISO/TR 13989-1"
+NUMBERS: dict[str, tuple[str, str]] = {
+    "oil_temperature": ("K", "oil temperature"),
+    "tooth_temperature": ("K", "temperature of the hotter teeth, without the flash"),
+    "greatest_flash": ("K", "greatest flash temperature along the path"),
+    "least_film_parameter": ("1", "least film parameter along the path"),
+    "scuffing_margin": ("K", "scuffing temperature less contact temperature, ISO/TR 13989-1"),
+    "scuffing_safety": ("1", "safety by integral temperature, ISO/TR 13989-2"),
+    "backlash": ("m", "least backlash, whole gap, along the line of action"),
+    "jam_temperature": (
+        "K",
+        "temperature of the pinion's teeth at which the pair jams, housing as it is",
     ),
-    "scuffing_safety": _Number("1", "safety by integral temperature, ISO/TR 13989-2"),
-    "backlash": _Number("m", "least backlash, whole gap, along the line of action"),
-    "jam_temperature": _Number(
-        "K", "temperature of the teeth at which the pair jams, housing as it is"
-    ),
-    "jam_margin": _Number("K", "jam temperature less temperature of the teeth"),
-    "static_error": _Number("m", "transmission error, static and loaded, peak to peak"),
+    "jam_margin": ("K", "jam temperature less temperature of the pinion's teeth"),
+    "static_error": ("m", "transmission error, static and loaded, peak to peak"),
 }
 """Every number with its unit and words; those of the motion are sweeps' own."""
 WANT = (
-    "oil_temperature", "tooth_temperature", "flash_temperature", "film_parameter",
-    "least_half_backlash", "jam_temperature", "transmission_error",
+    "oil_temperature", "tooth_temperature", "pinion_temperature", "flash_temperature",
+    "film_parameter", "least_half_backlash", "jam_temperature", "transmission_error",
 )  # fmt: skip
 UNRATED = ("pinion_speed", "pinion_torque", "gear_temperature", "cold_half_backlash",
            "damping_ratio", "operating.torque", *BESIDE, *LANE)  # fmt: skip
@@ -53,8 +45,8 @@ UNRATED = ("pinion_speed", "pinion_torque", "gear_temperature", "cold_half_backl
 def answer_variables(dims: tuple[str, ...]) -> dict[str, Variable]:
     """How the numbers are stored over ``dims``."""
     return {
-        name: Variable(dims, "float64", float("nan"), {"units": one.unit, "long_name": one.words})
-        for name, one in NUMBERS.items()
+        name: Variable(dims, "float64", float("nan"), {"units": unit, "long_name": words})
+        for name, (unit, words) in NUMBERS.items()
     }
 
 
@@ -70,17 +62,17 @@ def answer_numbers(family: GearFamily, rows: ArrayLike) -> dict[str, Floats]:
     found = family.quasi_static(points, WANT, path_positions=case.path_positions)
     flash, film = found["flash_temperature"], found["film_parameter"]
     margin, safety = _scuffing(family, points, found)
-    teeth, jam = found["tooth_temperature"], found["jam_temperature"]
+    jam = found["jam_temperature"]
     return {
         "oil_temperature": found["oil_temperature"],
-        "tooth_temperature": teeth,
+        "tooth_temperature": found["tooth_temperature"],
         "greatest_flash": flash.max(axis=1),
         "least_film_parameter": _least(film),
         "scuffing_margin": margin,
         "scuffing_safety": safety,
         "backlash": 2.0 * found["least_half_backlash"],
         "jam_temperature": jam,
-        "jam_margin": jam - teeth,
+        "jam_margin": jam - found["pinion_temperature"],
         "static_error": np.ptp(found["transmission_error"], axis=1),
     }
 

@@ -4,18 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError, ThermogearError
-from thermogear.base.limits import FINE, LIMITS, LOOK
-from thermogear.base.materials import NEVER, Material
+from thermogear.base.limits import FINE, LIMITS, LOOK, OPEN
+from thermogear.base.materials import NEVER, NO_BATH, Material
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.case.case import GearCase
+from thermogear.heat.transient import HOTTEST
 from thermogear.mesh.scuffing_rating import Scuffing, flash_rating, integral_rating
 from thermogear.results.answer import Answer
-from thermogear.study.answers.asked import Asked, answer, undecided
+from thermogear.study.answers.asked import (
+    MOST_WETTED,
+    WARMEST_USUAL,
+    Asked,
+    answer,
+    undecided,
+)
 from thermogear.study.scuffing import load_stage, not_steel, steel
 
 Floats = NDArray[np.float64]
@@ -23,7 +31,8 @@ Floats = NDArray[np.float64]
 MESH, HEAT, GAP = "Does it mesh?", "How hot does it run?", "What is left of the backlash?"
 FILM = "Is there a film, does it scuff?"
 
-UNSETTLED = "the heat balance did not settle"
+PARTS = {"deviations": "flank deviations", "speed": "centrifugal growth", "heat": "heat"}
+"""What takes or gives backlash, as it is named."""
 
 
 # --- does it mesh -----------------------------------------------------------------------------
@@ -73,27 +82,38 @@ def mesh(asked: Asked) -> Iterator[Answer]:
 
 
 def heat(asked: Asked) -> Iterator[Answer]:
-    oil, teeth = asked.bodies
-    kind = f"oil_{asked.case.stated.lubricant.kind}"
-    how = "computed" if asked.case.computed else "given"
+    (oil, teeth), used = asked.bodies, asked.case.stated.lubricant
+    kind, flash_point = f"oil_{used.kind}", used.flash_point
+    burning = (flash_point or NO_BATH) - ZERO_CELSIUS
+    bound = "its flash point" if flash_point else "where its flash point is not known"
     held = "oil" in asked.case.gearbox.measured
     of_teeth = _tooth_limit(asked.case)
     for point in asked.points:
         warm, at = float(oil[point]) - ZERO_CELSIUS, asked.at(point)
-        if not np.isfinite(warm) or not (held or asked.settled(point)):
-            yield undecided(HEAT, "oil_temperature", UNSETTLED, limit=kind, at=at)
-            yield undecided(HEAT, "tooth_temperature", UNSETTLED, limit=of_teeth, at=at)
+        why = asked.unsettled(point)
+        if why and not (held and np.isfinite(warm)):
+            excess, figures = _excess(asked, point)
+            cause = f"{why}; {excess}" if excess else why
+            yield undecided(HEAT, "oil_temperature", cause, limit=kind, at=at, figures=figures)
+            yield undecided(HEAT, "tooth_temperature", why, limit=of_teeth, at=at)
             continue
-        said = "given" if held else how
+        how, figures = ("given", {}) if held else _how(asked, point, 0)
+        sentence = f"The oil is at {warm:.0f} °C ({how})."
+        if warm > burning:
+            excess, more = _excess(asked, point)
+            sentence = f"{sentence[:-1]}: no oil bath exists above {burning:.0f} °C, {bound}"
+            sentence += f"; {excess}." if excess else "."
+            figures = {**figures, **more, "hottest_bath": burning}
         yield answer(
-            HEAT, "oil_temperature", f"The oil is at {warm:.0f} °C ({said}).", warm,
-            limit=kind, at=at,
+            HEAT, "oil_temperature", sentence, warm, limit=kind, at=at, figures=figures,
+            verdict=LOOK if warm > burning else "",
         )  # fmt: skip
-        if not asked.settled(point):
-            yield undecided(HEAT, "tooth_temperature", UNSETTLED, limit=of_teeth, at=at)
+        if why:
+            yield undecided(HEAT, "tooth_temperature", why, limit=of_teeth, at=at)
             continue
         hottest = float(teeth[point]) - ZERO_CELSIUS
         flash = float(np.fmax.reduce(asked.hot["flash_temperature"][point]))
+        how, figures = _how(asked, point, 1)
         yield answer(
             HEAT,
             "tooth_temperature",
@@ -101,7 +121,38 @@ def heat(asked: Asked) -> Iterator[Answer]:
             hottest,
             limit=of_teeth,
             at=at,
+            figures={**figures, "flash": flash},
         )
+
+
+def _how(asked: Asked, point: int, body: int) -> tuple[str, dict[str, float]]:
+    """Where a temperature comes from, with what a wetter gear would make of it."""
+    if not asked.case.computed:
+        return "given", {}
+    kelvin = np.nan if asked.wetter is None else float(asked.wetter[body][point])
+    if not np.isfinite(kelvin):
+        return "computed", {}
+    share = asked.case.gearbox.surroundings.wetted_share[0]
+    other = kelvin - ZERO_CELSIUS
+    words = f"computed with {share:g} of the gears wetted, a guess; {other:.0f} °C with"
+    figures = {"wetted": share, "more_wetted": MOST_WETTED}
+    return f"{words} {MOST_WETTED:g}", {f"with_{MOST_WETTED:g}_wetted": other, **figures}
+
+
+def _excess(asked: Asked, point: int) -> tuple[str, dict[str, float]]:
+    """Why the oil gets so hot, and what to give; empty where its temperature is given."""
+    if not asked.case.computed or "oil" in asked.case.gearbox.measured:
+        return "", {}
+    made, carried = (float(watts[point]) / 1e3 for watts in asked.bath)
+    if not made > carried:
+        return "", {}
+    words = (
+        f"{made:.3g} kW are made and the bath carries {carried:.3g} kW with oil at "
+        f"{WARMEST_USUAL - ZERO_CELSIUS:.0f} °C: give oil.temperature, gearbox.oil_flow or "
+        "gearbox.housing_area"
+    )
+    at = WARMEST_USUAL - ZERO_CELSIUS
+    return words, {"made_kW": made, "carried_kW": carried, "carried_at": at}
 
 
 def _tooth_limit(case: GearCase) -> str:
@@ -124,24 +175,28 @@ def _tooth_limit(case: GearCase) -> str:
 
 
 def gap(asked: Asked) -> Iterator[Answer]:
-    cold = 2e6 * float(asked.hot["cold_half_backlash"].flat[0])
     for point in asked.points:
         at = asked.at(point)
-        if not asked.settled(point):
+        if why := asked.unsettled(point):
             for name in ("backlash", "jam_margin"):
-                yield undecided(GAP, name, UNSETTLED, at=at)
+                yield undecided(GAP, name, why, at=at)
             continue
         left = 2e6 * float(asked.hot["least_half_backlash"][point])
+        nominal = 2e6 * float(asked.hot["cold_half_backlash"][point])
+        parts = {n: 2e6 * float(asked.hot[f"half_backlash_by_{n}"][point]) for n in PARTS}
+        named = [f"{PARTS[n]} {v:+.1f} µm" for n, v in parts.items() if abs(v) >= 0.05]
         yield answer(
             GAP,
             "backlash",
-            f"Of {cold:.0f} µm cold, {left:.0f} µm are left hot along the line of action.",
+            f"Of {nominal:.1f} µm nominal, {left:.1f} µm are left hot along the line of action"
+            f"{': ' * bool(named)}{', '.join(named)}.",
             left,
             at=at,
             verdict=FINE if left > 0.0 else LOOK,
+            figures={"nominal": nominal, **parts},
         )
         jam = float(asked.hot["jam_temperature"][point]) - ZERO_CELSIUS
-        hot = float(asked.bodies[1][point]) - ZERO_CELSIUS
+        hot = float(asked.pinion[point]) - ZERO_CELSIUS
         if not np.isfinite(jam):
             free = left > 0.0
             sentence = f"No heat of the gears alone {'jams' if free else 'frees'} the pair."
@@ -151,10 +206,11 @@ def gap(asked: Asked) -> Iterator[Answer]:
         yield answer(
             GAP,
             "jam_margin",
-            f"It jams with teeth at {jam:.0f} °C and the housing as it is, {abs(jam - hot):.0f} K "
-            f"{'above' if jam > hot else 'below'} what they have.",
+            "It jams with the pinion's teeth at {jam:.0f °C}, the wheel's changed alike and the "
+            f"housing as it is, {{off:.0f K}} {'above' if jam > hot else 'below'} what they have.",
             jam - hot,
             at=at,
+            figures={"jam": jam, "off": abs(jam - hot)},
         )
     yield _worst_moment(asked)
 
@@ -164,13 +220,29 @@ def _worst_moment(asked: Asked) -> Answer:
         course = asked.warming
     except ThermogearError as error:
         return undecided(GAP, "warm_up_backlash", str(error), limit="backlash")
-    worst = course.worst
+    worst, at = course.worst, asked.at(asked.hardest)
     least, steady = 2e6 * worst.half_backlash, 2e6 * float(course.half_backlash[-1])
     start = float(course.temperatures["pinion_body"][0]) - ZERO_CELSIUS
     held = " and ".join(name.replace("_", " ") for name in course.held)
     how = f" with {held} held" if held else ""
     how += "" if asked.case.computed else " by the heat balance"
     words = f"Warming up from {start:.0f} °C{how} it is"
+    end = float(course.time[-1]) / 60.0
+    steady_known = course.course.settled or asked.case.computed
+    if course.course.too_hot or asked.unsettled(asked.hardest) or not steady_known:
+        rest = (
+            f"until a node reaches {HOTTEST - ZERO_CELSIUS:.0f} °C after {end:.3g} min"
+            if course.course.too_hot
+            else f"within {end:.3g} min"
+        )
+        return answer(
+            GAP, "warm_up_backlash",
+            f"{words} at least {least:.0f} µm {rest}; no steady state is known.",
+            np.nan if least > 0.0 else least,
+            limit="backlash", at=at, verdict=OPEN if least > 0.0 else LOOK,
+            figures={"least": least, "start": start, "end_minutes": end,
+                     "hottest": HOTTEST - ZERO_CELSIUS},
+        )  # fmt: skip
     sentence = f"{words} never less than when steady, {least:.0f} µm."
     if least < steady - 0.005 * abs(steady) - 0.05:
         sentence = (
@@ -179,7 +251,8 @@ def _worst_moment(asked: Asked) -> Answer:
         )
     return answer(
         GAP, "warm_up_backlash", sentence, least,
-        limit="backlash", at=asked.at(asked.hardest), verdict=FINE if least > 0.0 else LOOK,
+        limit="backlash", at=at, verdict=FINE if least > 0.0 else LOOK,
+        figures={"steady": steady, "start": start, "minutes": worst.time / 60.0},
     )  # fmt: skip
 
 
@@ -189,13 +262,14 @@ def _worst_moment(asked: Asked) -> Answer:
 def film(asked: Asked) -> Iterator[Answer]:
     case, oil = asked.case, asked.bodies[0]
     stage, assumed = load_stage(case)
-    whose = f"stage {stage:g}" + ", assumed" * assumed
+    whose = ", assumed" * assumed
     for point in asked.points:
         at = asked.at(point)
         film = asked.hot["film_parameter"][point]
         least = float(np.nanmin(film)) if np.isfinite(film).any() else float("nan")
-        if not asked.settled(point):
-            yield undecided(FILM, "film", UNSETTLED, at=at)
+        unsettled = asked.unsettled(point)
+        if unsettled:
+            yield undecided(FILM, "film", unsettled, at=at)
         elif not np.isfinite(least):
             yield undecided(FILM, "film", "no film could be computed", at=at)
         else:
@@ -204,7 +278,8 @@ def film(asked: Asked) -> Iterator[Answer]:
                 FILM, "film", f"The least film parameter is {least:.2f} ({acting}).", least, at=at
             )
         torque, speed = (float(asked.hot[f"pinion_{n}"][point]) for n in ("torque", "speed"))
-        why = unrated(case, torque, float(oil[point]))
+        known = not unsettled or "oil" in case.gearbox.measured
+        why = unrated(case, torque, float(oil[point])) if known else unsettled
         if why:
             for name in ("scuffing_margin", "scuffing_safety"):
                 yield undecided(FILM, name, why, at=at)
@@ -225,37 +300,50 @@ def unrated(case: GearCase, torque: float, oil: float) -> str:
         return f"the rating is for steel on steel, not {other}"
     if torque <= 0.0:
         return "there is no load"
-    return "" if np.isfinite(oil) else UNSETTLED
+    return "" if np.isfinite(oil) else "the heat balance did not settle"
 
 
-def _rated(name: str, make: Callable[[], tuple[str, float]], at: str) -> Answer:
+def _rated(name: str, make: Callable[[], tuple[str, float, dict[str, Any]]], at: str) -> Answer:
     try:
-        sentence, value = make()
+        sentence, value, figures = make()
     except InputError as error:
         return undecided(FILM, name, str(error), at=at)
-    return answer(FILM, name, sentence, value, at=at)
+    return answer(FILM, name, sentence, value, at=at, figures=figures)
 
 
 def _flash_words(
     case: GearCase, torque: float, speed: float, state: Scuffing, whose: str
-) -> tuple[str, float]:
+) -> tuple[str, float, dict[str, Any]]:
     found = flash_rating(case.pair, torque, speed, state)
-    contact, limit = float(found.contact) - ZERO_CELSIUS, found.limit - ZERO_CELSIUS
+    figures = {
+        "contact": float(found.contact) - ZERO_CELSIUS,
+        "limit": found.limit - ZERO_CELSIUS,
+        "stage": state.load_stage,
+        "margin": float(found.margin),
+        "safety": float(found.safety),
+    }
     return (
-        f"By flash temperature, with the standard's friction and bulk, the contact reaches "
-        f"{contact:.0f} °C of {limit:.0f} °C ({whose}): margin {float(found.margin):.0f} K, safety "
-        f"{float(found.safety):.2f}.",
-        float(found.margin),
+        "By flash temperature, with the standard's friction and bulk, the contact reaches "
+        f"{{contact:.0f °C}} of {{limit:.0f °C}} (stage {{stage:g}}{whose}): margin {{margin:.0f "
+        "K}, safety {safety:.2f}.",
+        figures["margin"],
+        figures,
     )
 
 
 def _integral_words(
     case: GearCase, torque: float, speed: float, state: Scuffing, whose: str
-) -> tuple[str, float]:
+) -> tuple[str, float, dict[str, Any]]:
     found = integral_rating(case.pair, torque, speed, state)
-    total, limit = float(found.integral) - ZERO_CELSIUS, found.limit - ZERO_CELSIUS
+    figures = {
+        "integral": float(found.integral) - ZERO_CELSIUS,
+        "limit": found.limit - ZERO_CELSIUS,
+        "stage": state.load_stage,
+        "safety": float(found.safety),
+    }
     return (
-        f"By integral temperature it is {total:.0f} °C of {limit:.0f} °C ({whose}): safety "
-        f"{float(found.safety):.2f}.",
-        float(found.safety),
+        "By integral temperature it is {integral:.0f °C} of {limit:.0f °C} (stage {stage:g}"
+        f"{whose}): safety {{safety:.2f}}.",
+        figures["safety"],
+        figures,
     )

@@ -7,12 +7,13 @@ Each question has one sentence, one number with its limit, and a verdict by the 
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.display import worded
 from thermogear.base.errors import ValidityWarning
 from thermogear.base.progress import Progress, silent
 from thermogear.case.case import GearCase
@@ -62,7 +63,7 @@ def answers(case: GearCase, *, progress: Progress = silent) -> Result:
         KIND,
         case.title,
         {} if speeds is None else Later(speeds=lambda: speeds.data),
-        notices(case),
+        notices(case, found),
         **case.provenance,
         bundle=model.name,
         choices=model.choices(),
@@ -73,20 +74,24 @@ def answers(case: GearCase, *, progress: Progress = silent) -> Result:
     )
 
 
-def notices(case: GearCase) -> Iterator[Notice]:
-    """What limits the answers as a whole."""
+def notices(case: GearCase, found: Sequence[Answer]) -> Iterator[Notice]:
+    """What limits the answers ``found`` as a whole."""
     count = case.stated.speed.size
     if count > MOST_POINTS:
         yield Notice(
             "info", f"{MOST_POINTS} of {count} operating points are answered, evenly spread."
         )
     if case.accuracy is not None:
+        drawn: Mapping[str, Any] = next((a.figures for a in found if "drawings" in a.figures), {})
+        words = "{drawings} drawings have a static error of {least:~2} to "
+        words += "{greatest:~2 µm} hot, this one {hot:~2 µm}"
+        told = worded(words if drawn else "Another may have another error", drawn)[0]
         yield Notice(
             "warning",
-            f"Flanks are one drawing from accuracy class {case.accuracy}. Another one may change "
-            "the error threefold, and whether the flanks part: try [flanks] seed = 2, 3, 4, or "
-            "give measured flanks. They repeat in every mesh period; pitch errors over a whole "
-            "turn, which bring lines of the shaft, are not modelled.",
+            f"Flanks are one drawing from accuracy class {case.accuracy}. {told}, and another "
+            "may part where these flanks do not: try [flanks] seed = 2, 3, 4, or give measured "
+            "flanks. They repeat in every mesh period; pitch errors over a whole turn, which "
+            "bring lines of the shaft, are not modelled.",
         )
     yield Notice(
         "info",

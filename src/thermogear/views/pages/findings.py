@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.display import exactly, number
+from thermogear.base.display import exactly, number, stretches
 from thermogear.base.parameters import PARAMETERS, long_name
 from thermogear.base.vocabulary import ASSUMED
 from thermogear.views.plots.parameters import shown
@@ -22,8 +22,6 @@ UNDECIDED, PERIODIC = 9, 7
 APART = 1e-3
 """Two orbits of one kind differ by more than this part of the greatest value."""
 SAME = "Up and down end on the same motion at every value"
-MOST = 4
-"""Stretches that a sentence names one by one."""
 
 
 def finding(data: xr.Dataset) -> str:
@@ -56,7 +54,7 @@ def _two_ways(data: xr.Dataset) -> str:
     unit = _unit(name)
     parts = []
     if apart.any():
-        parts.append(f"Up and down end on different motions at {_stretches(values, apart)}{unit}")
+        parts.append(f"Up and down end on different motions at {stretches(values, apart)}{unit}")
     else:
         parts.append(SAME + (" decided both ways" if not known.all() else ""))
     if "jump_direction" in data:
@@ -136,12 +134,3 @@ def _undecided(data: xr.Dataset) -> str:
 def _unit(name: str) -> str:
     one = PARAMETERS.get(long_name(name))
     return f" {one.shown}" if one is not None and one.shown else ""
-
-
-def _stretches(values: NDArray[np.float64], flags: NDArray[np.bool_]) -> str:
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], flags.astype(int), [0]]))).reshape(-1, 2)
-    if len(edges) > MOST:
-        low, high = values[flags].min(), values[flags].max()
-        return f"{int(flags.sum())} values between {low:.6g} and {high:.6g}"
-    ends = [(values[a], values[b - 1]) for a, b in edges]
-    return ", ".join(f"{a:.6g}" if a == b else f"{a:.6g} to {b:.6g}" for a, b in ends)

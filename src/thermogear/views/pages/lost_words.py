@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.display import exactly
+from thermogear.base.display import exactly, stretches
 from thermogear.base.parameters import PARAMETERS, long_name
 from thermogear.base.vocabulary import ASSUMED
 from thermogear.views.plots.lost_contact import has_lost, things
@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 Flags = NDArray[np.bool_]
 FILLED = 0.75
 """A stretch of the map is called by its ends alone where so much of it is meant."""
-MOST = 3
-"""Stretches of one axis that are named one by one."""
 
 
 def lost_words(data: xr.Dataset) -> str:
@@ -78,7 +76,9 @@ def where(data: xr.Dataset, flags: Flags) -> str:
     alike = len(set(units)) < len(units)
     if here.ndim == 1:
         values = shown(axes[0], data[axes[0]].values)
-        return _named(axes[0], units[0], _stretches(values, here, units[0]), alike=False)
+        return _named(
+            axes[0], units[0], f"at {stretches(values, here)} {units[0]}".rstrip(), alike=False
+        )
     inside = [np.flatnonzero(here.any(axis=1 - axis)) for axis in (0, 1)]
     box = here[inside[0][0] : inside[0][-1] + 1, inside[1][0] : inside[1][-1] + 1]
     words = [
@@ -111,19 +111,8 @@ def _range(values: NDArray[np.float64], on: NDArray[np.int64], unit: str) -> str
     places = np.flatnonzero(np.isin(order, on))
     low, high = (exactly(float(values[order[places[end]]])) for end in (0, -1))
     whole = f" {unit}".rstrip()
-    if places[0] == 0 and places[-1] == values.size - 1:
+    first, last = bool(places[0] == 0), bool(places[-1] == values.size - 1)
+    if first and last:
         return ""
-    if places[0] == 0:
-        return f"up to {high}{whole}"
-    if places[-1] == values.size - 1:
-        return f"from {low}{whole} on"
-    return f"at {low}{whole}" if low == high else f"from {low} to {high}{whole}"
-
-
-def _stretches(values: NDArray[np.float64], flags: Flags, unit: str) -> str:
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], flags.astype(int), [0]]))).reshape(-1, 2)
-    if len(edges) > MOST:
-        low, high = (exactly(float(v)) for v in (values[flags].min(), values[flags].max()))
-        return f"at {int(flags.sum())} values from {low} to {high} {unit}".rstrip()
-    ends = [(exactly(float(values[a])), exactly(float(values[b - 1]))) for a, b in edges]
-    return f"at {', '.join(a if a == b else f'{a} to {b}' for a, b in ends)} {unit}".rstrip()
+    words = f"at {low}{whole}" if low == high else f"from {low} to {high}{whole}"
+    return words + " (first computed)" * first + " (last computed)" * last

@@ -26,7 +26,7 @@ def page(result: Result) -> Page:
     data, steady = result.groups["course"], result.groups["steady"]
     record, fit = result.group("record"), result.group("fit")
     worst = result.table("worst")
-    cold = float(result.text("cold_half_backlash"))
+    cold = float(worst["undeformed_half_backlash_m"])
     logarithmic = result.text("duty") != "table"
     pictures = [
         Shown(
@@ -80,7 +80,7 @@ def answer(worst: Mapping[str, Any], cold: float) -> str:
     else:
         when = f"{number(minutes)} min after the start, at {point}"
     text = f"The half backlash is least {when}: {number(least, 4)} um of {number(1e6 * cold, 4)} um"
-    text += " cold." if least > 0.0 else " cold: the pair is jammed."
+    text += " undeformed." if least > 0.0 else " undeformed: the pair is jammed."
     rest, below = worst["steady_half_backlash_m"], worst["below_steady_m"]
     if rest is not None and not worst["at_the_start"]:
         if below > 5e-9 and not worst["at_the_end"]:
@@ -311,7 +311,7 @@ def _numbers(result: Result) -> dict[str, Any]:
 
 def _lines(result: Result) -> list[str]:
     found = _numbers(result)
-    cold = float(result.text("cold_half_backlash"))
+    cold = float(found["worst"]["undeformed_half_backlash_m"])
     lines = [answer(found["worst"], cold).replace("−", "-")]
     if found["fit"]:
         lines.append(fit_sentence(found["fit"]).strip())
