@@ -16,11 +16,19 @@ from thermogear import ConvergenceError, InputError, ValidityWarning, read_rexs,
 from thermogear.case.case import GearCase, gear_case, load_case, load_example
 from thermogear.case.examples import EXAMPLES
 from thermogear.case.new import NewCase
+from thermogear.case.rexs import exporting
+from thermogear.case.rexs.attributes import CASE
 from thermogear.case.rexs.exporting import WRITTEN
-from thermogear.case.rexs.importing import CASE, imported
+from thermogear.case.rexs.importing import imported
 
 GEARS = [name for name in EXAMPLES if load_example(name).kind == "gear"]
 ENDINGS = (".rexs", ".rexsj", ".rexsz")
+
+
+@pytest.fixture
+def without_results(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Files are written as for a pair without a hot state: nothing is computed."""
+    monkeypatch.setattr(exporting._Maker, "computed", lambda _: None)
 
 
 @cache
@@ -77,13 +85,16 @@ def drawn(seed: int) -> GearCase:
 
 @pytest.mark.filterwarnings("ignore::thermogear.ValidityWarning")  # hot oil of FZG A
 @pytest.mark.parametrize("name", GEARS)
-def test_ready_cases_come_back(name: str, tmp_path: Path) -> None:
+def test_ready_cases_come_back(name: str, tmp_path: Path, request: pytest.FixtureRequest) -> None:
     case = gear_case(load_example(name))
+    if name != "bgu-17-38":  # one that computes its oil temperature
+        request.getfixturevalue("without_results")
     path = tmp_path / f"gearbox{ENDINGS[GEARS.index(name) % 3]}"
     assert_same(case, there_and_back(case, path))
 
 
 @pytest.mark.parametrize("seed", range(6))
+@pytest.mark.usefixtures("without_results")
 def test_drawn_pairs_come_back(seed: int, tmp_path: Path) -> None:
     case = drawn(seed)
     version = WRITTEN[seed % len(WRITTEN)]
@@ -96,6 +107,7 @@ def test_drawn_pairs_come_back(seed: int, tmp_path: Path) -> None:
         assert one.identical(two)
 
 
+@pytest.mark.usefixtures("without_results")
 def test_overrides_are_part_of_the_case(tmp_path: Path) -> None:
     case = gear_case(
         load_example("fzg-c", ["operating.torque=150 N m", "dynamics.damping_ratio=0.1"])
@@ -105,6 +117,7 @@ def test_overrides_are_part_of_the_case(tmp_path: Path) -> None:
     assert again.damping_ratio == 0.1
 
 
+@pytest.mark.usefixtures("without_results")
 def test_every_version_has_its_own_names_and_units(tmp_path: Path) -> None:
     case = fzg_c()
     new, old = (
@@ -129,6 +142,7 @@ def foreign(path: Path, *changes: tuple[str, str]) -> Path:
     return path
 
 
+@pytest.mark.usefixtures("without_results")
 def test_without_our_attributes_the_converted_values_give_the_pair(tmp_path: Path) -> None:
     case = drawn(11)
     path = foreign(write_rexs(case, tmp_path / "gearbox.rexs"))
@@ -159,9 +173,9 @@ def test_without_our_attributes_the_converted_values_give_the_pair(tmp_path: Pat
         ('"face_width" unit="mm">14.0', '"face_width" unit="mm">15.5', "pinion.face_width", 0.0155),
         (
             '"addendum_modification_coefficient" unit="none">0.1817',
-            '"addendum_modification_coefficient" unit="none">0.19',
+            '"addendum_modification_coefficient" unit="none">0.17',
             "pinion.profile_shift",
-            0.19,
+            0.17,
         ),
     ],
 )
@@ -250,11 +264,12 @@ def test_a_stored_case_is_checked_like_any_other(tmp_path: Path) -> None:
     case = fzg_c()
     file = write_rexs(case, tmp_path / "gearbox.rexsj")
     content = json.loads(file.read_text(encoding="utf-8"))
-    for attribute in content["model"]["components"][0]["attributes"]:
-        if attribute["id"] == CASE:
-            kept = json.loads(attribute["string"])
-            kept["text"] = kept["text"].replace("teeth = 16", "teeth = 1600000")
-            attribute["string"] = json.dumps(kept)
+    for component in content["model"]["components"]:
+        for attribute in component["attributes"]:
+            if attribute["id"] == CASE:
+                kept = json.loads(attribute["string"])
+                kept["text"] = kept["text"].replace("teeth = 16", "teeth = 1600000")
+                attribute["string"] = json.dumps(kept)
     file.write_text(json.dumps(content), encoding="utf-8")
     with pytest.raises(
         InputError, match=r"stage 1.gears.pinion.teeth: got 1600000; allowed 5..2000"

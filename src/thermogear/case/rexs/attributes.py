@@ -136,7 +136,6 @@ MEANINGS: dict[str, Meaning] = (
         (
             "helix_angle_reference_diameter",
             "normal_pressure_angle",
-            "rotating_angle_around_neg_u_axis",
         ),
         _ANGLE,
     )
@@ -145,7 +144,6 @@ MEANINGS: dict[str, Meaning] = (
             "addendum_modification_coefficient",
             "generated_addendum_modification_coefficient",
             "addendum_coefficient_reference_profile",
-            "dedendum_coefficient_reference_profile",
             "tip_radius_factor",
             "poisson_ratio",
         ),
@@ -186,46 +184,54 @@ LATER: dict[str, tuple[str, ...]] = {
 }
 """Names the same thing has in other versions."""
 
+TRUTHS = (
+    "is_driving_gear",
+    "defines_torque",
+    "transmits_torque",
+    "defines_speed",
+    "radial_force_absorption",
+)
+"""Attributes that are true or false, or 1 or 0."""
+
 WORDS = (
+    *TRUTHS,
     "number_of_teeth",
     "tolerance_class_according_to_iso_1328_2013",
     "tooth_thickness_deviation_tolerance_series_din_3967_1978",
     "center_distance_tolerance_field_din_3964_1980",
     "shape_of_relief",
-    "is_driving_gear",
-    "defines_torque",
-    "transmits_torque",
-    "defines_speed",
     "bevel_cone_orientation",
     "is_engaged",
     "gear_shift_index",
     "catalogue_designation",
-    "radial_force_absorption",
     "name",
     "material_designation",
     "reference_component_for_position",
 )
 """Attributes that are counts, texts and truths."""
 
-USED = {*MEANINGS, *WORDS} | {other for names in LATER.values() for other in names}
-"""Every attribute that is read."""
+EARLIER = {other: name for name, names in LATER.items() for other in names}
+"""The name that :data:`MEANINGS` and :data:`WORDS` have for those of other versions."""
 
+USED = {*MEANINGS, *WORDS, *EARLIER} - {"bulk_temperature"}
+"""Every attribute that is read; the temperature of the teeth is written alone."""
+
+Plain = str | float | list[float]
+"""A value however it is written: a text or a truth, a number or several in SI."""
 _NUMBER_TEXT = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,4})?")
-EXACT = "custom_thermogear_"
-"""Begins attributes of ours; before the name of another, its exact value in SI."""
+OURS = "custom_thermogear_"
+"""Begins attributes of ours."""
+CASE = f"{OURS}case"
+"""The attribute that holds a whole case."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Read:
-    """A number as it was read: ``si``, and as a case file holds it, ``number`` ``unit``.
-
-    ``changed``: another program changed it since thermogear wrote it.
-    """
+    """A number as it was read: ``si``, and as a case file holds it, ``number`` ``unit``."""
 
     si: float
     number: float
     unit: str
-    changed: bool = False
 
     @property
     def text(self) -> str:
@@ -261,26 +267,16 @@ class Reader:
         self, component: Component | None, name: str, over: dict[str, Attribute] | None = None
     ) -> Read | None:
         """A number in SI; None where the file has none."""
-        found = self.attribute(component, name, over)
-        if found is None or component is None:
+        if (found := self.attribute(component, name, over)) is None:
             return None
-        where = f"{component.called}.{found.id}"
-        read = self._converted(found, finite(found.value, where), MEANINGS[name], where)
-        exact = (over or {}).get(EXACT + found.id) or component.attributes.get(EXACT + found.id)
-        if exact is None:
-            return read
-        kept = finite(exact.value, f"{component.called}.{exact.id}")
-        same = math.isclose(read.si, kept, rel_tol=1e-9, abs_tol=1e-15)
-        return Read(
-            si=kept if same else read.si, number=read.number, unit=read.unit, changed=not same
-        )
+        where = _where(component, found)
+        return self._converted(found, finite(found.value, where), MEANINGS[name], where)
 
     def vector(self, component: Component | None, name: str) -> tuple[float, ...] | None:
         """Three numbers in SI; None where the file has none."""
-        found = self.attribute(component, name)
-        if found is None or component is None:
+        if (found := self.attribute(component, name)) is None:
             return None
-        where = f"{component.called}.{found.id}"
+        where = _where(component, found)
         if not isinstance(found.value, list) or len(found.value) != 3:
             raise InputError(where, short(found.value), allowed="three numbers")
         return tuple(
@@ -299,27 +295,39 @@ class Reader:
         self, component: Component | None, name: str, over: dict[str, Attribute] | None = None
     ) -> bool | None:
         """A truth; None where the file has none."""
-        found = self.attribute(component, name, over)
-        if found is None or component is None:
+        if (found := self.attribute(component, name, over)) is None:
             return None
         text = str(found.value).strip().lower()
         if text not in ("true", "false", "0", "1"):
-            where = f"{component.called}.{found.id}"
-            raise InputError(where, short(found.value), allowed="true or false")
+            raise InputError(_where(component, found), short(found.value), allowed="true or false")
         return text in ("true", "1")
 
     def whole(
         self, component: Component, name: str, over: dict[str, Attribute] | None = None
     ) -> int | None:
         """A whole number; None where the file has none."""
-        found = self.attribute(component, name, over)
-        if found is None:
+        if (found := self.attribute(component, name, over)) is None:
             return None
-        where = f"{component.called}.{found.id}"
+        where = _where(component, found)
         value = finite(found.value, where)
         if value != int(value):
             raise InputError(where, short(found.value), allowed="a whole number")
         return int(value)
+
+    def plain_value(self, component: Component, found: Attribute) -> Plain:
+        """What an attribute says however it is written: numbers in SI, else the text."""
+        means = MEANINGS.get(EARLIER.get(found.id, found.id))
+        several = found.value if isinstance(found.value, list) else [found.value]
+        where, text = _where(component, found), str(found.value).strip()
+        if found.id in TRUTHS:
+            return {"1": "true", "0": "false"}.get(text, text.lower())
+        try:
+            if means is None:
+                return finite(text, where)
+            read = [self._converted(found, finite(one, where), means, where) for one in several]
+            return read[0].si if len(read) == 1 else [one.si for one in read]
+        except InputError:
+            return text
 
     def _converted(self, found: Attribute, value: float, means: Meaning, where: str) -> Read:
         schema = means.unit_in(self.model.after)
@@ -353,6 +361,10 @@ class Reader:
             else:
                 lines.append(f"{first}{count}: got no unit; taken as {schema!r}, that of REXS")
         return lines
+
+
+def _where(component: Component | None, found: Attribute) -> str:
+    return f"{component.called if component else ''}.{found.id}"
 
 
 def finite(value: object, where: str) -> float:

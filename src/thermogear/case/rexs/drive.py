@@ -59,7 +59,6 @@ class Drive:
         self.meshes: list[tuple[Component, int, int, int, int]] = []
         self.crossed: set[int] = set()
         self.open = dict.fromkeys(sorted(gearbox.planetary_shafts(model)))
-        self.changed = False
         for stage, first, second in gearbox.meshes(model):
             self._mesh(stage, first, second)
         size = len(model.load_cases) * (len(self.shafts) + len(self.of_gear) + len(self.meshes))
@@ -138,21 +137,18 @@ class Drive:
         speed = speeds.get(shaft) if shaft is not None else None
         torque = self._torque(stage, over, speeds)
         unit = next(iter(self.model.of_type("gear_unit")), None)
-        times: dict[str, float | None] = {}
-        for name in ("operating_time", "operating_time_fraction"):
-            found = None
-            if case is not None and unit is not None and unit.id in over:
-                bare = Component(unit.id, unit.type)
-                got = self.reader.number(bare, name, over[unit.id])
-                found = None if got is None else got.si
-            times[name] = found
+        bare = Component(unit.id, unit.type) if unit is not None else None
+        lasts, share = (
+            self.reader.number(bare, name, over.get(bare.id) if bare else None)
+            for name in ("operating_time", "operating_time_fraction")
+        )
         return Load(
             name="the model" if case is None else f"load case {case.id}",
             speed=speed,
             torque=torque,
             speed_read=shaft in read,
-            duration=times["operating_time"],
-            share=times["operating_time_fraction"],
+            duration=None if lasts is None else lasts.si,
+            share=None if share is None else share.si,
             signed=shaft in signed,
             other_speed=speeds.get(self.of_gear.get(stage.gears[1].id, -1)),
         )
@@ -192,7 +188,6 @@ class Drive:
             bare = Component(component.id, component.type) if only_over else component
             says = self.reader.truth(component, "defines_speed", over.get(holder))
             speed = self.reader.number(bare, "rotational_speed", over.get(holder))
-            self.changed |= speed is not None and speed.changed
             if speed is not None and bool(says) is defines:
                 found.setdefault(shaft, speed.si)
         return found
@@ -324,7 +319,6 @@ class Drive:
                 says = self.reader.truth(load, "defines_torque", own)
                 torque = self.reader.number(load, "torque_around_u_axis", own)
                 power = self.reader.number(load, "power", own)
-                self.changed |= any(one is not None and one.changed for one in (torque, power))
                 value = None if torque is None else torque.si
                 if value is None and power is not None and speeds.get(shaft):
                     value = power.si / speeds[shaft]

@@ -31,7 +31,6 @@ class _Relief:
     length: float
     shape: str
     source: Component
-    changed: bool = False
 
     @property
     def values(self) -> tuple[float, float, str]:
@@ -93,9 +92,7 @@ def _put(made: Draft, name: str, end: str, found: dict[str, _Relief | None], car
         ("shape", chosen.shape),
         ("flank", flank),
     )
-    made.lines += [
-        Line(f"{path}.{key}", value, DERIVED, source, chosen.changed) for key, value in values
-    ]
+    made.lines += [Line(f"{path}.{key}", value, DERIVED, source) for key, value in values]
 
 
 def _relief(
@@ -127,8 +124,6 @@ def _relief(
         evaluated = reader.number(one, f"{end}_relief_evaluation_reference")
         at = limit if evaluated is None else _rolled(reader, gear, evaluated.si, basics, one)
         length, reached = abs(limit - start), abs(at - start)
-        parts_read = (depth, evaluated, reader.number(one, f"{end}_relief_datum_diameter"))
-        changed = any(found is not None and found.changed for found in parts_read)
         if reached <= 1e-9 or length <= 1e-9:
             raise InputError(f"{one.called}", "a relief without a length", allowed="> 0 mm")
         share = length / reached
@@ -140,7 +135,7 @@ def _relief(
         if said not in made.unused:
             made.unused.append(said)
         return None
-    return _Relief(amount, length, shape, one, changed)
+    return _Relief(amount, length, shape, one)
 
 
 def _rolled(

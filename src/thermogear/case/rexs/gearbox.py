@@ -9,6 +9,7 @@ from thermogear.base.errors import InputError
 from thermogear.case.rexs.model import Component, Model
 
 GEARS = ("cylindrical_gear", "ring_gear")
+_TOOL = "rack_shaped_tool"
 _SWITCHED = "switchable_coupling"
 _JOINS = ("coupling", "connection", "fit", "spline", "feather_key")
 """Parts of the type names of what turns two shafts alike."""
@@ -34,11 +35,10 @@ class Stage:
 
 def stages(model: Model) -> list[Stage]:
     """The cylindrical stages in the file's order, with their gears or what they lack."""
-    meshes = {}
-    for relation in model.related("stage"):
-        found = relation.role("stage")
-        if found is not None:
-            meshes[found] = (relation.role("gear_1"), relation.role("gear_2"))
+    meshes = {
+        relation.role("stage"): (relation.role("gear_1"), relation.role("gear_2"))
+        for relation in model.related("stage")
+    }
     carried = _planetary(model)
     found_stages = []
     for number, component in enumerate(model.of_type("cylindrical_stage"), start=1):
@@ -95,31 +95,30 @@ def internal(field: str, teeth: int) -> InputError:
     return _internal(f"{field}.number_of_teeth", f"{teeth}, an internal gear")
 
 
-def _planetary(model: Model) -> set[int]:
-    """Cylindrical stages that are parts of planetary ones."""
-    found: set[int] = set()
+def assembled(model: Model) -> Iterator[tuple[Component, Component]]:
+    """(whole, part) of every assembly."""
     for relation in model.related("assembly", "ordered_assembly"):
         whole = model.at(relation.role("assembly"))
-        if whole is not None and whole.type == "planetary_stage":
-            found.update(i for role, i in relation.refs if role == "part")
-    return found
+        parts = [model.at(ident) for role, ident in relation.refs if role == "part"]
+        if whole is not None:
+            yield from ((whole, part) for part in parts if part is not None)
+
+
+def _planetary(model: Model) -> set[int]:
+    """Cylindrical stages that are parts of planetary ones."""
+    return {part.id for whole, part in assembled(model) if whole.type == "planetary_stage"}
 
 
 def planetary_shafts(model: Model) -> set[int]:
     """Shafts that a planetary stage or its carrier may turn."""
-    found: set[int] = set()
-    for relation in model.related("central_shaft", "planet_shaft", "planet_carrier_shaft"):
-        found.update(i for role, i in relation.refs if role == "shaft")
-    carried = _planetary(model)
-    of_gear = shafts_of_gears(model)
+    carried, of_gear = _planetary(model), shafts_of_gears(model)
+    held = model.related("central_shaft", "planet_shaft", "planet_carrier_shaft")
+    found = {ident for relation in held for role, ident in relation.refs if role == "shaft"}
     for relation in model.related("stage"):
         if relation.role("stage") in carried:
             gears = (relation.role("gear_1"), relation.role("gear_2"))
             found.update(of_gear[one] for one in gears if one in of_gear)
-    for relation in model.related("assembly", "ordered_assembly"):
-        whole = model.at(relation.role("assembly"))
-        if whole is not None and whole.type == "planet_carrier":
-            found.update(i for role, i in relation.refs if role == "part")
+    found |= {part.id for whole, part in assembled(model) if whole.type == "planet_carrier"}
     return found & {one.id for one in model.of_type("shaft")}
 
 
@@ -135,13 +134,7 @@ def meshes(model: Model) -> Iterator[tuple[Component, Component, Component]]:
 
 def shafts_of_gears(model: Model) -> dict[int, int]:
     """Gear -> shaft it turns with: by assembly, or over a shaft-hub connection."""
-    found: dict[int, int] = {}
-    for relation in model.related("assembly", "ordered_assembly"):
-        shaft = model.at(relation.role("assembly"))
-        if shaft is not None and shaft.type == "shaft":
-            for role, part in relation.refs:
-                if role == "part":
-                    found[part] = shaft.id
+    found = {part.id: whole.id for whole, part in assembled(model) if whole.type == "shaft"}
     for inner, outer, by in sides(model):
         if not _turns(by):
             continue
@@ -187,42 +180,31 @@ def sides(model: Model) -> Iterator[tuple[Component, Component, Component]]:
 def loads_of_shafts(model: Model) -> dict[int, list[Component]]:
     """Shaft -> its external loads."""
     found: dict[int, list[Component]] = {}
-    for relation in model.related("assembly", "ordered_assembly"):
-        shaft = model.at(relation.role("assembly"))
-        if shaft is None or shaft.type != "shaft":
-            continue
-        for role, part in relation.refs:
-            load = model.at(part)
-            if role == "part" and load is not None and load.type == "external_load":
-                found.setdefault(shaft.id, []).append(load)
+    for whole, part in assembled(model):
+        if whole.type == "shaft" and part.type == "external_load":
+            found.setdefault(whole.id, []).append(part)
     return found
 
 
 def flanks_of(model: Model, gear: Component) -> dict[str, Component]:
     """ "left" and "right" flank of a gear, as far as the file has them."""
-    found: dict[str, Component] = {}
-    for relation in model.related("flank"):
-        if relation.role("gear") == gear.id:
-            for side in ("left", "right"):
-                flank = model.at(relation.role(side))
-                if flank is not None:
-                    found[side] = flank
-    return found
+    return {
+        side: flank
+        for relation in model.related("flank")
+        if relation.role("gear") == gear.id
+        for side in ("left", "right")
+        if (flank := model.at(relation.role(side))) is not None
+    }
 
 
 def tool_of(model: Model, gear: Component, flanks: dict[str, Component]) -> Component | None:
     """The rack-shaped tool that cuts a gear: that of the first step, which cuts the root."""
     workpieces = {gear.id, *(flank.id for flank in flanks.values())}
-    for relation in model.related("manufacturing_step"):
-        if relation.role("workpiece") in workpieces:
-            tool = model.at(relation.role("tool"))
-            if tool is not None and tool.type == "rack_shaped_tool":
-                return tool
-    for one in workpieces:
-        tools = model.referenced(one, "rack_shaped_tool")
-        if tools:
-            return tools[0]
-    return None
+    steps = model.related("manufacturing_step")
+    tools = [model.at(one.role("tool")) for one in steps if one.role("workpiece") in workpieces]
+    for ident in workpieces:
+        tools += model.referenced(ident, _TOOL)
+    return next((one for one in tools if one is not None and one.type == _TOOL), None)
 
 
 def settings_of(
@@ -241,18 +223,49 @@ def settings_of(
 
 def lubricant_of(model: Model, stage: Component) -> Component | None:
     """The oil of a stage, else of the casing, else the only one."""
-    casings = model.of_type("gear_casing")
-    for one in (stage, *casings):
-        found = model.referenced(one.id, "lubricant")
-        if found:
-            return found[0]
-    oils = model.of_type("lubricant")
-    return oils[0] if len(oils) == 1 else None
+    holders, oils = (stage, *model.of_type("gear_casing")), model.of_type("lubricant")
+    found = [oil for one in holders for oil in model.referenced(one.id, "lubricant")]
+    return next(iter(found or (oils if len(oils) == 1 else [])), None)
 
 
 def gear_data_of(model: Model, stage: Component, gear: Component) -> Component | None:
     """What a stage says of one of its gears."""
-    for relation in model.related("stage_gear_data"):
-        if (relation.role("stage"), relation.role("gear")) == (stage.id, gear.id):
-            return model.at(relation.role("stage_gear_data"))
-    return None
+    both = (stage.id, gear.id)
+    return next(
+        (
+            model.at(one.role("stage_gear_data"))
+            for one in model.related("stage_gear_data")
+            if (one.role("stage"), one.role("gear")) == both
+        ),
+        None,
+    )
+
+
+def parts_of(model: Model, stage: Stage) -> dict[str, Component]:
+    """The components that a stage takes its case from, by their place in it."""
+    shafts, loads = shafts_of_gears(model), loads_of_shafts(model)
+    parts = {"stage": stage.component, "oil": lubricant_of(model, stage.component)}
+    for kind in ("gear_unit", "gear_casing"):
+        parts[kind] = next(iter(model.of_type(kind)), None)
+    for place, gear in enumerate(stage.gears, start=1):
+        flanks = flanks_of(model, gear)
+        mine: dict[str, Component | None] = {
+            "gear": gear,
+            "tool": tool_of(model, gear, flanks),
+            "data": gear_data_of(model, stage.component, gear),
+            "material": next(iter(model.referenced(gear.id, "material")), None),
+            "shaft": model.at(shafts.get(gear.id)),
+        }
+        several = [("load", load) for load in loads.get(shafts.get(gear.id, -1), ())]
+        settings = settings_of(model, gear, flanks)
+        several += [
+            ("settings", step) for step in settings if step.type == "manufacturing_settings"
+        ]
+        for side, flank in flanks.items():
+            mine[side] = flank
+            for relief in model.referenced(flank.id, "tip_relief", "root_relief"):
+                several.append((f"{side} {relief.type}", relief))
+        for name, part in several:
+            mine[name if name not in mine else f"{name} {len(mine)}"] = part
+        parts |= {f"{name} {place}": part for name, part in mine.items()}
+    return {name: part for name, part in parts.items() if part is not None}

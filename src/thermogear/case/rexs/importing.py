@@ -2,29 +2,25 @@
 
 from __future__ import annotations
 
-import json
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any
+from itertools import accumulate
 
-from thermogear.base.errors import InputError, InputErrors, short
-from thermogear.base.toml import flat, overridden, tables
+from thermogear.base.errors import InputError, short
+from thermogear.base.toml import flat
 from thermogear.base.units import RPM
 from thermogear.case.assumptions import Assumption
-from thermogear.case.case import GearCase, gear_case, load_case
 from thermogear.case.rexs import gearbox
-from thermogear.case.rexs.attributes import EXACT, USED, Reader, plain
+from thermogear.case.rexs.attributes import OURS, USED, Reader, plain
 from thermogear.case.rexs.draft import Draft
 from thermogear.case.rexs.drive import Drive
 from thermogear.case.rexs.gearbox import Stage
-from thermogear.case.rexs.lines import Line, stored, toml
+from thermogear.case.rexs.lines import some, toml
 from thermogear.case.rexs.model import Component, Model
+from thermogear.case.rexs.returned import checked, exported
 from thermogear.case.rexs.shaft_train import without_train
-from thermogear.case.rexs.stage_case import draft, require_spur
-
-CASE = f"{EXACT}case"
-"""The attribute that holds a whole case."""
+from thermogear.case.rexs.stage_case import draft, one_rack, require_spur
 
 
 @dataclass(frozen=True)
@@ -38,7 +34,8 @@ class Found:
 
 @dataclass(frozen=True)
 class Imported:
-    """A stage as a case: the ``text`` of the case file, what could not be used, notes on units.
+    """A stage as a case: the ``text`` of the case file, what could not be used, notes on units
+    and on what another program changed of a case that was exported.
 
     ``duty``: the load spectrum as the table that `thermogear warmup --duty` reads; empty without
     times of the load cases.
@@ -81,12 +78,10 @@ def shafts(model: Model) -> list[str]:
             how = "read" if shaft.id in read else "derived"
             parts.append(f"{speeds[shaft.id] / RPM:.6g} rpm ({how})")
         for load in drive.loads.get(shaft.id, ()):
-            torque = reader.number(load, "torque_around_u_axis", over.get(load.id))
-            power = reader.number(load, "power", over.get(load.id))
-            if torque is not None:
-                parts.append(f"{torque.si:.6g} N m")
-            elif power is not None:
-                parts.append(f"{power.si:.6g} W")
+            for name, unit in (("torque_around_u_axis", "N m"), ("power", "W")):
+                if (found := reader.number(load, name, over.get(load.id))) is not None:
+                    parts.append(f"{found.si:.6g} {unit}")
+                    break
         lines.append(", ".join(parts))
     return lines
 
@@ -100,24 +95,18 @@ def left_out(
     """
     known, silent = {one.id for one in used}, {one.id for one in told}
     parts: Counter[str] = Counter()
-    names: dict[str, dict[str, None]] = {}
+    names: dict[str, set[str]] = {}
     for one in model.components.values():
-        if one.id in silent:
-            continue
-        if one.id not in known:
+        if one.id in known - silent:
+            mine = {name for name in one.attributes if name not in USED and OURS not in name}
+            names[one.type] = names.get(one.type, set()) | mine
+        elif one.id not in silent:
             parts[one.type] += 1
-            continue
-        mine = names.setdefault(one.type, {})
-        mine.update(
-            dict.fromkeys(name for name in one.attributes if name not in USED and EXACT not in name)
-        )
     lines = [f"{short(kind).strip(chr(39))}: {count}" for kind, count in parts.items()]
     for kind, several in names.items():
         if several:
-            some = ", ".join(sorted(several)[:8])
-            more = f" and {len(several) - 8} more" if len(several) > 8 else ""
             count = "1 attribute" if len(several) == 1 else f"{len(several)} attributes"
-            lines.append(f"{kind}: {count}: {flat(some)}{more}"[:400])
+            lines.append(f"{kind}: {count}: {flat(some(sorted(several)))}"[:400])
     if model.accumulation:
         lines.append("accumulation: results over all load cases")
     return lines
@@ -133,22 +122,18 @@ def chosen(model: Model, number: int | None) -> Stage:
         raise InputError(
             "REXS file", "no cylindrical stage", allowed="one or more", why="no gear pair in it"
         )
-    if number is None:
-        if len(every) > 1:
-            raise InputError(
-                "--stage",
-                "nothing",
-                allowed=f"1..{len(every)}",
-                why="the file has several stages",
-                fix="without -o they are listed",
-            )
-        return every[0]
-    if 1 <= number <= len(every):
-        return every[number - 1]
-    for one in every:
-        if one.component.id == number:
-            return one
-    raise InputError("--stage", number, allowed=f"1..{len(every)}")
+    if number is None and len(every) > 1:
+        raise InputError(
+            "--stage",
+            "nothing",
+            allowed=f"1..{len(every)}",
+            why="the file has several stages",
+            fix="without -o they are listed",
+        )
+    known = {one.component.id: one for one in every} | {one.number: one for one in every}
+    if (asked := 1 if number is None else number) not in known:
+        raise InputError("--stage", asked, allowed=f"1..{len(every)}")
+    return known[asked]
 
 
 def imported(
@@ -165,21 +150,23 @@ def imported(
     """
     reader = Reader(model)
     one = chosen(model, stage)
+    if (kept := exported(reader, one)) is not None:
+        kept.take(speed, torque)
+        unused = [*kept.unused, *left_out(model, _used(model, one))]
+        duty = "" if kept.made is None else _duty(kept.made)
+        text = kept.text(_head(model, one, unused))
+        return Imported(text, tuple(unused), (*reader.said, *kept.notes), duty)
     made = draft(reader, one, speed, torque)
-    data = _stored(model)
-    unused: list[str] = []
-    if data is not None:
-        text = _restored(data, made, _head(model, one, unused))
-    else:
-        if made.train:
-            try:
-                _checked(one, toml(made.lines, (), ()))
-            except InputError as error:
-                without_train(made, error)
-        shapes = _modifications(model, made)
-        unused += [*made.unused, *shapes]
-        unused += left_out(model, _used(model, made), told=shapes.values())
-        text = _fresh(made, _head(model, one, unused))
+    one_rack(made)
+    if made.train:
+        try:
+            checked(one, toml(made.lines, (), ()))
+        except InputError as error:
+            without_train(made, error)
+    shapes = _modifications(model, made)
+    unused = [*made.unused, *shapes]
+    unused += left_out(model, [*_used(model, one), *made.train, *made.seats], told=shapes.values())
+    text = _fresh(made, _head(model, one, unused))
     return Imported(text, tuple(unused), tuple(reader.said), _duty(made))
 
 
@@ -195,118 +182,36 @@ def _head(model: Model, stage: Stage, unused: list[str]) -> list[str]:
 
 def _fresh(made: Draft, head: list[str]) -> str:
     bare = toml(made.lines, head, ())
-    case = _checked(made.stage, bare)
+    case = checked(made.stage, bare)
     return toml(made.lines, head, _defaults(made, case.assumptions))
 
 
-def _checked(stage: Stage, text: str) -> GearCase:
-    """The case of a text; what is impossible in it speaks of the stage."""
-    try:
-        return gear_case(load_case(text))
-    except InputError as error:
-        first = error.errors[0] if isinstance(error, InputErrors) else error
-        raise first.under(stage.field) from error
-
-
 _TOLD = ("gears.", "oil.", "backlash.", "flanks.", "housing.")
+_LEFT_OPEN = {
+    "gears.centre_distance": "that of the shifts without backlash",
+    "oil.temperature": "computed from the losses",
+}
 
 
 def _defaults(made: Draft, found: Iterable[Assumption]) -> list[tuple[str, str]]:
     """The defaults of the tables that a REXS file could fill, with their reasons."""
+    has = {one.path for one in made.lines}
+    known = tuple(one for one in _TOLD if one != "backlash." or not any(p[:9] == one for p in has))
     lines = [
         (one.field, f"{one.value}; {one.default}")
         for one in found
-        if one.default and one.field.startswith(_TOLD)
+        if one.default and one.field.startswith(known)
     ]
-    has = {one.path for one in made.lines}
-    if any(path.startswith("backlash.") for path in has):
-        lines = [one for one in lines if not one[0].startswith("backlash.")]
-    if "gears.centre_distance" not in has:
-        lines.append(("gears.centre_distance", "that of the shifts without backlash"))
-    if "oil.temperature" not in has:
-        lines.append(("oil.temperature", "computed from the losses"))
-    return lines
-
-
-# --- a case that was exported ---------------------------------------------------------------
-
-
-def _stored(model: Model) -> dict[str, Any] | None:
-    """The tables of the case that a model was exported from; None in others."""
-    for unit in model.of_type("gear_unit"):
-        found = unit.attributes.get(CASE)
-        if found is None:
-            continue
-        where = f"{unit.called}.{CASE}"
-        try:
-            kept = json.loads(str(found.value))
-            changes = tuple((str(path), str(text)) for path, text in kept["overrides"])
-            return overridden(tables("case", str(kept["text"])), changes)
-        except (ValueError, KeyError, TypeError, RecursionError) as cause:
-            raise InputError(
-                where,
-                "no case of thermogear",
-                fix=f"take the attribute {CASE} out of the file",
-            ) from cause
-    return None
-
-
-def _restored(data: dict[str, Any], made: Draft, head: list[str]) -> str:
-    """The stored case, with what another program changed put in."""
-    new = [one for one in made.lines if one.changed]
-    roots = {_root(one) for one in new}
-    for one in made.lines:
-        if _root(one) in roots and (one.changed or _root(one) in _WHOLE):
-            new.append(one)
-    if any(root.startswith("materials.") for root in roots):
-        new += [one for one in made.lines if one.path.endswith(".material")]
-    for root in roots & {"backlash"}:
-        data.pop(root, None)
-    notes = {}
-    for one in {one.path: one for one in new}.values():
-        table = data
-        *way, last = one.path.split(".")
-        for key in way:
-            table = table.setdefault(key, {})
-        table[last] = one.value
-        notes[one.path] = f"{one.origin}: {one.note}; changed since the export"
-    text = stored(data, head, notes)
-    _checked(made.stage, text)
-    return text
-
-
-_WHOLE = ("oil", "backlash", "materials")
-"""Tables that are taken as a whole where one of their values changed."""
-
-
-def _root(one: Line) -> str:
-    """The table that has to be taken over together with a line."""
-    parts = one.path.split(".")
-    if parts[0] == "materials":
-        return ".".join(parts[:2])
-    return parts[0] if parts[0] in _WHOLE else one.path
+    return [*lines, *(one for one in _LEFT_OPEN.items() if one[0] not in has)]
 
 
 # --- what is used and what is not -------------------------------------------------------------
 
 
-def _used(model: Model, made: Draft) -> list[Component]:
+def _used(model: Model, stage: Stage) -> list[Component]:
     """The components that a stage takes its case from."""
-    stage = made.stage.component
-    found: list[Component | None] = [stage, gearbox.lubricant_of(model, stage)]
-    found += [*made.train, *made.seats]
-    of_gear = gearbox.shafts_of_gears(model)
-    for _, gear in made.both:
-        flanks = gearbox.flanks_of(model, gear)
-        found += [gear, *flanks.values(), gearbox.tool_of(model, gear, flanks)]
-        found += [gearbox.gear_data_of(model, stage, gear)]
-        found += gearbox.settings_of(model, gear, flanks)
-        found += model.referenced(gear.id, "material")[:1]
-        found += [model.at(of_gear.get(gear.id))]
-        for flank in flanks.values():
-            found += model.referenced(flank.id, "tip_relief", "root_relief")
-    found += model.of_type("shaft", "external_load", "gear_unit", "gear_casing")
-    return [one for one in found if one is not None]
+    whole = model.of_type("shaft", "external_load", "gear_unit", "gear_casing")
+    return [*gearbox.parts_of(model, stage).values(), *whole]
 
 
 _MODIFICATIONS = (
@@ -338,18 +243,15 @@ def _modifications(model: Model, made: Draft) -> dict[str, Component]:
 def _duty(made: Draft) -> str:
     """The load spectrum over time, one load case after the other; an hour where the file gives
     shares of the time alone."""
-    if len(made.loads) < 2:
-        return ""
-    times = [one.duration for one in made.loads]
+    loads = made.loads
+    times = [one.duration for one in loads]
     if not all(times):
-        shares = [one.share for one in made.loads]
-        if not all(shares):
-            return ""
-        times = [3600.0 * (one or 0.0) for one in shares]
-    rows, at = ["time [h],speed [rpm],torque [N m]"], 0.0
-    for one, lasts in zip(made.loads, times, strict=True):
-        rows.append(f"{plain(at / 3600.0)},{plain(one.speed)},{plain(one.torque)}")
-        at += lasts or 0.0
-    last = made.loads[-1]
-    rows.append(f"{plain(at / 3600.0)},{plain(last.speed)},{plain(last.torque)}")
-    return "\n".join(rows) + "\n"
+        times = [3600.0 * (one.share or 0.0) for one in loads]
+    if len(loads) < 2 or not all(times):
+        return ""
+    starts = accumulate((one or 0.0 for one in times), initial=0.0)
+    rows = [
+        f"{plain(at / 3600.0)},{plain(one.speed)},{plain(one.torque)}"
+        for at, one in zip(starts, [*loads, loads[-1]], strict=True)
+    ]
+    return "\n".join(["time [h],speed [rpm],torque [N m]", *rows]) + "\n"

@@ -1,12 +1,18 @@
-"""A model out of JSON; what would not fit the memory is refused before it is read."""
+"""A model out of the tables of JSON; what would not fit the memory is refused before it is read.
+
+Coded arrays and matrices are base64 of little-endian numbers (REXS 1.4 and later).
+"""
 
 from __future__ import annotations
 
+import base64
+import binascii
 import json
+import re
+import struct
 from typing import Any, NoReturn
 
 from thermogear.base.errors import InputError, short
-from thermogear.case.rexs.coded import decoded_array, decoded_matrix
 from thermogear.case.rexs.model import (
     LONGEST_TEXT,
     Attribute,
@@ -21,21 +27,12 @@ from thermogear.case.rexs.model import (
 )
 
 MOST_NODES = 2_000_000
-_SIMPLE = (
-    "boolean",
-    "string",
-    "integer",
-    "floating_point",
-    "enum",
-    "reference_component",
-    "file_reference",
-    "date_time",
+_TYPE = re.compile(
+    r"(boolean|string|integer|floating_point|enum|reference_component|file_reference|date_time)"
+    r"(_(array|matrix)(_coded)?)?"
 )
-_SHAPES = tuple(
-    f"{kind}_{shape}"
-    for kind in ("boolean", "string", "integer", "floating_point", "enum", "reference_component")
-    for shape in ("array", "matrix")
-)
+"""The keys that hold a value, by its type."""
+_CODES = {"int32": "i", "float32": "f", "float64": "d"}
 
 
 def read_json(raw: bytes, container: str) -> Model:
@@ -61,14 +58,15 @@ def read_json(raw: bytes, container: str) -> Model:
     found = root.get("model") if isinstance(root, dict) else None
     if not isinstance(found, dict):
         raise InputError("REXS file", "no entry 'model'", allowed="a REXS model")
-    return _model(found, container)
+    return model_in(found, container)
 
 
 def _no_number(text: str) -> NoReturn:
     raise InputError("REXS file", text, allowed="finite numbers", why="JSON has no such number")
 
 
-def _model(root: dict[str, Any], container: str) -> Model:
+def model_in(root: dict[str, Any], container: str) -> Model:
+    """The model in the tables of a file; InputError in one line."""
     says = [str(root.get(key) or "") for key in ("applicationId", "applicationVersion")]
     model = Model(known_version(root.get("version")), " ".join(filter(None, says))[:200], container)
     for one in _list(root, "relations"):
@@ -146,17 +144,55 @@ def _attributes(table: dict[str, Any], model: Model) -> dict[str, Attribute]:
 
 def _value(entry: dict[str, Any]) -> Value:
     """What an attribute holds, under whichever key its type has; None where nothing."""
-    for key, value in entry.items():
-        if key in _SIMPLE or key in _SHAPES:
-            if isinstance(value, str) and len(value) > LONGEST_TEXT:
-                raise too_many("characters in one value", LONGEST_TEXT)
-            if isinstance(value, dict):
-                raise InputError(str(entry.get("id")), "a table", allowed="a value")
-            return value  # type: ignore[no-any-return]
-        if key.endswith("_array_coded") and isinstance(value, dict):
-            return list(decoded_array(value.get("code"), value.get("value")))
-        if key.endswith("_matrix_coded") and isinstance(value, dict):
-            return decoded_matrix(
-                value.get("code"), value.get("value"), value.get("rows"), value.get("columns")
-            )
-    return None
+    key, value = next((one for one in entry.items() if _TYPE.fullmatch(one[0])), ("", None))
+    if key.endswith("array_coded") and isinstance(value, dict):
+        return list(decoded_array(value.get("code"), value.get("value")))
+    if key.endswith("matrix_coded") and isinstance(value, dict):
+        size = (value.get("rows"), value.get("columns"))
+        return decoded_matrix(value.get("code"), value.get("value"), *size)
+    if isinstance(value, str) and len(value) > LONGEST_TEXT:
+        raise too_many("characters in one value", LONGEST_TEXT)
+    if isinstance(value, dict):
+        raise InputError(str(entry.get("id")), "a table", allowed="a value")
+    return value
+
+
+def decoded_array(code: object, text: object) -> tuple[Any, ...]:
+    """The numbers of a coded array; InputError for an unknown code or a length that is no whole
+    number of values."""
+    letter = _CODES.get(code) if isinstance(code, str) else None
+    if letter is None:
+        raise InputError("code", short(code), allowed=" | ".join(_CODES))
+    try:
+        raw = base64.b64decode("".join(str(text).split()), validate=True)
+    except (binascii.Error, ValueError) as cause:
+        raise InputError("coded array", short(text), allowed="base64") from cause
+    size = struct.calcsize(f"<{letter}")
+    if len(raw) % size:
+        raise InputError(
+            "coded array", f"{len(raw)} bytes", allowed=f"a whole number of {code} ({size} bytes)"
+        )
+    return struct.unpack(f"<{len(raw) // size}{letter}", raw)
+
+
+def decoded_matrix(code: object, text: object, rows: object, columns: object) -> list[Any]:
+    """The rows of a coded matrix, row-major; a missing number of rows or columns follows."""
+    flat = decoded_array(code, text)
+    high, wide = (_count(one) for one in (rows, columns))
+    if high is None and wide is None:
+        high = wide = round(len(flat) ** 0.5)
+    high = high if high is not None else len(flat) // max(wide or 1, 1)
+    wide = wide if wide is not None else len(flat) // max(high, 1)
+    if high * wide != len(flat):
+        raise InputError("coded matrix", f"{len(flat)} values", allowed=f"{high} x {wide}")
+    return [list(flat[k * wide : (k + 1) * wide]) for k in range(high)]
+
+
+def _count(text: object) -> int | None:
+    if text is None:
+        return None
+    try:
+        found = int(str(text))
+    except ValueError as cause:
+        raise InputError("coded matrix", short(text), allowed="rows and columns") from cause
+    return max(found, 0)

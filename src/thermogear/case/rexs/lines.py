@@ -17,15 +17,20 @@ READ, DERIVED, DEFAULT, GIVEN = "read", "derived", "default", "given"
 class Line:
     """A field of the case file: its dotted ``path``, the ``value`` a file holds, the origin.
 
-    ``note``: the attribute it was read from, or how it was derived. ``changed``: another program
-    changed it since it was exported.
+    ``note``: the attribute it was read from, or how it was derived.
     """
 
     path: str
     value: Any
     origin: str
     note: str = ""
-    changed: bool = False
+
+
+def some(names: Iterable[str]) -> str:
+    """The first names; of more than eight the number."""
+    every = list(names)
+    more = f" and {len(every) - 8} more" if len(every) > 8 else ""
+    return ", ".join(every[:8]) + more
 
 
 def toml(lines: Iterable[Line], head: Iterable[str], defaults: Iterable[tuple[str, str]]) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import cache
 
 from thermogear.base.errors import InputError, nearest, short
 
@@ -146,6 +147,7 @@ def too_many(what: str, most: int) -> InputError:
     return InputError("REXS file", f"more than {most} {what}", allowed=f"0..{most} {what}")
 
 
+@cache
 def numbers(version: str) -> tuple[int, ...]:
     """``"1.10"`` as (1, 10), so that it is above 1.9; ``-Beta`` is left out."""
     return tuple(int(part) for part in re.findall(r"\d+", version.partition("-")[0]))

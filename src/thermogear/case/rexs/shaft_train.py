@@ -101,12 +101,11 @@ def _against(reader: Reader, shafts: list[Component | None]) -> bool:
 
 
 def _sections(reader: Reader, shaft: Component) -> list[Component]:
-    found = []
-    for relation in reader.model.related("assembly", "ordered_assembly"):
-        if relation.role("assembly") == shaft.id:
-            parts = [reader.model.at(part) for role, part in relation.refs if role == "part"]
-            found += [one for one in parts if one is not None and one.type == "shaft_section"]
-    return found
+    return [
+        part
+        for whole, part in gearbox.assembled(reader.model)
+        if whole.id == shaft.id and part.type == "shaft_section"
+    ]
 
 
 def _shaft(reader: Reader, name: str, gear: Component, shaft: Component, *, mirror: bool) -> _Found:

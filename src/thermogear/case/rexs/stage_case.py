@@ -14,7 +14,7 @@ from thermogear.case.rexs.draft import Draft, Operating, tightest
 from thermogear.case.rexs.drive import Drive, Load
 from thermogear.case.rexs.flank_relief import relief_lines
 from thermogear.case.rexs.gearbox import Stage
-from thermogear.case.rexs.lines import DERIVED, GIVEN, READ, Line
+from thermogear.case.rexs.lines import DERIVED, GIVEN, READ
 from thermogear.case.rexs.model import Component
 from thermogear.case.rexs.shaft_train import bore_lines, train_lines
 from thermogear.case.rexs.substances import material_lines, oil_lines
@@ -75,7 +75,6 @@ def draft(
         drives = f"; {why}" if name == "pinion" else ""
         made.put(f"gears.{name}.teeth", found, READ, f"number_of_teeth of {gear.called}{drives}")
         _gear(reader, made, name, gear, module, angle)
-    _one_rack(made)
     _widths(reader, made)
     _centre_distance(reader, made, module, angle)
     material_lines(reader, made)
@@ -88,11 +87,6 @@ def draft(
     train_lines(reader, made)
     bore_lines(reader, made, module)
     _operating(made, loads, driver, teeth, speed, torque)
-    if drive.changed:
-        made.lines = [
-            replace(one, changed=one.path.startswith("operating.") or one.changed)
-            for one in made.lines
-        ]
     return made
 
 
@@ -312,10 +306,10 @@ def _of_tool(reader: Reader, tool: Component | None, name: str, module: float) -
     if length is None:
         return None
     size = _tidy(length.si / module)
-    return Read(si=size, number=size, unit="", changed=length.changed)
+    return Read(si=size, number=size, unit="")
 
 
-def _one_rack(made: Draft) -> None:
+def one_rack(made: Draft) -> None:
     """One rack for both gears where they are cut alike."""
     racks = [
         {one.path.rpartition(".")[2]: one for one in made.lines if f".{name}.rack." in one.path}
@@ -326,8 +320,7 @@ def _one_rack(made: Draft) -> None:
         return
     made.lines = [one for one in made.lines if ".rack." not in one.path]
     for key, one in racks[0].items():
-        both = one.changed or racks[1][key].changed
-        made.lines.append(replace(one, path=f"gears.rack.{key}", changed=both))
+        made.lines.append(replace(one, path=f"gears.rack.{key}"))
 
 
 # --- the pair -------------------------------------------------------------------------------
@@ -369,15 +362,7 @@ def _centre_distance(reader: Reader, made: Draft, module: float, angle: float) -
             f"of the profile shifts without backlash; {text} in the file is rounded",
         )
         return
-    made.lines.append(
-        Line(
-            "gears.centre_distance",
-            text,
-            origin,
-            note,
-            changed=given is not None and given.changed,
-        )
-    )
+    made.put("gears.centre_distance", text, origin, note)
 
 
 def _axes(reader: Reader, made: Draft) -> float | None:

@@ -59,8 +59,13 @@ def _of(reader: Reader, gear: Component) -> tuple[Component | None, str, str]:
 def _label(reader: Reader, one: Component, taken: set[str]) -> str:
     """A name for a table of the case file, none that the package or another material has."""
     says = reader.words(one, "material_designation") or one.name or f"material {one.id}"
-    label = re.sub(r"[^A-Za-z0-9_-]+", "_", says).strip("_")[:60] or f"material_{one.id}"
+    label = label_of(says) or f"material_{one.id}"
     return f"{label}_{one.id}" if label in taken or label in MATERIALS else label
+
+
+def label_of(text: str) -> str:
+    """A name as that of a table in a case file."""
+    return re.sub(r"[^A-Za-z0-9_-]+", "_", text).strip("_")[:60]
 
 
 def _described(reader: Reader, made: Draft, one: Component, label: str) -> bool:

@@ -21,13 +21,10 @@ def accuracy_lines(reader: Reader, made: Draft) -> None:
     found = {}
     for name, gear in made.both:
         says = reader.words(gear, _CLASS)
-        if not says:
-            continue
-        number = re.fullmatch(r"[A-Za-z_]*\s*(\d{1,2})(?:\.0)?", says)
-        if number is None:
+        if number := re.fullmatch(r"[A-Za-z_]*\s*(\d{1,2})(?:\.0)?", says):
+            found[name] = int(number[1])
+        elif says:
             made.unused.append(f"{gear.called}.{_CLASS}: got {says[:40]!r}; allowed 1..11")
-            continue
-        found[name] = int(number[1])
     if not found:
         return
     worst = max(found.values())
@@ -46,12 +43,12 @@ def backlash_lines(reader: Reader, made: Draft) -> None:
         ends = [reader.number(stage, one) for one in names]
         known = [one.si for one in ends if one is not None]
         if known and sum(known) > 0.0:
-            mean = sum(known) / len(known)
             origin = DERIVED if len(known) > 1 else READ
             said = "middle of the least and the most" if len(known) > 1 else "of the stage"
-            made.put("backlash.value", _um(mean), origin, f"{direction} backlash, {said}")
-            made.put("backlash.direction", kind, origin)
-            made.put("backlash.extent", "total", origin)
+            mean = _um(sum(known) / len(known))
+            made.put("backlash.value", mean, origin, f"{direction} backlash, {said}")
+            for key, value in (("direction", kind), ("extent", "total")):
+                made.put(f"backlash.{key}", value, origin)
             return
     thin = {name: _thickness(reader, made, gear) for name, gear in made.both}
     if not all(thin.values()):

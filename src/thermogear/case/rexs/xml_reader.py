@@ -1,4 +1,4 @@
-"""A model out of XML, read as a stream: no DTD, no entity, no tree in memory."""
+"""A model out of XML, read as a stream into the tables of a JSON file: no DTD, no entity."""
 
 from __future__ import annotations
 
@@ -6,52 +6,39 @@ from typing import Any
 from xml.parsers import expat
 
 from thermogear.base.errors import InputError, short
-from thermogear.case.rexs.coded import decoded_array, decoded_matrix
-from thermogear.case.rexs.model import (
-    LONGEST_TEXT,
-    Attribute,
-    Component,
-    LoadCase,
-    Model,
-    Relation,
-    identity,
-    known_version,
-    too_many,
-)
+from thermogear.case.rexs.json_reader import MOST_NODES, model_in
+from thermogear.case.rexs.model import LONGEST_TEXT, Model, too_many
 
-MOST_NODES = 2_000_000
 DEEPEST = 32
 _CHUNK = 1 << 16
 _ROOT = "model"
+_GIVEN = {"id", "type", "name", "unit", "order", "role", "version", "applicationId"} | {
+    *("applicationVersion", "code", "rows", "columns"),
+}
+"""Attributes of elements that are read; others would pass for lists."""
+_LISTS = {
+    name: f"{name}s" for name in ("relation", "ref", "component", "attribute", "load_case")
+} | {"load_spectrum": "load_spectrum"}
+"""Elements that a table has several of, and the key of their list."""
+_CELLS = {"c": "string_array", "r": "string_matrix"}
+"""Cells of an array or a row, rows of a matrix, and the key of their list."""
 
 
 def read_xml(raw: bytes, container: str) -> Model:
     """The model in the bytes of an XML file; InputError in one line."""
-    return _Reader(container).read(raw)
+    return model_in(_Reader().read(raw), container)
 
 
 class _Reader:
-    """What has been opened and not closed yet, and the model as far as it is read."""
+    """Elements that have been opened and not closed yet as (name, table); the text of the last."""
 
-    def __init__(self, container: str) -> None:
-        self.container = container
-        self.model: Model | None = None
-        self.path: list[str] = []
-        self.nodes = 0
-        self.refs: list[tuple[str, int]] = []
-        self.relation: dict[str, str] = {}
-        self.component: Component | None = None
-        self.attribute: dict[str, str] | None = None
-        self.text: list[str] | None = None
-        self.length = 0
-        self.cells: list[Any] | None = None
-        self.rows: list[Any] | None = None
-        self.coded: dict[str, str] | None = None
-        self.spectrum = 0
-        self.case: LoadCase | None = None
-        self.accumulated = False
+    def __init__(self) -> None:
+        self.root: dict[str, Any] | None = None
+        self.open: list[tuple[str, dict[str, Any]]] = []
+        self.text: list[str] = []
+        self.nodes = self.length = 0
 
-    def read(self, raw: bytes) -> Model:
+    def read(self, raw: bytes) -> dict[str, Any]:
         parser = expat.ParserCreate()
         parser.buffer_text = True
         parser.StartDoctypeDeclHandler = self._doctype
@@ -72,130 +59,50 @@ class _Reader:
             raise InputError(
                 "REXS file", f"XML that breaks off in line {line}", why=str(cause).split(":")[0]
             ) from cause
-        if self.model is None:
+        if self.root is None:
             raise InputError("REXS file", "no element 'model'", allowed="a REXS model")
-        return self.model
+        return self.root
 
     def _doctype(self, *_: object) -> None:
         raise InputError(
             "REXS file", "a DOCTYPE", allowed="none", why="no REXS file has entities or a DTD"
         )
 
-    # --- elements --------------------------------------------------------------------------
     def _start(self, name: str, given: dict[str, str]) -> None:
         self.nodes += 1
         if self.nodes > MOST_NODES:
             raise too_many("nodes", MOST_NODES)
         name = name.rpartition(":")[2]
-        self.path.append(name)
-        if len(self.path) > DEEPEST:
+        if len(self.open) >= DEEPEST:
             raise InputError("REXS file", f"elements {DEEPEST} deep", allowed="no deeper nesting")
-        if self.model is None:
-            self._root(name, given)
-        elif self.attribute is not None:
-            self._value(name, given)
-        elif name == "attribute":
-            self.attribute, self.text, self.length = given, [], 0
-            self.cells = self.rows = self.coded = None
-        elif name == "component":
-            found = identity(given.get("id"), "component")
-            self.component = Component(found, given.get("type", ""), given.get("name", ""))
-        elif name == "relation":
-            self.relation, self.refs = given, []
-        elif name == "ref":
-            self.refs.append((given.get("role", ""), identity(given.get("id"), "ref")))
-        elif name == "load_spectrum":
-            self.spectrum = identity(given.get("id", "0"), name)
-        elif name == "load_case":
-            self.case = LoadCase(
-                id=identity(given.get("id"), name), spectrum=self.spectrum, components={}
-            )
-        elif name == "accumulation":
-            self.accumulated = True
-
-    def _root(self, name: str, given: dict[str, str]) -> None:
-        if name != _ROOT:
+        if not self.open and name != _ROOT:
             raise InputError("REXS file", f"the element {short(name)}", allowed="'model'")
-        says = [given.get(key, "") for key in ("applicationId", "applicationVersion")]
-        self.model = Model(
-            known_version(given.get("version")), " ".join(filter(None, says)), self.container
-        )
-
-    def _value(self, name: str, given: dict[str, str]) -> None:
-        if name == "matrix":
-            self.rows, self.coded = [], given if "code" in given else None
-        elif name == "array":
-            self.cells, self.coded = [], given if "code" in given else None
-        elif name == "r":
-            self.cells = []
-        if self.coded is None:
-            self.text = []
+        self.open.append((name, {key: given[key] for key in given if key in _GIVEN}))
+        self.text, self.length = [], 0
 
     def _characters(self, text: str) -> None:
-        if self.text is None:
-            return
         self.length += len(text)
         if self.length > LONGEST_TEXT:
             raise too_many("characters in one value", LONGEST_TEXT)
         self.text.append(text)
 
     def _end(self, name: str) -> None:
-        name = self.path.pop()
-        model = self.model
-        assert model is not None
-        if self.attribute is not None:
-            if name == "attribute":
-                self._close_attribute(model)
-            else:
-                self._close_value(name)
-        elif name == "component":
-            self._close_component(model)
-        elif name == "relation":
-            order = self.relation.get("order")
-            found = identity(self.relation.get("id", "0"), "relation")
-            place = None if order is None else identity(order, "relation order")
-            model.relate(Relation(found, self.relation.get("type", ""), place, tuple(self.refs)))
-        elif name == "load_case" and self.case is not None:
-            model.load(self.case)
-            self.case = None
-        elif name == "accumulation":
-            self.accumulated = False
-
-    def _close_value(self, name: str) -> None:
-        said = "".join(self.text or [])
-        if name == "c" and self.cells is not None:
-            self.cells.append(said.strip())
-            self.text = []
-        elif name == "r" and self.rows is not None:
-            self.rows.append(self.cells)
-            self.cells = None
-        elif name == "array" and self.coded is not None:
-            self.cells = list(decoded_array(self.coded.get("code"), said))
-        elif name == "matrix" and self.coded is not None:
-            self.rows = decoded_matrix(
-                self.coded.get("code"), said, self.coded.get("rows"), self.coded.get("columns")
-            )
-
-    def _close_attribute(self, model: Model) -> None:
-        given = self.attribute or {}
-        value: Any = "".join(self.text or []).strip()
-        if self.rows is not None:
-            value = self.rows
-        elif self.cells is not None:
-            value = self.cells
-        self.attribute = self.text = None
-        found = given.get("id", "")
-        if self.component is not None and found:
-            model.count()
-            self.component.attributes[found] = Attribute(found, given.get("unit"), value)
-
-    def _close_component(self, model: Model) -> None:
-        component, self.component = self.component, None
-        if component is None:
+        name, table = self.open.pop()
+        text, self.text = "".join(self.text).strip(), []
+        if not self.open:
+            self.root = table
             return
-        if self.case is not None:
-            self.case.components.setdefault(component.id, {}).update(component.attributes)
-        elif self.accumulated:
-            model.accumulation.setdefault(component.id, {}).update(component.attributes)
-        else:
-            model.add(component)
+        above = self.open[-1][1]
+        if name in ("relations", "components"):
+            above.setdefault(name, []).extend(table.get(name, ()))
+        elif name in ("array", "matrix"):
+            plain = {f"string_{name}": table.get(f"string_{name}", [])}
+            above |= {f"string_{name}_coded": table | {"value": text}} if "code" in table else plain
+        elif name in _CELLS:
+            above.setdefault(_CELLS[name], []).append(table.get("string_array", text))
+        elif name in _LISTS:
+            if name == "attribute" and table.keys() <= {"id", "unit"}:
+                table["string"] = text
+            above.setdefault(_LISTS[name], []).append(table)
+        elif name == "accumulation":
+            above[name] = table
