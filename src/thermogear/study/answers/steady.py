@@ -33,6 +33,8 @@ FILM = "Is there a film, does it scuff?"
 
 PARTS = {"deviations": "flank deviations", "speed": "centrifugal growth", "heat": "heat"}
 """What takes or gives backlash, as it is named."""
+BORES = {"free": "bores free", "rigid": "bores held", "shaft": "bores filled by their shafts"}
+"""How bores are held while the gears grow, as it is said."""
 
 
 # --- does it mesh -----------------------------------------------------------------------------
@@ -175,6 +177,7 @@ def _tooth_limit(case: GearCase) -> str:
 
 
 def gap(asked: Asked) -> Iterator[Answer]:
+    bored = {**PARTS, "speed": f"{PARTS['speed']} ({BORES[asked.model.bore]})"}
     for point in asked.points:
         at = asked.at(point)
         if why := asked.unsettled(point):
@@ -184,7 +187,7 @@ def gap(asked: Asked) -> Iterator[Answer]:
         left = 2e6 * float(asked.hot["least_half_backlash"][point])
         nominal = 2e6 * float(asked.hot["cold_half_backlash"][point])
         parts = {n: 2e6 * float(asked.hot[f"half_backlash_by_{n}"][point]) for n in PARTS}
-        named = [f"{PARTS[n]} {v:+.1f} µm" for n, v in parts.items() if abs(v) >= 0.05]
+        named = [f"{bored[n]} {v:+.1f} µm" for n, v in parts.items() if abs(v) >= 0.05]
         yield answer(
             GAP,
             "backlash",
@@ -230,14 +233,11 @@ def _worst_moment(asked: Asked) -> Answer:
     end = float(course.time[-1]) / 60.0
     steady_known = course.course.settled or asked.case.computed
     if course.course.too_hot or asked.unsettled(asked.hardest) or not steady_known:
-        rest = (
-            f"until a node reaches {HOTTEST - ZERO_CELSIUS:.0f} °C after {end:.3g} min"
-            if course.course.too_hot
-            else f"within {end:.3g} min"
-        )
+        burnt = f"until a node reaches {HOTTEST - ZERO_CELSIUS:.0f} °C after"
         return answer(
             GAP, "warm_up_backlash",
-            f"{words} at least {least:.0f} µm {rest}; no steady state is known.",
+            f"{words} at least {least:.0f} µm {burnt if course.course.too_hot else 'within'} "
+            f"{end:.3g} min; no steady state is known.",
             np.nan if least > 0.0 else least,
             limit="backlash", at=at, verdict=OPEN if least > 0.0 else LOOK,
             figures={"least": least, "start": start, "end_minutes": end,
