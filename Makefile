@@ -143,7 +143,7 @@ trial-labels: $(STAMP)  ## 2 000 random motions: every label put to another test
 trial-located: $(STAMP)  ## located bifurcations of random drive trains against a fine sweep, cost of a proof; docs/trial_located.md
 	@$(BIN)/python checks/trial_located.py
 
-trial-trains: $(STAMP)  ## 200 random drive trains: every label asked four ways, 40 by another integration, an hour; TRAINS="--count 20" for a short one; docs/trial_trains.md
+trial-trains: $(STAMP)  ## 200 random drive trains: every label asked four ways, 40 by another integration, some hours; TRAINS="--count 20" for a short one; docs/trial_trains.md
 	@OPENBLAS_NUM_THREADS=1 $(BIN)/python -W ignore checks/trial_trains.py $(TRAINS)
 
 trial-attacks: $(STAMP)  ## what a stranger may try with the app, each attempt at a real server, a minute; docs/trial_attacks.md

@@ -10,8 +10,11 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
+import subprocess
 import sys
 import time
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -83,6 +86,54 @@ def complaints(records: dict[int, list[Record]]) -> list[str]:
         if short:
             found.append(f"train {number}: called chaotic after {min(short)} mesh periods")
     return found
+
+
+def ran(folder: Path, count: int = COUNT) -> dict[int, list[Record]]:
+    """Labels of every train with one thread and with two, each made in a process of its own."""
+    found: dict[int, list[Record]] = {}
+    folder.mkdir(parents=True, exist_ok=True)
+    for threads, begun in ((1, BEGUN), (2, 1)):
+        out = folder / f"threads-{threads}.jsonl"
+        command = [sys.executable, "-W", "ignore", __file__, str(out), "--begun", str(begun)]
+        environment = os.environ | {"OPENBLAS_NUM_THREADS": str(threads)}
+        subprocess.run([*command, "--count", str(count)], env=environment, check=True)
+        add(found, out)
+    return found
+
+
+def add(found: dict[int, list[Record]], path: Path) -> None:
+    """The labels kept in a file, added to those of the same trains in ``found``."""
+    for line in path.read_text("utf-8").splitlines():
+        record = json.loads(line)
+        found.setdefault(record["number"], []).extend(record["labels"])
+
+
+def page(found: dict[int, list[Record]]) -> list[str]:
+    """What the page says of them."""
+    both = {number: labels for number, labels in found.items() if len(labels) > 1}
+    if not both:
+        return []
+    names = {number: [label["name"] for label in labels] for number, labels in both.items()}
+    left = sum("undecided" in own for own in names.values())
+    chaotic = [x for own in both.values() for x in own if x["name"] == "chaotic"]
+    least = min((label["followed"] for label in chaotic), default=0)
+    wrong = complaints(both)
+    kinds = Counter(own[0] for own in names.values())
+    return [
+        "## Threads and rounding",
+        "",
+        f"{len(both)} of {COUNT} other trains (seed {SEED}), each labelled with one thread of the "
+        "linear algebra and",
+        f"with two, and with one thread from up to {BEGUN} starts 1e-13 apart: "
+        f"{sum(map(len, both.values()))} labels, {STARTS} starts each where rounding decides.",
+        f"First labels: {', '.join(f'{n} {name}' for name, n in sorted(kinds.items()))}.",
+        "",
+        f"**{len(wrong)} of {len(both)} trains have labels that differ** or chaos followed too "
+        f"shortly; {left} have an undecided one.",
+        *([f"Every chaotic one was followed for {least} mesh periods or more."] * bool(chaotic)),
+        *(f"- {words}" for words in wrong),
+        "",
+    ]
 
 
 def main(words: Sequence[str]) -> None:

@@ -83,3 +83,22 @@ def test_a_state_in_other_coordinates() -> None:
     back = TRIAL.across(TRIAL.across(few.start, few, many), many, few)
     section = return_map(few.model)
     assert np.max(section.distance(back, few.start)) < 1e-3
+
+
+def test_labels_that_rounding_changes_are_complained_of() -> None:
+    def label(name: str, followed: int = 0) -> dict[str, object]:
+        return {"name": name, "followed": followed}
+
+    alike = [label("chaotic", 32_000), label("undecided"), label("chaotic", 33_000)]
+    apart = [label("chaotic", 32_000), label("period-12")]
+    short = [label("chaotic", 4646), label("chaotic", 32_000)]
+    made = {3: alike, 4: apart, 5: short, 6: [label("period-1")]}
+    assert TRIAL.differing_labels(made) == [
+        "train 4: chaotic, period-12",
+        "train 5: called chaotic after 4646 mesh periods",
+    ]
+    words = "\n".join(TRIAL.page_of_rounding(made))
+    assert "3 of 40 other trains" in words
+    assert "**2 of 3 trains have labels that differ**" in words
+    assert "; 1 have an undecided one." in words
+    assert TRIAL.page_of_rounding({}) == []
