@@ -110,6 +110,8 @@ def test_a_map_goes_on_as_it_was_begun_whatever_the_next_estimate_says(
     again, _ = whole_or_spared(plan, tmp_path / "m", threads=1)
     assert again == begun
     assert carry_out(again, tmp_path / "m", threads=1).identical(first)
+    (tmp_path / "file").touch()
+    assert whole_or_spared(plan, tmp_path / "file", threads=1)[0] != begun  # refused later
     if limit:
         return
     with pytest.raises(InputError, match="refine: got false; allowed true; the store"):

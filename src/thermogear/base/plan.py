@@ -15,7 +15,7 @@ from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
 from itertools import product
-from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, runtime_checkable
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -306,8 +306,10 @@ def slices(
     as preview, where the plan can be thinned. ``alive`` is called often and raises to end the
     work, as closing the generator does.
     """
-    if coarse > 1 and isinstance(plan, Thinned):
-        thin, places = plan.thinned(coarse)
+    # ``thinned``: the plan of every so many-th value, the last included, and which these are
+    thinned = getattr(plan, "thinned", None)
+    if coarse > 1 and thinned is not None:
+        thin, places = thinned(coarse)
         for one in slices(thin, threads=threads, alive=alive):
             where = {
                 name: some[one.where[name]] if name in one.where else some
@@ -319,15 +321,6 @@ def slices(
     for key, arrays in computed(plan, keys, nothing.__getitem__, threads=threads, alive=alive):
         ranges = ranges_of(plan, key)
         yield Slice({name: np.arange(r.start, r.stop) for name, r in ranges.items()}, arrays)
-
-
-@runtime_checkable
-class Thinned(Protocol):
-    """A plan that can look coarsely first."""
-
-    def thinned(self, step: int) -> tuple[Plan, Mapping[str, NDArray[np.int64]]]:
-        """The plan of every ``step``-th value, the last included, and which values these are."""
-        ...
 
 
 def spread(count: int, *, some: int, turn: float = 0) -> NDArray[np.int64]:

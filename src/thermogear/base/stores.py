@@ -64,7 +64,7 @@ def read_manifests(directory: Path) -> dict[str, dict[str, Any]]:
     for name in (MANIFEST, COPY):
         try:
             raw = (Path(directory) / name).read_bytes()
-        except FileNotFoundError:
+        except (FileNotFoundError, NotADirectoryError):
             continue
         seal, _, text = raw.partition(b"\n")
         if hashlib.sha256(text.rstrip(b"\n")).hexdigest().encode() == seal:

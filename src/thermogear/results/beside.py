@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thermogear.base.vocabulary import STATUS
+
 if TYPE_CHECKING:
     import xarray as xr
 
@@ -24,10 +26,11 @@ def with_notices(data: xr.Dataset) -> xr.Dataset:
 
 
 def back_side_notice(data: xr.Dataset) -> list[str]:
-    """Whether the half backlash has any effect."""
+    """Whether the half backlash has any effect; nothing where a motion is not known."""
     if "back_share" not in data:
         return []
-    known = data["status"].values == 0
-    if known.any() and np.all(data["back_share"].values[known] == 0.0):
-        return [NO_BACK_IMPACT]
+    status = data["status"].values
+    moves = status == STATUS.index("ok")
+    if np.all(moves | (status == STATUS.index("jammed"))) and moves.any():
+        return [NO_BACK_IMPACT] * bool(np.all(data["back_share"].values[moves] == 0.0))
     return []
