@@ -17,7 +17,7 @@ from thermogear.dynamics.plane import plane_of
 from thermogear.dynamics.tables import Lanes
 
 if TYPE_CHECKING:
-    import xarray as xr
+    pass
 
 Floats = NDArray[np.float64]
 Models = Lanes | Sequence[object] | None
@@ -142,15 +142,6 @@ def settle_with_status(
     if moving.size:
         result.put(moving, settle(taken(lanes, moving), start[moving], rule, keep, alive))
     return result
-
-
-def label_names(data: xr.Dataset) -> NDArray[np.str_]:
-    """ "period-n", "chaotic", ... of every point of a stored result."""
-    names = np.array(LABELS)[data["label"].values].astype("U16")
-    period = data["period"].values
-    periodic = data["label"].values == LABELS.index("periodic")
-    names[periodic] = np.char.add("period-", period[periodic].astype(str))
-    return np.asarray(names)
 
 
 def start_of(initial_state: ArrayLike, dimension: int = 2) -> tuple[float, ...]:
