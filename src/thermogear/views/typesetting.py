@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.display import celsius, display, exactly, raised
 from thermogear.base.units import ZERO_CELSIUS
-from thermogear.base.vocabulary import QUANTITIES, STATUS, told_labels
+from thermogear.base.vocabulary import QUANTITIES, told_labels
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -136,12 +136,6 @@ def operating_names(data: xr.Dataset) -> list[str]:
     if alike:
         return names
     return [f"{a}, {exactly(float(t))} N m" for a, t in zip(names, torques, strict=True)]
-
-
-def status_of(value: float) -> str:
-    """The word for a stored status."""
-    place = int(value)
-    return STATUS[place].replace("_", " ") if 0 <= place < len(STATUS) else "unknown"
 
 
 def jam_words(kelvin: float) -> str:
