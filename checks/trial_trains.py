@@ -7,8 +7,7 @@ changed is put to tests that say why. 40 other trains are labelled on one thread
 algebra and on two, and from starts beside (``train_rounding.py``). 40 labels are held against a
 long integration by another rule, which shares nothing with the engine. Writes
 docs/trial_trains.md; what is done is kept until the code changes, so that a stopped trial goes on.
- ``--count 20`` prints a
-short one.
+``--count 20`` prints a short one.
 """
 
 from __future__ import annotations

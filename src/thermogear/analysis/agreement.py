@@ -124,7 +124,7 @@ def judged(first: _Label, ends: Sequence[End[_Label]]) -> _Label:
             reason = f"{first.reason}; none of {of} starts closed in {shortest} periods"
             return replace(first, reason=reason, followed=shortest, starts=of)
         reason = f"neither closed nor chaotic to the end by the exponent after {longest} periods"
-        return replace(first, name="undecided", reason=reason, discarded=longest)
+        return replace(first, name="undecided", reason=reason, discarded=longest, followed=0)
     different = [kinds[0]]
     for kind in kinds[1:]:
         if not any(kind.alike(other) for other in different):

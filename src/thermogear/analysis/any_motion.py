@@ -192,6 +192,7 @@ def _exponent(section: ReturnMap, state: Floats, used: int, batches: int, batch:
         lyapunov_error=error,
         batches=means,
         exponents=np.array([value]),
+        followed=(used + (batches + 1) * batch) * sure,
     )
 
 

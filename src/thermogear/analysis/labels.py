@@ -58,10 +58,11 @@ def label(
     """Label of the motion a model of one lane settles on from ``initial_state``.
 
     ``model``: a clearance oscillator (:class:`TorsionalModel`, :class:`DeadZoneModel`,
-    :class:`PairModel`), whose proof rests on its event-exact return map and is told below. Of any
-    other model with a return map one start is followed, see
-    :func:`~thermogear.analysis.any_motion.settle`; a proven torus is "quasi-periodic"
-    there. A model of a derivative and a period alone can be simulated and is refused here.
+    :class:`PairModel`), whose proof rests on its event-exact return map and is told below. For any
+    other model with a return map see :func:`~thermogear.analysis.any_motion.settle`; a proven torus
+    is "quasi-periodic" there, and the rule of the starts is the same. Where its periods are dear,
+    fewer ``starts`` (1: this one alone) or a shorter ``follow`` give a weaker label that says so.
+    A model of a derivative and a period alone can be simulated and is refused here.
     ``initial_state`` (x, x') is in the units of the model: pure numbers for
     :class:`TorsionalModel`, SI for a model in SI.
     The transient runs in rounds, ``discard`` periods first, then doubling to at most ``cap``.

@@ -21,7 +21,6 @@ from thermogear.dynamics.return_map import ReturnMap
 from thermogear.dynamics.tables import Pieces
 
 Floats = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
 Function = Periodic | Pieces
 
 

@@ -17,7 +17,6 @@ from numpy.typing import ArrayLike, NDArray
 from thermogear.gears.geometry import Gear
 
 Floats = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
 
 HARMONICS = 1500
 _MATES = 6  # farthest coupled teeth, in pitches

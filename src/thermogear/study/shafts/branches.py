@@ -37,8 +37,9 @@ VALUES = 9
 """Values of the parameter at which mesh, bearings and friction of a train are computed."""
 SAMPLES = 128
 """Samples a mesh period that the greatest mesh force is read from."""
-LONG = Search(first=8, cap=64, max_period=2)
-"""How a motion is followed whose forces come again after many mesh periods."""
+LONG = Search(first=8, cap=64, max_period=2, starts=1)
+"""How a motion is followed whose forces come again after many mesh periods; an orbit is wanted
+from this start, not a label that others share."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -91,14 +92,14 @@ def train_orbit(
     begin = plane.rest if start is None else plane.starts(start)
     if not transient:
         return periodic_orbit(model, 1 if period is None else period, begin), None
-    motion = settle(section, begin, LONG if model.cycle > 1 else Search())
+    motion = settle(section, begin, LONG if model.cycle > 1 else Search(starts=1))
     if motion.orbit is not None and period in (None, motion.period):
         orbit = shoot(section, motion.orbit.state, motion.period, model=model)
         if orbit is not None:
             return orbit, motion
     if period is None:
         raise ConvergenceError(
-            f"no closed orbit: the drive train's motion is {motion.name} ({motion.reason}); begin "
+            f"no closed orbit: the drive train's motion is {motion.words} ({motion.reason}); begin "
             "at another value of the parameter, or give --period to look for an orbit inside it"
         )
     return periodic_orbit(model, period, motion.state), motion

@@ -23,7 +23,6 @@ from thermogear.study.shafts.moving import MovingTrain
 from thermogear.study.shafts.record import PERIODS, SAMPLES
 
 Floats = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
 KINDS = ("bearing", "housing", "journal", "gear")
 FORM = (
     "CHANNEL=PLACE:DIRECTION, as a1=bearing:pinion left:x, a2=housing:y, a3=bearing:pinion left:30"
