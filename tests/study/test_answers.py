@@ -148,7 +148,9 @@ def test_the_parts_of_the_backlash_add_up_to_what_is_left() -> None:
         if one.value is None:
             continue
         assert sum(one.figures.values()) == pytest.approx(one.value, abs=1e-9), name
-        told = dict(re.findall(r"(deviations|growth|heat) ([-+][0-9.]+) µm", one.sentence))
+        told = dict(
+            re.findall(r"(deviations|growth|heat)(?: \(.*?\))? ([-+][0-9.]+) µm", one.sentence)
+        )
         for part, words in (("deviations", "deviations"), ("speed", "growth"), ("heat", "heat")):
             assert float(told.get(words, 0.0)) == pytest.approx(one.figures[part], abs=0.05)
         begin = f"Of {one.figures['nominal']:.1f} µm nominal, {one.value:.1f} µm are left hot"

@@ -22,7 +22,6 @@ from thermogear.base.materials import MATERIALS, Lubricant, Material
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.case.backlash import Backlash, from_tolerances, from_value, recommended
 from thermogear.case.fields import BODY
-from thermogear.case.material_schema import OilTable
 from thermogear.case.schema import GearFile, GearTable
 from thermogear.case.units import shown
 from thermogear.gears.geometry import LEFT_OUT, Gear, Rack
@@ -268,19 +267,19 @@ def named_oil(name: str) -> Lubricant:
 
 def lubricant(file: GearFile) -> Lubricant:
     """The named oil, or the one through the two viscosities, with the flash point given."""
-    return replace(_of_viscosity(file.oil), flash_point=file.oil.flash_point)
-
-
-def _of_viscosity(oil: OilTable) -> Lubricant:
+    oil = file.oil
     if oil.viscosity_40 is None or oil.viscosity_100 is None:
-        return named_oil(oil.name)
+        return replace(named_oil(oil.name), flash_point=oil.flash_point)
     cold, hot = (
         (ZERO_CELSIUS + 40.0, oil.viscosity_40),
         (ZERO_CELSIUS + 100.0, oil.viscosity_100),
     )
     return _under(
         "oil",
-        lambda: Lubricant.from_two_points(oil.name, cold, hot, density_15=oil.density_15),
+        lambda: replace(
+            Lubricant.from_two_points(oil.name, cold, hot, density_15=oil.density_15),
+            flash_point=oil.flash_point,
+        ),
     )
 
 

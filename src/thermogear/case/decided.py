@@ -29,12 +29,12 @@ def decided(
     found["flanks.accuracy"] = known or "none: the tables of ISO 1328-1 end before these gears"
     found |= {
         "gearbox.housing_area": shown(around.housing_area, "area", 3),
+        "gearbox.housing_coefficient": shown(
+            around.housing_coefficient, "heat transfer coefficient"
+        ),
         "gearbox.housing_mass": shown(around.housing_mass, "mass", 3),
         "gearbox.oil_mass": shown(around.oil_mass, "mass", 3),
     }
-    if around.housing_coefficient_at is not None:
-        usual = shown(around.housing_coefficient, "heat transfer coefficient")
-        found["gearbox.housing_coefficient"] = usual
     if around.train is not None:
         drawn = "none: the shafts are drawn"
         found |= {"gearbox.shaft_length": drawn, "gearbox.bearing_conductance": drawn}

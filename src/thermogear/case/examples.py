@@ -9,7 +9,7 @@ from thermogear.base.errors import InputError, nearest
 EXAMPLES = {
     "rig": "gears of a rig, 25:75, from friction to vibration, every value with its reason",
     "fzg-a": "FZG type A, stage 12: scuffing, film, flash temperature of long sliding",
-    "fzg-c": "FZG type C, 200 N m: losses, micropitting, the heat balance of a known test",
+    "fzg-c": "FZG type C, 200 N m: losses, film, the heat balance of a known test",
     "nasa-spur": "28:28 at 10 000 rpm: high speed, thin and hot oil film",
     "bgu-17-38": "17:38, lightly loaded: rattle, records of a rig with public code",
     "bgu-18-35": "18:35, lightly loaded: the same rig, wider gears",

@@ -110,8 +110,10 @@ class Surroundings:
         if self.housing_coefficient_at is None:
             return np.full(np.shape(housing), self.housing_coefficient)
         height = np.sqrt(self.housing_area / 6.0)
-        usual = still_air_coefficient(self.housing_coefficient_at, ambient=ROOM, height=height)
-        here = still_air_coefficient(housing, ambient=self.ambient, height=height)
+        here, usual = (
+            still_air_coefficient(wall, ambient=around, height=height)
+            for wall, around in ((housing, self.ambient), (self.housing_coefficient_at, ROOM))
+        )
         return np.asarray(self.housing_coefficient * here / usual)
 
 

@@ -269,8 +269,8 @@ class ThermalDeviation:
         """:meth:`gap` by the centrifugal pull and by heat, apart."""
         s = np.clip(at.s, at.pair.path.a, at.pair.path.e)
         shape, flat = (self.hot.count, *s.shape), s.ravel()
-        pulled = np.add(*self.hot.pulled_material(flat))
-        return -pulled.reshape(shape), -self.hot.added_material(flat).reshape(shape)
+        added = np.add(*self.hot.pulled_material(flat)), self.hot.added_material(flat)
+        return -added[0].reshape(shape), -added[1].reshape(shape)
 
 
 def _carried(

@@ -172,6 +172,7 @@ def stacked(points: Sequence[Operating]) -> Operating:
         torque=np.concatenate([p.torque for p in points]),
         oil_temperature=np.array([float(np.ravel(p.oil_temperature)[0]) for p in points]),
         temperatures=replace(points[0].temperatures, **bodies),
+        pulled=np.array([float(np.ravel(p.pulled)[0]) for p in points]),
     )
 
 

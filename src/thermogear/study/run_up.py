@@ -201,9 +201,9 @@ class RunUpPlan:
         mine = np.arange(every.size)[ranges_of(self, key)["pinion_speed"]]
         speeds = every[mine]
         order = np.arange(speeds.size) if up else np.arange(speeds.size)[::-1]
-        # the speed before the block as well: the step from it belongs to the block
-        edge = mine[0] - 1 if up else mine[-1] + 1
-        wide = np.union1d(mine, [edge])[np.isin(np.union1d(mine, [edge]), np.arange(every.size))]
+        # the step from the speed before the block belongs to it; with another one beyond, slopes
+        # there are those of any other block
+        wide = np.arange(max(mine[0] - 2, 0), min(mine[-1] + 3, every.size))
         whole = self.family(key[0])(every[wide][:, None])
         points = whole.take(np.searchsorted(wide, mine))
         table = Tabulated(self.family(key[0]), every[wide], whole) if wide.size > 1 else None

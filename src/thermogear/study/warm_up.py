@@ -278,8 +278,9 @@ def _steady(case: GearCase, duty: Duty, factors: Mapping[str, float]) -> xr.Data
 
 def _least_gap(case: GearCase, pair: HotPair) -> Floats:
     """Least half backlash over the mesh phase [m], (count,)."""
-    gap = Clearance(pair, np.arange(PHASES) / PHASES, case.deviations).half_backlash
-    return np.asarray(gap.min(axis=1))
+    return np.asarray(
+        Clearance(pair, np.arange(PHASES) / PHASES, case.deviations).half_backlash.min(axis=1)
+    )
 
 
 def _worst(case: GearCase, course: WarmUp, steady: xr.Dataset) -> dict[str, Any]:

@@ -108,8 +108,9 @@ class Asked:
 
     def still(self, point: int) -> str:
         """Why the hot pair does not move at a point; empty where it does."""
-        jammed = STATUS[int(self.hot["status"][point])] == "jammed"
-        return "the hot pair is jammed" if jammed else self.unsettled(point)
+        if self.hot["status"][point] == STATUS.index("jammed"):
+            return "the hot pair is jammed"
+        return self.unsettled(point)
 
     @cached_property
     def hardest(self) -> int:
@@ -141,11 +142,10 @@ class Asked:
     @cached_property
     def bath(self) -> tuple[Floats, Floats]:
         """(heat made, heat that the bath carries off) [W] with its oil at 120 C, every point."""
-        box = self.case.gearbox
-        found = self._balance(replace(box, measured={**box.measured, "oil": WARMEST_USUAL}))
-        losses = found.losses
-        made = sum(np.asarray(getattr(losses, name)) for name in LOSSES)
-        made = np.where(found.settled, made, np.nan)
+        held = {**self.case.gearbox.measured, "oil": WARMEST_USUAL}
+        found = self._balance(replace(self.case.gearbox, measured=held))
+        every = sum(np.asarray(getattr(found.losses, name)) for name in LOSSES)
+        made = np.where(found.settled, every, np.nan)
         return made, made - found.steady.heat_out["oil"]
 
     @cached_property
@@ -157,9 +157,8 @@ class Asked:
         left_out = (a.field for a in self.case.assumptions if a.default)
         if not self.case.computed or "gearbox.wetted_share" not in left_out:
             return None
-        box = self.case.gearbox
-        around = replace(box.surroundings, wetted_share=(MOST_WETTED, MOST_WETTED))
-        found = self._balance(replace(box, surroundings=around))
+        around = replace(self.case.gearbox.surroundings, wetted_share=(MOST_WETTED, MOST_WETTED))
+        found = self._balance(replace(self.case.gearbox, surroundings=around))
         oil, first, second = (
             np.where(found.settled, found.steady[name], np.nan)
             for name in ("oil", "pinion_tooth", "wheel_tooth")

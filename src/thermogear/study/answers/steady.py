@@ -33,6 +33,8 @@ FILM = "Is there a film, does it scuff?"
 
 PARTS = {"deviations": "flank deviations", "speed": "centrifugal growth", "heat": "heat"}
 """What takes or gives backlash, as it is named."""
+BORES = {"free": "bores free", "rigid": "bores held", "shaft": "bores filled by their shafts"}
+"""How bores are held while the gears grow, as it is said."""
 
 
 # --- does it mesh -----------------------------------------------------------------------------
@@ -132,9 +134,12 @@ def _how(asked: Asked, point: int, body: int) -> tuple[str, dict[str, float]]:
         return "computed", {}
     share = asked.case.gearbox.surroundings.wetted_share[0]
     other = kelvin - ZERO_CELSIUS
-    words = f"computed with {share:g} of the gears wetted, a guess; {other:.0f} °C with"
-    figures = {"wetted": share, "more_wetted": MOST_WETTED}
-    return f"{words} {MOST_WETTED:g}", {f"with_{MOST_WETTED:g}_wetted": other, **figures}
+    figures = {"wetted": share, "more_wetted": MOST_WETTED, f"with_{MOST_WETTED:g}_wetted": other}
+    return (
+        f"computed with {share:g} of the gears wetted, a guess; {other:.0f} °C with "
+        f"{MOST_WETTED:g}",
+        figures,
+    )
 
 
 def _excess(asked: Asked, point: int) -> tuple[str, dict[str, float]]:
@@ -149,8 +154,11 @@ def _excess(asked: Asked, point: int) -> tuple[str, dict[str, float]]:
         f"{WARMEST_USUAL - ZERO_CELSIUS:.0f} °C: give oil.temperature, gearbox.oil_flow or "
         "gearbox.housing_area"
     )
-    at = WARMEST_USUAL - ZERO_CELSIUS
-    return words, {"made_kW": made, "carried_kW": carried, "carried_at": at}
+    return words, {
+        "made_kW": made,
+        "carried_kW": carried,
+        "carried_at": WARMEST_USUAL - ZERO_CELSIUS,
+    }
 
 
 def _tooth_limit(case: GearCase) -> str:
@@ -173,6 +181,7 @@ def _tooth_limit(case: GearCase) -> str:
 
 
 def gap(asked: Asked) -> Iterator[Answer]:
+    bored = {**PARTS, "speed": f"{PARTS['speed']} ({BORES[asked.model.bore]})"}
     for point in asked.points:
         at = asked.at(point)
         if why := asked.unsettled(point):
@@ -182,7 +191,7 @@ def gap(asked: Asked) -> Iterator[Answer]:
         left = 2e6 * float(asked.hot["least_half_backlash"][point])
         nominal = 2e6 * float(asked.hot["cold_half_backlash"][point])
         parts = {n: 2e6 * float(asked.hot[f"half_backlash_by_{n}"][point]) for n in PARTS}
-        named = [f"{PARTS[n]} {v:+.1f} µm" for n, v in parts.items() if abs(v) >= 0.05]
+        named = [f"{bored[n]} {v:+.1f} µm" for n, v in parts.items() if abs(v) >= 0.05]
         yield answer(
             GAP,
             "backlash",
@@ -228,14 +237,11 @@ def _worst_moment(asked: Asked) -> Answer:
     end = float(course.time[-1]) / 60.0
     steady_known = course.course.settled or asked.case.computed
     if course.course.too_hot or asked.unsettled(asked.hardest) or not steady_known:
-        rest = (
-            f"until a node reaches {HOTTEST - ZERO_CELSIUS:.0f} °C after {end:.3g} min"
-            if course.course.too_hot
-            else f"within {end:.3g} min"
-        )
+        burnt = f"until a node reaches {HOTTEST - ZERO_CELSIUS:.0f} °C after"
         return answer(
             GAP, "warm_up_backlash",
-            f"{words} at least {least:.0f} µm {rest}; no steady state is known.",
+            f"{words} at least {least:.0f} µm {burnt if course.course.too_hot else 'within'} "
+            f"{end:.3g} min; no steady state is known.",
             np.nan if least > 0.0 else least,
             limit="backlash", at=at, verdict=OPEN if least > 0.0 else LOOK,
             figures={"least": least, "start": start, "end_minutes": end,

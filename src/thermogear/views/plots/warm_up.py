@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from thermogear.base.display import CELSIUS, number
-from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import HOT, INK, OKABE_ITO, QUIET, WIDE
 
@@ -68,7 +67,7 @@ def course(
             label = "" if place else "steady, if held for good"
             level = [value, value]
             below.curve([begin, end], level, colour=QUIET, dash=(4, 2), width=1.2, label=label)
-    below.line(y=1e6 * cold, colour=OKABE_ITO[5], width=1.1, label=UNDEFORMED)
+    below.line(y=1e6 * cold, colour=OKABE_ITO[5], width=1.1, label="undeformed")
     if left.min() <= 0.0:
         below.line(y=0.0, colour=HOT, width=1.1, label="jammed below")
     _mark(above, below, worst, logarithmic)
