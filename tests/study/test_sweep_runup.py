@@ -133,7 +133,7 @@ def test_contact_that_lasts_is_not_called_lost():
 
 def test_where_the_runs_differ_is_said(plain):
     (words,) = [text for text in notices_of(plain) if text.startswith("up and down differ at")]
-    low, high = (float(word) for word in words.split(" rpm")[0].split(" at ")[1].split(" .. "))
+    low, high = (float(word) for word in words.split(" rpm")[0].split(" at ")[1].split(" to "))
     fold, rise = np.sort(plain.jump_fold.values) / RPM
     assert fold < low <= fold + 100.0
     assert rise - 100.0 <= high < rise

@@ -153,8 +153,11 @@ def _excess(asked: Asked, point: int) -> tuple[str, dict[str, float]]:
         f"{WARMEST_USUAL - ZERO_CELSIUS:.0f} °C: give oil.temperature, gearbox.oil_flow or "
         "gearbox.housing_area"
     )
-    at = WARMEST_USUAL - ZERO_CELSIUS
-    return words, {"made_kW": made, "carried_kW": carried, "carried_at": at}
+    return words, {
+        "made_kW": made,
+        "carried_kW": carried,
+        "carried_at": WARMEST_USUAL - ZERO_CELSIUS,
+    }
 
 
 def _tooth_limit(case: GearCase) -> str:
