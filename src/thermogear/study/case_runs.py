@@ -53,7 +53,7 @@ class CaseRuns:
         return self.case({}).accuracy
 
     def sampled(
-        self, tolerances: Mapping[str, float], count: int, seed: int
+        self, tolerances: Mapping[str, float], *, count: int, seed: int
     ) -> Iterator[dict[str, str]]:
         """Overrides of ``count`` cases within relative standard ``tolerances`` of fields."""
         rng = np.random.default_rng(seed)

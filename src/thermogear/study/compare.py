@@ -293,7 +293,7 @@ def case_lines(
         )
     changed = [
         [_relative(base, _tables(runs, one)) for one in several]
-        for several in (runs.sampled(tolerances, samples, seed), runs.drawings())
+        for several in (runs.sampled(tolerances, count=samples, seed=seed), runs.drawings())
     ]
     u_input: dict[float, float] = {}
     for key in dict.fromkeys(key for several in changed for one in several for key in one):

@@ -98,7 +98,7 @@ def compare_sensors(
         moved = [_picked(one, rows, sensors) - told[last.words] for one in tables]
         return np.asarray(np.reshape(moved, (-1, real.size)) / real)
 
-    sampled = changed(runs.sampled(tolerances or {}, samples, seed))
+    sampled = changed(runs.sampled(tolerances or {}, count=samples, seed=seed))
     spread = np.std(sampled, axis=0, ddof=1) if len(sampled) else 0.0
     drawn = np.abs(changed(runs.drawings())).max(axis=0, initial=0.0)
     entered = np.hypot(spread, drawn)
