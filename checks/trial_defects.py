@@ -99,12 +99,6 @@ def _bridged(x: Floats, random: Random, gaps: int, size: int) -> Floats:
     return y
 
 
-def _between(x: Floats, every: int) -> Floats:
-    """Straight lines between samples taken ``every`` so many."""
-    place = np.arange(x.size)
-    return np.asarray(np.interp(place, place[::every], x[::every]))
-
-
 def _dead(x: Floats, random: Random, share: float) -> Floats:
     """A thousandth of the noise of a live sensor at the end."""
     y = x - float(np.mean(x))
@@ -134,8 +128,6 @@ DEFECTS: dict[str, Callable[[Floats, Random], Floats]] = {
     "a straight line across 4 %": lambda x, r: _bridged(x, r, 1, int(0.04 * x.size)),
     "a straight line across 20 %": lambda x, r: _bridged(x, r, 1, int(0.2 * x.size)),
     "20 straight lines across 15 samples": lambda x, r: _bridged(x, r, 20, 15),
-    "every second sample between two": lambda x, r: _between(x, 2),
-    "three of four samples between two": lambda x, r: _between(x, 4),
     "levels of 0.7 amplitudes": lambda x, r: np.round(x / 0.7) * 0.7,
     "levels of 2 amplitudes": lambda x, r: np.round(x / 2.0) * 2.0,
     "a mean of 200 amplitudes": lambda x, r: x + 200.0,

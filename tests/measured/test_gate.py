@@ -107,17 +107,6 @@ def test_much_clipping_withholds_amplitudes_and_keeps_the_frequency() -> None:
         table_of(found)
 
 
-@pytest.mark.parametrize("every", [2, 5])
-def test_a_record_made_finer_by_straight_lines_is_withheld(every: int) -> None:
-    x = channel(count=every * COUNT)[::every]
-    finer = np.interp(np.arange(every * (COUNT - 1)) / every, np.arange(COUNT), x)
-    found = measured(finer)
-    line = found.lines[0]
-    assert np.isnan(line.reading)
-    assert numbers(line.withheld) == [pytest.approx(100.0 * (1.0 - 1.0 / every), abs=1.0)]
-    assert [one.withholds for one in found.findings] == [True]
-
-
 @pytest.mark.parametrize(("step", "stated"), [(0.35, 0.05), (0.5, 0.2), (1.0, np.nan)])
 def test_coarse_levels_widen_intervals_or_withhold(step: float, stated: float) -> None:
     found = measured(np.round(channel() / step) * step)

@@ -1,4 +1,4 @@
-"""Straight lines in place of samples: drawn bridges and finer grids are seen, nothing else is."""
+"""Straight lines in place of samples: drawn bridges are seen, nothing else is."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.signal import butter, sosfilt
 
-from thermogear.signals.bridged import bridges, made_finer
+from thermogear.signals.bridged import bridges
 from thermogear.signals.quality import damages
 
 Floats = NDArray[np.float64]
@@ -61,7 +61,6 @@ def test_an_undamaged_record_has_no_straight_lines() -> None:
     for _ in range(300):
         x = written(drawn(random), random)
         assert not bridges(x, everywhere(x)).any()
-        assert not made_finer(x, everywhere(x)).any()
 
 
 def test_a_bridged_gap_is_found_to_the_sample() -> None:
@@ -77,20 +76,6 @@ def test_a_bridged_gap_is_found_to_the_sample() -> None:
         assert np.isin(found, np.arange(first, first + size + 1)).all()
         whole += np.array_equal(found, np.arange(first + 1, first + size))
     assert whole >= 50  # of 60: a line as level as noise, or a quiet place, is left alone
-
-
-@pytest.mark.parametrize("times", [2, 3, 4, 7, 2.75, 3.5])
-def test_a_record_made_finer_is_found(times: float) -> None:
-    """By whole numbers and others: a sample bends where a true one stands on it or beside it."""
-    random = np.random.default_rng([SEED, int(100 * times)])
-    for _ in range(20):
-        x = drawn(random)
-        x += 0.02 * random.normal(size=x.size)
-        finer = np.interp(np.arange(0.0, x.size - 1, 1.0 / times), np.arange(x.size), x)
-        share = float(np.mean(made_finer(finer, everywhere(finer))))
-        assert 0.97 - 2.0 / times < share < 1.02 - 1.0 / times
-        assert share > 0.24
-        assert not made_finer(x, everywhere(x)).any()
 
 
 @pytest.mark.parametrize("bits", [10, 12, 16])

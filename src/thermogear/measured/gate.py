@@ -325,7 +325,6 @@ _WORDS = {
     "spikes": "spikes",
     "clipping": "clipping at",
     "bridged": "straight lines in place of samples",
-    "made finer": "samples on the line between their neighbours",
     "coarse": "coarse levels",
     "quiet": "no vibration",
 }
@@ -335,8 +334,6 @@ _TOO_MUCH = {
     "held": "a sample that repeats the one before weakens lines and makes images",
     "coarse": "rounding to few levels is no noise, and falsifies every line (use more of the "
     "converter's range)",
-    "made finer": "straight lines between samples weaken lines and make images of them (give the "
-    "record at the rate at which it was taken)",
 }
 
 

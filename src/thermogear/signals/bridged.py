@@ -1,10 +1,9 @@
-"""Samples that others put in place: gaps bridged, or a record made finer."""
+"""Samples that others put in place of missing ones: gaps bridged by straight lines."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import maximum_filter1d
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -16,9 +15,6 @@ _DIGITS = 1e-5  # of the rms: rounding of five digits
 _COARSE = 0.1  # of that bend: a level too coarse to tell
 _RISE = 20.0  # levels over a bridge
 _BESIDE, _MORE = 8, 30.0  # samples on either side, which bend as many times as much
-_AROUND = 17  # samples in which one bends most
-_FINE = 50.0  # levels that it bends
-_SHARE = 0.25  # of the samples: with lines of three pieces two of three are straight, of two one
 
 
 def bridges(x: Floats, free: Mask) -> Mask:
@@ -62,30 +58,6 @@ def bridges(x: Floats, free: Mask) -> Mask:
         straight_on = rise > _RISE * level and off <= max(2.0 * rounding, _FLAT * rise)
         inside[start:stop] = straight_on and bent > _MORE * max(off, digits)
     return inside
-
-
-def made_finer(x: Floats, free: Mask) -> Mask:
-    """Samples ``x`` on the line between their neighbours, where a quarter or more of all are.
-
-    So is a record that straight lines make twice or more as fine. A sample is on the line if it
-    bends a thousandth of what one of the eight on either side does, and this one 50 levels. Of a
-    line in noise hardly one of a hundred does. A rate raised by less than 2.7, and not twice, has
-    too few samples on lines. ``free``: samples that count.
-
-    >>> taken = np.sin(2.0 * np.arange(200.0) ** 1.1)
-    >>> finer = np.interp(np.arange(0.0, 199.0, 0.25), np.arange(200.0), taken)
-    >>> round(float(np.mean(made_finer(finer, finer < 9.0))), 2)
-    0.75
-    """
-    bend = bends(x, free)
-    size = np.nan_to_num(bend)
-    level = smallest_step(x[free])
-    most = maximum_filter1d(size, _AROUND)
-    straight = bend <= np.maximum(_FLAT * most, _LEVEL * level)
-    straight &= (most > 0.0) & (most >= _FINE * level)
-    straight[1:-1] &= (x[1:-1] != x[:-2]) | (x[1:-1] != x[2:])
-    often = np.count_nonzero(straight) >= _SHARE * np.count_nonzero(free)
-    return straight if often else np.zeros(x.size, dtype=bool)
 
 
 def bends(x: Floats, free: Mask) -> Floats:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.signals.bridged import bridges, made_finer
+from thermogear.signals.bridged import bridges
 from thermogear.signals.converter import coarse
 from thermogear.signals.events import quiet
 from thermogear.signals.lines import line_spectrum
@@ -62,7 +62,7 @@ class Damage:
 
 def damages(x: ArrayLike) -> list[Damage]:
     """Every damage of one channel: missing, sentinels, zeros, held samples, spikes, clipping,
-    straight lines in place of samples or between all of them, stretches without vibration, and
+    straight lines in place of samples, stretches without vibration, and
     coarse levels, of which all samples are.
 
     ``x`` [any unit], NaN where a value is missing. No sample is in two others of them.
@@ -273,14 +273,9 @@ def _not_by_chance(x: Floats, free: Mask, short: Mask) -> bool:
 
 
 def _straight(x: Floats, free: Mask) -> list[Damage]:
-    """Lines between all samples taken, or across gaps."""
-    if np.count_nonzero(free) < 64:
-        return []
-    for kind, search in (("made finer", made_finer), ("bridged", bridges)):
-        where = search(x, free)
-        if where.any():
-            return [Damage(kind=kind, samples=where)]
-    return []
+    """Straight lines across gaps."""
+    where = bridges(x, free) if np.count_nonzero(free) >= 64 else np.zeros(x.size, dtype=bool)
+    return [Damage(kind="bridged", samples=where)] if where.any() else []
 
 
 def _spikes(x: Floats, free: Mask) -> list[Damage]:
