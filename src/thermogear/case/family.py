@@ -459,9 +459,8 @@ class Tabulated:
                 return one
             share = weight[:, None] if one.ndim == 2 else weight
             # exact at both points, so that a grid that ends there gives the same bits
-            return np.where(
-                share < 1.0, one + share * (two - one), two + (share - 1.0) * (two - one)
-            )
+            below, beyond_two = one + share * (two - one), two + (share - 1.0) * (two - one)
+            return np.asarray(np.where(share < 1.0, below, beyond_two))
 
         stiffness = mix(a.stiffness, b.stiffness)
         length = mix(a.length, b.length)
