@@ -140,7 +140,10 @@ def _numbers(result: Result) -> dict[str, Any]:
     data, iso = result.groups["contact"], result.groups["iso_6336"]
     return {
         "pinion_torque_Nm": [float(v) for v in data["load"].values],
-        "temperature": [str(v) for v in data["temperature"].values],
+        "temperature_degC": [
+            float(name.removesuffix(" degC")) if name.endswith(" degC") else name
+            for name in map(str, data["temperature"].values)
+        ],
         "mean_stiffness": table_of(data["mean_stiffness"]),
         "double_contact_length_m": table_of(data["double_contact_length"]),
         "edge_contact_share": table_of(data["edge_contact_share"]),
