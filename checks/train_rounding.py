@@ -48,7 +48,7 @@ def labelled(number: int, begun: int = BEGUN, starts: int = STARTS) -> list[Reco
     section = GearedMap(model=train.model)
     search = replace(search_of(train.model.cycle), starts=starts)
     found = []
-    for start in [train.start, *beside(train.start, section.unit, begun - 1)]:
+    for start in [train.start, *beside(train.start, unit=section.unit, count=begun - 1)]:
         clock = time.process_time()
         motion = settle(section, start, search)
         found.append(

@@ -82,7 +82,7 @@ class End(Generic[_Label]):
     lively: bool = False
 
 
-def directions(count: int, dimension: int) -> Floats:
+def directions(*, count: int, dimension: int) -> Floats:
     """Where starts beside another one lie, (count, dimension): no two the same way from it."""
     turn = np.pi * (np.sqrt(5.0) - 1.0) * np.arange(1, count + 1)
     place = np.arange(dimension)
@@ -90,9 +90,11 @@ def directions(count: int, dimension: int) -> Floats:
     return np.asarray(np.cos(angle))
 
 
-def beside(start: Floats, unit: Floats, count: int) -> Floats:
+def beside(start: Floats, *, unit: Floats, count: int) -> Floats:
     """``count`` starts (count, d) that differ from ``start`` (d,) by rounding, :data:`APART`."""
-    return start + APART * np.maximum(unit, np.abs(start)) * directions(count, start.size)
+    return start + APART * np.maximum(unit, np.abs(start)) * directions(
+        count=count, dimension=start.size
+    )
 
 
 def _kinds(first: _Label, ends: Sequence[End[_Label]]) -> list[_Label]:

@@ -85,7 +85,9 @@ def _confirmed(
     Each is followed until it closes, at most for ``follow`` periods, and then asked for chaos or a
     torus. They take their rounds together, so that the first two that end apart end the work.
     """
-    walks = [Walk(section, near, how) for near in beside(start, section.unit, how.starts - 1)]
+    walks = [
+        Walk(section, near, how) for near in beside(start, unit=section.unit, count=how.starts - 1)
+    ]
     if first.name == "chaotic":
         walks.append(Walk(section, first.state, how, discarded=first.discarded))
     ends: list[End[Motion]] = []

@@ -284,7 +284,7 @@ def _confirmed(
     parted, own = asked[(top > np.log(PARTED))[asked] | chaotic[asked]], np.flatnonzero(chaotic)
     unit = np.stack([lanes.half_backlash, 2 * np.pi * lanes.half_backlash / lanes.period], axis=1)
     owner = np.repeat(parted, search.starts - 2)
-    beside = np.tile(directions(search.starts - 2, 2), (parted.size, 1))
+    beside = np.tile(directions(count=search.starts - 2, dimension=2), (parted.size, 1))
     near = start[owner] + APART * np.maximum(unit, np.abs(start))[owner] * beside
     ends: list[list[End[Label]]] = [[] for _ in found]
     groups = (

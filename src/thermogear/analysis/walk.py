@@ -113,7 +113,7 @@ class Walk:
         self.path = np.empty((0, self.state.size))
         self.discarded = discarded
         self.parted = False
-        self._twin = beside(self.state, section.unit, 1)[0] if watched else None
+        self._twin = beside(self.state, unit=section.unit, count=1)[0] if watched else None
         self._length = how.first
         self._known: _Approach | None = None
         self._failed: dict[int, float] = {}
