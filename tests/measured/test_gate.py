@@ -298,14 +298,6 @@ def test_where_a_sensor_dies_the_record_ends() -> None:
     assert abs(line.reading - 1.0) < line.half_width < 0.03
 
 
-def test_a_gain_that_is_switched_is_told_with_its_place() -> None:
-    x = channel()
-    x[5000:] *= 3.0
-    (told,) = measured(x).findings
-    assert told.first == pytest.approx(5000, abs=COUNT // 200)
-    assert not told.withholds
-
-
 def test_a_blow_is_told_with_its_place() -> None:
     x = channel()
     x[3000:3100] += 12.0 * np.sin(1.1 * np.arange(100)) * np.exp(-np.arange(100) / 25.0)

@@ -8,6 +8,7 @@ from scipy.optimize import fsolve
 from trains import TRUTH
 
 from conftest import Compared
+from sjovall import load_zone_integral
 from thermogear.base.errors import InputError
 from thermogear.base.materials import MATERIALS, material
 from thermogear.shafts.bearings.catalogue import CATALOGUE, catalogue_bearing
@@ -24,7 +25,6 @@ from thermogear.shafts.bearings.geometry import RollingBearing
 from thermogear.shafts.bearings.hertz import (
     ball_coefficient,
     ellipse_ratio,
-    load_zone_integral,
     race_contact,
     roller_coefficient,
 )

@@ -17,14 +17,6 @@ Floats = NDArray[np.float64]
 CEILING = 0.5
 """Greatest value any law returns: the upper end of dry friction, met only near rest."""
 
-DRY_COEFFICIENTS: dict[str, float] = {
-    "POM/POM": 0.28,
-    "PA66/PA66": 0.40,
-    "POM/PA66": 0.18,
-    "steel/plastic": 0.20,
-}
-"""Dry pairings of VDI 2736, as used by public gear code."""
-
 FZG_LUBRICANT_FACTOR: dict[str, float] = {
     "mineral": 0.846,
     "pao": 0.65,

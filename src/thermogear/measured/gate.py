@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
 from thermogear.measured.record import Channel, Notice, Record
-from thermogear.signals.events import Event, level_step, short_event
+from thermogear.signals.events import short_event
 from thermogear.signals.filters import without_trend
 from thermogear.signals.quality import Damage, damages, filled
 
@@ -227,7 +227,7 @@ class _Channel:
             if total <= FILLED:
                 missing |= one.samples
                 continue
-            if one.kind in _TOO_MUCH and not _in_blocks_of_loss(one):
+            if one.kind in _TOO_MUCH and not (one.kind == "held" and _in_blocks(one)):
                 effect = _TOO_MUCH[one.kind]
             else:
                 missing |= one.samples  # a number must stand there
@@ -313,10 +313,6 @@ class _Channel:
         )
 
 
-def _in_blocks_of_loss(one: Damage) -> bool:
-    return one.kind == "held" and _in_blocks(one)
-
-
 _WORDS = {
     "missing": "no number (NaN)",
     "sentinel": "the value",
@@ -389,32 +385,22 @@ def _proportions(through: Passed) -> None:
 
 def events_of(through: Passed) -> list[Finding]:
     """Short events of a record at one speed; they are kept. A run passes resonances as short."""
-    found = []
+    findings = []
     for channel, values in zip(through.channels, through.table, strict=True):
-        if channel.name in through.withheld:
-            continue
-        event, step = short_event(values), level_step(values)
+        event = None if channel.name in through.withheld else short_event(values)
         if event is not None:
-            kind = f"a short event, {event.times:.2g} times the usual range"
-            effect = "sidebands' intervals hold what it adds, a mesh line's do not (cut it out)"
-            found.append(_kept(through, channel, event, kind, effect))
-        if step is not None:
-            kind = f"from here on {step.times:.3g} times the level before"
-            effect = "readings are means over both levels (cut the record there)"
-            found.append(_kept(through, channel, step, kind, effect))
-    return found
-
-
-def _kept(through: Passed, channel: Channel, event: Event, kind: str, effect: str) -> Finding:
-    """An event that is told and left as it is."""
-    count = event.last - event.first + 1
-    return Finding(
-        kind=kind,
-        channel=channel.name,
-        first=through.start + event.first,
-        last=through.start + event.last,
-        count=count,
-        share=count / through.table.shape[-1],
-        done="kept",
-        effect=effect,
-    )
+            count = event.last - event.first + 1
+            findings.append(
+                Finding(
+                    kind=f"a short event, {event.times:.2g} times the usual range",
+                    channel=channel.name,
+                    first=through.start + event.first,
+                    last=through.start + event.last,
+                    count=count,
+                    share=count / through.table.shape[-1],
+                    done="kept",
+                    effect="sidebands' intervals hold what it adds, a mesh line's do not "
+                    "(cut it out)",
+                )
+            )
+    return findings

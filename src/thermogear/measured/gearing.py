@@ -51,11 +51,6 @@ class Gearing:
         """Teeth on the first shaft, None when no shaft shows."""
         return self.shafts[0].teeth if self.shafts else None
 
-    @property
-    def shaft_frequency(self) -> float | None:
-        """First shaft [turns/sample], None when no shaft shows."""
-        return self.mesh_frequency / self.shafts[0].teeth if self.shafts else None
-
 
 def find_gearing(
     channels: Sequence[Floats],

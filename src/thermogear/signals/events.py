@@ -1,4 +1,4 @@
-"""What changes in a record that is steady otherwise: a short event, a level, a sensor that dies."""
+"""What changes in a record that is steady otherwise: a short event, a sensor that dies."""
 
 from __future__ import annotations
 
@@ -17,7 +17,6 @@ _MOST, _PLACES = 0.1, 2  # of the pieces, and runs of them
 _USUALLY = 0.9  # of the pieces have less than the usual rms: most may be without vibration
 _QUIET, _LIVELY = 0.03, 0.3  # of the usual rms: no vibration, and vibration beside it
 _STILL, _STRAY = 0.05, 1  # of the record, a stretch without any; quiet pieces elsewhere
-_STEP, _SURE, _ABRUPT, _SIDE = 1.4, 8.0, 0.7, 10  # times; spreads; of the step at once; pieces
 
 
 class Event(NamedTuple):
@@ -94,42 +93,6 @@ def quiet(x: Floats, free: Mask) -> Mask:
         if all(part.size == 0 or np.max(part) > _LIVELY * usual for part in known):
             still[a * size : x.size if b == count else b * size] = True
     return still
-
-
-def level_step(x: Floats) -> Event | None:
-    """Where the level of a record ``x`` changes at once and for good; None: nowhere.
-
-    The rms of 200 pieces, in logarithms, is parted in two where the squares about both means are
-    least. The means differ by a factor of 1.4 or more, by eight times the spread of ten pieces
-    about them, and seven tenths of it within ten pieces: a gain that is switched, a load set anew.
-
-    >>> x = np.sin(np.arange(20_000.0))
-    >>> level_step(x)
-    >>> x[8_000:] *= 2.0
-    >>> level_step(x)
-    Event(first=8000, last=19999, times=2.0)
-    """
-    rms = np.std(pieces := _parted(x), axis=1)
-    count, size = pieces.shape
-    if count < 4 * _SIDE or not np.all(rms > 0.0):
-        return None
-    level = np.log(rms)
-    number = np.arange(1, count)
-    sums = np.cumsum(level)
-    left, right = sums[:-1] / number, (sums[-1] - sums[:-1]) / (count - number)
-    between = number * (count - number) * (right - left) ** 2
-    inner = slice(_SIDE - 1, count - _SIDE)
-    place = int(np.argmax(between[inner])) + _SIDE
-    step = float(right[place - 1] - left[place - 1])
-    rest = level - np.where(np.arange(count) < place, left[place - 1], right[place - 1])
-    # sidebands change pieces, and less so what ten of them hold together
-    spread = np.std([np.mean(part) for part in np.array_split(rest, count // _SIDE)])
-    near = _SIDE // 2
-    at_once = float(np.mean(level[place : place + near]) - np.mean(level[place - near : place]))
-    sure = abs(step) >= max(np.log(_STEP), _SURE * float(spread))
-    if not sure or at_once * np.sign(step) < _ABRUPT * abs(step):
-        return None
-    return Event(place * size, x.size - 1, round(float(np.exp(step)), 3))
 
 
 def _parted(x: Floats) -> Floats:

@@ -56,5 +56,5 @@ def share(sets: Sequence[Judged], number: str) -> tuple[int, float, float]:
     Sets that are not judged are misses for the lower end and hits for the upper.
     """
     hits = sum(judged_set.holds.get(number, False) for judged_set in sets)
-    lost = sum(not judged_set.holds for judged_set in sets)
-    return hits, *interval(hits, count=len(sets), lost=lost)
+    not_judged = sum(not judged_set.holds for judged_set in sets)
+    return hits, *interval(hits, count=len(sets), lost=not_judged)

@@ -431,11 +431,8 @@ def _over_sets(claim: Claim) -> Claim:
     def judge(e: Evidence) -> Finding:
         finding = claim.judge(e)
         hits, low, high = base_sets.share(e.base_sets, claim.number)
-        if hits:
-            verdict = Verdict.ASSUMED
-        else:
-            excluded = claim.number in IMPOSSIBLE
-            verdict = Verdict.CONTRADICTED if excluded else Verdict.UNDECIDED
+        excluded = Verdict.CONTRADICTED if claim.number in IMPOSSIBLE else Verdict.UNDECIDED
+        verdict = Verdict.ASSUMED if hits else excluded
         share = (
             f"It holds for {hits} of {len(e.base_sets)} sampled base sets that meet the table "
             f"({100.0 * hits / len(e.base_sets):.0f} %, 95 % interval {100.0 * low:.0f} to "

@@ -9,12 +9,12 @@ import pytest
 from scipy.integrate import quad
 
 from conftest import Compared
+from sjovall import load_zone_integral
 from thermogear.base.errors import InputError
 from thermogear.shafts.bearings.catalogue import CATALOGUE, catalogue_bearing
 from thermogear.shafts.bearings.geometry import RollingBearing
 from thermogear.shafts.bearings.hertz import (
     ball_coefficient,
-    load_zone_integral,
     race_contact,
     roller_coefficient,
 )

@@ -16,8 +16,6 @@ from functools import lru_cache
 
 import numpy as np
 
-from thermogear.base.gauss import gauss
-
 YOUNGS_MODULUS, POISSON_RATIO = 210e9, 0.3
 """Of bearing steel [Pa], [-]; customary values lie between 206 and 210 GPa."""
 
@@ -151,19 +149,3 @@ def roller_coefficient(length: float) -> float:
     '253449 N/mm^(10/9)'
     """
     return float(35948.0 * (1e3 * length) ** (8.0 / 9.0) * 1e3 ** (10.0 / 9.0))
-
-
-def load_zone_integral(zone: float, *, exponent: float) -> float:
-    """Sjovall's J_r = (1/2 pi) int (1 - (1 - cos psi)/(2 eps))^n cos psi d psi [-].
-
-    ``zone`` eps = (1 - c_r/x)/2, 0.5 without clearance; ``exponent`` n. Over the loaded elements.
-    F = Z K (x - c_r)^n J_r.
-
-    >>> [f"{load_zone_integral(0.5, exponent=n):.4f}" for n in (1.5, 10 / 9)]
-    ['0.2288', '0.2448']
-    """
-    half = np.arccos(np.clip(1.0 - 2.0 * zone, -1.0, 1.0))
-    nodes, weights = gauss(200)
-    psi = half * nodes
-    deep = np.maximum(1.0 - (1.0 - np.cos(psi)) / (2.0 * zone), 0.0)
-    return float(half * np.sum(weights * deep**exponent * np.cos(psi)) / (2.0 * np.pi))
