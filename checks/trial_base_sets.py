@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.analysis.labels import label, labels
-from thermogear.base.errors import ConvergenceError
 from thermogear.base.parameters import long_name
 from thermogear.case.case import load_example
 from thermogear.dynamics.models import TorsionalModel
@@ -103,10 +102,8 @@ def judged(values: Mapping[str, float], rows: motions.Rows) -> Judged:
         key: motions.sequence(data, key.startswith("zeta")) for key, data in diagrams.items()
     }
     zeta, omega, epsilon = (set(labels_along[f"{row}/none"]) for row in motions.SWEPT)
-    try:
-        flips = motions.flips(base, FLIPS)["value"]
-    except ConvergenceError:
-        return Judged(values, {})
+    located = motions.flips(base, FLIPS)
+    flips = located["value"]
     cold, hot = (flips.sel(heat=heat, flip=1).values for heat in ("none", "thesis"))
     # period doublings of a row's cascade, those just before the document's range too
     counts = {heat: np.isfinite(flips.sel(heat=heat).values).sum(axis=-1) for heat in motions.HEATS}
@@ -138,6 +135,8 @@ def judged(values: Mapping[str, float], rows: motions.Rows) -> Judged:
         "4.3.9": scattered["thesis"] > scattered["none"],
         "4.3.10": hot[0] > cold[0],
     }
+    if located["lost"].sel(heat=["none", "thesis"]).values.any():
+        del holds["4.3.2"]
     return Judged(values, {number: bool(value) for number, value in holds.items()})
 
 
@@ -150,7 +149,7 @@ def text_of(sets: Sequence[Judged]) -> str:
         writer.writerow(
             [
                 *(judged_set.values[name] for name in COLUMNS),
-                *(int(judged_set.holds[n]) if judged_set.holds else "" for n in STATEMENTS),
+                *(int(judged_set.holds[n]) if n in judged_set.holds else "" for n in STATEMENTS),
             ]
         )
     return into.getvalue()

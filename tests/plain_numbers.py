@@ -8,9 +8,12 @@ from typing import Any
 
 UNIT = r"(?:%|°C|degC|[kmµu]?(?:m|s|N|W|g|Pa|Hz|rad)|rpm|K|N m|N/m|rad/s|m/s\^?2?|min|h)"
 SHOWN = re.compile(
+    r"(?!\d\.\d\.\d+$)"
     rf"[-+−]?\d[\d.,  ]*(?:e[-+]?\d+|·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?(?:\.\.[-+]?\d[\d.e]*)?(?: ?{UNIT})?"
 )
-"""A whole text that is a number, with thousands set off, powers of ten, a unit, or two of them."""
+"""A whole text that is a number, with thousands set off, powers of ten, a unit, or two of them.
+
+The numbers of the thesis's statements (2.1.10) are none."""
 TEXTS = {
     "thermogear",
     "unit",
@@ -22,8 +25,10 @@ TEXTS = {
     "title",
     "kind",
     "version",
+    "printed",
 }
-"""Keys of names, of units ("1"), of versions and of fields as a case file spells them."""
+"""Keys of names, of units ("1"), of versions, of fields as a case file spells them and of figures
+as another document prints them."""
 
 
 def told_as_text(value: Any, key: str = "") -> Iterator[str]:

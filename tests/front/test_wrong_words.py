@@ -81,7 +81,10 @@ def _here(tmp_path, monkeypatch):
         ),
         ("sweep rig --over 'gears.pinion.face_width=20 kg:30 kg:3' -o out", "no unit of length"),
         ("sweep rig --over gears.pinion.teeth=20:25:5 -o out", "got 21.25; allowed 5..2000, whole"),
-        ("sweep rig --over gears.pinion.teeth=10:25:4 -o out", "use x >= 0.42 or >= 18 teeth"),
+        (
+            "sweep rig --over gears.pinion.teeth=10:25:4 -o out",
+            "got a radius of 67.5 mm; allowed < 31.7737 mm",
+        ),
         ("sweep rig --over gears.pinion.width=1:2:2 -o out", "got an unknown field"),
         ("sweep rig --over model.friction=1:2:2 -o out", "got a field of words"),
         (

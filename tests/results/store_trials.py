@@ -249,7 +249,7 @@ class Crowd:
             source, directory / "old" / "thermogear", ignore=shutil.ignore_patterns("__pycache__")
         )
         plan = directory / "old" / "thermogear" / "base" / "plan.py"
-        words = "dtype=np.dtype(variable.dtype))"
+        words = "dtype=blank.dtype)"
         text = plan.read_text("utf-8")
         assert text.count(words) == 1
         plan.write_text(text.replace(words, f"{words} * 1.001"), "utf-8")

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from said import numbers
 from thermogear.analysis.settle import settle
 from thermogear.analysis.side_by_side import RULE
 from thermogear.base.display import rounded, worded
@@ -143,9 +144,9 @@ def test_ranges_are_told_in_rpm() -> None:
 
     ends = (500.0 * RPM, 9000.0 * RPM)
     some = ((1000.0, 1100.0), (2000.0, 2000.0))
-    assert words(*some) == "from 1000 to 1100 rpm, near 2000 rpm"
-    assert words(*some, *some) == f"{words(*some)}, from 1000 to 1100 rpm and 1 more"
-    assert words((500.0, 600.0)) == "from the lowest speed looked at, 500 rpm, to 600 rpm"
-    assert words((8000.0, 9000.0)) == "from 8000 rpm to the highest speed looked at, 9000 rpm"
-    assert words((500.0, 9000.0)) == "at every speed looked at, 500 rpm to 9000 rpm"
-    assert [rounded(v, 3) for v in (2.2712, 99.96, 12345.0)] == ["2.27", "100", "12300"]
+    assert numbers(words(*some)) == [1000.0, 1100.0, 2000.0]
+    assert numbers(words(*some, *some)) == [1000.0, 1100.0, 2000.0, 1000.0, 1100.0, 1.0]
+    for low, high, end in ((500, 600, "lowest"), (8000, 9000, "highest"), (500, 9000, "every")):
+        assert numbers(words((float(low), float(high)))) == [low, high]
+        assert end in words((float(low), float(high)))
+    assert [rounded(v, digits=3) for v in (2.2712, 99.96, 12345.0)] == ["2.27", "100", "12300"]

@@ -443,11 +443,12 @@ def switch_branch(bifurcation: Bifurcation, family: Family | None = None) -> Dou
 
 @dataclass(frozen=True)
 class Cascade:
-    """Successive period doublings of one branch: ``flips`` and the branches walked."""
+    """Period doublings of one branch, the branches walked, and why the next was ``lost``, if so."""
 
     parameter: str
     flips: tuple[Bifurcation, ...]
     branches: tuple[Branch, ...]
+    lost: str = ""
 
     @property
     def ratios(self) -> Floats:
@@ -469,9 +470,8 @@ def cascade(
     """Follow ``orbit`` to its first period doubling, switch, and so on ``flips`` times.
 
     Arguments as in :func:`continuation`. Where a doubling is subcritical the doubled branch runs
-    back first, to a fold, and is followed there, as far back as the value where the cascade
-    began. Fewer flips come back when a branch reaches ``to`` (or ends) without one; the last
-    branch's ``ended`` says why.
+    back first, to a fold, and is followed there, as far back as where the cascade began. Fewer
+    flips come back when a branch reaches ``to`` (or ends) without one (the last one's ``ended``).
     """
     branch = continuation(
         orbit, parameter, to, family=family, start=start, stop_at=FLIP, progress=progress
@@ -484,17 +484,13 @@ def cascade(
         found.append(flip)
         if len(found) == flips:
             break
-        doubled = switch_branch(flip, branch.family)
-        branch = continuation(
-            doubled.orbit,
-            parameter,
-            to,
-            family=branch.family,
-            start=doubled.value,
-            back_to=begin,
-            stop_at=FLIP,
-            direction=doubled.direction,
-            progress=progress,
-        )
+        try:
+            doubled = switch_branch(flip, branch.family)
+            branch = continuation(
+                doubled.orbit, parameter, to, family=branch.family, start=doubled.value,
+                back_to=begin, stop_at=FLIP, direction=doubled.direction, progress=progress,
+            )  # fmt: skip
+        except ConvergenceError as error:
+            return Cascade(parameter, tuple(found), tuple(branches), str(error))
         branches.append(branch)
     return Cascade(parameter, tuple(found), tuple(branches))

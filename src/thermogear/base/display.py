@@ -121,7 +121,7 @@ def exactly(value: float, digits: int = 6) -> str:
     return text.rstrip("0").rstrip(".") if "." in text and "·" not in text else text
 
 
-def rounded(value: float, digits: int) -> str:
+def rounded(value: float, *, digits: int) -> str:
     """A number to ``digits`` significant figures, the rest zeros, without a power of ten."""
     return f"{float(f'{value:.{digits - 1}e}'):.10g}"
 
@@ -131,7 +131,7 @@ class _Words(Formatter):
 
     def format_field(self, value: Any, format_spec: str) -> str:
         form, _, unit = format_spec.partition(" ")
-        text = rounded(value, int(form[1:])) if form.startswith("~") else format(value, form)
+        text = rounded(value, digits=int(form[1:])) if form.startswith("~") else format(value, form)
         return f"{text} {unit}".rstrip()
 
 

@@ -67,7 +67,7 @@ def thesis_half_backlash(
 
 
 def flank_growth_as_printed(
-    gear: GearLike, field: RadialField, radius: ArrayLike, thickness_at: ArrayLike | None = None
+    gear: GearLike, field: RadialField, radius: ArrayLike, *, thickness_at: ArrayLike | None = None
 ) -> Floats:
     """Delta f exactly as printed, in SI: a pure number plus a length; feeds nothing.
 

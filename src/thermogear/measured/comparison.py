@@ -304,8 +304,10 @@ def _misprints(rows: Sequence[Row], names: Sequence[str]) -> list[Notice]:
         for name, simulated, text in zip(names, row.simulated, row.printed or (), strict=False):
             if not text:
                 continue
-            low, high = rounded_error(simulated, row.measured, row.quantity)
-            if not allowed(text, low, high):
+            low, high = rounded_error(
+                simulated=simulated, measured=row.measured, quantity=row.quantity
+            )
+            if not allowed(text, low=low, high=high):
                 notices.append(
                     Notice(
                         "important",

@@ -100,22 +100,22 @@ def half_digit(printed: float) -> float:
     return 0.5 * 10.0 ** int(Decimal(f"{printed:g}").as_tuple().exponent)
 
 
-def rounded_error(simulated: float, measured: float, quantity: str) -> tuple[float, float]:
+def rounded_error(*, simulated: float, measured: float, quantity: str) -> tuple[float, float]:
     """The least and the greatest error |simulated/measured - 1| [%] that two printed entries allow.
 
     Both are rounded to the digits printed, a "frequency" in Hz and a "displacement" in um;
     here they are in SI.
     """
     scale = PRINTED_UNIT[quantity]
-    ends = []
-    for value in (scale * simulated, scale * measured):
-        half = half_digit(value)
-        ends.append((value - half, value + half))
+    ends = [
+        (value - half_digit(value), value + half_digit(value))
+        for value in (scale * simulated, scale * measured)
+    ]
     errors = [100.0 * abs(s / m - 1.0) for s in ends[0] for m in ends[1]]
     return min(errors), max(errors)
 
 
-def allowed(printed: str, low: float, high: float) -> bool:
+def allowed(printed: str, *, low: float, high: float) -> bool:
     """Whether a ``printed`` figure, rounded itself, can stand for a value within low..high."""
     half = half_digit(float(printed))
     return low - half <= float(printed) <= high + half

@@ -31,7 +31,7 @@ COLUMNS = ("damping_ratio", "frequency", "stiffness_amplitude", "mean_force", "f
 class Judged:
     """A base set that meets the table, and whether each statement holds for it, by its number.
 
-    ``holds`` is empty where a located bifurcation was lost on the way: such a set is not judged.
+    A statement is missing that could not be judged, as a bifurcation was lost on the way.
     """
 
     values: Mapping[str, float]
@@ -53,8 +53,8 @@ def stored() -> list[Judged]:
 def share(sets: Sequence[Judged], number: str) -> tuple[int, float, float]:
     """(sets for which a statement holds, lower and upper end of the share's 95 % interval).
 
-    Sets that are not judged are misses for the lower end and hits for the upper.
+    Sets for which it is not judged are misses for the lower end and hits for the upper.
     """
     hits = sum(judged_set.holds.get(number, False) for judged_set in sets)
-    not_judged = sum(not judged_set.holds for judged_set in sets)
+    not_judged = sum(number not in judged_set.holds for judged_set in sets)
     return hits, *interval(hits, count=len(sets), lost=not_judged)

@@ -115,7 +115,7 @@ def flips(base: Rows, most: int = 4) -> xr.Dataset:
     shape = (len(SWEPT), len(HEATS), most)
     value, before = np.full(shape, np.nan), np.zeros(shape, np.int32)
     entered = np.full(shape[:2], np.nan)
-    note = np.full(shape[:2], "", dtype=object)
+    note, lost = np.full(shape[:2], "", dtype=object), np.zeros(shape[:2], np.int8)
     for r, (name, parameter) in enumerate(SWEPT.items()):
         first, last = base.ends[name]
         for h, heat in enumerate(HEATS):
@@ -129,8 +129,9 @@ def flips(base: Rows, most: int = 4) -> xr.Dataset:
             found = cascade(orbit, parameter, last, flips=most)
             for k, flip in enumerate(found.flips):
                 value[r, h, k], before[r, h, k] = flip.value, flip.orbit.period
+            lost[r, h] = bool(found.lost)
             if len(found.flips) < most:
-                note[r, h] = found.branches[-1].ended
+                note[r, h] = found.lost or found.branches[-1].ended
     dims = ("row", "heat", "flip")
     return label(
         {
@@ -138,6 +139,7 @@ def flips(base: Rows, most: int = 4) -> xr.Dataset:
             "before": (dims, before, "1", "period that doubles"),
             "entered": (dims[:2], entered, "", "where the branch was entered"),
             "note": (dims[:2], note.astype(str)),
+            "lost": (dims[:2], lost, "1", "the branch behind the last flip was not found"),
         },
         {"row": list(SWEPT), "heat": list(HEATS), "flip": ("flip", np.arange(1, most + 1), "")},
         {"temperature": base.temperature},

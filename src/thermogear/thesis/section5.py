@@ -153,8 +153,10 @@ def _simulated_amplitude(e: Evidence, number: int, model: int) -> Finding:
 def _error(e: Evidence, number: int, quantity: str, model: int) -> Finding:
     row = _row(e, number, quantity)
     printed = THESIS_5_2.errors[MODELS[model], quantity, number]
-    low, high = rounded_error(row.simulated[model], row.measured, quantity)
-    agrees = allowed(printed, low, high)
+    low, high = rounded_error(
+        simulated=row.simulated[model], measured=row.measured, quantity=quantity
+    )
+    agrees = allowed(printed, low=low, high=high)
     return Finding(
         f"printed {printed} %",
         f"recomputed {100.0 * abs(row.errors[model]):.2f} %, {low:.2f} to {high:.2f} % as the "

@@ -56,7 +56,7 @@ def told(case: GearCase, **more: Any) -> list[dict[str, Any]]:
 
 
 def test_mesh_hot_and_jam_are_those_of_run() -> None:
-    """Every number shown, to the last bit; 4.63e8 N/m, 93.1 µm and 235 °C were known before."""
+    """Every number shown, to the last bit; 4.63e8 N/m, 93.0 µm and 235 °C: known before, less what the speed lets the gears grow."""
     case = rig("grid.mesh_positions=128", "operating.speed=1000 rpm", "temperatures.row=",
                "simulation.periods=32", "simulation.sample_periods=2",
                "simulation.discard=50", "simulation.most_discarded=50")  # fmt: skip
@@ -66,11 +66,11 @@ def test_mesh_hot_and_jam_are_those_of_run() -> None:
         one, other = data[name].values, stored[name].values.reshape(data[name].shape)
         assert np.array_equal(one, other, equal_nan=one.dtype.kind == "f"), name
     assert f"{data['mean_stiffness'].values[1]:.2e}" == "4.63e+08"
-    assert f"{1e6 * data['half_backlash'].values[1]:.1f}" == "93.1"
+    assert f"{1e6 * data['half_backlash'].values[1]:.1f}" == "93.0"
     assert f"{data['jam_temperature'].values[1] - 273.15:.0f}" == "235"
     words = [one["lines"] for one in told(case, parts=["mesh"]) if one["kind"] == "part"]
     assert words == [told_mesh(data)]
-    for figure in ("4.631·10⁸", "93.08"):
+    for figure in ("4.631·10⁸", "93.04"):
         assert figure in words[0][1]
     assert "234.6 °C" in words[0][2]
 

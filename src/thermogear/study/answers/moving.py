@@ -30,7 +30,7 @@ Floats = NDArray[np.float64]
 SPEEDS = "At which speeds does it resonate?"
 LOADS, ERROR = "How large is the dynamic factor?", "How large is the transmission error?"
 
-LOOKED = "at every speed looked at, {looked[0]:~3 rpm} to {looked[1]:~3 rpm}"
+LOOKED = "speed looked at, {looked[0]:~3 rpm} to {looked[1]:~3 rpm}"
 DRAWINGS = 16
 """Drawings of flanks of one class whose errors are told."""
 POSITIONS = 60
@@ -58,16 +58,17 @@ def speeds(asked: Asked) -> Iterator[Answer]:
     ends = (float(speed.min()), float(speed.max()))
     for name, ranges, happens, never, apart in (
         ("contact_loss", found.lost,
-         ("Flanks lose contact", ", for up to {most:.0f %} of the time"), "Flanks keep contact",
-         parted),
-        ("back_contact", found.back, ("Teeth hit the back side", ""), "No tooth hits the back side",
+         ("Flanks lose contact", ", for up to {most:.0f %} of the time"),
+         "Flanks keep contact at every", parted),
+        ("back_contact", found.back, ("Teeth hit the back side", ""),
+         "No tooth hits the back side at any",
          struck),
     ):  # fmt: skip
         words, figures = told(ranges, ends=ends)
         sentence = f"{happens[0]} {words}{happens[1]}" if ranges else f"{never} {LOOKED}"
         if apart.any():
             sentence += (
-                f"{'; so at' if ranges else ', yet not at'} {{points}} of {{of}} operating points"
+                f"; {'so' if ranges else 'otherwise'} at {{points}} of {{of}} operating points"
             )
         figures |= {
             "most": 100.0 * float(share.max()), "points": int(apart.sum()), "of": apart.size
@@ -89,7 +90,7 @@ def speeds(asked: Asked) -> Iterator[Answer]:
         "coexisting",
         f"Two motions exist {words}: it may jump there, up and down elsewhere."
         if found.several
-        else f"One motion exists {LOOKED}: no jump.",
+        else f"One motion exists at every {LOOKED}: no jump.",
         2.0 if here else 1.0,
         figures=figures,
     )

@@ -201,8 +201,8 @@ def told_mesh(data: xr.Dataset) -> list[str]:
         taken = 1e6 * float(data["half_backlash"].values[0]) - left
         if place and np.isfinite(taken):
             needed = number(2.0 * max(taken, 0.0), 4)
-            words += f"; heat takes {number(taken, 4)} µm, so that {needed} µm of total backlash"
-            words += " is needed"
+            words += f"; heat and speed take {number(taken, 4)} µm, so that {needed} µm of total"
+            words += " backlash is needed"
         found.append(words + ("; jammed" if status == "jammed" else ""))
     jam = float(CELSIUS(data["jam_temperature"].values[-1]))
     if np.isfinite(jam) and jam < FAR:
