@@ -56,7 +56,7 @@ def told(case: GearCase, **more: Any) -> list[dict[str, Any]]:
 
 
 def test_mesh_hot_and_jam_are_those_of_run() -> None:
-    """Every number shown, to the last bit; 4.63e8 N/m, 93.0 µm and 235 °C: known before, less what the speed lets the gears grow."""
+    """Every number shown, to the last bit; the speed lets the gears grow by 0.04 µm here."""
     case = rig("grid.mesh_positions=128", "operating.speed=1000 rpm", "temperatures.row=",
                "simulation.periods=32", "simulation.sample_periods=2",
                "simulation.discard=50", "simulation.most_discarded=50")  # fmt: skip
@@ -72,7 +72,7 @@ def test_mesh_hot_and_jam_are_those_of_run() -> None:
     assert words == [told_mesh(data)]
     for figure in ("4.631·10⁸", "93.04"):
         assert figure in words[0][1]
-    assert "234.6 °C" in words[0][2]
+    assert "234.5 °C" in words[0][2]
 
 
 def test_the_orbit_at_4500_rpm() -> None:
