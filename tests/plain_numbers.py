@@ -26,9 +26,10 @@ TEXTS = {
     "kind",
     "version",
     "printed",
+    "place",
 }
 """Keys of names, of units ("1"), of versions, of fields as a case file spells them and of figures
-as another document prints them."""
+as another document prints them and of its sections ("2.3")."""
 
 
 def told_as_text(value: Any, key: str = "") -> Iterator[str]:
