@@ -27,9 +27,12 @@ TEXTS = {
     "version",
     "printed",
     "place",
+    "as_in_the_thesis",
+    "consistent",
 }
 """Keys of names, of units ("1"), of versions, of fields as a case file spells them and of figures
-as another document prints them and of its sections ("2.3")."""
+as another document prints them and of its sections ("2.3"), and of
+findings, which are sentences."""
 
 
 def told_as_text(value: Any, key: str = "") -> Iterator[str]:
