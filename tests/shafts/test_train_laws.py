@@ -518,3 +518,8 @@ def test_a_resonance_lifts_off_where_its_own_curve_meets_the_load() -> None:
     # at rest it is above the load already; and it never is
     assert lift_off(300.0, ratio=0.1, excess=20.0) == 0.0
     assert np.isnan(lift_off(300.0, ratio=0.1, excess=0.9))
+    # an unbalance pushes with the speed squared: none at rest, however light the load
+    r = lift_off(300.0, ratio=zeta, excess=10.0 * excess, unbalance=True) / 300.0
+    curve = 2.0 * zeta * r**2 / np.hypot(1.0 - r**2, 2.0 * zeta * r)
+    assert np.abs(curve * 10.0 * excess - 1.0).max() < 1e-8
+    assert np.all((r > 0.0) & (r <= 1.0))

@@ -49,7 +49,7 @@ def test_two_motions_of_one_speed_make_a_range():
 
 
 def test_speeds_in_words():
-    assert [rounded(value, 3) for value in (20123.0, 1994.0, 340.4, 12.34)] == [
+    assert [rounded(value, digits=3) for value in (20123.0, 1994.0, 340.4, 12.34)] == [
         "20100", "1990", "340", "12.3"
     ]  # fmt: skip
     many = [(100.0 * RPM, 200.0 * RPM), (300.0 * RPM, 300.0 * RPM)]

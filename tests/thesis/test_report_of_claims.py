@@ -87,8 +87,11 @@ def test_statements_are_shares_of_the_base_sets_that_meet_the_table(evidence: Ev
     for number in ("4.3.2", "4.2.12"):
         hits, low, high = base_sets.share(sets, number)
         finding = claims[number].judge(evidence)
+        not_judged = sum(number not in s.holds for s in sets)
         shown = [float(f"{100 * v:.0f}") for v in (hits / len(sets), low, high)]
-        assert numbers(finding.argument)[-6:] == [hits, len(sets), shown[0], 95.0, *shown[1:]]
+        counts = [hits, len(sets), *[not_judged] * (not_judged > 0)]
+        said = [*counts, shown[0], 95.0, *shown[1:]]
+        assert numbers(finding.argument)[-len(said) :] == said
         assert finding.verdict is (Verdict.ASSUMED if hits else Verdict.UNDECIDED)
 
 

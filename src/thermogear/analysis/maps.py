@@ -226,7 +226,7 @@ def _refined(
     # one number for label and period, and then for all
     code = found["label"].astype(np.int64) * 2**31 + found["period"]
     for name in kinds:
-        both = np.stack([code.ravel(), found[name].ravel()])
+        both = np.stack([code.ravel(), np.nan_to_num(found[name].ravel(), nan=-1.0)])
         code = np.unique(both, axis=1, return_inverse=True)[1].reshape(shape)
     corner = code[np.ix_(rows, columns)]
     first = corner[:-1, :-1]

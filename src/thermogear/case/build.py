@@ -225,7 +225,7 @@ def pair_of(file: GearFile, known: Mapping[str, Material], data: Mapping[str, An
     if distance is not None:
         slack = min(rounding(data["gears"]["centre_distance"], "length"), ROUNDED * pinion.module)
         tight = tight_distance(pinion, wheel)
-        distance = tight if 0.0 < tight - distance <= slack else distance
+        distance = tight if 0.0 < tight - distance <= slack * (1.0 + 1e-9) else distance
     try:
         return _under(
             "gears", lambda: GearPair(pinion, wheel, LEFT_OUT if distance is None else distance)

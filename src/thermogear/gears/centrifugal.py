@@ -58,7 +58,7 @@ def rotating_ring_displacement(
         pulled = np.asarray(rim_pull, dtype=float) * rim
         return np.asarray((0.125 * density * omega**2 * at * body + pulled) / modulus)
 
-    if bore != "rigid":
+    if bore != "rigid" or a == 0.0:
         return free(r)
 
     def held(at: Floats | float) -> Floats | float:

@@ -55,7 +55,7 @@ def permissible_film_parameter(viscosity_40: ArrayLike, *, load_stage: ArrayLike
 
     ``viscosity_40`` nu [m^2/s] at 40 C, 32..460 mm^2/s within the grades' 10 %; ``load_stage``
     5..10. Any shape. For Ra 0.5 um, mineral oil. Raises outside. Compare it with the least
-    lambda_GF = h/mean Ra over :func:`~thermogear.gears.contact.film_points`. Source: figure of
+    lambda_GF = h/mean Ra at A, B, C, D, E and halfway along AB and DE. Source: figure of
     ISO/TR 15144-1 as public code reads it: expect some 10 %.
 
     >>> f"{permissible_film_parameter(100e-6, load_stage=10):.3f}"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from decimal import Decimal
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +11,7 @@ import numpy as np
 from thermogear.base.cells import NUMBER, cells_of
 from thermogear.base.errors import InputError
 from thermogear.base.files import decoded
-from thermogear.base.units import RPM, STANDARD_GRAVITY
+from thermogear.base.units import RPM, STANDARD_GRAVITY, half_digit
 from thermogear.measured.traps import split_unit
 from thermogear.measured.units import factor_of, kind_of
 from thermogear.signals.integration import trapezoid_factor
@@ -87,38 +86,25 @@ class Printed:
     errors: Mapping[tuple[str, str, int], str] = field(default_factory=dict)
 
 
-PRINTED_UNIT = {"frequency": 1.0, "displacement": 1e6}
-"""Factor from SI to the unit in which a table prints a quantity: Hz, um."""
-
-
-def half_digit(printed: float) -> float:
-    """Half a unit of the last digit of a ``printed`` number, in its unit: what rounding hides.
-
-    >>> half_digit(10.4), half_digit(41.0)
-    (0.05, 0.5)
-    """
-    return 0.5 * 10.0 ** int(Decimal(f"{printed:g}").as_tuple().exponent)
-
-
 def rounded_error(*, simulated: float, measured: float, quantity: str) -> tuple[float, float]:
     """The least and the greatest error |simulated/measured - 1| [%] that two printed entries allow.
 
     Both are rounded to the digits printed, a "frequency" in Hz and a "displacement" in um;
     here they are in SI.
     """
-    scale = PRINTED_UNIT[quantity]
+    scale = {"frequency": 1.0, "displacement": 1e6}[quantity]
     ends = [
-        (value - half_digit(value), value + half_digit(value))
+        (value - half_digit(f"{value:g}"), value + half_digit(f"{value:g}"))
         for value in (scale * simulated, scale * measured)
     ]
-    errors = [100.0 * abs(s / m - 1.0) for s in ends[0] for m in ends[1]]
-    return min(errors), max(errors)
+    errors = [100.0 * (s / m - 1.0) for s in ends[0] for m in ends[1]]
+    least = 0.0 if min(errors) < 0.0 < max(errors) else min(map(abs, errors))
+    return least, max(map(abs, errors))
 
 
 def allowed(printed: str, *, low: float, high: float) -> bool:
     """Whether a ``printed`` figure, rounded itself, can stand for a value within low..high."""
-    half = half_digit(float(printed))
-    return low - half <= float(printed) <= high + half
+    return low - half_digit(printed) <= float(printed) <= high + half_digit(printed)
 
 
 def _table(name: str, rows: tuple[tuple[float, float, float], ...]) -> LineTable:

@@ -218,8 +218,8 @@ def heat_balance(
         warm = ways.part(slice(loop.count, 2 * loop.count))
         down = warm.settled(tolerance)
         hot[down] = warm.nodes[down]
-        same = down & (np.abs(warm.nodes - cold.nodes).max(axis=1) <= SAME)
-        several = settled & ~same
+        # a start from hot that does not settle shows no other state
+        several = settled & down & (np.abs(warm.nodes - cold.nodes).max(axis=1) > SAME)
     nodes = np.where(lost[:, None], stand_in, cold.nodes)
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always", ValidityWarning)

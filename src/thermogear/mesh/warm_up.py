@@ -39,8 +39,10 @@ FACTORS = {
     "shafts": "shafts through their bearings to the housing",
 }
 """Named groups of conductances that a factor may multiply."""
-PHASES = 32
-"""Mesh phases at which the least half backlash is looked for."""
+PHASES = 240
+"""Mesh phases at which the least half backlash is looked for, as many as a mesh cycle has.
+
+With 32 the least of flanks with deviations was missed by up to 1.3 % of it."""
 BLOCK = 200
 """Moments that are evaluated together: memory, not the result."""
 MESHED = 100

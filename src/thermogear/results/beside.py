@@ -29,8 +29,6 @@ def back_side_notice(data: xr.Dataset) -> list[str]:
     """Whether the half backlash has any effect; nothing where a motion is not known."""
     if "back_share" not in data:
         return []
-    status = data["status"].values
-    moves = status == STATUS.index("ok")
-    if np.all(moves | (status == STATUS.index("jammed"))) and moves.any():
-        return [NO_BACK_IMPACT] * bool(np.all(data["back_share"].values[moves] == 0.0))
-    return []
+    # a jammed point has no gap to spare: there a wider one would change everything
+    moves = data["status"].values == STATUS.index("ok")
+    return [NO_BACK_IMPACT] * bool(np.all(moves & (data["back_share"].values == 0.0)))

@@ -314,18 +314,21 @@ def resonant_forces(
         return np.asarray(np.array(felt) * np.abs(push) / (w * loss))
 
 
-def lift_off(speed: ArrayLike, *, ratio: ArrayLike, excess: ArrayLike) -> Floats:
+def lift_off(
+    speed: ArrayLike, *, ratio: ArrayLike, excess: ArrayLike, unbalance: bool = False
+) -> Floats:
     """Speed below a resonance at which the force of its mode alone reaches ``1/excess`` of its top.
 
-    2 zeta/sqrt((1 - r^2)^2 + (2 zeta r)^2) = 1/excess at r = lift-off over resonance ``speed``;
-    ``ratio`` zeta [-]. The push is taken as constant. 0 where at rest it is as large already, nan
-    where ``excess`` is below 1.
+    2 zeta G/sqrt((1 - r^2)^2 + (2 zeta r)^2) = 1/excess at r = lift-off over resonance ``speed``;
+    ``ratio`` zeta [-]. The push G is 1 at every speed, of an ``unbalance`` r^2, which gives the
+    same quadratic in 1/r^2. 0 where it is as large at rest, nan where ``excess`` is below 1.
     """
     wide, high = 2.0 * np.asarray(ratio), np.asarray(excess, dtype=float)
     y = 1.0 - 0.5 * wide**2
     with np.errstate(invalid="ignore"):
-        below = np.maximum(y - np.sqrt(y**2 - 1.0 + (wide * high) ** 2), 0.0)
-    return np.where(high >= 1.0, np.asarray(speed) * np.sqrt(below), np.nan)
+        root = np.sqrt(y**2 - 1.0 + (wide * high) ** 2)
+        squared = 1.0 / (y + root) if unbalance else np.maximum(y - root, 0.0)
+    return np.where(high >= 1.0, np.asarray(speed) * np.sqrt(squared), np.nan)
 
 
 def _motor_turn(train: LinearTrain, q: NDArray[np.complex128] | Floats) -> Floats:

@@ -56,5 +56,6 @@ def share(sets: Sequence[Judged], number: str) -> tuple[int, float, float]:
     Sets for which it is not judged are misses for the lower end and hits for the upper.
     """
     hits = sum(judged_set.holds.get(number, False) for judged_set in sets)
-    not_judged = sum(number not in judged_set.holds for judged_set in sets)
-    return hits, *interval(hits, count=len(sets), lost=not_judged)
+    return hits, *interval(
+        hits, count=len(sets), lost=sum(number not in judged_set.holds for judged_set in sets)
+    )

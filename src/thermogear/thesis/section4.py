@@ -433,8 +433,10 @@ def _over_sets(claim: Claim) -> Claim:
         hits, low, high = base_sets.share(e.base_sets, claim.number)
         excluded = Verdict.CONTRADICTED if claim.number in IMPOSSIBLE else Verdict.UNDECIDED
         verdict = Verdict.ASSUMED if hits else excluded
+        open_sets = sum(claim.number not in one.holds for one in e.base_sets)
         share = (
-            f"It holds for {hits} of {len(e.base_sets)} sampled base sets that meet the table "
+            f"It holds for {hits} of {len(e.base_sets)} sampled base sets that meet the table"
+            f"{f', {open_sets} of them not judged' * (open_sets > 0)} "
             f"({100.0 * hits / len(e.base_sets):.0f} %, 95 % interval {100.0 * low:.0f} to "
             f"{100.0 * high:.0f} %)."
         )

@@ -53,8 +53,10 @@ def speeds(asked: Asked) -> Iterator[Answer]:
     yield _resonance(asked, found, float(natural) / asked.case.pair.pinion.teeth)
     speed, share = found.column("pinion_speed"), found.column("contact_loss_share")
     moving = np.isfinite(asked.motion["contact_loss_share"])
-    parted = asked.motion["contact_loss_share"][moving] > LOST
-    struck = asked.motion["mesh_force_min"][moving] < 0.0
+    own = asked.case.stated.speed[moving]
+    # a motion beside the one from rest counts too: a run may end on it
+    parted = (asked.motion["contact_loss_share"][moving] > LOST) | found.within(own, found.lost)
+    struck = (asked.motion["mesh_force_min"][moving] < 0.0) | found.within(own, found.back)
     ends = (float(speed.min()), float(speed.max()))
     for name, ranges, happens, never, apart in (
         ("contact_loss", found.lost,
@@ -70,21 +72,16 @@ def speeds(asked: Asked) -> Iterator[Answer]:
             sentence += (
                 f"; {'so' if ranges else 'otherwise'} at {{points}} of {{of}} operating points"
             )
-        figures |= {
-            "most": 100.0 * float(share.max()), "points": int(apart.sum()), "of": apart.size
-        }  # fmt: skip
+        figures |= {"points": int(apart.sum()), "of": apart.size} | (
+            {"most": 100.0 * float(share.max())} if name == "contact_loss" else {}
+        )
         if not apart.size:
             words = f"{sentence[0].lower()}{sentence[1:]}"
             sentence = f"Not decided at its own speeds, too slow to vibrate; faster, {words}"
         value = 100.0 * float(np.mean(apart)) if apart.size else float("nan")
         yield answer(SPEEDS, name, f"{sentence}.", value, figures=figures)
     words, figures = told(found.several, ends=ends)
-    half = 0.5 * found.step
-    here = any(
-        low * (1.0 - half) <= own <= high * (1.0 + half)
-        for low, high in found.several
-        for own in asked.case.stated.speed
-    )
+    here = bool(found.within(asked.case.stated.speed, found.several).any())
     yield answer(
         SPEEDS,
         "coexisting",
@@ -119,10 +116,13 @@ def _resonance(asked: Asked, found: Speeds, main: float) -> Answer:
         "own": float(own[place]) / RPM,
         "off": value,
         "strong": strong[nearest] / RPM,
+        "limit": PARTING,
     }
     tops = [f"{{top[{i}]:.2f}} at {{there[{i}]:~3 rpm}}" for i in range(len(peaks[:4]))]
     words = f"greatest dynamic factors: {', '.join(tops)}" if tops else "no peak stands out"
-    where = "{own:~3 rpm} is {off:.1f %} off {strong:~3 rpm}"
+    where = "{own:~3 rpm} is {off:.1f %} off {strong:~3 rpm}" + (
+        ", the nearest factor above {limit:g}" if nearest else ", where both meet"
+    )
     if shaken:
         place = np.argmax(factor)
         figures |= {"own": float(own[place]) / RPM, "factor": float(factor[place])}

@@ -87,7 +87,7 @@ def heat(asked: Asked) -> Iterator[Answer]:
     (oil, teeth), used = asked.bodies, asked.case.stated.lubricant
     kind, flash_point = f"oil_{used.kind}", used.flash_point
     burning = (flash_point or NO_BATH) - ZERO_CELSIUS
-    bound = "its flash point" if flash_point else "where its flash point is not known"
+    bound = "its flash point" if flash_point else "as its flash point is not given"
     held = "oil" in asked.case.gearbox.measured
     of_teeth = _tooth_limit(asked.case)
     for point in asked.points:
@@ -236,15 +236,20 @@ def _worst_moment(asked: Asked) -> Answer:
     end = float(course.time[-1]) / 60.0
     steady_known = course.course.settled or asked.case.computed
     if course.course.too_hot or asked.unsettled(asked.hardest) or not steady_known:
+        unknown = (
+            "no steady state is known"
+            if course.course.too_hot or asked.unsettled(asked.hardest)
+            else "it is not steady by then"
+        )
         burnt = f"until a node reaches {HOTTEST - ZERO_CELSIUS:.0f} °C after"
         return answer(
             GAP, "warm_up_backlash",
             f"{words} at least {least:.0f} µm {burnt if course.course.too_hot else 'within'} "
-            f"{end:.3g} min; no steady state is known.",
+            f"{end:.3g} min; {unknown}.",
             np.nan if least > 0.0 else least,
             limit="backlash", at=at, verdict=OPEN if least > 0.0 else LOOK,
-            figures={"least": least, "start": start, "end_minutes": end,
-                     "hottest": HOTTEST - ZERO_CELSIUS},
+            figures={"least": least, "start": start, "end_minutes": end}
+            | ({"hottest": HOTTEST - ZERO_CELSIUS} if course.course.too_hot else {}),
         )  # fmt: skip
     sentence = f"{words} never less than when steady, {least:.0f} µm."
     if least < steady - 0.005 * abs(steady) - 0.05:

@@ -331,7 +331,12 @@ def _critical(
     with np.errstate(divide="ignore", invalid="ignore"):
         excess = np.fmax.reduce(forces / held(state)[:, None], axis=0)
         gain = share / (2.0 * ratio)
-    begin = lift_off(speed, ratio=ratio, excess=np.where(np.isfinite(force), excess, np.nan))
+    # beside a run-out, whose push is the same at every speed, an unbalance comes later than told
+    turned = not any(r.shaft in order.parts for r in plan.run_outs)
+    begin = lift_off(
+        speed, ratio=ratio, excess=np.where(np.isfinite(force), excess, np.nan),
+        unbalance=order.kind == "shaft" and turned,
+    )  # fmt: skip
     return np.stack([speed, share, gain, np.where(np.isfinite(begin), np.nan, force), begin]), shape
 
 

@@ -274,7 +274,6 @@ class TrainFamily:
         flags = (*LOST_FLAGS, *(f"bearing_{number}" for number in bearings))
         lost = {
             "long_name": "what loses contact, the sum of its flags; 0: nothing",
-            "_FillValue": np.int32(-1),
             "flag_masks": 2 ** np.arange(len(flags), dtype=np.int32),
             "flags": " ".join(flags),
         }
@@ -287,7 +286,7 @@ class TrainFamily:
             "bearing_free_share": one(
                 "share of time in which a bearing bears nothing", "1", "bearing"
             ),
-            "lost_contact": Variable(dims, "int32", -1, lost),
+            "lost_contact": Variable(dims, "float64", float("nan"), lost),
         }
 
     def watched_coordinates(self) -> dict[str, Coordinate]:

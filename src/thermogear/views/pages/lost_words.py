@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from thermogear.base.display import exactly, stretches
 from thermogear.base.parameters import PARAMETERS, long_name
 from thermogear.base.vocabulary import ASSUMED
-from thermogear.views.plots.lost_contact import has_lost, things
+from thermogear.views.plots.lost_contact import has_lost, lost_of, things
 from thermogear.views.plots.parameters import each_state, shown
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ def lost_words(data: xr.Dataset) -> str:
         return ""
     told = []
     for state, here in each_state(data):
-        if (here["lost_contact"].values < 0).all():
+        if (lost_of(here) < 0).all():
             words = "of no point it is known what loses contact"
         else:
             parts = [f"{what} {where(here, flags)}" for what, flags in things(here).items()
@@ -111,8 +111,8 @@ def _range(values: NDArray[np.float64], on: NDArray[np.int64], unit: str) -> str
     places = np.flatnonzero(np.isin(order, on))
     low, high = (exactly(float(values[order[places[end]]])) for end in (0, -1))
     whole = f" {unit}".rstrip()
-    first, last = bool(places[0] == 0), bool(places[-1] == values.size - 1)
-    if first and last:
-        return ""
-    words = f"at {low}{whole}" if low == high else f"from {low} to {high}{whole}"
-    return words + " (first computed)" * first + " (last computed)" * last
+    first = " (first computed)" * bool(places[0] == 0)
+    last = " (last computed)" * bool(places[-1] == values.size - 1)
+    apart = f"from {low}{first} to {high}{whole}{last}"
+    words = f"at {low}{whole}{first}{last}" if low == high else apart
+    return "" if first and last else words

@@ -41,9 +41,14 @@ def has_lost(data: xr.Dataset) -> bool:
     return "lost_contact" in data
 
 
+def lost_of(data: xr.Dataset) -> NDArray[np.int64]:
+    """The sums of flags, -1 where nothing is known (which no file holds: there it is missing)."""
+    return np.asarray(np.nan_to_num(data["lost_contact"].values, nan=-1.0), dtype=np.int64)
+
+
 def things(data: xr.Dataset) -> dict[str, Flags]:
     """Where what loses contact, arrays as the labels': flanks first, then each bearing."""
-    lost = data["lost_contact"].values
+    lost = lost_of(data)
     some = np.where(lost > 0, lost, 0)
     found = {
         "the drive flank parts": (some & DRIVE) > 0,
@@ -95,7 +100,7 @@ def _put(
 ) -> Panel:
     one, two = (str(name) for name in data["label"].dims[-2:])
     names, colours = zip(*looks, *BLANK, strict=True)
-    whole = np.where(data["lost_contact"].values < 0, len(looks), codes)
+    whole = np.where(lost_of(data) < 0, len(looks), codes)
     whole = np.where(data["label"].values == JAMMED, len(looks) + 1, whole)
     borders = edges(shown(one, data[one].values)), edges(shown(two, data[two].values))
     panel.field(*borders, whole.T, colours=colours, classes=names)
@@ -104,20 +109,20 @@ def _put(
 
 
 def _teeth(data: xr.Dataset, state: str) -> Panel:
-    lost = data["lost_contact"].values
+    lost = lost_of(data)
     codes = np.where(lost & BACK, 2, np.where(lost & DRIVE, 1, 0))
     return _put(_panel(data, f"teeth{f', {state}' * bool(state)}"), data, codes, list(TEETH))
 
 
 def _sets(data: xr.Dataset) -> list[int]:
     """The sets of unloaded bearings that occur, the most frequent first."""
-    lost = data["lost_contact"].values
+    lost = lost_of(data)
     found = Counter((lost[lost > 0] // FIRST).ravel().tolist())
     return [one for one, _ in found.most_common() if one][:MOST]
 
 
 def _bearings(data: xr.Dataset, state: str, sets: list[int]) -> Panel:
-    bearings, lost = named(data, "bearing"), data["lost_contact"].values
+    bearings, lost = named(data, "bearing"), lost_of(data)
     own = np.where(lost > 0, lost, 0) // FIRST
     looks = [("bearings always loaded", ALIKE)]
     codes = np.where(own == 0, 0, len(sets) + 1)
