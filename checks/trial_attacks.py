@@ -284,7 +284,9 @@ def of_messages() -> list[Attempt]:
             parts=["mesh", "gap", "gears"]))),
         Attempt(group, "a message over 1 MiB", "closed with 1009", closed("x" * (2**20 + 1))),
         Attempt(group, "a message over 1 MiB in pieces", "closed with 1009",
-                closed(["x" * 2**19] * 3)),
+                # the last piece is small: what a server that closes has not read resets the
+                # connection, and its reason is lost on the way (1006)
+                closed(["x" * 2**19, "x" * 2**19, "x"])),
         Attempt(group, "bytes in place of text", "closed with 1003", closed(b"\0\1")),
         Attempt(group, "a text that is no UTF-8", "closed with 1007", not_utf8),
     ]  # fmt: skip

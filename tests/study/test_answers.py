@@ -199,7 +199,7 @@ def test_an_oil_bath_above_its_flash_point_is_called_impossible() -> None:
     assert oil.verdict == LOOK
     assert 150.0 < oil.value < 389.0  # by a housing that stays at 15 W/(m^2 K): 389
     assert oil.figures["hottest_bath"] == 150.0
-    words = "no oil bath exists above 150 °C, where its flash point is not known"
+    words = "no oil bath exists above 150 °C, as its flash point is not given"
     assert words in oil.sentence
     # the band of the wetted share, told and stored
     other = teeth.figures["with_0.5_wetted"]
