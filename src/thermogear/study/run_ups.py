@@ -203,9 +203,9 @@ def run_ups(
     """Run every sample up and down over ``speeds`` [rad/s], all samples as lanes side by side.
 
     ``samples`` map gear parameters or dotted fields of the case file to SI values, one for each
-    sample. The gears stay as hot as they are at the case's first speed. Each speed starts
-    from the motion at the speed before it; the first from the case's initial state. Over
-    (direction, sample, pinion_speed): label, period, multiplier, dynamic transmission error
+    sample. The gears stay as hot, and grown by their speed, as at the case's first speed. Each
+    speed starts from the motion at the speed before it; the first from the case's initial state.
+    Over (direction, sample, pinion_speed): label, period, multiplier, dynamic transmission error
     [m], mesh force [N], dynamic factor, contact loss. A jammed sample, and one that no case could
     have, is a status. With a ``store`` directory the same call resumes; the result does not depend
     on ``threads``, nor on the company of a sample. ``alive`` raises to end the work.
