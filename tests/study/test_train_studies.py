@@ -22,7 +22,7 @@ from thermogear.study.diagrams import Train, case_basins, case_diagram, case_map
 from thermogear.study.notices import finished
 from thermogear.study.shafts.motion import train_motion
 from thermogear.views.pages.lost_words import lost_line, lost_rows, lost_words
-from thermogear.views.plots.lost_contact import lost_contact_picture
+from thermogear.views.plots.lost_contact import lost_contact_picture, lost_of
 from thermogear.views.write import page_of
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*foundation of the gear")
@@ -258,7 +258,10 @@ def test_the_words_say_where_each_flank_and_bearing_loses_contact() -> None:
     said = lost_words(data)
     assert said == SAID
     assert [row["points"] for row in lost_rows(data)] == [4, 1, 3]
-    assert data["lost_contact"].attrs["_FillValue"] == -1
+    # a file holds nothing where nothing is known, and no number for it
+    missing = data.assign(lost_contact=data["lost_contact"].astype(float).where(lost != 8))
+    assert lost_of(missing).min() == -1
+    assert [row["points"] for row in lost_rows(missing)] == [4, 1]
     # what is assumed is told apart: the second and third speed at the last temperature
     status = np.zeros((3, 4), np.int8)
     status[1:, 3] = ASSUMED

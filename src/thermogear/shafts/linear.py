@@ -327,8 +327,8 @@ def lift_off(
     y = 1.0 - 0.5 * wide**2
     with np.errstate(invalid="ignore"):
         root = np.sqrt(y**2 - 1.0 + (wide * high) ** 2)
-        squared = 1.0 / (y + root) if unbalance else np.maximum(y - root, 0.0)
-    return np.where(high >= 1.0, np.asarray(speed) * np.sqrt(squared), np.nan)
+        share = np.sqrt(1.0 / (y + root) if unbalance else np.maximum(y - root, 0.0))
+    return np.where(high >= 1.0, np.asarray(speed) * share, np.nan)
 
 
 def _motor_turn(train: LinearTrain, q: NDArray[np.complex128] | Floats) -> Floats:

@@ -87,7 +87,7 @@ class Speeds:
             for a, b in zip(edges[::2], edges[1::2], strict=True)
         ]
 
-    def within(self, speed: Floats, ranges: list[tuple[float, float]]) -> NDArray[np.bool_]:
+    def within(self, speed: Floats, *, ranges: list[tuple[float, float]]) -> NDArray[np.bool_]:
         """Which of ``speed`` [rad/s] lie in one of ``ranges``, half a step of the look allowed."""
         ends = np.reshape(ranges, (-1, 2)) * (1.0 + 0.5 * self.step * np.array([-1.0, 1.0]))
         return np.asarray(

@@ -55,8 +55,10 @@ def speeds(asked: Asked) -> Iterator[Answer]:
     moving = np.isfinite(asked.motion["contact_loss_share"])
     own = asked.case.stated.speed[moving]
     # a motion beside the one from rest counts too: a run may end on it
-    parted = (asked.motion["contact_loss_share"][moving] > LOST) | found.within(own, found.lost)
-    struck = (asked.motion["mesh_force_min"][moving] < 0.0) | found.within(own, found.back)
+    parted = (asked.motion["contact_loss_share"][moving] > LOST) | found.within(
+        own, ranges=found.lost
+    )
+    struck = (asked.motion["mesh_force_min"][moving] < 0.0) | found.within(own, ranges=found.back)
     ends = (float(speed.min()), float(speed.max()))
     for name, ranges, happens, never, apart in (
         ("contact_loss", found.lost,
@@ -81,7 +83,7 @@ def speeds(asked: Asked) -> Iterator[Answer]:
         value = 100.0 * float(np.mean(apart)) if apart.size else float("nan")
         yield answer(SPEEDS, name, f"{sentence}.", value, figures=figures)
     words, figures = told(found.several, ends=ends)
-    here = bool(found.within(asked.case.stated.speed, found.several).any())
+    here = bool(found.within(asked.case.stated.speed, ranges=found.several).any())
     yield answer(
         SPEEDS,
         "coexisting",
