@@ -45,7 +45,7 @@ NAMES = re.compile(
 )
 """Standards, names and what was refused: their numbers are no figures."""
 UNSAID = re.compile(r"\b(nan|inf|none|-1)\b", re.IGNORECASE)
-WHY_OPEN = re.compile(r"[Nn]ot decided|no [\w ]*known|has no tolerance")
+WHY_OPEN = re.compile(r"[Nn]ot decided|no [\w ]*known|has no tolerance|not steady by then")
 SIGNS = ("backlash", "warm_up_backlash")
 """Answers whose limit is strict: a pair with no backlash left is no fine one."""
 LOST = 1e-3
