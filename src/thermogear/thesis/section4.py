@@ -433,7 +433,7 @@ def _over_sets(claim: Claim) -> Claim:
         hits, low, high = base_sets.share(e.base_sets, claim.number)
         excluded = Verdict.CONTRADICTED if claim.number in IMPOSSIBLE else Verdict.UNDECIDED
         verdict = Verdict.ASSUMED if hits else excluded
-        open_sets = sum(claim.number not in one.holds for one in e.base_sets)
+        open_sets = sum(claim.number not in base_set.holds for base_set in e.base_sets)
         share = (
             f"It holds for {hits} of {len(e.base_sets)} sampled base sets that meet the table"
             f"{f', {open_sets} of them not judged' * (open_sets > 0)} "
