@@ -42,6 +42,12 @@ def _here(tmp_path, monkeypatch):
             "bifurcation table-4.2 --over zeta=0.1:0.2:2 --scheduler nowhere -o out",
             "scheduler: got nowhere; allowed tcp://HOST:PORT; the port is missing",
         ),
+        (
+            "bifurcation table-4.2 --over zeta=0.1:0.2:2 --scheduler tcp://10.0.0.7:8786 -o out",
+            "scheduler: got tcp://10.0.0.7:8786; allowed tls://HOST:PORT, or tcp:// on this "
+            "machine (127.0.0.1); over plain tcp whoever reaches it runs code as its user; "
+            "use an SSH tunnel or tls://; --insecure on a network that is yours alone",
+        ),
         ("check case.json", "a case file is TOML"),
         ("relief rig -o out --temperature -140", "--temperature: got -140 degC; allowed -70..600"),
         # numbers of the dimensionless equation: the stiffness 1 + eps_T + eps cos stays positive

@@ -82,6 +82,20 @@ def test_a_worker_that_differs_is_refused_by_name_and_once(answer: object, why: 
     one.require()
 
 
+@pytest.mark.parametrize(
+    "address",
+    ["tls://10.0.0.7:8786", "tcp://127.0.0.1:8786", "[::1]:8786", "localhost:1", "inproc://a"],
+)
+def test_a_private_scheduler_is_taken(address: str) -> None:
+    crew.require_private(address)
+
+
+@pytest.mark.parametrize("address", ["tcp://10.0.0.7:8786", "node7:8786", "tcp://[fe80::1]:8786"])
+def test_a_scheduler_that_strangers_may_reach_is_refused(address: str) -> None:
+    with pytest.raises(InputError, match=r"over plain tcp whoever reaches it runs code as its"):
+        crew.require_private(address)
+
+
 def test_a_worker_that_does_not_answer_holds_nobody_up(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(crew, "_ASKED", 0.05)
     scheduler = Scheduler({GOOD: introduced(), OTHER: introduced()})

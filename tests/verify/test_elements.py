@@ -209,6 +209,6 @@ class TestRefusals:
         with pytest.raises(InputError) as caught:
             library()
         assert str(caught.value) == (
-            "scikit-fem: got no such package; the finite-element checks need it; "
-            "install the extra: pip install 'thermogear[fe]'"
+            "verify: got finite elements; the check needs skfem; "
+            "in the checkout of thermogear: python -m pip install '.[fe]'"
         )

@@ -134,6 +134,8 @@ def test_without_the_library_one_line_says_what_to_install(
     drawing: GearDrawing, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, "ezdxf", None)
-    with pytest.raises(InputError, match=r"pip install 'thermogear\[cad\]'"):
+    with pytest.raises(
+        InputError, match=r"checkout of thermogear: python -m pip install '.\[cad\]'"
+    ):
         put_dxf(drawing, tmp_path / "a.dxf", place=0, shown=("hot",))
     assert not list(tmp_path.iterdir())

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import difflib
+import importlib
 from collections.abc import Iterable, Sequence
+from typing import Any
 
 
 class ThermogearError(Exception):
@@ -63,6 +65,23 @@ class InputError(ThermogearError, ValueError):
     def under(self, prefix: str) -> InputError:
         """The same error with ``prefix.`` before its field: a part speaks for its whole."""
         return self.named(f"{prefix}.{self.field}")
+
+
+def of_extra(module: str, extra: str, *, field: str, got: object, use: str) -> Any:
+    """The package ``module`` that comes with the extra ``[extra]``.
+
+    InputError about ``field`` where it is missing: ``use`` needs it, and how the checkout installs
+    it. The name on the package index is not thermogear's, so it is never named.
+    """
+    try:
+        return importlib.import_module(module)
+    except ImportError as error:
+        raise InputError(
+            field,
+            got,
+            why=f"{use} needs {module.partition('.')[0]}",
+            fix=f"in the checkout of thermogear: python -m pip install '.[{extra}]'",
+        ) from error
 
 
 class InputErrors(InputError):

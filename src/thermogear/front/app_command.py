@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from thermogear.base.errors import InputError
+from thermogear.base.errors import InputError, of_extra
 from thermogear.front import delivery
 from thermogear.front.measure_commands import supplies
 from thermogear.front.measuring import measured_by
@@ -39,17 +39,8 @@ def app(
       thermogear app mine.toml
       thermogear app mine.toml record.csv --rate 25600 --unit g
     """
-    try:
-        import starlette  # noqa: F401
-        import uvicorn  # noqa: F401
-        import websockets  # noqa: F401
-    except ImportError as missing:
-        raise InputError(
-            "app",
-            f"no package {missing.name}",
-            why="it comes with the extra [app]",
-            fix='install "thermogear[app]"',
-        ) from missing
+    for package in ("starlette", "uvicorn", "websockets"):
+        of_extra(package, "app", field="app", got=f"no package {package}", use="the app")
     given_options = {n: v for n, v in options.items() if v not in (None, (), "frequency")}
     if record is None and given_options:
         name = next(iter(given_options))

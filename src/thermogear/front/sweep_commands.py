@@ -27,6 +27,16 @@ if TYPE_CHECKING:
     from thermogear.study.diagrams import AnyMap
 
 
+def _safe(context: click.Context, _: click.Parameter, address: str | None) -> str | None:
+    """The address of a scheduler; one that strangers may reach only with ``--insecure``."""
+    insecure = context.params.pop("insecure")
+    if address is not None and not insecure:
+        from thermogear.results.workers import require_private
+
+        require_private(address)
+    return address
+
+
 def _common(command: Callable[..., None]) -> Callable[..., None]:
     """Options of every one of these commands."""
     options = [
@@ -36,7 +46,10 @@ def _common(command: Callable[..., None]) -> Callable[..., None]:
         click.option("--state", help="undeformed, hot (as the case says), computed (from the heat "
                      "balance) or the gears' temperature in degC; default: hot."),
         click.option("--threads", type=click.IntRange(1, 1024), help="Default: all cores."),
-        click.option("--scheduler", metavar="ADDRESS",
+        click.option("--insecure", is_flag=True, is_eager=True,
+                     help="Take a scheduler over plain tcp on another machine: whoever reaches "
+                     "it runs code as you."),
+        click.option("--scheduler", metavar="ADDRESS", callback=_safe,
                      help="Hand the chunks to this dask scheduler (extra [cluster])."),
         click.option("--force", is_flag=True, help="Run even if it may not fit."),
         click.option("--estimate", "only_estimate", is_flag=True,

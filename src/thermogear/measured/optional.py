@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import gc
-import importlib
 import importlib.util
 import io
 import json
@@ -21,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from thermogear.base.errors import InputError
+from thermogear.base.errors import of_extra
 from thermogear.measured.options import ReadOptions, refused
 from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.tables import agreed
@@ -30,15 +29,10 @@ from thermogear.measured.units import unit
 
 
 def _load(module: str, path: Path, kind: str) -> ModuleType:
-    try:
-        return importlib.import_module(module)
-    except ImportError as error:
-        raise InputError(
-            "file",
-            path.name,
-            why=f"reading {kind} needs {module}",
-            fix="install thermogear with the extra: pip install 'thermogear[measure]'",
-        ) from error
+    package: ModuleType = of_extra(
+        module, "measure", field="file", got=path.name, use=f"reading {kind}"
+    )
+    return package
 
 
 class _Parts:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import functools
-import importlib
+import ipaddress
 import logging
 import pickle
 import queue
@@ -20,7 +20,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from thermogear import __version__
-from thermogear.base.errors import InputError, WorkerWarning
+from thermogear.base.errors import InputError, WorkerWarning, of_extra
 from thermogear.base.plan import Arrays, Key, Plan, Queue, checked, keep_going
 from thermogear.base.progress import duration
 from thermogear.results.fingerprint import code_version, environment
@@ -64,18 +64,37 @@ def compute_chunk(plan: bytes, key: Key, before: Arrays | None) -> dict[str, Any
 # --- on the machine that writes ------------------------------------------------------------------
 
 
-@contextmanager
-def cluster(scheduler: str) -> Iterator[Any]:
-    """A client of the cluster at ``scheduler``; refused where none answers."""
-    try:
-        distributed: Any = importlib.import_module("distributed")
-    except ImportError:
+def require_private(scheduler: str) -> None:
+    """InputError where ``scheduler`` is reached over plain tcp on another machine.
+
+    Such a scheduler takes code from whoever reaches its port and runs it as the user that started
+    it; ``tls://`` asks both sides for certificates, a loopback address is the machine's own.
+    """
+    scheme, _, place = scheduler.rpartition("://")
+    host = place.rpartition(":")[0].strip("[]")
+    if scheme in ("", "tcp") and host and not (host == "localhost" or _loopback(host)):
         raise InputError(
             "scheduler",
             scheduler,
-            why="dask is not installed",
-            fix="pip install thermogear[cluster]",
-        ) from None
+            allowed="tls://HOST:PORT, or tcp:// on this machine (127.0.0.1)",
+            why="over plain tcp whoever reaches it runs code as its user",
+            fix="use an SSH tunnel or tls://; --insecure on a network that is yours alone",
+        )
+
+
+def _loopback(host: str) -> bool:
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return False
+
+
+@contextmanager
+def cluster(scheduler: str) -> Iterator[Any]:
+    """A client of the cluster at ``scheduler``; refused where none answers."""
+    distributed = of_extra(
+        "distributed", "cluster", field="scheduler", got=scheduler, use="a cluster"
+    )
     if not scheduler.startswith("inproc:") and not scheduler.rpartition(":")[2].isdecimal():
         raise InputError(
             "scheduler", scheduler, allowed="tcp://HOST:PORT", why="the port is missing"

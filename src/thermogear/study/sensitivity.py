@@ -7,7 +7,6 @@ Needs the extra ``sensitivity`` (SALib), imported when used.
 
 from __future__ import annotations
 
-import importlib
 import time
 import warnings
 from collections.abc import Sequence
@@ -18,7 +17,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from thermogear.base.errors import InputError, ThermogearError, ValidityWarning, nearest
+from thermogear.base.errors import InputError, ValidityWarning, nearest, of_extra
 from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import STATUS
 from thermogear.case.build import Follows, TemperatureRule
@@ -100,12 +99,9 @@ class Plan:
 
 def salib(module: str) -> Any:
     """A module of SALib, or an error that says how to install it."""
-    try:
-        return importlib.import_module(f"SALib.{module}")
-    except ImportError as error:
-        raise ThermogearError(
-            "sensitivity needs the package SALib: pip install 'thermogear[sensitivity]'"
-        ) from error
+    return of_extra(
+        f"SALib.{module}", "sensitivity", field="sensitivity", got="Sobol indices", use="it"
+    )
 
 
 def require_salib() -> None:

@@ -6,7 +6,6 @@ scikit-fem belongs to the extra ``[fe]`` and is imported when the first mesh is 
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -16,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
 
-from thermogear.base.errors import InputError
+from thermogear.base.errors import of_extra
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -27,15 +26,7 @@ _EDGE_RULE = np.polynomial.legendre.leggauss(24)
 
 def library(name: str = "skfem") -> Any:
     """scikit-fem, or one line that says what to install."""
-    try:
-        return importlib.import_module(name)
-    except ImportError:
-        raise InputError(
-            "scikit-fem",
-            "no such package",
-            why="the finite-element checks need it",
-            fix="install the extra: pip install 'thermogear[fe]'",
-        ) from None
+    return of_extra(name, "fe", field="verify", got="finite elements", use="the check")
 
 
 @dataclass(frozen=True, eq=False)

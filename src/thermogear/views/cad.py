@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import importlib
 import io
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from thermogear.base.errors import InputError
+from thermogear.base.errors import of_extra
 from thermogear.base.files import put
 from thermogear.views.gears import PINION, WHEEL, GearDrawing
 
@@ -31,7 +29,7 @@ def put_dxf(drawing: GearDrawing, path: Path, *, place: int, shown: Sequence[str
     "contact": a point where each pair touches that carries load. Raises InputError without the
     extra ``[cad]``.
     """
-    ezdxf = _library()
+    ezdxf = of_extra("ezdxf", "cad", field="output", got="a DXF file", use="writing it")
     document = ezdxf.new("R2010", setup=["linetypes"], units=4)
     for name, colour in COLOURS.items():
         document.layers.add(name, color=colour)
@@ -60,15 +58,3 @@ def put_dxf(drawing: GearDrawing, path: Path, *, place: int, shown: Sequence[str
     stream = io.StringIO()
     document.write(stream)
     return put(path, stream.getvalue())
-
-
-def _library() -> Any:
-    try:
-        return importlib.import_module("ezdxf")
-    except ImportError as error:
-        raise InputError(
-            "output",
-            "a DXF file",
-            why="writing it needs ezdxf",
-            fix="install thermogear with the extra: pip install 'thermogear[cad]'",
-        ) from error
