@@ -1,7 +1,13 @@
-"""Compiled code is dropped when any of the kernels' sources has changed."""
+"""Compiled code is dropped when its sources have changed, and made anew where it is damaged."""
 
+import importlib.util
+from collections.abc import Callable
+from pathlib import Path
 from types import SimpleNamespace
 
+import pytest
+
+from thermogear.base.kernel_cache import KernelCacheWarning
 from thermogear.dynamics.kernels import fresh
 from thermogear.dynamics.kernels.fresh import STAMP, digest, drop_stale
 
@@ -30,3 +36,39 @@ def test_where_numba_keeps_its_code_is_where_it_is_dropped(tmp_path, monkeypatch
         (tmp_path / "kernel.nbi").write_bytes(b"code")
         assert drop_stale() is dropped
         assert (tmp_path / "kernel.nbi").exists() is not dropped
+
+
+KERNEL = """
+from numba import njit
+from thermogear.base.kernel_cache import rebuilt
+
+@rebuilt
+@njit(cache=True)
+def twice(x):
+    return 2.0 * x
+"""
+
+
+def loaded(path: Path) -> Callable[[float], float]:
+    """The kernel of a module that is loaded anew, as a new process has it."""
+    spec = importlib.util.spec_from_file_location("a_kernel", path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module.twice
+
+
+@pytest.mark.parametrize("ending", ["nbi", "nbc"])
+def test_damaged_code_is_compiled_anew_and_stored(ending: str, tmp_path: Path) -> None:
+    path = tmp_path / "a_kernel.py"
+    path.write_text(KERNEL)
+    assert loaded(path)(1.5) == 3.0
+    (stored,) = tmp_path.rglob(f"*.{ending}")
+    whole = stored.read_bytes()
+    for left in (0, 1, len(whole) // 2, len(whole) - 1):
+        stored.write_bytes(whole[:left])
+        with pytest.warns(KernelCacheWarning, match=r"is damaged \(\w+\); it is compiled anew$"):
+            assert loaded(path)(1.5) == 3.0
+        assert stored.stat().st_size > 0.9 * len(whole)
+        assert loaded(path)(1.5) == 3.0  # without a warning

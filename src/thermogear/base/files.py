@@ -7,10 +7,11 @@ import hashlib
 import io
 import itertools
 import os
+import re
 import shutil
 import signal
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
@@ -24,6 +25,8 @@ SEAL = ".sha256"
 PART = ".part"
 """Ending of what is being written; what a kill leaves of it is nothing."""
 
+_OURS = re.compile(rf"\..+\.\d+-\d+{re.escape(PART)}")
+"""Names that :func:`beside` gives, and no browser's downloads."""
 _number = itertools.count()
 
 
@@ -114,7 +117,10 @@ def sync(directory: Path) -> None:
 
 @contextmanager
 def held(directory: Path, field: str = "output") -> Iterator[None]:
-    """``directory`` for this process alone; InputError where another one holds it."""
+    """``directory`` for this process alone; InputError where another one holds it.
+
+    What killed writers left in it is removed first; :func:`clear_parts` clears folders below it.
+    """
     from filelock import FileLock, Timeout
 
     lock = FileLock(directory / LOCK)
@@ -128,9 +134,17 @@ def held(directory: Path, field: str = "output") -> Iterator[None]:
             fix="wait for it, or name another directory",
         ) from None
     try:
+        clear_parts(directory.iterdir())
         yield
     finally:
         lock.release()
+
+
+def clear_parts(paths: Iterable[Path]) -> None:
+    """Remove those of ``paths`` that killed writers left half written; the folder is held."""
+    for path in paths:
+        if _OURS.fullmatch(path.name) and not path.is_dir():
+            path.unlink(missing_ok=True)
 
 
 # --- seals ----------------------------------------------------------------------------------

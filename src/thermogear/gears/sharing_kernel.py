@@ -21,6 +21,8 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.kernel_cache import rebuilt
+
 Floats = NDArray[np.float64]
 Function = TypeVar("Function", bound=Callable[..., object])
 
@@ -31,7 +33,7 @@ NOUGHT: Any = np.int64(0)  # a plain 0 would have numba compile what takes it fo
 
 def _compiled(function: Function) -> Function:
     """numba's decorator with a type; no fast math, so that results do not depend on the lane."""
-    return cast(Function, numba.njit(cache=True)(function))
+    return rebuilt(cast(Function, numba.njit(cache=True)(function)))
 
 
 @_compiled

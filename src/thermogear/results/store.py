@@ -26,7 +26,15 @@ from zarr.codecs import Crc32cCodec, ZstdCodec
 from zarr.storage import LocalStore, MemoryStore
 
 from thermogear.base.errors import InputError
-from thermogear.base.files import LOCK, PART, held, put, require_directory, sync
+from thermogear.base.files import (
+    LOCK,
+    PART,
+    clear_parts,
+    held,
+    put,
+    require_directory,
+    sync,
+)
 from thermogear.base.plan import Arrays, Key, Plan, dataset_of, empty_arrays, keys_of, region_of
 from thermogear.base.stores import (
     COPY,
@@ -169,6 +177,7 @@ class Store:
         self.directory.mkdir(parents=True, exist_ok=True)
         with ExitStack() as stack:
             stack.enter_context(held(self.directory, "store"))
+            clear_parts(self.result.rglob(f".*{PART}"))
             self._agree()
             self._repair_metadata()
             self._hashes |= read_vouched(self.directory).chunks

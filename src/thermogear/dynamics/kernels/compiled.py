@@ -11,6 +11,8 @@ from typing import Any, TypeVar, cast
 
 import numba
 
+from thermogear.base.kernel_cache import rebuilt
+
 _Function = TypeVar("_Function", bound=Callable[..., object])
 
 _njit: Any = numba.njit
@@ -19,13 +21,13 @@ _OPTIONS = {"nogil": True, "cache": True, "error_model": "numpy", "_nrt": False}
 
 def kernel(function: _Function) -> _Function:
     """Compile what Python calls."""
-    return cast(_Function, _njit(no_cfunc_wrapper=True, **_OPTIONS)(function))
+    return rebuilt(cast(_Function, _njit(no_cfunc_wrapper=True, **_OPTIONS)(function)))
 
 
 def part(function: _Function) -> _Function:
     """Compile what only kernels call."""
     alone = {"no_cfunc_wrapper": True, "no_cpython_wrapper": True}
-    return cast(_Function, _njit(**alone, **_OPTIONS)(function))
+    return rebuilt(cast(_Function, _njit(**alone, **_OPTIONS)(function)))
 
 
 def small(function: _Function) -> _Function:
@@ -34,4 +36,4 @@ def small(function: _Function) -> _Function:
     A call hands over every array of a tuple, which costs more than a short function.
     """
     alone = {"no_cfunc_wrapper": True, "no_cpython_wrapper": True, "forceinline": True}
-    return cast(_Function, _njit(**alone, **_OPTIONS)(function))
+    return rebuilt(cast(_Function, _njit(**alone, **_OPTIONS)(function)))

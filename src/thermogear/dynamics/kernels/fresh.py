@@ -12,9 +12,12 @@ from pathlib import Path
 
 from numba import njit
 
+from thermogear.base.kernel_cache import rebuilt
+
 STAMP = "thermogear-kernels.sha256"
 
 
+@rebuilt
 @njit(cache=True)
 def _anchor() -> int:
     """Never called: it knows where numba keeps the code of this folder."""

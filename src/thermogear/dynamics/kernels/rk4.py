@@ -15,9 +15,12 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from thermogear.base.kernel_cache import rebuilt
+
 Real = NDArray[np.floating[Any]]
 
 
+@rebuilt
 @njit(nogil=True, cache=True, error_model="numpy", fastmath={"contract"})
 def advance_rk4(
     stiffness: Real,
@@ -93,6 +96,7 @@ def advance_rk4(
                 v[j] = np.nan
 
 
+@rebuilt
 @njit(nogil=True, cache=True, error_model="numpy")
 def advance_pair(
     tables: Real,

@@ -6,9 +6,12 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from thermogear.base.kernel_cache import rebuilt
+
 Real = NDArray[np.float64]
 
 
+@rebuilt
 @njit(nogil=True, cache=True, error_model="numpy")
 def pairs_push(springs: Real, stretch: Real, at: int, deflection: float) -> float:
     """sum_j k_j <w + S_j>_+ of one flank side at table column ``at``.
@@ -27,6 +30,7 @@ def pairs_push(springs: Real, stretch: Real, at: int, deflection: float) -> floa
     return total
 
 
+@rebuilt
 @njit(nogil=True, cache=True, error_model="numpy")
 def advance_shared(
     drive: Real,
