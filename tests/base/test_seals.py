@@ -15,7 +15,17 @@ import xarray as xr
 
 from thermogear.base import files
 from thermogear.base.errors import InputError, UnsealedWarning
-from thermogear.base.files import LOCK, held, open_sealed, put, put_sealed, seal_of, together
+from thermogear.base.files import (
+    LOCK,
+    beside,
+    held,
+    open_sealed,
+    put,
+    put_new,
+    put_sealed,
+    seal_of,
+    together,
+)
 from thermogear.base.netcdf import read_tree, write_tree
 
 
@@ -180,3 +190,21 @@ def test_one_process_at_a_time(tmp_path: Path) -> None:
         pass
     with held(tmp_path):
         pass
+
+
+def test_of_two_that_name_one_new_file_the_second_is_told(tmp_path: Path) -> None:
+    path = tmp_path / "mine.toml"
+    told = pytest.raises(InputError, match=r"mine\.toml; it is there already; name a new file")
+    with told, beside(path, new=True) as temporary:
+        temporary.write_text("second")
+        put_new(path, "first")
+    assert path.read_text() == "first"
+    assert names(tmp_path) == ["mine.toml"]
+
+
+def test_what_killed_writers_left_is_removed_and_downloads_are_not(tmp_path: Path) -> None:
+    for name in (".curve.csv.123-4.part", "film.part", ".film.mkv.part", "7-1.part"):
+        (tmp_path / name).write_text("half")
+    with held(tmp_path):
+        pass
+    assert set(names(tmp_path)) - {LOCK} == {".film.mkv.part", "7-1.part", "film.part"}

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from thermogear import InputError
 from thermogear.base import toml
-from thermogear.base.toml import overridden, written
+from thermogear.base.toml import overridden, settable, tables, written
 from thermogear.case.examples import EXAMPLES, example_text
 
 _PLAIN = st.one_of(
@@ -99,3 +99,21 @@ def test_what_the_file_does_not_hold_is_refused(path: str, words: str) -> None:
 def test_what_only_an_override_put_in_is_not_in_the_file() -> None:
     with pytest.raises(InputError, match="nothing to leave out"):
         overridden({"a": {}}, (("a.b", "1"), ("a.b", "")))
+
+
+@pytest.mark.parametrize("names", ["a" + ".a" * 50_000, '"a"' + " . 'b'" * 50_000])
+@pytest.mark.parametrize("form", ["{} = 1", "[{}]", "x = {{ {} = 1 }}"])
+def test_a_key_of_thousands_of_names_is_refused_before_it_is_parsed(names: str, form: str) -> None:
+    with pytest.raises(InputError) as error:
+        tables("case", "b = 1\n" + form.format(names))
+    assert str(error.value) == (
+        "case: got a key of more than 16 names in line 2; allowed TOML of a case"
+    )
+    assert not settable("a" + ".a" * 16)
+    assert settable("a" + ".a" * 15)
+    assert tables("case", form.format("a" + ".a" * 15))
+
+
+def test_text_is_no_key() -> None:
+    text = "a.b. " * 15 + "x" * 100_000
+    assert tables("case", f'note = "{text}"')["note"] == text

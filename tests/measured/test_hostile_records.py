@@ -15,7 +15,9 @@ import numpy as np
 import pytest
 
 from said import facts
+from thermogear import load_case
 from thermogear.base.errors import InputError
+from thermogear.case.rexs.container import read_rexs
 from thermogear.measured import options, store
 from thermogear.measured.optional import _Clipped
 from thermogear.measured.options import LEAST_DECODED, UNPACKED, decoded_limit
@@ -158,7 +160,7 @@ def test_a_gz_that_unpacks_to_far_more_than_it_is(
     assert "line 1002 is longer than 1048576 characters" in refusal(path)
     monkeypatch.setattr(options, "LEAST_DECODED", 1 << 20)
     path.write_bytes(gzip.compress(b"a,b\n" + b"1,2\n" * (1 << 19)))
-    assert "unpacked it is 0.000984 GiB or more" in refusal(path)
+    assert "unpacked it is 0.001 GiB or more" in refusal(path)
 
 
 @pytest.mark.parametrize(
@@ -241,3 +243,23 @@ def test_a_tdms_that_states_more_than_it_has(tmp_path: Path) -> None:
     assert read_record(path).samples <= 500
     with _Clipped(path) as file:  # no room is made for a text of so many bytes
         assert file.read(1 << 60) == path.read_bytes()
+
+
+def test_groups_nested_without_end_are_refused(tmp_path: Path) -> None:
+    path = tmp_path / "deep.h5"
+    with h5py.File(path, "w") as file:
+        group = file
+        for _ in range(70):
+            group = group.create_group("g")
+        group["a"] = np.arange(8.0)
+    with pytest.raises(InputError, match=r"HDF5: groups are nested more than 64 deep"):
+        read_record(path)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no named pipes")
+def test_a_pipe_is_refused_without_waiting_for_it(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    told = r"pipe; it is a pipe or a device; write it to a file first"
+    for read in (read_record, load_case, read_rexs):
+        with pytest.raises(InputError, match=told):
+            read(tmp_path / "pipe")

@@ -31,16 +31,19 @@ _number = itertools.count()
 
 
 @contextmanager
-def beside(path: Path) -> Iterator[Path]:
+def beside(path: Path, *, new: bool = False) -> Iterator[Path]:
     """A name next to ``path`` to write to; the file replaces ``path`` at the end.
 
-    An older file stays until then, and for good where writing fails. A link is replaced, not
-    followed. What the system refuses is reported with the name of ``path``.
+    An older file stays until then, and for good where writing fails; with ``new`` it is refused.
+    A link is replaced, not followed. What the system refuses is reported with the name of ``path``.
     """
     temporary = path.with_name(f".{path.name}.{os.getpid()}-{next(_number)}{PART}")
     try:
         yield temporary
-        temporary.replace(path)
+        if new:
+            _named_newly(temporary, path)
+        else:
+            temporary.replace(path)
     except OSError as error:
         if error.filename in (None, str(temporary)):
             error.filename, error.filename2 = str(path), None
@@ -68,6 +71,13 @@ def meant_beside(path: Path, pattern: str = "*") -> str | None:
     return meant(path.name, names, cutoff=0.6)
 
 
+def require_regular(path: Path, field: str) -> None:
+    """Refuse what is there and is no file on a disk: a pipe or a device may never end."""
+    if path.exists() and not (path.is_file() or path.is_dir()):
+        why = "it is a pipe or a device"
+        raise InputError(field, str(path), why=why, fix="write it to a file first")
+
+
 def require_new_file(path: Path, field: str = "output") -> None:
     """Refuse a ``path`` that cannot be a new file: something is there, or nothing above it."""
     if path.is_dir():
@@ -91,6 +101,24 @@ def put(path: Path, data: bytes | str) -> Path:
     with beside(path) as temporary:
         _write(temporary, data.encode() if isinstance(data, str) else data)
     return path
+
+
+def put_new(path: Path, data: bytes | str) -> Path:
+    """:func:`put` where nothing is; of two processes that name one new file the second is told."""
+    require_new_file(path)
+    with beside(path, new=True) as temporary:
+        _write(temporary, data.encode() if isinstance(data, str) else data)
+    return path
+
+
+def _named_newly(temporary: Path, path: Path) -> None:
+    """Give ``temporary`` the name ``path``, unless another process has taken it meanwhile."""
+    try:
+        os.link(temporary, path)
+    except FileExistsError:
+        require_new_file(path)
+    except OSError:  # a disk without links
+        temporary.rename(path)
 
 
 def _write(path: Path, data: bytes | memoryview) -> None:

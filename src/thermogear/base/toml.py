@@ -18,8 +18,21 @@ NAMED = {"model.friction": "law"}
 _KEY = re.compile(r"[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+)*")
 
 
+MOST_KEYS = 16
+"""Names in one dotted key. Chosen: the case file's longest has 6; parsing costs their square."""
+_LONG_KEY = re.compile(
+    r"""(?m)(?:^|[\[{,])[ \t]*+(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+)"""
+    f"{{{MOST_KEYS}}}"
+)
+
+
 def tables(name: str, text: str) -> dict[str, Any]:
     """The tables of a TOML text; a syntax error names line and column."""
+    if long := _LONG_KEY.search(text):
+        line = text.count("\n", 0, long.start()) + 1
+        raise InputError(
+            name, f"a key of more than {MOST_KEYS} names in line {line}", allowed="TOML of a case"
+        )
     if not text.strip():
         raise InputError(name, "an empty file", fix="`thermogear example rig` shows a case file")
     try:
@@ -97,7 +110,7 @@ def overridden(data: dict[str, Any], changes: tuple[tuple[str, str], ...]) -> di
 
 def settable(path: str) -> bool:
     """Whether an override can name ``path``: dotted keys of letters, digits, ``_`` and ``-``."""
-    return _KEY.fullmatch(path) is not None
+    return path.count(".") < MOST_KEYS and _KEY.fullmatch(path) is not None
 
 
 def _require_held(data: Mapping[str, Any], path: str) -> None:

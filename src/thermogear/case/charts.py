@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.enclosed import with_files
 from thermogear.base.errors import InputError, short
-from thermogear.base.files import decoded
+from thermogear.base.files import decoded, require_regular
 from thermogear.base.units import ROUNDED
 from thermogear.case.flank_file import LARGEST, FlankFile, read_flanks
 from thermogear.case.schema import GearFile
@@ -74,6 +74,7 @@ def _content(name: str, folder: Path, field: str) -> str:
     example = "a CSV file of an inspection chart"
     if path.is_dir():
         raise InputError(field, got, allowed=example, why="it is a directory")
+    require_regular(path, field)
     try:
         with path.open("rb") as file:
             raw = file.read(4 * LARGEST + 1)

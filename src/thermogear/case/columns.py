@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError, nearest
-from thermogear.base.files import decoded
+from thermogear.base.files import decoded, require_regular
 from thermogear.case.units import KINDS, convert
 
 Floats = NDArray[np.float64]
@@ -80,6 +80,7 @@ def read_columns(
 
 
 def _text(path: Path, field: str) -> str:
+    require_regular(path, field)
     try:
         raw = path.read_bytes()
     except (FileNotFoundError, IsADirectoryError, NotADirectoryError):

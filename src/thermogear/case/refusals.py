@@ -13,6 +13,8 @@ from thermogear.base.errors import InputError, InputErrors, nearest, short
 from thermogear.case.fields import Reader
 from thermogear.case.lines import line_of
 
+MOST = 20
+"""Faults of one file that are told: each unknown key is held against all known ones."""
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 _RANK = {"extra_forbidden": 0, "missing": 2}  # a misspelt key explains the missing one
 _SHAPES = {
@@ -30,6 +32,7 @@ def complaints(error: ValidationError, file: type[BaseModel]) -> list[InputError
     found = sorted(error.errors(include_url=False), key=lambda e: _RANK.get(e["type"], 1))
     if any("helix" in str(e["loc"][-1]) for e in found if e["loc"]):
         found.sort(key=lambda e: "helix" not in str(e["loc"][-1:]))
+    found, others = found[:MOST], len(found[MOST:])
     unknown = [one for one in found if one["type"] == "extra_forbidden"]
     meant = {
         (*one["loc"][:-1], name)
@@ -37,7 +40,10 @@ def complaints(error: ValidationError, file: type[BaseModel]) -> list[InputError
         if (name := _meant(str(one["loc"][-1]), table_at(file, one["loc"][:-1])))
     }
     # a misspelt key says by itself what is missing
-    return [_said(dict(one), file) for one in found if one["loc"] not in meant]
+    lines = [_said(dict(one), file) for one in found if one["loc"] not in meant]
+    if others:
+        lines.append(InputError("case", f"{others} more faults", fix="mend these first"))
+    return lines
 
 
 def _meant(key: str, table: type[BaseModel] | None) -> str | None:
@@ -55,7 +61,7 @@ def dotted(location: tuple[int | str, ...]) -> str:
         if isinstance(part, int):
             text += f"[{part}]"
         else:
-            key = part if _BARE.fullmatch(part) else repr(part)
+            key = part if _BARE.fullmatch(part) and len(part) <= 60 else short(part)
             text += f".{key}" if text else key
     return text
 

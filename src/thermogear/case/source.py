@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from thermogear.base.errors import InputError
-from thermogear.base.files import decoded, meant_beside
+from thermogear.base.files import decoded, meant_beside, require_regular
 from thermogear.case.examples import EXAMPLES, example_text
 
 LARGEST = 1_000_000
@@ -35,6 +35,7 @@ def case_text(source: str | Path) -> tuple[str, str]:
         return name, example_text(name)
     if path.is_dir():
         raise InputError(name, "a directory", allowed="a case file (TOML)")
+    require_regular(path, name)
     try:
         with path.open("rb") as file:
             raw = file.read(LARGEST + 1)

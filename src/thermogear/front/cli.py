@@ -213,11 +213,9 @@ def _put(text: str, output: str | None) -> None:
     if output is None:
         click.echo(text, nl=False)
         return
-    from thermogear.base.files import put, require_new_file
+    from thermogear.base.files import put_new
 
-    path = Path(output)
-    require_new_file(path)
-    click.echo(put(path, text))
+    click.echo(put_new(Path(output), text))
 
 
 for _list in (

@@ -65,7 +65,7 @@ def new(output: str | None, **given: Any) -> None:
       thermogear new --teeth 20 40 --module "3 mm" --face-width "30 mm" \\
         --torque "80 N m" --speed "3000 rpm" -o mine.toml
     """
-    from thermogear.base.files import put, require_new_file
+    from thermogear.base.files import put_new, require_new_file
     from thermogear.case.new import NewCase
 
     if output is not None:
@@ -92,7 +92,7 @@ def new(output: str | None, **given: Any) -> None:
     if output is None:
         click.echo(text, nl=False)
         return
-    click.echo(put(Path(output), text))
+    click.echo(put_new(Path(output), text))
     click.echo(f"next: thermogear answers {output}")
 
 

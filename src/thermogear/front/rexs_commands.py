@@ -39,7 +39,7 @@ def import_(
       thermogear import gearbox.rexs
       thermogear import gearbox.rexs --stage 2 -o mine.toml
     """
-    from thermogear.base.files import put, require_new_file
+    from thermogear.base.files import put_new, require_new_file
     from thermogear.case.rexs.container import read_rexs
     from thermogear.case.rexs.importing import imported
 
@@ -63,9 +63,9 @@ def import_(
     duty = place.with_name(f"{place.stem}-duty.csv")
     if found.duty:
         require_new_file(duty)
-    written = [put(place, found.text)]
+    written = [put_new(place, found.text)]
     if found.duty:
-        written.append(put(duty, found.duty))
+        written.append(put_new(duty, found.duty))
     if as_json:
         return
     for path in written:

@@ -12,6 +12,8 @@ from thermogear.measured.record import Record
 from thermogear.measured.tables import MOST_CHANNELS, Named, record_of
 
 _MOST_SETS = 4096
+_DEEPEST = 64
+"""Groups inside one another. Chosen: known writers use up to 6; visiting costs their square."""
 _WHOLE = 1 << 28
 """Bytes up to which a data set that is slow in slices is read as a whole."""
 _CHUNK = 1 << 20
@@ -32,6 +34,8 @@ def read_hdf(path: Path, options: ReadOptions) -> Record:
 
     def visit(name: str, item: Any) -> None:
         nonlocal claimed
+        if name.count("/") >= _DEEPEST:
+            raise refused(path, "HDF5", f"groups are nested more than {_DEEPEST} deep")
         if not isinstance(item, h5py.Dataset) or name.startswith("#"):
             return
         if item.dtype.kind not in "iuf" or item.dtype.names or len(arrays) >= _MOST_SETS:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from thermogear.base.errors import InputError, meant
+from thermogear.base.files import require_regular
 from thermogear.measured.hdf import read_hdf
 from thermogear.measured.matlab import read_mat
 from thermogear.measured.optional import read_mdf, read_tdms, read_uff
@@ -103,6 +104,7 @@ def read_record(
     path = Path(file)
     if path.is_dir():
         raise InputError("file", str(file), why="it is a directory", fix="name a file in it")
+    require_regular(path, "file")
     if not path.is_file():
         raise InputError("file", str(file), why="there is no such file", fix=_beside(path))
     most = decoded_limit(path.stat().st_size) if limit is None else int(limit)

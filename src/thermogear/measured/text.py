@@ -48,6 +48,7 @@ _LONGEST = 1 << 20  # characters of one line
 
 def read_text(path: Path, options: ReadOptions) -> Record:
     """A record from a CSV or TXT file (also gzipped), read row block by row block."""
+    _require_limit(path, options.limit)
     encoding, notes = _encoding(path)
     with _open(path, encoding, options) as lines:
         head = _head(lines)
@@ -108,6 +109,15 @@ def _bytes(path: Path) -> IO[bytes]:
     with path.open("rb") as file:
         packed = file.read(2) == b"\x1f\x8b"
     return gzip.open(path, "rb") if packed else path.open("rb")  # type: ignore[return-value]
+
+
+def _require_limit(path: Path, limit: int) -> None:
+    """Refuse a packed text that becomes longer than ``limit`` [bytes] before any row is parsed."""
+    with _bytes(path) as stream:
+        if isinstance(stream, gzip.GzipFile):
+            counted, block = _Counted(stream, path, limit), memoryview(bytearray(_HEAD))
+            while counted.readinto(block):
+                pass
 
 
 def _open(path: Path, encoding: str, options: ReadOptions) -> io.TextIOWrapper:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from thermogear.base.errors import InputError, short
-from thermogear.base.files import meant_beside
+from thermogear.base.files import meant_beside, require_regular
 from thermogear.case.rexs.json_reader import read_json
 from thermogear.case.rexs.model import Model
 from thermogear.case.rexs.xml_reader import read_xml
@@ -38,6 +38,7 @@ def read_rexs(path: str | Path) -> Model:
     place = Path(path)
     if place.is_dir():
         raise InputError(short(place.name), "a directory", allowed="a REXS file")
+    require_regular(place, short(place.name))
     try:
         with place.open("rb") as file:
             head = file.read(4)

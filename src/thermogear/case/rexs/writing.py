@@ -11,7 +11,7 @@ from typing import Any
 from xml.etree import ElementTree
 
 from thermogear.base.errors import InputError, short
-from thermogear.base.files import put, require_new_file
+from thermogear.base.files import put_new, require_new_file
 from thermogear.case.case import GearCase, gear_case
 from thermogear.case.rexs.exporting import model_of_case
 from thermogear.case.rexs.model import Attribute, Model
@@ -59,9 +59,9 @@ def write_rexs(case: GearCase, path: str | Path, *, version: str = "1.7") -> Pat
     content = _content(model_of_case(gear_case(case), version))
     if kind == "json":
         text = json.dumps({"model": content}, indent=1, ensure_ascii=False, allow_nan=False)
-        return put(place, f"{text}\n")
+        return put_new(place, f"{text}\n")
     text = _xml(content)
-    return put(place, text if kind == "xml" else _zip(place.stem, text))
+    return put_new(place, text if kind == "xml" else _zip(place.stem, text))
 
 
 def _zip(name: str, text: str) -> bytes:
