@@ -2,7 +2,7 @@
 
 import sys
 
-from thermogear.front.cli import main
+from thermogear.front.entry import main
 
 if __name__ == "__main__":
     sys.exit(main())

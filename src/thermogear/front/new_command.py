@@ -71,7 +71,7 @@ def new(output: str | None, **given: Any) -> None:
     if output is not None:
         require_new_file(Path(output))
     missing = [name for name in NEEDED if given[name] is None]
-    if len(missing) == len(NEEDED) and sys.stdin.isatty():
+    if len(missing) == len(NEEDED) and sys.stdin is not None and sys.stdin.isatty():
         given |= _asked()
         output = output or click.prompt("File to write", default="mine.toml")
         require_new_file(Path(output))

@@ -1,0 +1,61 @@
+"""The console's door: signals, a closed output and a closed input end in one line."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+
+import pytest
+
+SIGNALS = [getattr(signal, n) for n in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, n)]
+LOADED = "import os, signal; from thermogear.front import entry;"
+KILL = "os.kill(os.getpid(), signal.{})"
+
+
+def ended(code: str, close: str = "") -> tuple[int, str]:
+    """Exit code and error stream of a process that runs ``code``, with a stream closed."""
+    words = f'exec "$@" {close}' if close else 'exec "$@"'
+    done = subprocess.run(
+        ["sh", "-c", words, "sh", sys.executable, "-c", code], capture_output=True, text=True
+    )
+    return done.returncode, done.stderr
+
+
+@pytest.mark.parametrize("number", SIGNALS)
+def test_before_a_command_is_loaded_a_signal_ends_it_at_once(number: signal.Signals) -> None:
+    code, said = ended(LOADED + KILL.format(number.name))
+    assert (code, said) == (128 + number, "interrupted: stopped on request; nothing was begun\n")
+
+
+@pytest.mark.parametrize("number", SIGNALS)
+def test_a_signal_ends_a_command_in_one_line(number: signal.Signals) -> None:
+    work = f"""
+from thermogear.front import cli
+import time
+def invoke(context):
+    {KILL.format(number.name)}
+    time.sleep(9)
+cli.cli.invoke = invoke
+raise SystemExit(entry.main())
+"""
+    code, said = ended(LOADED + work)
+    assert (code, said) == (128 + number, "interrupted: stopped on request\n")
+
+
+def test_what_the_caller_ignores_stays_ignored() -> None:
+    ignored = "import signal; signal.signal(signal.SIGTERM, signal.SIG_IGN);"
+    assert ended(ignored + LOADED + KILL.format("SIGTERM")) == (0, "")
+
+
+def test_closed_streams_are_said_in_one_line() -> None:
+    run = (
+        "import sys; sys.argv[1:] = {}; from thermogear.front import entry; sys.exit(entry.main())"
+    )
+    code, said = ended(run.format(["--version"]), ">&-")
+    assert (code, said) == (
+        2, "error: output: got a closed standard output; send it to a file\n"
+    )  # fmt: skip
+    code, said = ended(run.format(["new"]), "<&-")
+    assert code == 2
+    assert said.startswith("error: --teeth, --module, --face-width, --torque, --speed: got nothing")
