@@ -32,7 +32,8 @@ def test_before_a_command_is_loaded_a_signal_ends_it_at_once(number: signal.Sign
 def test_a_signal_ends_a_command_in_one_line(number: signal.Signals) -> None:
     work = f"""
 from thermogear.front import cli
-import time
+import sys, time
+sys.argv[1:] = ["check"]
 def invoke(context):
     {KILL.format(number.name)}
     time.sleep(9)
