@@ -27,12 +27,12 @@ def tdms(path: Path) -> None:
         writer.write_segment([ChannelObject("rig", "a1", LINE, properties=marks)])
 
 
-def uff(path: Path) -> None:
+def uff(path: Path, name: str = "a1", unit: str = "m/s^2") -> None:
     axes = ("abscissa", "ordinate", "orddenom", "z_axis")
     record: dict[str, object] = {"type": 58, "binary": 0, "data": LINE, "x": TIME}
-    record |= {f"id{i}": "a1" if i == 1 else "" for i in range(1, 6)}
+    record |= {f"id{i}": name if i == 1 else "" for i in range(1, 6)}
     record |= {"func_type": 1, "func_id": 0, "ver_num": 0, "load_case_id": 0}
-    record |= {"rsp_ent_name": "a1", "rsp_node": 1, "rsp_dir": 1}
+    record |= {"rsp_ent_name": name, "rsp_node": 1, "rsp_dir": 1}
     record |= {"ref_ent_name": "NONE", "ref_node": 1, "ref_dir": 1}
     record |= {"ord_data_type": 4, "num_pts": COUNT, "abscissa_spacing": 1}
     record |= {"abscissa_min": 0.0, "abscissa_inc": 1.0 / RATE, "z_axis_value": 0}
@@ -41,7 +41,7 @@ def uff(path: Path) -> None:
         record |= {f"{axis}_spec_data_type": 0}
         record |= {f"{axis}_axis_lab": "NONE", f"{axis}_axis_units_lab": "NONE"}
     record |= {"abscissa_spec_data_type": 17, "abscissa_axis_units_lab": "s"}
-    record |= {"ordinate_spec_data_type": 12, "ordinate_axis_units_lab": "m/s^2"}
+    record |= {"ordinate_spec_data_type": 12, "ordinate_axis_units_lab": unit}
     pyuff.UFF(str(path)).write_sets(record, "overwrite")
 
 

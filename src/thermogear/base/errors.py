@@ -141,6 +141,15 @@ def meant(name: str, known: Iterable[str], *, cutoff: float) -> str | None:
     return f"did you mean {close[0]!r}?" if close else None
 
 
+def printable(text: str) -> str:
+    """``text`` that a terminal or a page only shows: what could rewrite them is replaced by "?".
+
+    Replaced are control characters (escape sequences begin with one), line breaks, tabs, marks
+    that turn the direction of reading, and all else that Unicode does not call printable.
+    """
+    return text if text.isprintable() else "".join(c if c.isprintable() else "?" for c in text)
+
+
 def short(value: object) -> str:
     """A value as a message shows it: one line, at most 60 characters."""
     if isinstance(value, bool):

@@ -10,7 +10,7 @@ import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from thermogear.base.errors import InputError, nearest, short
+from thermogear.base.errors import InputError, nearest, printable, short
 
 NAMED = {"model.friction": "law"}
 """A name that may replace a table, and the field of the table that holds it."""
@@ -235,7 +235,7 @@ def _of_tables(value: Any) -> bool:
 
 def flat(text: str) -> str:
     """``text`` as a comment may hold it: one line, printable."""
-    return "".join(c if c.isprintable() else "?" for c in " ".join(text.split()))
+    return printable(" ".join(text.split()))
 
 
 def quoted(key: str) -> str:

@@ -9,14 +9,15 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TextIO
 
+from thermogear.base.errors import printable
+
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 """A full disk, a full quota, a limit of a file's size."""
 
 
 def one_line(text: object) -> str:
     """``text`` without line breaks, tabs or control characters."""
-    flat = " ".join(str(text).split())
-    return "".join(c if c.isprintable() else "?" for c in flat)
+    return printable(" ".join(str(text).split()))
 
 
 def say(kind: str, text: object) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.bounds import FULL_SCALE, RATE
-from thermogear.base.errors import InputError
+from thermogear.base.errors import InputError, printable
 from thermogear.measured.options import no_channel, no_tacho, place_of
 from thermogear.measured.units import UNITS, factor_of, kind_of, known_unit
 
@@ -22,6 +22,12 @@ _MOST_RPM = 1e9  # in one unit of a speed channel
 
 BLOCK = 1 << 20
 """Samples read at once from a channel that stays on disk."""
+
+
+def _keep_printable(thing: object, *names: str) -> None:
+    """Texts of a foreign file as they may leave the program: :func:`printable`."""
+    for name in names:
+        object.__setattr__(thing, name, printable(getattr(thing, name)))
 
 
 class Samples(Protocol):
@@ -38,6 +44,9 @@ class Notice:
 
     level: str
     text: str
+
+    def __post_init__(self) -> None:
+        _keep_printable(self, "text")
 
 
 @dataclass(frozen=True)
@@ -57,6 +66,9 @@ class Channel:
     needs_scale: bool = False  # integer full scale: a unit alone does not calibrate it
     file: str = ""
     strange: str = ""
+
+    def __post_init__(self) -> None:
+        _keep_printable(self, "name", "file", "strange")
 
     def __len__(self) -> int:
         return len(self.samples)
@@ -117,6 +129,7 @@ class Record:
     jitter: float = 0.0
 
     def __post_init__(self) -> None:
+        _keep_printable(self, "source", "rate_origin", "rate_doubt", "rate_note")
         if not self.channels:
             raise InputError("record", self.source, why="it holds no channel of numbers")
         lengths = {len(c) for c in self.channels}
