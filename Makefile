@@ -14,7 +14,7 @@ BENCH_STAMP := .bench-venv/.installed
 AUDIT_BIN := .audit-venv/bin
 AUDIT_STAMP := .audit-venv/.installed
 
-.PHONY: audit bench bench-coordinates bench-geared bench-measure bench-paths bench-shafts bench-train-map check chromium clean compile demo friction-evidence house licences lint lock look mutate same sbom test trial-answers trial-app trial-attacks trial-base-sets trial-branches trial-coverage trial-damage trial-defects trial-experiment trial-heat trial-hostile trial-labels trial-located trial-long trial-pairs trial-public trial-shafts trial-stamps trial-swings trial-teeth trial-trains trial-turning unit
+.PHONY: audit bench bench-coordinates bench-geared bench-measure bench-paths bench-shafts bench-train-map check chromium clean compile demo friction-evidence house licences lint lock look lowest mutate same sbom test trial-answers trial-app trial-attacks trial-base-sets trial-branches trial-coverage trial-damage trial-defects trial-experiment trial-heat trial-hostile trial-labels trial-located trial-long trial-pairs trial-public trial-shafts trial-stamps trial-swings trial-teeth trial-trains trial-turning unit
 
 demo: $(STAMP)  ## the main job: the rig's case file to a report
 	$(BIN)/thermogear example rig > .venv/rig.toml
@@ -103,6 +103,9 @@ licences: $(STAMP)  ## licence of every locked package; fails on GPL, AGPL or un
 
 sbom: $(AUDIT_STAMP)  ## CycloneDX bill of materials: dist/sbom.json
 	$(BIN)/python checks/supply.py sbom
+
+lowest: $(STAMP)  ## demo and quick tests with the lowest and the newest allowed libraries, half an hour; docs/bounds.md
+	$(BIN)/python checks/bounds.py
 
 audit: $(AUDIT_STAMP)  ## known vulnerabilities of the lock; needs the network
 	@$(BIN)/python checks/supply.py audit
