@@ -14,7 +14,7 @@ BENCH_STAMP := .bench-venv/.installed
 AUDIT_BIN := .audit-venv/bin
 AUDIT_STAMP := .audit-venv/.installed
 
-.PHONY: audit bench bench-coordinates bench-geared bench-measure bench-paths bench-shafts bench-train-map check chromium clean compile demo friction-evidence house licences lint lock look lowest mutate same sbom test trial-answers trial-app trial-attacks trial-base-sets trial-branches trial-coverage trial-damage trial-defects trial-experiment trial-heat trial-hostile trial-labels trial-located trial-long trial-pairs trial-public trial-shafts trial-stamps trial-swings trial-teeth trial-trains trial-turning unit
+.PHONY: audit bench bench-coordinates bench-geared bench-measure bench-paths bench-shafts bench-train-map check chromium clean compile demo friction-evidence house licences lint lock look lowest mutate same sbom test trial-answers trial-app trial-attacks trial-base-sets trial-branches trial-coverage trial-damage trial-defects trial-experiment trial-heat trial-hostile trial-kills trial-labels trial-located trial-long trial-pairs trial-public trial-shafts trial-stamps trial-swings trial-teeth trial-trains trial-turning unit
 
 demo: $(STAMP)  ## the main job: the rig's case file to a report
 	$(BIN)/thermogear example rig > .venv/rig.toml
@@ -135,6 +135,9 @@ trial-public: $(STAMP)  ## what measure says of public records; PUBLIC=FOLDER; d
 
 trial-hostile: $(STAMP)  ## 5 000 mutated cases, 95 400 mutated records of 18 kinds; docs/trial_hostile.md
 	@$(BIN)/python checks/trial_hostile.py
+
+trial-kills: $(STAMP)  ## 200 kills of eight commands, folders compared, half an hour; docs/trial_kills.md
+	$(BIN)/python -W ignore checks/trial_kills.py
 
 trial-heat: $(STAMP)  ## every steady state of the heat balance, from cold, hot and warm-ups, half an hour; docs/trial_heat.md
 	@$(BIN)/python checks/trial_heat.py
