@@ -308,6 +308,23 @@ def test_a_dynamic_factor_above_two_is_never_fine_nor_off_resonance() -> None:
     assert numbers(kept.limit) == pytest.approx([kept.figures["factor"]], rel=1e-3)
 
 
+def test_of_two_motions_at_one_speed_the_greater_is_judged() -> None:
+    """Started from rest 18:18 is gentle at 10 900 rpm; the motion that the look follows there
+    from the neighbouring speeds is not, and a run may end on it. Both are named."""
+    text = FIVE.replace("80 degC", "70 degC").replace('"3 mm"', '"6 mm"').replace("30 mm", "60 mm")
+    text = text.replace("20", "18").replace("40", "18").replace("80 N m", "200 N m")
+    case = read(text=text.replace("3000 rpm", "10900 rpm"))
+    found = asked_of(case, lambda asked: [*moving.speeds(asked), *moving.loads(asked)])
+    factor = found["dynamic_factor"]
+    calm, wild = factor.figures["motions"]
+    assert calm < factor.figures["factor"] < 4.0 < wild
+    assert (factor.verdict, factor.value, factor.figures["own"]) == (LOOK, wild, wild)
+    assert numbers(factor.sentence)[:2] == [round(calm, 2), round(wild, 2)]
+    assert (found["resonance"].value, found["resonance"].figures["factor"]) == (0.0, wild)
+    assert (found["coexisting"].value, found["coexisting"].figures["points"]) == (2.0, 1)
+    assert "motions" not in verdicts("plain")["dynamic_factor"].figures
+
+
 def test_the_limit_of_the_error_is_what_class_and_load_allow() -> None:
     """f_Halpha + f_falpha of both gears by hand, sqrt(2) a class; 3/7 of w/c' of the load."""
     for changes, grade in (((), 6), (("flanks.accuracy=0", 'flanks.edition="1995"'), 0)):

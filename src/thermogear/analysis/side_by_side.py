@@ -41,15 +41,17 @@ class Motions:
 def motions_along(
     lanes: Lanes, starts: ArrayLike, *, rule: Rule = RULE, passes: int = 64
 ) -> Motions:
-    """Every motion that the ``starts`` (start, 2), and the motions of neighbours, lead to.
+    """Every motion that the ``starts``, and the motions of neighbours, lead to.
 
-    ``lanes`` in the order of the parameter. Two periodic motions of one lane are one where their
-    sections lie within :data:`APART`; others where their labels agree. At most ``passes`` rounds.
+    ``starts`` (start, 2) of every lane, or (lane, start, 2); a lane's first motion is that of its
+    first start. ``lanes`` in the order of the parameter. Two periodic motions of one lane are one
+    where their sections lie within :data:`APART`; others where their labels agree. At most
+    ``passes`` rounds.
     """
     count = len(lanes)
-    first = np.asarray(starts, dtype=float).reshape(-1, 2)
-    index = np.repeat(np.arange(count), len(first))
-    begin = np.tile(first, (count, 1))
+    first = np.asarray(starts, dtype=float)
+    index = np.repeat(np.arange(count), first.shape[-2])
+    begin = np.broadcast_to(first, (count, *first.shape[-2:])).reshape(-1, 2)
     known: list[list[tuple[int, int, Floats, Floats]]] = [[] for _ in range(count)]
     for _ in range(passes):
         settled = settle(lanes.take(index), begin, rule, KEEP)

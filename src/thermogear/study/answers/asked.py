@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.analysis.outcome import settle_with_status
-from thermogear.analysis.side_by_side import RULE
+from thermogear.analysis.side_by_side import motions_along
 from thermogear.base.display import worded
 from thermogear.base.limits import LIMITS, NO_LIMIT
 from thermogear.base.progress import Progress
@@ -21,7 +20,7 @@ from thermogear.base.vocabulary import STATUS
 from thermogear.case.case import GearCase
 from thermogear.case.duty import chosen_point, point_duty
 from thermogear.case.points import excitations, points_of
-from thermogear.case.response import respond
+from thermogear.case.response import VALUES, respond
 from thermogear.mesh.balance import Gearbox, HeatBalance
 from thermogear.mesh.balance_table import LOSSES
 from thermogear.mesh.clearance import PARTS
@@ -29,7 +28,7 @@ from thermogear.mesh.excite import EXCITES
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.warm_up import WarmUp, warm_up
 from thermogear.results.answer import Answer
-from thermogear.study.speeds import RECORD, Speeds, look
+from thermogear.study.speeds import RECORD, Speeds, look, starts_of
 
 Floats = NDArray[np.float64]
 Cycle = Mapping[str, NDArray[Any]]
@@ -200,23 +199,31 @@ class Asked:
         return found
 
     @cached_property
-    def motion(self) -> dict[str, Any]:
-        """Figures of the motion from rest at the operating points answered, nan at the others.
+    def motion(self) -> dict[str, Floats]:
+        """Figures (point, motion) of the motions at the operating points answered, else nan.
 
-        Nan too where the pair turns so slowly that no motion is followed: the load is static.
+        From rest first, then from the other starts of the look over speeds and from the motions
+        that it found within a step of the point's own. Nan too where the pair turns so slowly that
+        no motion is followed: the load is static.
         """
         points = points_of(excitations(self.case, self._part(self.points)))
         slow = points.mesh_frequency < SLOWEST * points.rate
-        status = np.where(slow, STATUS.index("jammed"), points.status).astype(np.int8)
-        points = replace(points, status=status)
-        start = np.stack([points.half_backlash / points.length, np.zeros(len(self.points))], axis=1)
-        start[:, 0] += points.flat.force[:, 0].real
-        settled = settle_with_status(points.flat, points.status, start, RULE)
-        found = respond(points, settled.state, RECORD, lines=False)
+        moving = np.flatnonzero((points.status == 0) & ~slow)
+        if not moving.size:
+            return {name: np.full((self.count, 1), np.nan) for name in VALUES}
+        points = points.take(moving)
+        starts = starts_of(points)
+        if self.speeds is not None:
+            speed = points.mesh_frequency / self.case.pair.pinion.teeth
+            starts = np.concatenate([starts, self.speeds.beside(speed, starts[:, 0])], axis=1)
+        motions = motions_along(points.flat, starts)
+        lane = motions.lane
+        figures = respond(points.take(lane), motions.state, RECORD, lines=False)
+        place = np.arange(lane.size) - np.searchsorted(lane, lane)
         every = {}
-        for name, values in found.items():
-            every[name] = np.full(self.count, np.nan)
-            every[name][self.points] = values
+        for name, values in figures.items():
+            every[name] = np.full((self.count, place.max() + 1), np.nan)
+            every[name][np.array(self.points)[moving[lane]], place] = values
         return every
 
 

@@ -52,13 +52,13 @@ def speeds(asked: Asked) -> Iterator[Answer]:
     natural = np.sqrt(asked.hot["mean_stiffness"][asked.hardest] / asked.case.equivalent_mass)
     yield _resonance(asked, found, float(natural) / asked.case.pair.pinion.teeth)
     speed, share = found.column("pinion_speed"), found.column("contact_loss_share")
-    moving = np.isfinite(asked.motion["contact_loss_share"])
+    moves = np.isfinite(asked.motion["contact_loss_share"])
+    moving = moves[:, 0]
     own = asked.case.stated.speed[moving]
     # a motion beside the one from rest counts too: a run may end on it
-    parted = (asked.motion["contact_loss_share"][moving] > LOST) | found.within(
-        own, ranges=found.lost
-    )
-    struck = (asked.motion["mesh_force_min"][moving] < 0.0) | found.within(own, ranges=found.back)
+    loss, force = (asked.motion[n][moving] for n in ("contact_loss_share", "mesh_force_min"))
+    parted = (loss > LOST).any(axis=1) | found.within(own, ranges=found.lost)
+    struck = (force < 0.0).any(axis=1) | found.within(own, ranges=found.back)
     ends = (float(speed.min()), float(speed.max()))
     for name, ranges, happens, never, apart in (
         ("contact_loss", found.lost,
@@ -83,16 +83,17 @@ def speeds(asked: Asked) -> Iterator[Answer]:
         value = 100.0 * float(np.mean(apart)) if apart.size else float("nan")
         yield answer(SPEEDS, name, f"{sentence}.", value, figures=figures)
     words, figures = told(found.several, ends=ends)
-    here = bool(found.within(asked.case.stated.speed, ranges=found.several).any())
-    yield answer(
-        SPEEDS,
-        "coexisting",
-        f"Two motions exist {words}: it may jump there, up and down elsewhere."
+    several = found.within(asked.case.stated.speed, ranges=found.several) | moves[:, 1:].any(axis=1)
+    sentence = (
+        f"Two motions exist {words}: it may jump there, up and down elsewhere"
         if found.several
-        else f"One motion exists at every {LOOKED}: no jump.",
-        2.0 if here else 1.0,
-        figures=figures,
+        else f"One motion exists at every {LOOKED}: no jump"
     )
+    if several.any():
+        sentence += "; two or more at {points} of {of} operating points"
+        figures |= {"points": int(several.sum()), "of": several.size}
+    value = 2.0 if several.any() else 1.0
+    yield answer(SPEEDS, "coexisting", f"{sentence}.", value, figures=figures)
 
 
 def _resonance(asked: Asked, found: Speeds, main: float) -> Answer:
@@ -103,7 +104,7 @@ def _resonance(asked: Asked, found: Speeds, main: float) -> Answer:
     case itself where the motion there has one: it is off by nothing.
     """
     own, factor = asked.case.stated.speed, asked.motion["dynamic_factor"]
-    factor = np.where(np.isfinite(factor), factor, 0.0)  # without load there is none
+    factor = np.where(np.isfinite(factor), factor, 0.0).max(axis=1)  # without load there is none
     peaks = found.peaks()
     strong = [main, *(speed for speed, top in peaks if top > PARTING)]
     off = 100.0 * np.abs(own[:, None] / np.array(strong) - 1.0)
@@ -145,21 +146,26 @@ def _resonance(asked: Asked, found: Speeds, main: float) -> Answer:
 def loads(asked: Asked) -> Iterator[Answer]:
     for point in asked.points:
         at = asked.at(point)
-        own = float(asked.motion["dynamic_factor"][point]) if asked.moves(point) else float("nan")
+        every = asked.motion["dynamic_factor"][point]
+        every = every[np.isfinite(every)]
         words, figures = _rated_factor(asked, point)
         rated = figures.get("factor", np.inf)
         limit = "dynamic_factor" if rated < PARTING else "parting"
         about = {"limit": limit, "most": min(rated, PARTING), "at": at}
-        if not np.isfinite(own):
+        if not every.size:
             loaded = asked.case.stated.torque[point] > 0.0
             slow = "it turns too slowly to vibrate" if loaded else "there is no load"
             why = f"{asked.still(point) or slow}; ISO 6336-1 {words}"
             yield undecided(LOADS, "dynamic_factor", why, figures=figures, **about)
             continue
-        sentence = f"The vibration computed gives {{own:.2f}}; ISO 6336-1 {words}."
-        yield answer(
-            LOADS, "dynamic_factor", sentence, own, figures=figures | {"own": own}, **about
-        )
+        figures |= {"own": float(every.max())}
+        gives = "{own:.2f}"
+        if every.size > 1:
+            figures |= {"motions": every.tolist()}
+            others = ", ".join(f"{{motions[{n}]:.2f}}" for n in range(1, every.size))
+            gives = f"{{motions[0]:.2f}} from rest, {others} in another motion at the same speed"
+        sentence = f"The vibration computed gives {gives}; ISO 6336-1 {words}."
+        yield answer(LOADS, "dynamic_factor", sentence, figures["own"], figures=figures, **about)
 
 
 def _rated_factor(asked: Asked, point: int) -> tuple[str, dict[str, Any]]:
