@@ -62,13 +62,14 @@ CASES: dict[str, tuple[str, ...]] = {
     "still": ("operating.torque=0 N m",),
     "slow": ("operating.speed=1 rpm",),
     "odd": ("gears.pinion.teeth=12", "gears.pinion.profile_shift=0.8", "gears.rack.dedendum=1.1",
-            "gears.rack.fillet_radius=0.15", "oil.temperature=160 degC",
+            "gears.rack.fillet_radius=0.15", "oil.temperature=140 degC",
             "gears.pinion.pressure_angle_error=0.6 deg", "flanks.accuracy=2"),
     "high": ("gears.rack.addendum=1.3", "gears.rack.dedendum=1.6", "gears.rack.fillet_radius=0.2",
              "gears.pinion.teeth=40", "gears.wheel.teeth=60"),
     "short": ("gears.rack.addendum=0.65",),
 }  # fmt: skip
 # (fine, look here, not decided); None: that cannot be, or is refused before
+MESH = ("contact_ratio", "form_clearance", "tip_thickness", "tip_clearance")
 SEEN: dict[str, tuple[str, str | None, str | None]] = {
     "contact_ratio": ("plain", "short", None),
     "form_clearance": ("plain", None, None),
@@ -183,7 +184,7 @@ def test_what_is_not_steady_is_not_stated() -> None:
     assert oil.sentence == whole
     assert oil.figures["made_kW"] > oil.figures["carried_kW"] > 0.0
     for name, one in found.items():
-        if name not in ("contact_ratio", "form_clearance", "tip_thickness", "tip_clearance"):
+        if name not in MESH:
             assert one.verdict != FINE, one
             assert steady_words not in one.sentence
     ends, jammed = "; no steady state is known.", "Not decided: the hot pair is jammed."
@@ -201,7 +202,20 @@ def test_an_oil_bath_above_its_flash_point_is_called_impossible() -> None:
     assert oil.figures["hottest_bath"] == 150.0
     words = "no oil bath exists above 150 °C, as its flash point is not given"
     assert words in oil.sentence
-    # the band of the wetted share, told and stored
+    # nothing else is judged by such a bath: as where the heat does not settle, without a value
+    rests = f"Not decided: it rests on an oil bath at {oil.value:.0f} °C that cannot exist."
+    assert (teeth.verdict, teeth.value, teeth.sentence) == (OPEN, None, rests)
+    for one in answers(read(text=hot)).answers[len(MESH) + 1 :]:
+        assert (one.verdict, one.value) == (OPEN, None), one
+        assert one.sentence.startswith(rests[:-1])
+    known = asked_of(read("oil.flash_point=255 degC", text=hot), steady.heat)
+    assert words[:14] not in known["oil_temperature"].sentence
+    assert known["tooth_temperature"].value is not None
+
+
+def test_the_band_of_the_wetted_share_is_told_and_stored() -> None:
+    hot = FIVE.replace('temperature = "80 degC"\n', "")
+    teeth = asked_of(read(text=hot), steady.heat)["tooth_temperature"]
     other = teeth.figures["with_0.5_wetted"]
     band = f"computed with 0.3 of the gears wetted, a guess; {other:.0f} °C with 0.5"
     assert band in teeth.sentence
@@ -209,8 +223,6 @@ def test_an_oil_bath_above_its_flash_point_is_called_impossible() -> None:
     given = asked_of(read("gearbox.wetted_share=0.5", text=hot), steady.heat)
     assert given["tooth_temperature"].value == pytest.approx(other, abs=1e-3)
     assert "wetted" not in given["tooth_temperature"].sentence
-    known = asked_of(read("oil.flash_point=255 degC", text=hot), steady.heat)
-    assert words[:14] not in known["oil_temperature"].sentence
 
 
 # --- a sentence holds its number ----------------------------------------------------------

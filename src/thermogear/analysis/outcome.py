@@ -12,7 +12,7 @@ from thermogear.analysis.family import taken
 from thermogear.analysis.settle import JAMMED, LABELS, Rule, Settled, settle
 from thermogear.base.errors import InputError
 from thermogear.base.plan import Alive, Arrays, Variable, keep_going
-from thermogear.base.vocabulary import FASTER_RULE, STATUS, status_attributes
+from thermogear.base.vocabulary import FASTER_RULE, STATUS, moves, status_attributes
 from thermogear.dynamics.plane import plane_of
 from thermogear.dynamics.tables import Lanes
 
@@ -87,7 +87,7 @@ def outcome_arrays(settled: Settled, status: NDArray[np.int8], lanes: Models = N
     point = drawn(settled.point, lanes)
     done = status.copy()
     done[settled.label == LABELS.index("diverged")] = STATUS.index("diverged")
-    lost = (settled.label == LABELS.index("undecided")) & (status == 0)
+    lost = (settled.label == LABELS.index("undecided")) & moves(status)
     done[lost] = STATUS.index("not_converged")
     return {
         "label": settled.label,
@@ -140,8 +140,8 @@ def settle_with_status(
     """:func:`settle` for the lanes that move; the others carry their status as a label."""
     result = Settled.empty(len(lanes), keep=keep, dimension=start.shape[1])
     result.state[:] = start
-    result.label[status != 0] = JAMMED
-    moving = np.flatnonzero(status == 0)
+    moving = np.flatnonzero(moves(status))
+    result.label[~moves(status)] = JAMMED
     if moving.size:
         result.put(moving, settle(taken(lanes, moving), start[moving], rule, keep, alive))
     return result

@@ -125,6 +125,11 @@ class Lubricant:
     temperature_range: tuple[float, float] = (ZERO_CELSIUS - 20.0, ZERO_CELSIUS + 150.0)
     flash_point: float | None = None
 
+    @property
+    def hottest_bath(self) -> float:
+        """Temperature [K] above which no bath of it is kept: its flash point, else NO_BATH."""
+        return self.flash_point or NO_BATH
+
     def __post_init__(self) -> None:
         if self.kind not in LUBRICANT_KINDS:
             raise InputError(

@@ -32,12 +32,19 @@ class Quantity:
 UNDEFORMED, HOT = STATES = ("undeformed", "hot")
 """States of a run: the drawing's sizes with the oil of operation, and as hot as the case says."""
 
-STATUS = ("ok", "jammed", "not_converged", "diverged", "assumed")
+STATUS = ("ok", "jammed", "not_converged", "diverged", "assumed", "no_oil_bath")
 """Meaning of the values 0, 1, 2, ... of every ``status`` variable.
 
-Assumed: not computed, equal neighbours of a map spoke for it.
+Assumed: not computed, equal neighbours of a map spoke for it. No oil bath: computed, with an oil
+so hot that no bath of it is kept.
 """
-ASSUMED = STATUS.index("assumed")
+ASSUMED, NO_OIL_BATH = STATUS.index("assumed"), STATUS.index("no_oil_bath")
+
+
+def moves(status: ArrayLike) -> NDArray[np.bool_]:
+    """Where a point has a motion by its ``status``: ok, or computed without an oil bath."""
+    return np.isin(status, (0, NO_OIL_BATH))
+
 
 EDGE_CONTACT = ("no_edge_contact", "wheel_tip_corner", "pinion_tip_corner", "both_tip_corners")
 """Meaning of the values 0, 1, 2, 3 of every ``edge_contact``: the tip corner that carries load."""

@@ -21,7 +21,7 @@ from thermogear.base.errors import InputError, ThermogearError, nearest
 from thermogear.base.excitation import Excitations, Periodic
 from thermogear.base.parameters import NUMBERS
 from thermogear.base.plan import Alive, keep_going
-from thermogear.base.vocabulary import STATUS
+from thermogear.base.vocabulary import NO_OIL_BATH, STATUS, moves
 from thermogear.case.allowed import (
     LANE,
     gear_parameter,
@@ -344,7 +344,9 @@ class GearFamily:
 
     def _meshed(self, group: _Group) -> Excitations:
         """Springs, backlash and load of a group, without the kinematic error."""
-        found = self._cycled(group, EXCITES)
+        found = self._cycled(group, (*EXCITES, "oil_temperature"))
+        hot = found["oil_temperature"] > group.case.stated.lubricant.hottest_bath
+        found["status"] = np.where(hot & (found["status"] == 0), NO_OIL_BATH, found["status"])
         return excitations(replace(group.case, transmission_error=NO_ERROR), found)
 
     def _cycled(
@@ -472,7 +474,7 @@ class Tabulated:
         ranks = np.arange(error.shape[1])
         push = error * (ranks * frequency[:, None]) ** 2 / length[:, None]
         push[:, 0] = force / (stiffness * length)
-        status = np.maximum(a.status, b.status)
+        status = np.where(moves(a.status) & (b.status != 0), b.status, a.status)
         flat = Lanes(
             period=2.0 * np.pi / frequency,
             damping=mix(a.flat.damping, b.flat.damping),

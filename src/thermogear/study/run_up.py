@@ -37,6 +37,7 @@ from thermogear.base.plan import (
     stretches,
 )
 from thermogear.base.units import RPM
+from thermogear.base.vocabulary import moves
 from thermogear.case.case import GearCase, gear_case
 from thermogear.case.family import GearFamily, Tabulated
 from thermogear.case.points import Points
@@ -265,7 +266,7 @@ def _with_folds(plan: RunUpPlan, data: xr.Dataset) -> xr.Dataset:
     speeds = np.array(plan.speeds)
     for state in range(len(plan.states) if speeds.size > 1 else 0):
         here = data.isel(state=state).expand_dims(start=1)
-        if np.any(here["status"].values == 0):
+        if moves(here["status"].values).any():
             family = Tabulated.of(plan.family(state), speeds)
             found[state] = with_branches(here, family, "pinion_speed", plan.branch_period)
     return with_branches_of_states(data, found, "rad/s")
@@ -301,7 +302,7 @@ class _Run:
         self.leaps, self.early = [], 0
         first = not np.isfinite(self.at)
         before = self.state if self.period > 0 else None
-        if self.table is None or first or point.status[0] != 0:
+        if self.table is None or first or point.jammed[0]:
             self.period = 0
         else:
             self._walk(self.table, speed)

@@ -95,7 +95,23 @@ class Asked:
     def moves(self, point: int) -> bool:
         return STATUS[int(self.hot["status"][point])] == "ok"
 
+    def no_bath(self, point: int) -> str:
+        """Why no oil bath is kept at a point, in words; empty where one is, or no oil is known."""
+        oil, used = float(self.bodies[0][point]), self.case.stated.lubricant
+        if not oil > used.hottest_bath:
+            return ""
+        bound = "its flash point" if used.flash_point else "as its flash point is not given"
+        return f"no oil bath exists above {used.hottest_bath - ZERO_CELSIUS:.0f} °C, {bound}"
+
     def unsettled(self, point: int) -> str:
+        """Why nothing hot is stated of a point; empty where it is."""
+        if why := self.lost(point):
+            return why
+        hot = float(self.bodies[0][point]) - ZERO_CELSIUS
+        rests = f"it rests on an oil bath at {hot:.0f} °C that cannot exist"
+        return rests if self.no_bath(point) else ""
+
+    def lost(self, point: int) -> str:
         """Why nothing hot is known of a point; empty where it is."""
         if STATUS[int(self.hot["status"][point])] != "not_converged":
             return ""
@@ -188,7 +204,7 @@ class Asked:
     @cached_property
     def speeds(self) -> Speeds | None:
         """Motions over speed at the hardest point; None where it does not move."""
-        if not self.moves(self.hardest):
+        if not self.moves(self.hardest) or self.unsettled(self.hardest):
             return None
         self.progress("speeds", 0, 1)
         mesh = excitations(self.case, self._part([self.hardest]))
@@ -208,7 +224,8 @@ class Asked:
         """
         points = points_of(excitations(self.case, self._part(self.points)))
         slow = points.mesh_frequency < SLOWEST * points.rate
-        moving = np.flatnonzero((points.status == 0) & ~slow)
+        stated = np.array([not self.unsettled(point) for point in self.points])
+        moving = np.flatnonzero((points.status == 0) & ~slow & stated)
         if not moving.size:
             return {name: np.full((self.count, 1), np.nan) for name in VALUES}
         points = points.take(moving)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError, ThermogearError
 from thermogear.base.limits import FINE, LIMITS, LOOK, OPEN
-from thermogear.base.materials import NEVER, NO_BATH, Material
+from thermogear.base.materials import NEVER, Material
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.case.case import GearCase
 from thermogear.heat.transient import HOTTEST
@@ -85,14 +85,12 @@ def mesh(asked: Asked) -> Iterator[Answer]:
 
 def heat(asked: Asked) -> Iterator[Answer]:
     (oil, teeth), used = asked.bodies, asked.case.stated.lubricant
-    kind, flash_point = f"oil_{used.kind}", used.flash_point
-    burning = (flash_point or NO_BATH) - ZERO_CELSIUS
-    bound = "its flash point" if flash_point else "as its flash point is not given"
+    kind = f"oil_{used.kind}"
     held = "oil" in asked.case.gearbox.measured
     of_teeth = _tooth_limit(asked.case)
     for point in asked.points:
         warm, at = float(oil[point]) - ZERO_CELSIUS, asked.at(point)
-        why = asked.unsettled(point)
+        why = asked.lost(point)
         if why and not (held and np.isfinite(warm)):
             excess, figures = _excess(asked, point)
             cause = f"{why}; {excess}" if excess else why
@@ -101,16 +99,15 @@ def heat(asked: Asked) -> Iterator[Answer]:
             continue
         how, figures = ("given", {}) if held else _how(asked, point, 0)
         sentence = f"The oil is at {warm:.0f} °C ({how})."
-        if warm > burning:
+        if none := asked.no_bath(point):
             excess, more = _excess(asked, point)
-            sentence = f"{sentence[:-1]}: no oil bath exists above {burning:.0f} °C, {bound}"
-            sentence += f"; {excess}." if excess else "."
-            figures = {**figures, **more, "hottest_bath": burning}
+            sentence = f"{sentence[:-1]}: {none}" + (f"; {excess}." if excess else ".")
+            figures = {**figures, **more, "hottest_bath": used.hottest_bath - ZERO_CELSIUS}
         yield answer(
             HEAT, "oil_temperature", sentence, warm, limit=kind, at=at, figures=figures,
-            verdict=LOOK if warm > burning else "",
+            verdict=LOOK if none else "",
         )  # fmt: skip
-        if why:
+        if why := asked.unsettled(point):
             yield undecided(HEAT, "tooth_temperature", why, limit=of_teeth, at=at)
             continue
         hottest = float(teeth[point]) - ZERO_CELSIUS
@@ -222,6 +219,8 @@ def gap(asked: Asked) -> Iterator[Answer]:
 
 
 def _worst_moment(asked: Asked) -> Answer:
+    if (why := asked.unsettled(asked.hardest)) and not asked.lost(asked.hardest):
+        return undecided(GAP, "warm_up_backlash", why, limit="backlash")
     try:
         course = asked.warming
     except ThermogearError as error:
@@ -286,7 +285,7 @@ def film(asked: Asked) -> Iterator[Answer]:
                 FILM, "film", f"The least film parameter is {least:.2f} ({acting}).", least, at=at
             )
         torque, speed = (float(asked.hot[f"pinion_{n}"][point]) for n in ("torque", "speed"))
-        known = not unsettled or "oil" in case.gearbox.measured
+        known = not unsettled or ("oil" in case.gearbox.measured and not asked.no_bath(point))
         why = unrated(case, torque, float(oil[point])) if known else unsettled
         if why:
             for name in ("scuffing_margin", "scuffing_safety"):
