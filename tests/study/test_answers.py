@@ -374,6 +374,24 @@ def test_the_range_of_drawings_is_that_of_other_seeds() -> None:
     assert numbers(notice)[1:4] == [16.0, *shown]
 
 
+def test_a_jam_is_not_told_beyond_what_the_materials_bear() -> None:
+    """Where case-hardened steel would be tempered the margin ends; tempered at 540 degC it goes on
+    to the jam, and POM ends it at its own 140 degC."""
+    soft = ("gears.pinion.material=42CrMo4", "gears.wheel.material=42CrMo4")
+    hard, tough, mixed = (
+        asked_of(read(*changes), steady.gap)["jam_margin"]
+        for changes in ((), soft, ("gears.pinion.material=POM", "backlash.value=1 mm", *WHOLE))
+    )
+    assert hard.figures["borne"] == 180.0 < tough.figures["jam"] < 540.0
+    assert numbers(hard.sentence)[0] == 180.0
+    assert numbers(tough.sentence)[0] == round(tough.figures["jam"])
+    assert mixed.figures["borne"] == pytest.approx(140.0)
+    for one in (hard, tough, mixed):
+        assert one.value == one.figures["off"]
+        assert "jam" not in one.figures or "borne" not in one.figures
+    assert hard.value < tough.value
+
+
 def test_a_jam_is_told_by_the_pinion_however_warm_the_wheel_is() -> None:
     """Both gears warmer by the margin, no backlash is left; with backlash the margin is > 0."""
     bodies = ("pinion_addendum", "pinion_bore", "wheel_addendum", "wheel_bore")

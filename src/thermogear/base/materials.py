@@ -21,6 +21,9 @@ Floats = NDArray[np.float64]
 
 NEVER = 1e9
 """A tempering temperature [K] that nothing reaches."""
+DATA_HOLD = ZERO_CELSIUS + 204.0
+"""Up to where the fit of :class:`Material` to the modulus of carbon steel holds [K]; taken for all
+materials that have no limit of their own (ours)."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,6 +77,19 @@ class Material:
                 why="its modulus falls to nothing there",
             )
         return found
+
+    @property
+    def bears(self) -> tuple[float, str]:
+        """Temperature [K] up to which something may be said of it, and what ends there, in words.
+
+        The short-time limit of a polymer, the tempering of a steel; where no source has either,
+        :data:`DATA_HOLD`.
+        """
+        if self.name in POLYMER_LIMITS:
+            return POLYMER_LIMITS[self.name][1], "a gear bears no more for a short time"
+        if self.tempering_temperature < NEVER:
+            return self.tempering_temperature, "a gear was tempered there"
+        return DATA_HOLD, "the data of a gear's material hold no further"
 
     @property
     def thermal_contact_coefficient(self) -> float:

@@ -40,6 +40,23 @@ class Backlash:
             )
 
 
+def require_room(field: str, half: ArrayLike, pair: GearPair, *, of_half: float = 2.0) -> None:
+    """Refuse a ``half`` backlash [m] along the line of action that leaves teeth no thickness.
+
+    The teeth of both gears and the gap share a pitch, along the line of action the base pitch.
+    What is given as ``field`` is ``of_half`` times the half backlash.
+    """
+    room, most = 0.5 * pair.base_pitch * of_half, float(np.max(half)) * of_half
+    if most >= room:
+        raise InputError(
+            field,
+            f"{1e3 * most:.6g} mm",
+            allowed=f"< {1e3 * room:.4g} mm",
+            why="the teeth of both gears share the pitch with the gap and would have no thickness",
+            fix="a smaller backlash or a larger module",
+        )
+
+
 def cold_from_soaked(
     half: ArrayLike, rise: float, pair: GearPair, housing_expansion: float
 ) -> Floats:

@@ -20,7 +20,14 @@ from thermogear.base.errors import InputError, ValidityWarning, nearest, short
 from thermogear.base.excitation import Periodic
 from thermogear.base.materials import MATERIALS, Lubricant, Material
 from thermogear.base.units import ROUNDED, ZERO_CELSIUS
-from thermogear.case.backlash import Backlash, from_tolerances, from_value, recommended
+from thermogear.case.backlash import (
+    Backlash,
+    from_tolerances,
+    from_value,
+    normal_half,
+    recommended,
+    require_room,
+)
 from thermogear.case.fields import BODY
 from thermogear.case.schema import GearFile, GearTable
 from thermogear.case.units import rounding, shown
@@ -297,23 +304,23 @@ def cold_backlash(file: GearFile, pair: GearPair, housing: Material) -> Backlash
     table = file.backlash
     if table.tolerances is not None:
         parts = table.tolerances
-        return from_tolerances(
+        found = from_tolerances(
             pinion=parts.pinion_tooth_thickness,
             wheel=parts.wheel_tooth_thickness,
             distance=parts.centre_distance,
             pair=pair,
         )
-    rise = 0.0 if table.temperature is None else table.temperature - file.temperatures.reference
+        require_room("backlash.tolerances", found.most, pair)
+        return found
     if table.value is None:
-        return recommended(pair)
-    return from_value(
-        table.value,
-        str(table.direction),
-        str(table.extent),
-        rise,
-        pair,
-        housing.thermal_expansion,
-    )
+        found = recommended(pair)
+        require_room("backlash.value", found.half, pair)
+        return found
+    kind = (str(table.direction), str(table.extent))
+    half = float(normal_half(table.value, *kind, pair))
+    require_room("backlash.value", half, pair, of_half=table.value / half)
+    rise = 0.0 if table.temperature is None else table.temperature - file.temperatures.reference
+    return from_value(table.value, *kind, rise, pair, housing.thermal_expansion)
 
 
 def inertias(file: GearFile, pair: GearPair) -> tuple[tuple[float, float], str]:

@@ -30,6 +30,7 @@ from thermogear.case.allowed import (
     require_numbers,
     within,
 )
+from thermogear.case.backlash import require_room
 from thermogear.case.base import Case
 from thermogear.case.case import DimensionlessCase, GearCase, gear_case
 from thermogear.case.points import Points, excitations, on_numbers, points_of
@@ -210,6 +211,9 @@ class GearFamily:
         """
         for name, values in axes.items():
             within(name, gear_reader(name), values)
+        if "cold_half_backlash" in axes:
+            half = axes["cold_half_backlash"]
+            require_room("cold_half_backlash", half, self.case.pair, of_half=1.0)
         if "pinion_torque" in axes:
             warn_of_torque(self.case.pair, axes["pinion_torque"])
         read = {name: np.asarray(values) for name, values in axes.items() if name not in OF_A_POINT}

@@ -90,7 +90,7 @@ class Speeds:
             for a, b in zip(edges[::2], edges[1::2], strict=True)
         ]
 
-    def beside(self, speed: Floats, start: Floats) -> Floats:
+    def beside(self, speed: Floats, *, start: Floats) -> Floats:
         """States (speed, k, 2) of the motions within a step of each ``speed`` [rad/s].
 
         Where a speed has fewer than others, its own ``start`` (speed, 2) fills up.

@@ -232,7 +232,7 @@ class Asked:
         starts = starts_of(points)
         if self.speeds is not None:
             speed = points.mesh_frequency / self.case.pair.pinion.teeth
-            starts = np.concatenate([starts, self.speeds.beside(speed, starts[:, 0])], axis=1)
+            starts = np.concatenate([starts, self.speeds.beside(speed, start=starts[:, 0])], axis=1)
         motions = motions_along(points.flat, starts)
         lane = motions.lane
         figures = respond(points.take(lane), motions.state, RECORD, lines=False)

@@ -14,6 +14,7 @@ from thermogear.base.limits import FINE, LIMITS, LOOK, OPEN
 from thermogear.base.materials import NEVER, Material
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.case.case import GearCase
+from thermogear.gears.pair import GearPair
 from thermogear.heat.transient import HOTTEST
 from thermogear.mesh.scuffing_rating import Scuffing, flash_rating, integral_rating
 from thermogear.results.answer import Answer
@@ -200,22 +201,34 @@ def gap(asked: Asked) -> Iterator[Answer]:
         )
         jam = float(asked.hot["jam_temperature"][point]) - ZERO_CELSIUS
         hot = float(asked.pinion[point]) - ZERO_CELSIUS
+        most, why = borne_by(asked.case.pair)
+        borne = most - ZERO_CELSIUS
         if not np.isfinite(jam):
             free = left > 0.0
             sentence = f"No heat of the gears alone {'jams' if free else 'frees'} the pair."
             verdict = FINE if free else LOOK
             yield answer(GAP, "jam_margin", sentence, float("nan"), at=at, verdict=verdict)
             continue
+        beyond = hot < borne < jam
+        jams = "does not jam below {borne:.0f °C}" if beyond else "jams at {jam:.0f °C}"
+        why = f" ({why})" * beyond
+        margin = (borne if beyond else jam) - hot
         yield answer(
             GAP,
             "jam_margin",
-            "It jams with the pinion's teeth at {jam:.0f °C}, the wheel's changed alike and the "
-            f"housing as it is, {{off:.0f K}} {'above' if jam > hot else 'below'} what they have.",
-            jam - hot,
+            f"It {jams} of the pinion's teeth{why}, the wheel's changed alike and the "
+            f"housing as it is, {{off:.0f K}} {'above' if margin > 0.0 else 'below'} what they "
+            "have.",
+            margin,
             at=at,
-            figures={"jam": jam, "off": abs(jam - hot)},
+            figures={"borne" if beyond else "jam": borne if beyond else jam, "off": abs(margin)},
         )
     yield _worst_moment(asked)
+
+
+def borne_by(pair: GearPair) -> tuple[float, str]:
+    """Temperature [K] beyond which nothing is said of a jam, and why: of both gears the lower."""
+    return min(gear.material.bears for gear in (pair.pinion, pair.wheel))
 
 
 def _worst_moment(asked: Asked) -> Answer:
