@@ -96,20 +96,21 @@ class Asked:
         return STATUS[int(self.hot["status"][point])] == "ok"
 
     def no_bath(self, point: int) -> str:
-        """Why no oil bath is kept at a point, in words; empty where one is, or no oil is known."""
-        oil, used = float(self.bodies[0][point]), self.case.stated.lubricant
-        if not oil > used.hottest_bath:
+        """Why no oil bath is kept at a point; empty where one is, or no oil is known.
+
+        Words for the figure "hottest_bath".
+        """
+        used = self.case.stated.lubricant
+        if not self.bodies[0][point] > used.hottest_bath:
             return ""
         bound = "its flash point" if used.flash_point else "as its flash point is not given"
-        return f"no oil bath exists above {used.hottest_bath - ZERO_CELSIUS:.0f} °C, {bound}"
+        return f"no oil bath exists above {{hottest_bath:.0f °C}}, {bound}"
 
     def unsettled(self, point: int) -> str:
         """Why nothing hot is stated of a point; empty where it is."""
         if why := self.lost(point):
             return why
-        hot = float(self.bodies[0][point]) - ZERO_CELSIUS
-        rests = f"it rests on an oil bath at {hot:.0f} °C that cannot exist"
-        return rests if self.no_bath(point) else ""
+        return "it rests on an oil bath that cannot exist" if self.no_bath(point) else ""
 
     def lost(self, point: int) -> str:
         """Why nothing hot is known of a point; empty where it is."""
@@ -255,17 +256,19 @@ def answer(
     verdict: str = "",
     at: str = "",
     figures: Mapping[str, Any] = MappingProxyType({}),
+    units: Mapping[str, str] = MappingProxyType({}),
 ) -> Answer:
     """An answer held against its limit in the table.
 
     ``most`` is the bound where it hangs on the case, ``verdict`` overrules where it must. The
     ``figures`` stand in the ``sentence`` as :func:`~thermogear.base.display.worded` puts them, and
-    are kept beside it.
+    are kept beside it; ``units`` of those that it leaves out, or states without.
     """
     bound = LIMITS.get(limit or name, NO_LIMIT)
     if most is not None:
         bound = replace(bound, most=most)
-    words, units = worded(sentence, figures)
+    words, told = worded(sentence, figures)
+    kept = {name: number for name, number in figures.items() if not isinstance(number, str)}
     return Answer(
         name=name,
         question=question,
@@ -276,8 +279,8 @@ def answer(
         source=bound.source,
         verdict=verdict or bound.verdict(value),
         operating=at,
-        figures={name: number for name, number in figures.items() if not isinstance(number, str)},
-        units=units,
+        figures=kept,
+        units={name: told.get(name) or units.get(name, "") for name in kept},
     )
 
 

@@ -31,6 +31,9 @@ SPEEDS = "At which speeds does it resonate?"
 LOADS, ERROR = "How large is the dynamic factor?", "How large is the transmission error?"
 
 LOOKED = "speed looked at, {looked[0]:~3 rpm} to {looked[1]:~3 rpm}"
+OF_SPEEDS = {"ranges": "rpm", "looked": "rpm", "there": "rpm", "strong": "rpm", "off": "%",
+             "most": "%"}  # fmt: skip
+"""Units of figures that not every sentence states."""
 DRAWINGS = 16
 """Drawings of flanks of one class whose errors are told."""
 POSITIONS = 60
@@ -81,7 +84,7 @@ def speeds(asked: Asked) -> Iterator[Answer]:
             words = f"{sentence[0].lower()}{sentence[1:]}"
             sentence = f"Not decided at its own speeds, too slow to vibrate; faster, {words}"
         value = 100.0 * float(np.mean(apart)) if apart.size else float("nan")
-        yield answer(SPEEDS, name, f"{sentence}.", value, figures=figures)
+        yield answer(SPEEDS, name, f"{sentence}.", value, figures=figures, units=OF_SPEEDS)
     words, figures = told(found.several, ends=ends)
     several = found.within(asked.case.stated.speed, ranges=found.several) | moves[:, 1:].any(axis=1)
     sentence = (
@@ -93,7 +96,7 @@ def speeds(asked: Asked) -> Iterator[Answer]:
         sentence += "; two or more at {points} of {of} operating points"
         figures |= {"points": int(several.sum()), "of": several.size}
     value = 2.0 if several.any() else 1.0
-    yield answer(SPEEDS, "coexisting", f"{sentence}.", value, figures=figures)
+    yield answer(SPEEDS, "coexisting", f"{sentence}.", value, figures=figures, units=OF_SPEEDS)
 
 
 def _resonance(asked: Asked, found: Speeds, main: float) -> Answer:
@@ -137,6 +140,7 @@ def _resonance(asked: Asked, found: Speeds, main: float) -> Answer:
         f"{words}; {where}.",
         value,
         figures=figures,
+        units=OF_SPEEDS,
     )
 
 
@@ -304,7 +308,8 @@ def _relief(asked: Asked) -> Answer:
         if gain >= 1.0
         else "No tip relief of both gears makes it smaller, hot: the flanks themselves decide."
     )
-    return answer(ERROR, "relief", sentence, gain, at=asked.at(point), figures=figures)
+    units = dict.fromkeys(figures, "µm")
+    return answer(ERROR, "relief", sentence, gain, at=asked.at(point), figures=figures, units=units)
 
 
 def _swing(

@@ -117,7 +117,7 @@ def heat(asked: Asked) -> Iterator[Answer]:
         yield answer(
             HEAT,
             "tooth_temperature",
-            f"The teeth are at {hottest:.0f} °C ({how}), the flash adds up to {flash:.0f} K.",
+            f"The teeth are at {hottest:.0f} °C ({how}), the flash adds up to {{flash:.0f K}}.",
             hottest,
             limit=of_teeth,
             at=at,
@@ -133,10 +133,9 @@ def _how(asked: Asked, point: int, body: int) -> tuple[str, dict[str, float]]:
     if not np.isfinite(kelvin):
         return "computed", {}
     share = asked.case.gearbox.surroundings.wetted_share[0]
-    other = kelvin - ZERO_CELSIUS
-    words = f"computed with {share:g} of the gears wetted, a guess; {other:.0f} °C with"
-    figures = {"wetted": share, "more_wetted": MOST_WETTED}
-    return f"{words} {MOST_WETTED:g}", {f"with_{MOST_WETTED:g}_wetted": other, **figures}
+    words = "computed with {wetted:g} of the gears wetted, a guess; {wetter:.0f °C} with"
+    figures = {"wetted": share, "more_wetted": MOST_WETTED, "wetter": kelvin - ZERO_CELSIUS}
+    return f"{words} {{more_wetted:g}}", figures
 
 
 def _excess(asked: Asked, point: int) -> tuple[str, dict[str, float]]:
@@ -147,15 +146,10 @@ def _excess(asked: Asked, point: int) -> tuple[str, dict[str, float]]:
     if not made > carried:
         return "", {}
     words = (
-        f"{made:.3g} kW are made and the bath carries {carried:.3g} kW with oil at "
-        f"{WARMEST_USUAL - ZERO_CELSIUS:.0f} °C: give oil.temperature, gearbox.oil_flow or "
-        "gearbox.housing_area"
+        "{made:.3g kW} are made and the bath carries {carried:.3g kW} with oil at "
+        "{carried_at:.0f °C}: give oil.temperature, gearbox.oil_flow or gearbox.housing_area"
     )
-    return words, {
-        "made_kW": made,
-        "carried_kW": carried,
-        "carried_at": WARMEST_USUAL - ZERO_CELSIUS,
-    }
+    return words, {"made": made, "carried": carried, "carried_at": WARMEST_USUAL - ZERO_CELSIUS}
 
 
 def _tooth_limit(case: GearCase) -> str:
@@ -188,16 +182,17 @@ def gap(asked: Asked) -> Iterator[Answer]:
         left = 2e6 * float(asked.hot["least_half_backlash"][point])
         nominal = 2e6 * float(asked.hot["cold_half_backlash"][point])
         parts = {n: 2e6 * float(asked.hot[f"half_backlash_by_{n}"][point]) for n in PARTS}
-        named = [f"{bored[n]} {v:+.1f} µm" for n, v in parts.items() if abs(v) >= 0.05]
+        named = [f"{bored[n]} {{{n}:+.1f µm}}" for n, v in parts.items() if abs(v) >= 0.05]
         yield answer(
             GAP,
             "backlash",
-            f"Of {nominal:.1f} µm nominal, {left:.1f} µm are left hot along the line of action"
+            f"Of {{nominal:.1f µm}} nominal, {left:.1f} µm are left hot along the line of action"
             f"{': ' * bool(named)}{', '.join(named)}.",
             left,
             at=at,
             verdict=FINE if left > 0.0 else LOOK,
             figures={"nominal": nominal, **parts},
+            units=dict.fromkeys(parts, "µm"),
         )
         jam = float(asked.hot["jam_temperature"][point]) - ZERO_CELSIUS
         hot = float(asked.pinion[point]) - ZERO_CELSIUS
@@ -244,7 +239,7 @@ def _worst_moment(asked: Asked) -> Answer:
     held = " and ".join(name.replace("_", " ") for name in course.held)
     how = f" with {held} held" if held else ""
     how += "" if asked.case.computed else " by the heat balance"
-    words = f"Warming up from {start:.0f} °C{how} it is"
+    words = f"Warming up from {{start:.0f °C}}{how} it is"
     end = float(course.time[-1]) / 60.0
     steady_known = course.course.settled or asked.case.computed
     if course.course.too_hot or asked.unsettled(asked.hardest) or not steady_known:
@@ -253,26 +248,26 @@ def _worst_moment(asked: Asked) -> Answer:
             if course.course.too_hot or asked.unsettled(asked.hardest)
             else "it is not steady by then"
         )
-        burnt = f"until a node reaches {HOTTEST - ZERO_CELSIUS:.0f} °C after"
+        burnt = "until a node reaches {hottest:.0f °C} after"
         return answer(
             GAP, "warm_up_backlash",
-            f"{words} at least {least:.0f} µm {burnt if course.course.too_hot else 'within'} "
-            f"{end:.3g} min; {unknown}.",
+            f"{words} at least {{least:.0f µm}} {burnt if course.course.too_hot else 'within'} "
+            f"{{end:.3g min}}; {unknown}.",
             np.nan if least > 0.0 else least,
             limit="backlash", at=at, verdict=OPEN if least > 0.0 else LOOK,
-            figures={"least": least, "start": start, "end_minutes": end}
+            figures={"least": least, "start": start, "end": end}
             | ({"hottest": HOTTEST - ZERO_CELSIUS} if course.course.too_hot else {}),
         )  # fmt: skip
     sentence = f"{words} never less than when steady, {least:.0f} µm."
     if least < steady - 0.005 * abs(steady) - 0.05:
         sentence = (
-            f"{words} least after {worst.time / 60.0:.3g} min: {least:.0f} µm, {steady:.0f} µm "
-            "when steady."
+            f"{words} least after {{after:.3g min}}: {least:.0f} µm, {{steady:.0f µm}} when steady."
         )
     return answer(
         GAP, "warm_up_backlash", sentence, least,
         limit="backlash", at=at, verdict=FINE if least > 0.0 else LOOK,
-        figures={"steady": steady, "start": start, "minutes": worst.time / 60.0},
+        figures={"steady": steady, "start": start, "after": worst.time / 60.0},
+        units={"steady": "µm", "after": "min"},
     )  # fmt: skip
 
 
