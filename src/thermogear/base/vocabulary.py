@@ -276,7 +276,9 @@ QUANTITIES: dict[str, Quantity] = {
     "orbit_period": Quantity("1", "mesh periods after which the orbit closes", "n"),
     "multiplier_real": Quantity("1", "Floquet multiplier over the orbit, real part", "Re μ"),
     "multiplier_imag": Quantity("1", "Floquet multiplier over the orbit, imaginary part", "Im μ"),
-    "multiplier_modulus": Quantity("1", "largest Floquet multiplier, modulus", "|μ|"),
+    "multiplier_modulus": Quantity(
+        "1", "largest Floquet multiplier of an orbit, modulus; chaos has none", "|μ|"
+    ),
     "lyapunov_exponent": Quantity("1", "largest Lyapunov exponent, per ω_n t", "λ₁"),
     "lyapunov_error": Quantity("1", "its standard error (batch means)", "s(λ₁)"),
     "followed_periods": Quantity("1", "mesh periods each start was followed in chaos, 0: no chaos"),
@@ -308,8 +310,16 @@ QUANTITIES: dict[str, Quantity] = {
 }
 
 
-def attributes(name: str) -> dict[str, str]:
-    """units, long_name, symbol and source of a stored name, without empty entries."""
+NO_COUNT: dict[str, int] = {"missing_value": 0}
+"""CF attribute of counts from 1 on: a stored 0 means that there is none; files leave it out."""
+_COUNTS = ("orbit_period", "followed_periods", "followed_starts")
+
+
+def attributes(name: str) -> dict[str, Any]:
+    """units, long_name, symbol and source of a stored name, without empty entries.
+
+    Of a count :data:`NO_COUNT` too.
+    """
     if name not in QUANTITIES:
         raise InputError("quantity", repr(name), fix=nearest(name, QUANTITIES))
     quantity = QUANTITIES[name]
@@ -319,7 +329,8 @@ def attributes(name: str) -> dict[str, str]:
         "symbol": quantity.symbol,
         "source": quantity.source,
     }
-    return {key: value for key, value in pairs.items() if value}
+    kept = {key: value for key, value in pairs.items() if value}
+    return kept | NO_COUNT if name in _COUNTS else kept
 
 
 def status_attributes() -> dict[str, Any]:

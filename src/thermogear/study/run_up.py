@@ -37,7 +37,7 @@ from thermogear.base.plan import (
     stretches,
 )
 from thermogear.base.units import RPM
-from thermogear.base.vocabulary import moves
+from thermogear.base.vocabulary import NO_COUNT, moves
 from thermogear.case.case import GearCase, gear_case
 from thermogear.case.family import GearFamily, Tabulated
 from thermogear.case.points import Points
@@ -160,7 +160,10 @@ class RunUpPlan:
             found[f"end_{name}"] = real("state carried on", "1")
         found["end_speed"] = real("speed of the state carried on", "rad/s")
         found["end_period"] = Variable(
-            dims, "int32", 0, {"long_name": "periods of the orbit that is followed, 0: none"}
+            dims,
+            "int32",
+            0,
+            {"long_name": "periods of the orbit that is followed, 0: none"} | NO_COUNT,
         )
         found |= {name: real(*told, "leap") for name, told in LEAP.items()}
         early = {"long_name": "1: a run in these steps alone leaves its branch before this speed"}

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from thermogear.analysis.side_by_side import motions_along
 from thermogear.base.excitation import Excitations
 from thermogear.base.units import RPM
-from thermogear.base.vocabulary import label
+from thermogear.base.vocabulary import NO_COUNT, label
 from thermogear.case.points import Points, points_of
 from thermogear.case.response import Recording, respond
 
@@ -74,7 +74,9 @@ class Speeds:
         speed = {
             "pinion_speed": (("motion",), self.columns["pinion_speed"], "rad/s", "pinion speed")
         }
-        return label(found, speed, {"own_speeds": self.own})
+        data = label(found, speed, {"own_speeds": self.own})
+        data["period"].attrs |= NO_COUNT
+        return data
 
     @property
     def grid(self) -> Floats:
