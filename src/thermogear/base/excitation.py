@@ -322,9 +322,7 @@ def _asked(
 
 def padded(rows: NDArray[Any], width: int) -> NDArray[Any]:
     """``rows`` with columns of 0 up to ``width``."""
-    if rows.shape[1] == width:
-        return rows
-    return np.pad(rows, ((0, 0), (0, width - rows.shape[1])))
+    return rows if rows.shape[1] == width else np.pad(rows, ((0, 0), (0, width - rows.shape[1])))
 
 
 def fourier_rows(samples: Floats, harmonics: int) -> NDArray[np.complex128]:

@@ -298,8 +298,7 @@ def spelled(name: str, known: Collection[str]) -> str | None:
 
     if name in known:
         return name
-    names = {bare(one): one for one in known}
-    return names.get(bare(name), ALSO.get(bare(name)))
+    return {bare(one): one for one in known}.get(bare(name), ALSO.get(bare(name)))
 
 
 _PUBLIC_SET = (

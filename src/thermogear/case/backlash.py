@@ -13,8 +13,6 @@ from thermogear.gears.backlash import backlash_span, normal_from_circumferential
 from thermogear.gears.backlash_standards import recommended_normal_backlash
 from thermogear.gears.pair import GearPair
 
-Floats = NDArray[np.float64]
-
 
 @dataclass(frozen=True, kw_only=True)
 class Backlash:
@@ -59,7 +57,7 @@ def require_room(field: str, half: ArrayLike, pair: GearPair, *, of_half: float 
 
 def cold_from_soaked(
     half: ArrayLike, rise: float, pair: GearPair, housing_expansion: float
-) -> Floats:
+) -> NDArray[np.float64]:
     """Half backlash [m] at T0 of a pair: ``half`` [m] with everything ``rise`` [K] above T0.
 
     b_cold = b + [lambda_1 rho_C1 + lambda_2 rho_C2 - lambda_h a_w sin(alpha_w)] rise: uniform
@@ -75,7 +73,9 @@ def cold_from_soaked(
     return np.asarray(half, dtype=float) + moved * rise
 
 
-def normal_half(value: ArrayLike, direction: str, extent: str, pair: GearPair) -> Floats:
+def normal_half(
+    value: ArrayLike, direction: str, extent: str, pair: GearPair
+) -> NDArray[np.float64]:
     """Half backlash [m] along the line of action of a backlash ``value`` [m] of a named kind."""
     given = np.asarray(value, dtype=float)
     normal = given if direction == "normal" else normal_from_circumferential(given, pair)

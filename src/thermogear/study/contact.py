@@ -27,7 +27,6 @@ from thermogear.study.relief import EDGE_WORDS, Seen, one_point
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 KIND = "contact"
 PARTS = (0.1, 0.25, 0.5, 1.0, 2.0)
 """Loads, as parts of the case's greatest, where none are named."""
@@ -140,7 +139,9 @@ def loaded_survey(
     )
 
 
-def _solve(case: GearCase, model: MeshModel, operating: Operating, moments: Floats) -> xr.Dataset:
+def _solve(
+    case: GearCase, model: MeshModel, operating: Operating, moments: NDArray[np.float64]
+) -> xr.Dataset:
     """The loaded contact over (temperature, load, mesh_phase)."""
     hot = HotPair(case.pair, operating, model)
     first, second = (
@@ -185,8 +186,7 @@ def apart(point: Operating, difference: float) -> Operating:
         for name, kelvin in t.bodies.items()
         if name != "housing"
     }
-    moved = replace(t, **gears)
-    return replace(point, temperatures=moved)
+    return replace(point, temperatures=replace(t, **gears))
 
 
 def _notices(

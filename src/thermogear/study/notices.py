@@ -21,8 +21,6 @@ from thermogear.results.result import Notice, Result, stored_dataset
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
-
 
 def finished(data: xr.Dataset, title: str = "") -> Result:
     """What a store of long work holds, with what should be known beside it."""
@@ -180,7 +178,7 @@ def _film_beyond_oil(case: GearCase, groups: Mapping[str, xr.Dataset]) -> Iterat
             )
 
 
-def _left_out(case: GearCase, here: xr.Dataset, viscosity: Floats) -> list[str]:
+def _left_out(case: GearCase, here: xr.Dataset, viscosity: NDArray[np.float64]) -> list[str]:
     """Laws of oiled contacts outside their range, with the part of the path [%]."""
     pair = case.pair
     values: dict[str, ArrayLike | None] = {

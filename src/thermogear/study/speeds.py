@@ -103,13 +103,6 @@ class Speeds:
         there = np.take_along_axis(near, nearest, axis=1)[..., None]
         return np.where(there, self.column("state")[nearest], start[:, None])
 
-    def within(self, speed: Floats, *, ranges: list[tuple[float, float]]) -> NDArray[np.bool_]:
-        """Which of ``speed`` [rad/s] lie in one of ``ranges``, half a step of the look allowed."""
-        ends = np.reshape(ranges, (-1, 2)) * (1.0 + 0.5 * self.step * np.array([-1.0, 1.0]))
-        return np.asarray(
-            ((speed[:, None] >= ends[:, 0]) & (speed[:, None] <= ends[:, 1])).any(axis=1)
-        )
-
     @property
     def lost(self) -> list[tuple[float, float]]:
         """Ranges [rad/s] in which the flanks part."""

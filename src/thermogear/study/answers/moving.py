@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
 from thermogear.base.limits import FINE, LOAD_SHARE, PARTING
@@ -24,8 +23,6 @@ from thermogear.mesh.thermal import HotPair
 from thermogear.results.answer import Answer
 from thermogear.study.answers.asked import Asked, answer, undecided
 from thermogear.study.speeds import LOST, Speeds, told
-
-Floats = NDArray[np.float64]
 
 SPEEDS = "At which speeds does it resonate?"
 LOADS, ERROR = "How large is the dynamic factor?", "How large is the transmission error?"
@@ -56,12 +53,9 @@ def speeds(asked: Asked) -> Iterator[Answer]:
     yield _resonance(asked, found, float(natural) / asked.case.pair.pinion.teeth)
     speed, share = found.column("pinion_speed"), found.column("contact_loss_share")
     moves = np.isfinite(asked.motion["contact_loss_share"])
-    moving = moves[:, 0]
-    own = asked.case.stated.speed[moving]
     # a motion beside the one from rest counts too: a run may end on it
-    loss, force = (asked.motion[n][moving] for n in ("contact_loss_share", "mesh_force_min"))
-    parted = (loss > LOST).any(axis=1) | found.within(own, ranges=found.lost)
-    struck = (force < 0.0).any(axis=1) | found.within(own, ranges=found.back)
+    loss, force = (asked.motion[n][moves[:, 0]] for n in ("contact_loss_share", "mesh_force_min"))
+    parted, struck = (loss > LOST).any(axis=1), (force < 0.0).any(axis=1)
     ends = (float(speed.min()), float(speed.max()))
     for name, ranges, happens, never, apart in (
         ("contact_loss", found.lost,
@@ -86,7 +80,7 @@ def speeds(asked: Asked) -> Iterator[Answer]:
         value = 100.0 * float(np.mean(apart)) if apart.size else float("nan")
         yield answer(SPEEDS, name, f"{sentence}.", value, figures=figures, units=OF_SPEEDS)
     words, figures = told(found.several, ends=ends)
-    several = found.within(asked.case.stated.speed, ranges=found.several) | moves[:, 1:].any(axis=1)
+    several = moves[:, 1:].any(axis=1)
     sentence = (
         f"Two motions exist {words}: it may jump there, up and down elsewhere"
         if found.several

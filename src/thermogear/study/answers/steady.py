@@ -7,7 +7,6 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError, ThermogearError
 from thermogear.base.limits import FINE, LIMITS, LOOK, OPEN
@@ -26,8 +25,6 @@ from thermogear.study.answers.asked import (
     undecided,
 )
 from thermogear.study.scuffing import load_stage, not_steel, steel
-
-Floats = NDArray[np.float64]
 
 MESH, HEAT, GAP = "Does it mesh?", "How hot does it run?", "What is left of the backlash?"
 FILM = "Is there a film, does it scuff?"
