@@ -46,7 +46,7 @@ from same_digest import Array, Digest, Stored, digest, values
 ROOT = Path(__file__).parents[1]
 STORE = ROOT / ".same"
 REFERENCE = "ced7e69"
-RENAMED: dict[str, str] = {}
+RENAMED: dict[str, str] = {"*radial_clearance*": "*radial_internal_clearance*"}
 """Stored things that have another name now: path of the reference to path of this tree.
 
 A path is ``case/file:group/variable``; dimensions and columns of tables have such paths too. A

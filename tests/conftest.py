@@ -20,10 +20,11 @@ import pytest
 from markupsafe import Markup
 from numpy.typing import ArrayLike
 
-from plain_numbers import told_as_text
+from plain_numbers import told_as_text, told_in_csv
 from thermogear import Gear, GearPair, Operating, Temperatures, __version__
 from thermogear.base.materials import ZERO_CELSIUS, lubricant
-from thermogear.results import files
+from thermogear.results import files, tables
+from thermogear.views import csv_files
 
 if TYPE_CHECKING:
     from thermogear.mesh.warm_up import WarmUp
@@ -43,6 +44,22 @@ def _plain(summary: dict[str, Any]) -> str:
 
 
 files.json_text = _plain
+
+
+def _scanned(make: Callable[..., str]) -> Callable[..., str]:
+    """A maker of CSV texts, all of which are looked through."""
+
+    def made(*args: Any, **more: Any) -> str:
+        text = make(*args, **more)
+        assert not (found := list(told_in_csv(text))), found[:5]
+        return text
+
+    return made
+
+
+tables.csv_text = _scanned(tables.csv_text)
+csv_files.table_text = _scanned(csv_files.table_text)
+csv_files._text = _scanned(csv_files._text)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -1,7 +1,8 @@
-"""Numbers told as texts in what is meant for scripts."""
+"""Numbers told as texts, and numbers that stand for none, in what is meant for scripts."""
 
 from __future__ import annotations
 
+import csv
 import re
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -46,3 +47,31 @@ def told_as_text(value: Any, key: str = "") -> Iterator[str]:
             yield from told_as_text(one, f"{key}[]")
     elif isinstance(value, str) and SHOWN.fullmatch(value.strip()):
         yield f"{key} {value!r}"
+
+
+SIGNS = re.compile(r"direction|sign|rotation")
+"""Columns of signs, whose -1 is a number."""
+
+
+def told_in_csv(text: str) -> Iterator[str]:
+    """Column and cell of every number of a CSV text that has a unit or a power of ten in words,
+    and of every -1 or -2 in a column of whole numbers that has no other below 0.
+
+    Of a long table some 200 rows are looked at."""
+    lines = text.splitlines()
+    rows = list(csv.reader([*lines[:1], *lines[1 :: 1 + len(lines) // 200]]))
+    for head, *cells in zip(*rows, strict=True) if rows else ():
+        known = [cell.strip() for cell in cells if cell.strip()]
+        numbers = [float(cell) for cell in known if _plain(cell)]
+        for cell in known:
+            if not _plain(cell) and SHOWN.fullmatch(cell):
+                yield f"{head}: {cell!r}"
+        whole = len(numbers) == len(known) and all(one == int(one) for one in numbers)
+        mixed = bool(numbers) and -2.0 <= min(numbers) < 0.0 <= max(numbers)
+        if whole and mixed and not SIGNS.search(head):
+            yield f"{head}: {min(numbers):g} among {sorted(set(numbers))[:5]}"
+
+
+def _plain(cell: str) -> bool:
+    """Whether a cell is a finite number as a program reads it."""
+    return re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?", cell) is not None

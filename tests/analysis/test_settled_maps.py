@@ -235,8 +235,12 @@ def test_chaos_is_told_with_its_length_and_its_starts() -> None:
 def test_starts_that_end_apart_decide_nothing() -> None:
     ends = [Motion(name=name, period=n, reason="", state=np.zeros(1), discarded=9)
             for name, n in (("period-1", 1), ("period-2", 2))]  # fmt: skip
-    wild = replace(ends[0], name="chaotic", period=0, lyapunov=0.1)
+    proof = {"lyapunov": 0.1, "batches": np.full(8, 0.1), "exponents": np.array([0.1, 0.0])}
+    wild = replace(ends[0], name="chaotic", period=0, **proof)
     found = judged(wild, [End(ends[0], 9), End(ends[1], 20), End(None, 30)])
+    # nothing of what proved one of them is kept
+    assert found.batches.size == found.exponents.size == 0
+    assert found.state is wild.state
     assert (found.name, found.period, found.discarded) == ("undecided", 0, 30)
     assert numbers(found.reason)[-1] == 3.0
     assert np.isnan(found.lyapunov)

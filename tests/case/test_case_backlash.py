@@ -13,7 +13,9 @@ from thermogear.case.backlash import (
     cold_from_soaked,
     from_tolerances,
     from_value,
+    require_room,
 )
+from thermogear.case.case import load_case
 from thermogear.gears.backlash import (
     normal_from_circumferential,
     normal_from_distance,
@@ -88,6 +90,51 @@ def test_tolerances_give_middle_and_corners() -> None:
     sine = math.sin(PAIR.operating_pressure_angle)
     assert given.most == pytest.approx(0.5 * (240e-6 * cosine + 2 * 20e-6 * sine), rel=1e-4)
     assert given.least == pytest.approx(0.5 * (140e-6 * cosine - 2 * 20e-6 * sine), rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("kind", "room"),
+    [(("normal", "total"), PAIR.base_pitch), (("normal", "half"), 0.5 * PAIR.base_pitch),
+     (("circumferential", "total"), PAIR.base_pitch / math.cos(PAIR.operating_pressure_angle))],
+)  # fmt: skip
+def test_a_gap_as_wide_as_the_pitch_is_refused(kind: tuple[str, str], room: float) -> None:
+    """Teeth and gap share the base pitch on the line of action, its own on the rolling circle."""
+    text = """[gears]
+module = "5 mm"
+face_width = "50 mm"
+[gears.pinion]
+teeth = 25
+profile_shift = 0.3
+[gears.wheel]
+teeth = 75
+profile_shift = -0.1
+[oil]
+name = "ISO VG 100"
+[operating]
+speed = "1000 rpm"
+torque = "100 N m"
+[backlash]
+value = "{value!r} mm"
+direction = "{kind[0]}"
+extent = "{kind[1]}"
+"""
+    load_case(text.format(value=999.0 * room, kind=kind))
+    allowed = rf"backlash.value: .*got {1001.0 * room:.6g} mm; allowed < {1e3 * room:.4g} mm; "
+    with pytest.raises(InputError, match=allowed):
+        load_case(text.format(value=1001.0 * room, kind=kind))
+    thin = "\n".join(
+        f'{name} = "{size} mm"'
+        for name, size in (
+            ("pinion_tooth_thickness", -8), ("wheel_tooth_thickness", -8), ("centre_distance", 0)
+        )
+    )  # fmt: skip
+    wide = text.partition("[backlash]")[0] + f"[backlash.tolerances]\n{thin}\n"
+    with pytest.raises(InputError, match=r"backlash.tolerances: got .* mm; allowed < 14.76 mm; "):
+        load_case(wide)
+    with pytest.raises(
+        InputError, match=r"cold_half_backlash: got 7\.3818 mm; allowed < 7\.38 mm;"
+    ):
+        require_room("cold_half_backlash", [1e-4, 0.5001 * PAIR.base_pitch], PAIR, of_half=1.0)
 
 
 def test_thick_teeth_are_refused() -> None:

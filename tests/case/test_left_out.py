@@ -15,6 +15,7 @@ from thermogear import InputError, load_case
 from thermogear.base.toml import overridden, pairs, tables, written
 from thermogear.case.case import GearCase, gear_case
 from thermogear.case.examples import EXAMPLES, example_text
+from thermogear.case.units import KINDS
 from thermogear.front.cli import main
 from thermogear.study.case_runs import CaseRuns, overrides_of
 
@@ -95,9 +96,23 @@ def test_a_case_that_runs_again_knows_what_is_left_out() -> None:
 def test_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "own.toml"
     file.write_text(OWN_PAIR, encoding="utf-8")
-    assert main(["check", str(file), "--json", "--set", "dynamics.damping_ratio="]) == 0
-    told = {one["field"] for one in json.loads(capsys.readouterr().out)["assumptions"]}
-    assert "dynamics.damping_ratio" in told
+    left = "dynamics.damping_ratio=", "backlash=", "gears.wheel.profile_shift="
+    words = [word for one in left for word in ("--set", one)]
+    assert main(["check", str(file), "--json", *words]) == 0
+    rows = {one["field"]: one for one in json.loads(capsys.readouterr().out)["assumptions"]}
+    assert "dynamics.damping_ratio" in rows
+    # a unit is one, counts are whole, real numbers are real
+    gap = rows["backlash.value"]
+    assert (gap["unit"], gap["note"]) == ("mm", "total, normal")
+    for name, row in rows.items():
+        assert row["unit"] in ("", "um", "l/min", *(kind.shown for kind in KINDS.values()))
+        counted = name.startswith(("grid.", "flanks.")) or (
+            name.startswith("simulation.") and name != "simulation.initial_state"
+        )
+        several = row["value"] if isinstance(row["value"], list) else [row["value"]]
+        numbers = [one for one in several if isinstance(one, int | float)]
+        assert all(isinstance(one, int) == counted for one in numbers), row
+    assert rows["gears.wheel.profile_shift"]["value"] == 0.0
     assert main(["check", str(file), "--set", "dynamics.damping="]) == 2
     said = capsys.readouterr().err
     assert "dynamics.damping: got nothing to leave out; [dynamics] of the file" in said

@@ -44,6 +44,43 @@ def test_a_distance_that_misses_by_the_rounding_of_its_digits_is_taken(
     assert said == ([words] if given < tight else [])
 
 
+@pytest.mark.parametrize(
+    ("module", "distance", "taken"),
+    [
+        ("3.175 mm", "96.8 mm", True),  # 96.8375 mm
+        ("3.175 mm", "3.8 in", True),  # 3.8125 in, half a unit is 0.05 in
+        ("3.175 mm", "96.7 mm", False),  # more than half a unit of its last digit
+        ("3.175 mm", "0.096 m", False),  # the tips hit the roots 0.79 mm below 96.8375 mm
+        ("3.175 mm", "9e1 mm", False),
+        ("10.01 mm", "305 mm", True),  # 305.305 mm
+        ("0.5 mm", "15 mm", False),  # 15.25 mm: the tips hit the roots at 15.125 mm
+    ],
+)
+def test_the_digits_of_a_distance_decide_as_long_as_the_tips_clear_the_roots(
+    module: str, distance: str, taken: bool
+) -> None:
+    text = f"""[gears]
+module = "{module}"
+face_width = "10 mm"
+centre_distance = "{distance}"
+[gears.pinion]
+teeth = 20
+[gears.wheel]
+teeth = 41
+[oil]
+name = "ISO VG 100"
+[operating]
+speed = "100 rpm"
+torque = "0.1 N m"
+"""
+    if not taken:
+        with pytest.raises(GeometryError, match=r"centre_distance: .*the teeth would wedge"):
+            load_case(text)
+        return
+    pair = gear_case(load_case(text)).pair
+    assert pair.centre_distance == pair.pinion.pitch_radius + pair.wheel.pitch_radius
+
+
 def test_undercut_is_told_with_how_far_below_the_flank_in_use_it_ends() -> None:
     case = load_case("bgu-17-38", ["gears.pinion.profile_shift=0"])
     found = {(one.group, one.name): one.value for one in facts(case)}

@@ -52,8 +52,8 @@ def test_undercut_that_shortens_the_contact_is_taken_on_request(
     assert main(["new", *options(few), "-o", str(path)]) == 2
     assert capsys.readouterr().err == (
         "error: gears.pinion.profile_shift: got 0 for 13 teeth; undercut takes 1.87468 mm of the "
-        "path of contact; no undercut from x = 0.240; use x >= 0.24 or >= 18 teeth, or "
-        "allow_undercut (`new --allow-undercut`) to have the rest of the path\n"
+        "path of contact; use x >= 0.16 or >= 16 teeth, where what is cut lies below the flank "
+        "in use, or allow_undercut (`new --allow-undercut`) to have the rest of the path\n"
     )
     assert not path.exists()
     text, case = written(path, few | {"--allow-undercut": []})

@@ -270,8 +270,8 @@ class TestRefusals:
     def test_undercut_names_shift_and_teeth(self) -> None:
         assert message(lambda: GearPair(Gear(12, 5e-3), Gear(40, 5e-3))) == (
             "pinion.profile_shift: got 0 for 12 teeth; undercut takes 4.31566 mm of the path of "
-            "contact; no undercut from x = 0.298; use x >= 0.30 or >= 18 teeth, or allow_undercut "
-            "(`new --allow-undercut`) to have the rest of the path"
+            "contact; use x >= 0.22 or >= 16 teeth, where what is cut lies below the flank in use, "
+            "or allow_undercut (`new --allow-undercut`) to have the rest of the path"
         )
         assert Gear(12, 5e-3, profile_shift=0.30).minimum_teeth == 12
         assert Gear(18, 5e-3).teeth == 18

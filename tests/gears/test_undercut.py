@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import warnings
 
 import numpy as np
@@ -82,6 +83,38 @@ def test_pairs_are_refused_where_the_rack_cuts_the_flank_in_use_and_only_there(r
                 taken += 1
     assert taken > 0
     assert refused > 5 or rack in ("25 deg", "stub")
+
+
+def refused_for(first: Gear, second: Gear) -> str:
+    """The field and the message of a pair that is refused; empty where it meshes."""
+    try:
+        paired(first, second)
+    except GeometryError as error:
+        return f"{error.field}: {error}"
+    return ""
+
+
+@pytest.mark.parametrize("rack", RACKS)
+def test_the_shift_and_the_teeth_of_the_message_are_the_least_that_mesh(rack: str) -> None:
+    told = 0
+    for first, second in ((10, 32), (12, 200), (14, 40), (16, 60), (20, 30)):
+        other = gear(second, rack)
+        refused = refused_for(gear(first, rack), other)
+        shift = re.search(r"use x >= ([0-9.]+) or", refused)
+        teeth = re.search(r">= (\d+) teeth, where", refused)
+        for x in [float(shift[1])] if shift else ():
+            # the mate may be cut too, and is named then
+            taken, less = (
+                gear(first, rack, profile_shift=x),
+                gear(first, rack, profile_shift=x - 0.01),
+            )
+            assert "pinion.profile_shift" not in refused_for(taken, other)
+            assert "pinion.profile_shift" in refused_for(less, other)
+        for z in [int(teeth[1])] if teeth else ():
+            assert "pinion.profile_shift" not in refused_for(gear(z, rack), other)
+            assert "pinion.profile_shift" in refused_for(gear(z - 1, rack), other)
+        told += bool(shift) + bool(teeth)
+    assert told > 2 or rack in ("25 deg", "stub")
 
 
 def test_standard_gears_with_a_cut_below_the_flank_in_use_mesh() -> None:

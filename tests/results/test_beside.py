@@ -7,15 +7,17 @@ import json
 import numpy as np
 import xarray as xr
 
+from said import numbers
 from thermogear.base.vocabulary import STATUS
 from thermogear.results.beside import NO_BACK_IMPACT, with_notices
 
 JAMMED = STATUS.index("jammed")
 
 
-def store(shares: list[float], status: int = JAMMED) -> xr.Dataset:
+def store(shares: list[float], status: int = JAMMED, last: float = np.nan) -> xr.Dataset:
     known = np.where(np.isnan(shares), status, 0)
-    return xr.Dataset({"back_share": ("row", np.array(shares)), "status": ("row", known)})
+    shown = np.where(np.isnan(shares), last, shares)
+    return xr.Dataset({"back_share": ("row", shown), "status": ("row", known)})
 
 
 def test_backlash_without_effect_is_told_from_the_data_alone() -> None:
@@ -27,7 +29,9 @@ def test_backlash_without_effect_is_told_from_the_data_alone() -> None:
     assert told(store([0.0, 0.1])) == told(store([np.nan])) == []
     # what was not computed, or did not settle, may reach the back flanks; what jams lacks a gap
     for place, status in enumerate(STATUS):
-        if status != "ok":
+        if status not in ("ok", "no_oil_bath"):
             assert told(store([0.0, 0.0, np.nan], place)) == []
+    bath, gap = told(store([0.0, 0.0, np.nan], STATUS.index("no_oil_bath"), 0.0))
+    assert (numbers(bath), gap) == ([1.0, 3.0, 150.0], NO_BACK_IMPACT)
     own = store([0.0, 0.0]).assign_attrs(notices=json.dumps(["mine"]))
     assert told(own) == ["mine"]

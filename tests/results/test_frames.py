@@ -14,6 +14,7 @@ import thermogear as tg
 from own_pair import OWN_PAIR
 from thermogear.base.display import display
 from thermogear.base.errors import InputError
+from thermogear.base.netcdf import read_tree, write_tree
 from thermogear.results.result import Result
 from thermogear.results.tables import csv_text, frames
 
@@ -78,6 +79,28 @@ def test_a_run_has_a_row_for_each_operating_point_with_its_motion() -> None:
     answers = result.to_frame("answers")
     assert list(answers["name"]) == [one.name for one in result.answers]
     assert isinstance(result._repr_html_(), str)
+
+
+def test_a_period_that_is_none_is_missing_in_every_file(
+    swept: tuple[Result, Path], tmp_path: Path
+) -> None:
+    """In frames, CSV and netCDF as others read it; we read back what was stored."""
+    result, _ = swept
+    frame = result.to_frame()
+    jammed = frame["status"] == "jammed"
+    assert 0 < jammed.sum() < len(frame)
+    assert (frame["period [1]"].isna() == jammed).all()
+    rows = csv_text(frame).splitlines()
+    place = rows[0].split(",").index("period [1]")
+    assert {row.split(",")[place] for row in rows[1:]} == {"", "1"}
+    made = write_tree(result.tree, tmp_path / "results.nc")
+    name = next(group for group in result.tree.subtree if "period" in group.data_vars).path
+    with xr.open_datatree(made, engine="h5netcdf") as theirs:
+        assert (theirs[name]["period"].isnull() == (theirs[name]["status"] == 1)).all()
+    ours = read_tree(made)[name]["period"]
+    assert ours.dtype.kind == "i"
+    assert (ours == result.tree[name]["period"]).all()
+    assert result.data["multiplier_real"].attrs["long_name"].endswith("chaos has none")
 
 
 def test_a_code_without_a_word_is_no_other_word() -> None:

@@ -6,8 +6,12 @@ import numpy as np
 import pytest
 
 import thermogear as tg
+from said import numbers
+from thermogear.analysis.maps import parameter_map
 from thermogear.base.units import ZERO_CELSIUS
+from thermogear.base.vocabulary import STATUS
 from thermogear.case.case import GearCase, gear_case, load_case
+from thermogear.case.family import GearFamily
 from thermogear.study.answers import moving, steady
 from thermogear.study.answers.asked import Asked, undecided
 from thermogear.study.answers.points import NUMBERS, answer_numbers
@@ -144,3 +148,22 @@ def test_a_point_without_a_case_is_nan_and_its_neighbours_do_not_notice() -> Non
     for name in NUMBERS:
         assert np.isfinite(whole[name][0]), name
         assert np.isnan(whole[name][1]), name
+
+
+def test_a_row_without_an_oil_bath_says_so_and_keeps_its_numbers() -> None:
+    """The oil's own bound, flash point or 150 degC, decides; the motion is that of a known oil."""
+    torque = {"pinion_torque": np.array([20.0, 80.0])}
+    axes = torque | {"pinion_speed": np.array([300.0, 400.0])}
+    heat = ["oil.temperature=170 degC", "oil.temperature_below_addendum="]
+    hot, known = (
+        (tg.sweep(gear_case(load_case("rig", [*heat, *more])), torque),
+         parameter_map(GearFamily(gear_case(load_case("rig", [*heat, *more])), tuple(axes)), axes))
+        for more in ([], ["oil.flash_point=200 degC"])
+    )  # fmt: skip
+    for there, same in zip((hot[0].data, hot[1]), (known[0].data, known[1]), strict=True):
+        assert (there["status"] == STATUS.index("no_oil_bath")).all()
+        assert (same["status"] == 0).all()
+        for name in set(there.data_vars) - {"status"}:
+            np.testing.assert_array_equal(there[name].values, same[name].values)
+    assert numbers(hot[0].notices[0].text) == [2.0, 2.0, 150.0]
+    assert 150.0 not in numbers(known[0].notices[0].text)

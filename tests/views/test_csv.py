@@ -11,6 +11,7 @@ import pytest
 import synthetic_results as synthetic
 import xarray as xr
 
+from plain_numbers import told_in_csv
 from thermogear.base.errors import InputError
 from thermogear.results.result import open_results
 from thermogear.views import write as files
@@ -114,3 +115,10 @@ def test_missing_results_are_an_error(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="there is no such file"):
         write_csv(tmp_path)
     assert not (tmp_path / "csv").exists()
+
+
+def test_a_number_in_words_or_for_none_is_found_in_a_table() -> None:
+    """What looks through every CSV text of the tests finds what is planted, and no more."""
+    text = "name,force,count [1],direction,x [m]\nrow 1,1.23·10⁶,-1,-1,-1\n2 rpm,7,3,1,0.5\n"
+    found = ["name: '2 rpm'", "force: '1.23·10⁶'", "count [1]: -1 among [-1.0, 3.0]"]
+    assert list(told_in_csv(text)) == found

@@ -135,11 +135,13 @@ def judged(first: _Label, ends: Sequence[End[_Label]]) -> _Label:
         names = sorted({kind.name for kind in different})
         words = " or ".join(names) if len(names) > 1 else f"{len(different)} {names[0]} orbits"
         reason = f"where the transient ends depends on rounding: {words} from {of} starts"
-        blank = {one.name: value for one in fields(first) if (value := one.default) is not MISSING}
-        return replace(
-            first,
-            **blank | {"name": "undecided", "period": 0, "reason": reason, "discarded": longest},
-        )
+        # what one motion proved is no proof of another: all that has a default is left to it
+        needed = [
+            one.name for one in fields(first) if one.default is MISSING is one.default_factory
+        ]
+        kept = {name: getattr(first, name) for name in needed}
+        told = {"name": "undecided", "period": 0, "reason": reason, "discarded": longest}
+        return type(first)(**kept | told)
     if still:
         reason = (
             f"{len(kinds)} of {of} starts end as {kinds[0].name}, the others not in {longest} "

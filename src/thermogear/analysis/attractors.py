@@ -66,9 +66,7 @@ class Field:
 
     def of(self, count: int) -> Bundle:
         """The maps for ``count`` lanes side by side."""
-        if count == self.width:
-            return self.maps
-        return self.one.take(np.zeros(count, int))
+        return self.maps if count == self.width else self.one.take(np.zeros(count, int))
 
 
 def attractors_from(

@@ -38,7 +38,7 @@ from thermogear.base.plan import (
     ranges_of,
     spread,
 )
-from thermogear.base.vocabulary import STATUS, status_attributes
+from thermogear.base.vocabulary import NO_COUNT, STATUS, status_attributes
 from thermogear.dynamics.models import ClearanceModel
 from thermogear.dynamics.plane import plane_of
 from thermogear.dynamics.return_map import return_map
@@ -121,7 +121,7 @@ class BasinPlan:
                 dims, "float64", nan, {"long_name": "attractor of the survey", "units": "1"}
             ),
             "label": Variable(dims, "int8", 0, LABEL_ATTRIBUTES),
-            "period": Variable(dims, "int32", 0, {"long_name": "period", "units": "1"}),
+            "period": Variable(dims, "int32", 0, {"long_name": "period", "units": "1"} | NO_COUNT),
             "point_x": Variable(
                 dims, "float64", nan, {"long_name": "orbit that the survey missed", "units": "1"}
             ),
@@ -337,6 +337,7 @@ def _described(
             np.asarray(values).reshape(count),
             {"long_name": long_name, "units": "1"},
         )
+    data["attractor_period"].attrs |= NO_COUNT
     for place, name in enumerate(("attractor_x", "attractor_v")):
         data[name] = (
             ("attractor_number", "attractor_point"),

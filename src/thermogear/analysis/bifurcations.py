@@ -358,9 +358,7 @@ def doubled_beside(bifurcation: Bifurcation, family: Family) -> tuple[Curve, Flo
     period = orbit.period if broken else 2 * orbit.period
     curve = Curve(family, bifurcation.parameter, period, start=value, span=span, mirrors=broken)
     units = curve.unit[:-1]
-    jacobian = orbit.jacobian
-    if broken:
-        jacobian = -_halved(orbit).flow(orbit.state, period)[1]
+    jacobian = -_halved(orbit).flow(orbit.state, period)[1] if broken else orbit.jacobian
     matrix = jacobian / units[:, None] * units
     direction = np.linalg.svd(matrix + np.eye(units.size))[2][-1]
     normal = np.append(direction, 0.0)

@@ -114,9 +114,7 @@ def _seeds(
     """One orbit out of every stretch of a sweep on which period and place run on."""
     values = data[parameter].values
     longer = dimension_of(family) != 2
-    unit = np.ones((values.size, 2))
-    if not longer:
-        unit = units_of(lanes_of(family(values[:, None])))
+    unit = units_of(lanes_of(family(values[:, None]))) if not longer else np.ones((values.size, 2))
     for n in range(1, most_period + 1):
         for direction in range(data.sizes["direction"]):
             for start in range(data.sizes["start"]):

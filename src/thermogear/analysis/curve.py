@@ -88,9 +88,7 @@ def _nearest(factors: Any) -> float:
     """
     sizes = np.abs(factors)
     least = float(sizes.min()) if sizes.size else 1.0
-    if not least > 0.0:
-        return least
-    return float(np.copysign(least, np.prod(factors / sizes).real))
+    return least if not least > 0.0 else float(np.copysign(least, np.prod(factors / sizes).real))
 
 
 @dataclass(frozen=True, kw_only=True)

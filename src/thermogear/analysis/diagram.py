@@ -53,7 +53,6 @@ from thermogear.base.plan import (
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 
 DIRECTIONS = (1, -1)
 """Up and down."""

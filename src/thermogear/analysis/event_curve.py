@@ -18,7 +18,6 @@ from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.dynamics.return_map import is_moved
 
 Floats = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
 
 CARRIED = (FOLD, FLIP, PITCHFORK, TORUS)
 LONGEST, FIRST, SHORTEST = 0.05, 0.01, 1e-6
@@ -48,7 +47,7 @@ class EventCurve:
     period: int
     values: Floats
     states: Floats
-    multipliers: Complexes
+    multipliers: NDArray[np.complex128]
     stable: NDArray[np.bool_]
     asked: NDArray[np.bool_]
     ended: str

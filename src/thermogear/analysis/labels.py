@@ -38,7 +38,6 @@ from thermogear.dynamics.return_map import ReturnMap, return_map
 from thermogear.dynamics.tables import Lanes
 
 Floats = NDArray[np.float64]
-Whole = NDArray[np.int64]
 
 
 def label(
@@ -305,7 +304,7 @@ def _confirmed(
 def _follow(
     lanes: Lanes,
     start: Floats,
-    owner: Whole,
+    owner: NDArray[np.int64],
     found: Sequence[Label],
     search: _Search,
     refine: int,

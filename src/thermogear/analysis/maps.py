@@ -50,7 +50,6 @@ from thermogear.base.vocabulary import ASSUMED
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 
 MAP_RULE = Rule(chaos_periods=1000)
 TILE = 64
@@ -174,7 +173,12 @@ class MapPlan:
             wanted &= inside
 
     def _settle(
-        self, one: Floats, two: Floats, places: NDArray[np.int64], found: Arrays, alive: Alive
+        self,
+        one: NDArray[np.float64],
+        two: NDArray[np.float64],
+        places: NDArray[np.int64],
+        found: Arrays,
+        alive: Alive,
     ) -> None:
         i, j = np.unravel_index(places, (one.size, two.size))
         points = np.stack([one[i], two[j]], axis=1)

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from thermogear.analysis.curve import Curve, Point, Stretch
 from thermogear.base.errors import ConvergenceError
 
-Floats = NDArray[np.float64]
 MOST_LOOKS = 30
 SHORTEST = 1e-4
 """Of the first step of a search: the shortest."""
@@ -19,7 +18,7 @@ SHORTEST = 1e-4
 def zero_near(
     curve: Curve,
     test: Callable[[Point], float],
-    guess: Floats,
+    guess: NDArray[np.float64],
     *,
     farthest: float,
     first: float = 1e-4,

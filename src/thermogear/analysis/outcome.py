@@ -12,7 +12,7 @@ from thermogear.analysis.family import taken
 from thermogear.analysis.settle import JAMMED, LABELS, Rule, Settled, settle
 from thermogear.base.errors import InputError
 from thermogear.base.plan import Alive, Arrays, Variable, keep_going
-from thermogear.base.vocabulary import FASTER_RULE, STATUS, status_attributes
+from thermogear.base.vocabulary import FASTER_RULE, NO_COUNT, STATUS, moves, status_attributes
 from thermogear.dynamics.plane import plane_of
 from thermogear.dynamics.tables import Lanes
 
@@ -27,40 +27,32 @@ LABEL_ATTRIBUTES = {
 }
 _NAN = float("nan")
 
+
+def _real(words: str) -> tuple[str, float, dict[str, Any]]:
+    """A pure number, nan where there is none."""
+    return "float64", _NAN, {"long_name": words, "units": "1"}
+
+
 VALUES: dict[str, tuple[str, float | int, dict[str, Any]]] = {
     "label": ("int8", 0, LABEL_ATTRIBUTES),
-    "period": ("int32", 0, {"long_name": "mesh periods of the orbit, 0: none", "units": "1"}),
-    "multiplier_real": (
-        "float64", _NAN, {"long_name": "largest Floquet multiplier, real part", "units": "1"}
+    "period": (
+        "int32", 0, {"long_name": "mesh periods of the orbit, 0: none", "units": "1"} | NO_COUNT
     ),
-    "multiplier_imag": (
-        "float64", _NAN, {"long_name": "largest Floquet multiplier, imaginary part", "units": "1"}
+    "multiplier_real": _real("largest Floquet multiplier of an orbit, real part; chaos has none"),
+    "multiplier_imag": _real(
+        "largest Floquet multiplier of an orbit, imaginary part; chaos has none"
     ),
     "lyapunov": (
         "float64", _NAN, {"long_name": "largest Lyapunov exponent", "units": "1", "symbol": "λ₁"}
     ),
-    "lyapunov_error": (
-        "float64", _NAN, {"long_name": "standard error of the Lyapunov exponent", "units": "1"}
-    ),
-    "contact_losses": (
-        "float64", _NAN, {"long_name": "losses of drive contact per orbit", "units": "1"}
-    ),
-    "back_impacts": (
-        "float64", _NAN, {"long_name": "back-side impacts per orbit", "units": "1"}
-    ),
-    "drive_share": (
-        "float64", _NAN, {"long_name": "share of time in drive contact", "units": "1"}
-    ),
-    "back_share": (
-        "float64", _NAN, {"long_name": "share of time in contact of the back flanks", "units": "1"}
-    ),
-    "point_x": (
-        "float64", _NAN, {"long_name": "displacement of the orbit at phase 0", "units": "1"}
-    ),
-    "point_v": ("float64", _NAN, {"long_name": "velocity of the orbit at phase 0", "units": "1"}),
-    "used_periods": (
-        "float64", _NAN, {"long_name": "mesh periods run for this point", "units": "1"}
-    ),
+    "lyapunov_error": _real("standard error of the Lyapunov exponent"),
+    "contact_losses": _real("losses of drive contact per orbit"),
+    "back_impacts": _real("back-side impacts per orbit"),
+    "drive_share": _real("share of time in drive contact"),
+    "back_share": _real("share of time in contact of the back flanks"),
+    "point_x": _real("displacement of the orbit at phase 0"),
+    "point_v": _real("velocity of the orbit at phase 0"),
+    "used_periods": _real("mesh periods run for this point"),
     "status": ("int8", 0, status_attributes()),
 }  # fmt: skip
 
@@ -87,7 +79,7 @@ def outcome_arrays(settled: Settled, status: NDArray[np.int8], lanes: Models = N
     point = drawn(settled.point, lanes)
     done = status.copy()
     done[settled.label == LABELS.index("diverged")] = STATUS.index("diverged")
-    lost = (settled.label == LABELS.index("undecided")) & (status == 0)
+    lost = (settled.label == LABELS.index("undecided")) & moves(status)
     done[lost] = STATUS.index("not_converged")
     return {
         "label": settled.label,
@@ -140,8 +132,8 @@ def settle_with_status(
     """:func:`settle` for the lanes that move; the others carry their status as a label."""
     result = Settled.empty(len(lanes), keep=keep, dimension=start.shape[1])
     result.state[:] = start
-    result.label[status != 0] = JAMMED
-    moving = np.flatnonzero(status == 0)
+    moving = np.flatnonzero(moves(status))
+    result.label[~moves(status)] = JAMMED
     if moving.size:
         result.put(moving, settle(taken(lanes, moving), start[moving], rule, keep, alive))
     return result

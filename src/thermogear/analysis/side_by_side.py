@@ -15,7 +15,6 @@ from thermogear.analysis.settle import PERIODIC, Rule, Settled, settle
 from thermogear.dynamics.tables import Lanes
 
 Floats = NDArray[np.float64]
-Whole = NDArray[np.int64]
 
 RULE = Rule(first=32, cap=1024, chaos_periods=200)
 APART = 1e-2
@@ -28,12 +27,12 @@ class Motions:
     """One entry per motion: its ``lane``, the ``state`` (motion, 2) it goes on from at phase 0,
     ``label`` (code of :data:`~thermogear.analysis.settle.LABELS`) and ``period`` (0: none)."""
 
-    lane: Whole
+    lane: NDArray[np.int64]
     state: Floats
     label: NDArray[np.int8]
     period: NDArray[np.int32]
 
-    def count(self, lanes: int) -> Whole:
+    def count(self, lanes: int) -> NDArray[np.int64]:
         """How many motions each of ``lanes`` lanes has."""
         return np.bincount(self.lane, minlength=lanes)
 
@@ -41,15 +40,17 @@ class Motions:
 def motions_along(
     lanes: Lanes, starts: ArrayLike, *, rule: Rule = RULE, passes: int = 64
 ) -> Motions:
-    """Every motion that the ``starts`` (start, 2), and the motions of neighbours, lead to.
+    """Every motion that the ``starts``, and the motions of neighbours, lead to.
 
-    ``lanes`` in the order of the parameter. Two periodic motions of one lane are one where their
-    sections lie within :data:`APART`; others where their labels agree. At most ``passes`` rounds.
+    ``starts`` (start, 2) of every lane, or (lane, start, 2); a lane's first motion is that of its
+    first start. ``lanes`` in the order of the parameter. Two periodic motions of one lane are one
+    where their sections lie within :data:`APART`; others where their labels agree. At most
+    ``passes`` rounds.
     """
     count = len(lanes)
-    first = np.asarray(starts, dtype=float).reshape(-1, 2)
-    index = np.repeat(np.arange(count), len(first))
-    begin = np.tile(first, (count, 1))
+    first = np.asarray(starts, dtype=float)
+    index = np.repeat(np.arange(count), first.shape[-2])
+    begin = np.broadcast_to(first, (count, *first.shape[-2:])).reshape(-1, 2)
     known: list[list[tuple[int, int, Floats, Floats]]] = [[] for _ in range(count)]
     for _ in range(passes):
         settled = settle(lanes.take(index), begin, rule, KEEP)

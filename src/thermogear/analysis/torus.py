@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
 
 HARMONICS = 96
 """Harmonics of the second base frequency of which a section is made, at most."""
@@ -166,7 +165,7 @@ def _frequency(values: Floats) -> float:
     coarse = float(size.argmax()) / (4 * count)
 
     def less(nu: float) -> float:
-        wave: Complexes = np.exp(-2j * np.pi * nu * np.arange(count))
+        wave: NDArray[np.complex128] = np.exp(-2j * np.pi * nu * np.arange(count))
         return -float(np.abs(own @ wave))
 
     found = minimize_scalar(

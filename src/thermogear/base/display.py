@@ -16,8 +16,6 @@ from thermogear.base.errors import short
 from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import QUANTITIES
 
-Floats = NDArray[np.float64]
-
 
 @dataclass(frozen=True)
 class Display:
@@ -28,7 +26,7 @@ class Display:
     _: KW_ONLY
     zero: float = 0.0
 
-    def __call__(self, values: ArrayLike) -> Floats:
+    def __call__(self, values: ArrayLike) -> NDArray[np.float64]:
         return np.asarray(self.scale * (np.asarray(values, dtype=float) - self.zero))
 
     def text(self, value: float, digits: int) -> str:
@@ -103,9 +101,7 @@ def raised(exponent: int) -> str:
 
 def percent(ratio: float) -> str:
     """A relative change as a signed percentage."""
-    if not math.isfinite(ratio):
-        return "–"
-    return f"{100.0 * ratio:+.1f} %".replace("-", "−")
+    return "–" if not math.isfinite(ratio) else f"{100.0 * ratio:+.1f} %".replace("-", "−")
 
 
 def celsius(kelvin: float) -> str:

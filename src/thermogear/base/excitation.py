@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import InputError
 from thermogear.base.pieces import Pieces
+from thermogear.base.vocabulary import moves
 
 Floats = NDArray[np.float64]
 
@@ -229,7 +230,7 @@ class Excitations:
     @property
     def natural_frequency(self) -> Floats:
         """omega_n [rad/s], (point,); nan where nothing moves."""
-        mean = np.where(self.status == 0, self.stiffness[:, 0].real, np.nan)
+        mean = np.where(moves(self.status), self.stiffness[:, 0].real, np.nan)
         return np.sqrt(mean / self.equivalent_mass)
 
     def take(self, index: ArrayLike) -> Excitations:
@@ -285,7 +286,7 @@ class Excitations:
 
     def one(self, place: int) -> Excitation | None:
         """One point by itself; None where it does not move."""
-        if self.status[place] != 0:
+        if not moves(self.status[place]):
             return None
         tables = (
             Periodic(float(row[0].real), tuple(row[1:]))
@@ -321,9 +322,7 @@ def _asked(
 
 def padded(rows: NDArray[Any], width: int) -> NDArray[Any]:
     """``rows`` with columns of 0 up to ``width``."""
-    if rows.shape[1] == width:
-        return rows
-    return np.pad(rows, ((0, 0), (0, width - rows.shape[1])))
+    return rows if rows.shape[1] == width else np.pad(rows, ((0, 0), (0, width - rows.shape[1])))
 
 
 def fourier_rows(samples: Floats, harmonics: int) -> NDArray[np.complex128]:

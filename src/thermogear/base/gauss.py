@@ -7,11 +7,9 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-
 
 @cache
-def gauss(count: int) -> tuple[Floats, Floats]:
+def gauss(count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Nodes in -1..1 and weights of the rule of ``count`` nodes; not to be written to.
 
     >>> nodes, weights = gauss(2)

@@ -21,6 +21,9 @@ Floats = NDArray[np.float64]
 
 NEVER = 1e9
 """A tempering temperature [K] that nothing reaches."""
+DATA_HOLD = ZERO_CELSIUS + 204.0
+"""Up to where the fit of :class:`Material` to the modulus of carbon steel holds [K]; taken for all
+materials that have no limit of their own (ours)."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,6 +79,19 @@ class Material:
         return found
 
     @property
+    def bears(self) -> tuple[float, str]:
+        """Temperature [K] up to which something may be said of it, and what ends there, in words.
+
+        The short-time limit of a polymer, the tempering of a steel; where no source has either,
+        :data:`DATA_HOLD`.
+        """
+        if self.name in POLYMER_LIMITS:
+            return POLYMER_LIMITS[self.name][1], "a gear bears no more for a short time"
+        if self.tempering_temperature < NEVER:
+            return self.tempering_temperature, "a gear was tempered there"
+        return DATA_HOLD, "the data of a gear's material hold no further"
+
+    @property
     def thermal_contact_coefficient(self) -> float:
         """sqrt(k rho c) [J/(m^2 K s^0.5)]."""
         return float(np.sqrt(self.thermal_conductivity * self.density * self.specific_heat))
@@ -124,6 +140,11 @@ class Lubricant:
     specific_heat: float = 2000.0
     temperature_range: tuple[float, float] = (ZERO_CELSIUS - 20.0, ZERO_CELSIUS + 150.0)
     flash_point: float | None = None
+
+    @property
+    def hottest_bath(self) -> float:
+        """Temperature [K] above which no bath of it is kept: its flash point, else NO_BATH."""
+        return self.flash_point or NO_BATH
 
     def __post_init__(self) -> None:
         if self.kind not in LUBRICANT_KINDS:
@@ -277,8 +298,7 @@ def spelled(name: str, known: Collection[str]) -> str | None:
 
     if name in known:
         return name
-    names = {bare(one): one for one in known}
-    return names.get(bare(name), ALSO.get(bare(name)))
+    return {bare(one): one for one in known}.get(bare(name), ALSO.get(bare(name)))
 
 
 _PUBLIC_SET = (

@@ -151,7 +151,7 @@ def _read_group(group: h5py.Group, dimensions: Mapping[int, str]) -> xr.Dataset:
     import h5py
     import xarray as xr
 
-    variables = {}
+    variables, counts = {}, {}
     for name, one in group.items():
         if isinstance(one, h5py.Group) or bytes(one.attrs.get("NAME", b"")).startswith(
             _NO_VARIABLE
@@ -160,8 +160,15 @@ def _read_group(group: h5py.Group, dimensions: Mapping[int, str]) -> xr.Dataset:
         dims = tuple(dimensions[number] for number in one.attrs.get("_Netcdf4Coordinates", ()))
         text = h5py.check_string_dtype(one.dtype)
         values = np.asarray(one.asstr()[()], str) if text else one[()]
-        variables[name] = xr.Variable(dims, values, _read_attributes(one))
-    return xr.decode_cf(xr.Dataset(variables, attrs=_read_attributes(group)))
+        own = _read_attributes(one)
+        if values.dtype.kind == "i" and "missing_value" in own:
+            # a count stays whole here; others read a missing number
+            counts[name] = {"missing_value": own.pop("missing_value")}
+        variables[name] = xr.Variable(dims, values, own)
+    data = xr.decode_cf(xr.Dataset(variables, attrs=_read_attributes(group)))
+    for name, own in counts.items():
+        data[name].attrs |= own
+    return data
 
 
 def _read_attributes(source: h5py.Group | h5py.Dataset) -> dict[str, Any]:

@@ -108,9 +108,7 @@ class PairSprings:
     def touch(self, phase: ArrayLike) -> Floats:
         """delta [m] at which the first pair touches at ``phase``."""
         phi = np.asarray(phase, dtype=float)
-        if self.foot is None:
-            return _own_touch(*self.at(phi))
-        return np.asarray(self._foot_at(phi)[0])
+        return _own_touch(*self.at(phi)) if self.foot is None else np.asarray(self._foot_at(phi)[0])
 
     def _foot_at(self, phase: Floats) -> Floats:
         """Touch and knee [m] at ``phase``, (2, phase...), linear between the samples."""

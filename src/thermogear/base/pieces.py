@@ -10,8 +10,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import InputError
 
-Floats = NDArray[np.float64]
-
 
 @dataclass(frozen=True, kw_only=True)
 class Pieces:
@@ -56,7 +54,7 @@ class Pieces:
             )
         )
 
-    def __call__(self, phase: ArrayLike) -> Floats:
+    def __call__(self, phase: ArrayLike) -> NDArray[np.float64]:
         """Values at ``phase`` (in periods, any shape)."""
         phi = np.mod(np.asarray(phase, dtype=float), 1.0)
         index = np.searchsorted(self.starts, phi, side="right") - 1
@@ -68,7 +66,7 @@ class Pieces:
             total = total * local + table[index, m]
         return np.asarray(total)
 
-    def taylor(self, *, centre: float, half: float, order: int) -> Floats:
+    def taylor(self, *, centre: float, half: float, order: int) -> NDArray[np.float64]:
         """Coefficients in u of p(centre + half u), for an interval inside one piece."""
         index = int(np.searchsorted(self.starts, centre, side="right")) - 1
         poly = np.polynomial.Polynomial(self.coefficients[index])

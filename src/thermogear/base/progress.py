@@ -28,6 +28,4 @@ def duration(seconds: float) -> str:
         return "an unknown time"
     if seconds < 90.0:
         return f"{max(seconds, 0.1):.2g} s"
-    if seconds < 5400.0:
-        return f"{seconds / 60.0:.2g} min"
-    return f"{seconds / 3600.0:.3g} h"
+    return f"{seconds / 60.0:.2g} min" if seconds < 5400.0 else f"{seconds / 3600.0:.3g} h"

@@ -15,8 +15,8 @@ STANDARD_GRAVITY = 9.80665
 """The g of accelerations [m/s^2] (CGPM 1901)."""
 
 ROUNDED = 0.01
-"""Modules that a printed length may miss an exact one by: what both shifts, given to a hundredth,
-leave open in the centre distance (ours)."""
+"""Modules that a fillet or the end of a chart may miss an exact length by, however few its digits:
+as much as a profile shift given to a hundredth leaves open (ours)."""
 
 
 def half_digit(number: str) -> float:

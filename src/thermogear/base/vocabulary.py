@@ -32,12 +32,19 @@ class Quantity:
 UNDEFORMED, HOT = STATES = ("undeformed", "hot")
 """States of a run: the drawing's sizes with the oil of operation, and as hot as the case says."""
 
-STATUS = ("ok", "jammed", "not_converged", "diverged", "assumed")
+STATUS = ("ok", "jammed", "not_converged", "diverged", "assumed", "no_oil_bath")
 """Meaning of the values 0, 1, 2, ... of every ``status`` variable.
 
-Assumed: not computed, equal neighbours of a map spoke for it.
+Assumed: not computed, equal neighbours of a map spoke for it. No oil bath: computed, with an oil
+so hot that no bath of it is kept.
 """
-ASSUMED = STATUS.index("assumed")
+ASSUMED, NO_OIL_BATH = STATUS.index("assumed"), STATUS.index("no_oil_bath")
+
+
+def moves(status: ArrayLike) -> NDArray[np.bool_]:
+    """Where a point has a motion by its ``status``: ok, or computed without an oil bath."""
+    return np.isin(status, (0, NO_OIL_BATH))
+
 
 EDGE_CONTACT = ("no_edge_contact", "wheel_tip_corner", "pinion_tip_corner", "both_tip_corners")
 """Meaning of the values 0, 1, 2, 3 of every ``edge_contact``: the tip corner that carries load."""
@@ -269,7 +276,9 @@ QUANTITIES: dict[str, Quantity] = {
     "orbit_period": Quantity("1", "mesh periods after which the orbit closes", "n"),
     "multiplier_real": Quantity("1", "Floquet multiplier over the orbit, real part", "Re μ"),
     "multiplier_imag": Quantity("1", "Floquet multiplier over the orbit, imaginary part", "Im μ"),
-    "multiplier_modulus": Quantity("1", "largest Floquet multiplier, modulus", "|μ|"),
+    "multiplier_modulus": Quantity(
+        "1", "largest Floquet multiplier of an orbit, modulus; chaos has none", "|μ|"
+    ),
     "lyapunov_exponent": Quantity("1", "largest Lyapunov exponent, per ω_n t", "λ₁"),
     "lyapunov_error": Quantity("1", "its standard error (batch means)", "s(λ₁)"),
     "followed_periods": Quantity("1", "mesh periods each start was followed in chaos, 0: no chaos"),
@@ -301,8 +310,16 @@ QUANTITIES: dict[str, Quantity] = {
 }
 
 
-def attributes(name: str) -> dict[str, str]:
-    """units, long_name, symbol and source of a stored name, without empty entries."""
+NO_COUNT: dict[str, int] = {"missing_value": 0}
+"""CF attribute of counts from 1 on: a stored 0 means that there is none; files leave it out."""
+_COUNTS = ("orbit_period", "followed_periods", "followed_starts")
+
+
+def attributes(name: str) -> dict[str, Any]:
+    """units, long_name, symbol and source of a stored name, without empty entries.
+
+    Of a count :data:`NO_COUNT` too.
+    """
     if name not in QUANTITIES:
         raise InputError("quantity", repr(name), fix=nearest(name, QUANTITIES))
     quantity = QUANTITIES[name]
@@ -312,7 +329,8 @@ def attributes(name: str) -> dict[str, str]:
         "symbol": quantity.symbol,
         "source": quantity.source,
     }
-    return {key: value for key, value in pairs.items() if value}
+    kept = {key: value for key, value in pairs.items() if value}
+    return kept | NO_COUNT if name in _COUNTS else kept
 
 
 def status_attributes() -> dict[str, Any]:

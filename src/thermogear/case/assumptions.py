@@ -27,11 +27,15 @@ from thermogear.case.refusals import dotted, table_at
 
 @dataclass(frozen=True)
 class Assumption:
-    """A value that no source states: its field, what it is, why it was taken."""
+    """A value that no source states: its field, what it is, why it was taken.
+
+    ``real`` where the field holds a real number and no count.
+    """
 
     field: str
     value: str
     reason: str
+    real: bool = False
 
     @property
     def default(self) -> str:
@@ -40,15 +44,23 @@ class Assumption:
 
     @property
     def figure(self) -> dict[str, Any]:
-        """The value as a number, or a list of them, with its unit; a text stays one."""
+        """The value as a number, or a list of them, with its unit and what else is said of it.
+
+        Counts and classes are whole numbers. A text stays one.
+        """
         found = _NUMBERS.fullmatch(self.value)
         if found is None:
             return {"value": self.value, "unit": ""}
-        numbers = [float(one) for one in found[1].split(",")]
-        return {"value": numbers if len(numbers) > 1 else numbers[0], "unit": found[2] or ""}
+        texts, unit = found[1].split(","), found[2] or ""
+        real = self.real or bool(unit) or "." in found[1] or "e" in found[1]
+        numbers = [float(one) if real else int(one) for one in texts]
+        value = {"value": numbers if len(numbers) > 1 else numbers[0], "unit": unit}
+        return value | ({"note": found[3]} if found[3] else {})
 
 
-_NUMBERS = re.compile(r"([-+]?[\d.]+(?:e[-+]?\d+)?(?:, [-+]?[\d.]+(?:e[-+]?\d+)?)*)(?: (\D.*))?")
+_NUMBERS = re.compile(
+    r"([-+]?[\d.]+(?:e[-+]?\d+)?(?:, [-+]?[\d.]+(?:e[-+]?\d+)?)*)(?: ([^\d,][^,]*))?(?:, (\D.*))?"
+)
 _LEFT = "not in the file; the default: "
 
 
@@ -78,7 +90,8 @@ def _declared(table: dict[str, Any], data: dict[str, Any], file: BaseModel) -> l
             continue
         value, reason = _spoken(path, entry)
         if _holds(path, value, data, file):
-            found.append(Assumption(path, _value(data, path), " ".join(reason.split())))
+            real = _real(_read(file, _split(path)))
+            found.append(Assumption(path, _value(data, path), " ".join(reason.split()), real))
     if bare:
         warnings.warn(
             f"ours: {len(bare)} reasons without the value they speak of are left out; write "
@@ -123,9 +136,7 @@ def _holds(path: str, value: Any, data: dict[str, Any], file: BaseModel) -> bool
     parts = _split(path)
     if _in_table(data, parts) == (True, value):
         return True
-    found: Any = file
-    for part in parts:
-        found = found.get(part) if isinstance(found, dict) else getattr(found, part, None)
+    found = _read(file, parts)
     above = table_at(type(file), parts[:-1])
     if found is None or above is None:
         return False
@@ -133,6 +144,20 @@ def _holds(path: str, value: Any, data: dict[str, Any], file: BaseModel) -> bool
         return same(_reader(above, parts[-1]).validate_python(value), found)
     except (ValidationError, InputError):
         return False
+
+
+def _read(file: BaseModel, parts: tuple[str, ...]) -> Any:
+    """What the file was read as at a field; None where there is no such field."""
+    found: Any = file
+    for part in parts:
+        found = found.get(part) if isinstance(found, dict) else getattr(found, part, None)
+    return found
+
+
+def _real(value: Any) -> bool:
+    """Whether a number as it was read, or one of several, is real and no count."""
+    several = value if isinstance(value, tuple) else (value,)
+    return any(isinstance(one, float) for one in several)
 
 
 @lru_cache(maxsize=512)
@@ -211,7 +236,7 @@ def _defaults(
             path = dotted((*above, name))
             text = decided.get(path) or _shown(value, field)
             reason = f"{_LEFT}{field.description}"
-            found.append(Assumption(path, text, reason))
+            found.append(Assumption(path, text, reason, _real(value)))
     return found
 
 

@@ -13,8 +13,6 @@ from thermogear.gears.backlash import backlash_span, normal_from_circumferential
 from thermogear.gears.backlash_standards import recommended_normal_backlash
 from thermogear.gears.pair import GearPair
 
-Floats = NDArray[np.float64]
-
 
 @dataclass(frozen=True, kw_only=True)
 class Backlash:
@@ -40,9 +38,26 @@ class Backlash:
             )
 
 
+def require_room(field: str, half: ArrayLike, pair: GearPair, *, of_half: float = 2.0) -> None:
+    """Refuse a ``half`` backlash [m] along the line of action that leaves teeth no thickness.
+
+    The teeth of both gears and the gap share a pitch, along the line of action the base pitch.
+    What is given as ``field`` is ``of_half`` times the half backlash.
+    """
+    room, most = 0.5 * pair.base_pitch * of_half, float(np.max(half)) * of_half
+    if most >= room:
+        raise InputError(
+            field,
+            f"{1e3 * most:.6g} mm",
+            allowed=f"< {1e3 * room:.4g} mm",
+            why="the teeth of both gears share the pitch with the gap and would have no thickness",
+            fix="a smaller backlash or a larger module",
+        )
+
+
 def cold_from_soaked(
     half: ArrayLike, rise: float, pair: GearPair, housing_expansion: float
-) -> Floats:
+) -> NDArray[np.float64]:
     """Half backlash [m] at T0 of a pair: ``half`` [m] with everything ``rise`` [K] above T0.
 
     b_cold = b + [lambda_1 rho_C1 + lambda_2 rho_C2 - lambda_h a_w sin(alpha_w)] rise: uniform
@@ -58,7 +73,9 @@ def cold_from_soaked(
     return np.asarray(half, dtype=float) + moved * rise
 
 
-def normal_half(value: ArrayLike, direction: str, extent: str, pair: GearPair) -> Floats:
+def normal_half(
+    value: ArrayLike, direction: str, extent: str, pair: GearPair
+) -> NDArray[np.float64]:
     """Half backlash [m] along the line of action of a backlash ``value`` [m] of a named kind."""
     given = np.asarray(value, dtype=float)
     normal = given if direction == "normal" else normal_from_circumferential(given, pair)

@@ -19,8 +19,15 @@ from thermogear.base import materials
 from thermogear.base.errors import InputError, ValidityWarning, nearest, short
 from thermogear.base.excitation import Periodic
 from thermogear.base.materials import MATERIALS, Lubricant, Material
-from thermogear.base.units import ROUNDED, ZERO_CELSIUS
-from thermogear.case.backlash import Backlash, from_tolerances, from_value, recommended
+from thermogear.base.units import ZERO_CELSIUS
+from thermogear.case.backlash import (
+    Backlash,
+    from_tolerances,
+    from_value,
+    normal_half,
+    recommended,
+    require_room,
+)
 from thermogear.case.fields import BODY
 from thermogear.case.schema import GearFile, GearTable
 from thermogear.case.units import rounding, shown
@@ -216,16 +223,19 @@ def faults(file: GearFile) -> list[InputError]:
 def pair_of(file: GearFile, known: Mapping[str, Material], data: Mapping[str, Any]) -> GearPair:
     """The two gears and their centre distance.
 
-    One that misses the mesh without backlash by the rounding of its digits in ``data``, the bare
-    tables, is taken as that.
+    One that misses the mesh without backlash by no more than half a unit of its last digit in
+    ``data``, the bare tables, is taken as that, as long as the tips clear the roots at it: nearer,
+    no rounding makes it a distance of these gears.
     """
     distance = file.gears.centre_distance
     pinion = _gear(file.gears.pinion, file, "gears.pinion", known)
     wheel = _gear(file.gears.wheel, file, "gears.wheel", known)
     if distance is not None:
-        slack = min(rounding(data["gears"]["centre_distance"], "length"), ROUNDED * pinion.module)
+        slack = rounding(data["gears"]["centre_distance"], "length")
         tight = tight_distance(pinion, wheel)
-        distance = tight if 0.0 < tight - distance <= slack * (1.0 + 1e-9) else distance
+        near = 0.0 < tight - distance <= slack * (1.0 + 1e-9)
+        hit = max(pinion.tip_radius + wheel.root_radius, wheel.tip_radius + pinion.root_radius)
+        distance = tight if near and distance > hit else distance
     try:
         return _under(
             "gears", lambda: GearPair(pinion, wheel, LEFT_OUT if distance is None else distance)
@@ -297,23 +307,23 @@ def cold_backlash(file: GearFile, pair: GearPair, housing: Material) -> Backlash
     table = file.backlash
     if table.tolerances is not None:
         parts = table.tolerances
-        return from_tolerances(
+        found = from_tolerances(
             pinion=parts.pinion_tooth_thickness,
             wheel=parts.wheel_tooth_thickness,
             distance=parts.centre_distance,
             pair=pair,
         )
-    rise = 0.0 if table.temperature is None else table.temperature - file.temperatures.reference
+        require_room("backlash.tolerances", found.most, pair)
+        return found
     if table.value is None:
-        return recommended(pair)
-    return from_value(
-        table.value,
-        str(table.direction),
-        str(table.extent),
-        rise,
-        pair,
-        housing.thermal_expansion,
-    )
+        found = recommended(pair)
+        require_room("backlash.value", found.half, pair)
+        return found
+    kind = (str(table.direction), str(table.extent))
+    half = float(normal_half(table.value, *kind, pair))
+    require_room("backlash.value", half, pair, of_half=table.value / half)
+    rise = 0.0 if table.temperature is None else table.temperature - file.temperatures.reference
+    return from_value(table.value, *kind, rise, pair, housing.thermal_expansion)
 
 
 def inertias(file: GearFile, pair: GearPair) -> tuple[tuple[float, float], str]:

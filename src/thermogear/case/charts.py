@@ -200,9 +200,7 @@ def _acts_as(side: str, drive: str | None) -> str:
 
 def _shown(read: FlankFile, place: int) -> str:
     value = read.position[place]
-    if read.over == "roll angle":
-        return f"{np.degrees(value):.6g} deg"
-    return f"{1e3 * value:.6g} mm"
+    return f"{np.degrees(value):.6g} deg" if read.over == "roll angle" else f"{1e3 * value:.6g} mm"
 
 
 def _inside(name: str, read: FlankFile, gear: Gear, which: str) -> NDArray[np.float64]:

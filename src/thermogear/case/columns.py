@@ -17,8 +17,6 @@ from thermogear.base.errors import InputError, nearest
 from thermogear.base.files import decoded, require_regular
 from thermogear.case.units import KINDS, convert
 
-Floats = NDArray[np.float64]
-
 MOST_BYTES = 20_000_000
 MOST_ROWS = 100_000
 _HEAD = re.compile(r"\s*(?P<name>[^\[\]]*?)\s*(?:\[(?P<unit>[^\[\]]*)\])?\s*")
@@ -28,7 +26,7 @@ _HEAD = re.compile(r"\s*(?P<name>[^\[\]]*?)\s*(?:\[(?P<unit>[^\[\]]*)\])?\s*")
 class Column:
     """SI ``values`` of one column, nan where a cell is empty; ``unit`` and ``cells`` as written."""
 
-    values: Floats
+    values: NDArray[np.float64]
     unit: str
     cells: tuple[str, ...]
 

@@ -19,8 +19,6 @@ from thermogear.case.ranges import CRUSHING, crushing_torque
 from thermogear.case.sensors import SENSORS
 from thermogear.mesh.warm_up import Duty
 
-Floats = NDArray[np.float64]
-
 KINDS = {
     "time": "time",
     "speed": "rotational speed",
@@ -92,9 +90,9 @@ def point_duty(case: GearCase, speed: float, torque: float, field: str = "duty")
 class Measured:
     """A measured record: ``time`` [s], ``names`` of nodes or sensors, ``values`` [K] or nan."""
 
-    time: Floats
+    time: NDArray[np.float64]
     names: tuple[str, ...]
-    values: Floats
+    values: NDArray[np.float64]
 
 
 def read_measured(path: str | Path, field: str = "measured") -> Measured:

@@ -21,7 +21,7 @@ from thermogear.base.errors import InputError, ThermogearError, nearest
 from thermogear.base.excitation import Excitations, Periodic
 from thermogear.base.parameters import NUMBERS
 from thermogear.base.plan import Alive, keep_going
-from thermogear.base.vocabulary import STATUS
+from thermogear.base.vocabulary import NO_OIL_BATH, STATUS, moves
 from thermogear.case.allowed import (
     LANE,
     gear_parameter,
@@ -30,6 +30,7 @@ from thermogear.case.allowed import (
     require_numbers,
     within,
 )
+from thermogear.case.backlash import require_room
 from thermogear.case.base import Case
 from thermogear.case.case import DimensionlessCase, GearCase, gear_case
 from thermogear.case.points import Points, excitations, on_numbers, points_of
@@ -210,6 +211,9 @@ class GearFamily:
         """
         for name, values in axes.items():
             within(name, gear_reader(name), values)
+        if "cold_half_backlash" in axes:
+            half = axes["cold_half_backlash"]
+            require_room("cold_half_backlash", half, self.case.pair, of_half=1.0)
         if "pinion_torque" in axes:
             warn_of_torque(self.case.pair, axes["pinion_torque"])
         read = {name: np.asarray(values) for name, values in axes.items() if name not in OF_A_POINT}
@@ -344,7 +348,9 @@ class GearFamily:
 
     def _meshed(self, group: _Group) -> Excitations:
         """Springs, backlash and load of a group, without the kinematic error."""
-        found = self._cycled(group, EXCITES)
+        found = self._cycled(group, (*EXCITES, "oil_temperature"))
+        hot = found["oil_temperature"] > group.case.stated.lubricant.hottest_bath
+        found["status"] = np.where(hot & (found["status"] == 0), NO_OIL_BATH, found["status"])
         return excitations(replace(group.case, transmission_error=NO_ERROR), found)
 
     def _cycled(
@@ -472,7 +478,7 @@ class Tabulated:
         ranks = np.arange(error.shape[1])
         push = error * (ranks * frequency[:, None]) ** 2 / length[:, None]
         push[:, 0] = force / (stiffness * length)
-        status = np.maximum(a.status, b.status)
+        status = np.where(moves(a.status) & (b.status != 0), b.status, a.status)
         flat = Lanes(
             period=2.0 * np.pi / frequency,
             damping=mix(a.flat.damping, b.flat.damping),

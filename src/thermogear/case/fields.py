@@ -414,9 +414,7 @@ class NumberOrTemperature(Reader):
     example: str = "0.18"
 
     def read(self, raw: object) -> tuple[float, str]:
-        if isinstance(raw, str):
-            return BODY.read(raw), "K"
-        return Number().read(raw), "1"
+        return (BODY.read(raw), "K") if isinstance(raw, str) else (Number().read(raw), "1")
 
     def schema(self) -> dict[str, Any]:
         return {"anyOf": [Number().schema(), BODY.schema()]}

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.excitation import Excitations, Periodic
-from thermogear.base.vocabulary import STATUS
+from thermogear.base.vocabulary import STATUS, moves
 from thermogear.case.case import GearCase
 from thermogear.dynamics.models import DeadZoneModel, TorsionalModel
 from thermogear.dynamics.tables import Lanes
@@ -27,10 +27,11 @@ Whole = NDArray[np.int64]
 class Points:
     """Lanes of operating points; the first axis of every array is the point.
 
-    ``status`` 1 where the pair is jammed (its lane is a placeholder). ``length`` b_c [m], ``rate``
-    omega_n [rad/s], ``stiffness`` mean k_m [N/m], ``force`` mean F [N], ``error`` Fourier
-    coefficients of e [m] (point, harmonic), ``mesh_frequency`` [rad/s], ``half_backlash`` hot b'
-    [m]. Without gears (:meth:`plain`) lengths, rates and stiffness are 1, the mesh frequency 0.
+    ``status`` 1 where the pair is jammed (its lane is a placeholder), 5 where it moves without an
+    oil bath that could be. ``length`` b_c [m], ``rate`` omega_n [rad/s], ``stiffness`` mean k_m
+    [N/m], ``force`` mean F [N], ``error`` Fourier coefficients of e [m] (point, harmonic),
+    ``mesh_frequency`` [rad/s], ``half_backlash`` hot b' [m]. Without gears (:meth:`plain`) lengths,
+    rates and stiffness are 1, the mesh frequency 0.
     """
 
     flat: Lanes
@@ -76,7 +77,7 @@ class Points:
     @property
     def jammed(self) -> NDArray[np.bool_]:
         """Where no clearance is left to move in."""
-        return np.asarray(self.status != 0)
+        return ~moves(self.status)
 
     def kinematic(self, phase: Floats) -> Floats:
         """e [m] at ``phase`` [mesh periods], (point, phase)."""
@@ -121,7 +122,7 @@ def points_of(found: Excitations) -> Points:
 
     The equation of :func:`~thermogear.dynamics.models.from_excitation`, all lanes at once.
     """
-    still = found.status != STATUS.index("ok")
+    still = ~moves(found.status)
     count = len(found)
     if still.all():
         idle = TorsionalModel(
@@ -159,7 +160,7 @@ def points_of(found: Excitations) -> Points:
     )
     return Points(
         lanes,
-        np.where(still, STATUS.index("jammed"), 0).astype(np.int8),
+        np.where(still, STATUS.index("jammed"), found.status).astype(np.int8),
         length,
         rate,
         mean,

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from thermogear.analysis.settle import Rule
 from thermogear.base.plan import Alive, Arrays, Variable, keep_going
+from thermogear.base.vocabulary import moves
 from thermogear.case.points import Points
 from thermogear.dynamics import exact
 from thermogear.signals.spectra import order_amplitudes
@@ -100,7 +101,7 @@ def respond(
     found: dict[str, NDArray[Any]] = {name: np.full(count, np.nan) for name in VALUES}
     if lines:
         found["dte_line"] = np.full((count, record.orders.size), np.nan)
-    moving = np.flatnonzero((points.status == 0) & np.isfinite(state).all(axis=1))
+    moving = np.flatnonzero(moves(points.status) & np.isfinite(state).all(axis=1))
     phase = np.arange(record.samples) / record.samples
     for part, borders, marks in exact.layouts(points.flat.take(moving), samples=record.samples):
         alive()
@@ -115,7 +116,7 @@ def respond(
                 found[name][lane] = value
         drive = run.spent[2] / (record.periods * lanes.period)
         found["contact_loss_share"][index] = lost_share(drive)
-    here = points.status == 0
+    here = moves(points.status)
     found["mesh_frequency"][here] = points.mesh_frequency[here] / (2.0 * np.pi)
     found["frequency_ratio"][here] = (points.mesh_frequency / points.rate)[here]
     found["half_backlash"][here] = points.half_backlash[here]

@@ -37,7 +37,6 @@ from thermogear.mesh.operating import Operating, Varied
 from thermogear.mesh.thermal import HotPair
 
 Floats = NDArray[np.float64]
-Whole = NDArray[np.int64]
 Columns = Mapping[str, Floats]
 
 BATCH = 256
@@ -319,7 +318,7 @@ def quasi_static(
     """
     refused: list[ThermogearError] = []
 
-    def asked(places: Whole) -> list[tuple[Whole, dict[str, NDArray[Any]]]]:
+    def asked(places: NDArray[np.int64]) -> list[tuple[NDArray[np.int64], dict[str, NDArray[Any]]]]:
         """The cycle of samples that do it, halved where one is refused until it is alone."""
         alive()
         some = {name: values[places] for name, values in columns.items()}

@@ -21,8 +21,6 @@ from thermogear.heat.gearbox import Surroundings
 from thermogear.heat.measured_temperature import buried_temperature, infrared_indication
 from thermogear.mesh.warm_up import WarmUp
 
-Floats = NDArray[np.float64]
-
 SENSORS = tuple(SensorsTable.model_fields)
 """Names of the sensors, in the order of their table."""
 
@@ -33,8 +31,8 @@ class Shown:
 
     name: str
     words: str
-    shown: Floats
-    true: Floats
+    shown: NDArray[np.float64]
+    true: NDArray[np.float64]
 
 
 def flank_area(pair: GearPair, gear: Gear) -> float:

@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 from thermogear.base.pieces import Pieces
 from thermogear.dynamics.geared import GearedModel
 
-Floats = NDArray[np.float64]
-
 
 def between(one: GearedModel, other: GearedModel, weight: float) -> GearedModel:
     """``one`` + ``weight`` (``other`` - ``one``) in every number, functions of the phase included.
@@ -41,9 +39,7 @@ def _mixed(a: Any, b: Any, weight: float) -> Any:
         return type(a)(**made)  # type: ignore[misc]
     if isinstance(a, tuple):
         return tuple(_mixed(x, y, weight) for x, y in _alike(a, b))
-    if isinstance(a, float | complex | np.ndarray):
-        return a + weight * (b - a)
-    return a
+    return a + weight * (b - a) if isinstance(a, float | complex | np.ndarray) else a
 
 
 def _alike(a: tuple[Any, ...], b: tuple[Any, ...]) -> Any:
@@ -64,7 +60,7 @@ def _pieces(a: Pieces, b: Pieces, weight: float) -> Pieces:
     return Pieces(starts=tuple(starts.tolist()), coefficients=tuple(map(tuple, rows)))
 
 
-def _from(function: Pieces, starts: Floats) -> Floats:
+def _from(function: Pieces, starts: NDArray[np.float64]) -> NDArray[np.float64]:
     """Coefficients (start, power) of the polynomials at ``starts``, moved to them."""
     place = np.searchsorted(function.starts, starts, side="right") - 1
     size = max(len(row) for row in function.coefficients)

@@ -13,7 +13,6 @@ from thermogear.dynamics.bundle import Prepared, Visits
 from thermogear.dynamics.tables import Lanes
 
 Floats = NDArray[np.float64]
-Bytes = NDArray[np.uint8]
 Whole = NDArray[np.int64]
 
 
@@ -23,7 +22,7 @@ def exact_bundles(lanes: Lanes, refine: int = 1) -> Iterator[Prepared]:
         yield index, partial(_prepared, lanes, index, borders, marks)
 
 
-def _prepared(lanes: Lanes, index: Whole, borders: Floats, marks: Bytes) -> ExactBundle:
+def _prepared(lanes: Lanes, index: Whole, borders: Floats, marks: NDArray[np.uint8]) -> ExactBundle:
     mine = lanes.take(index)
     return ExactBundle(
         exact.prepare_maps(mine, borders, marks), period=mine.period, damping=mine.damping

@@ -20,8 +20,6 @@ from thermogear.dynamics.kernels.drive_run import advance
 from thermogear.dynamics.tables import Pieces
 
 Floats = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
-Whole = NDArray[np.int64]
 
 DEGREE = 7
 """Of the polynomials that stand for the periodic functions on a panel."""
@@ -345,18 +343,20 @@ def padded(count: int) -> int:
     return 8 * ((count + 7) // 8)
 
 
-def _split(u: Complexes) -> Floats:
+def _split(u: NDArray[np.complex128]) -> Floats:
     found = np.empty((*u.shape[:-1], 2 * u.shape[-1]))
     found[..., 0::2], found[..., 1::2] = u.real, u.imag
     return found
 
 
-def _joined(numbers: ArrayLike) -> Complexes:
+def _joined(numbers: ArrayLike) -> NDArray[np.complex128]:
     both = np.asarray(numbers, dtype=float)
     return np.asarray(both[..., 0::2] + 1j * both[..., 1::2])
 
 
-def periodic_table(model: GearedModel) -> tuple[Floats, Whole, Floats, Floats, Whole]:
+def periodic_table(
+    model: GearedModel,
+) -> tuple[Floats, NDArray[np.int64], Floats, Floats, NDArray[np.int64]]:
     """Edges of panels, the guide to them, polynomials, borders of steps, which functions jump.
 
     The polynomials (panel, power, function) are in the phase from the panel's middle; a border is

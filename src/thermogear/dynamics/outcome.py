@@ -12,7 +12,6 @@ from thermogear.base.vocabulary import STATUS
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 
 DIVERGED = STATUS.index("diverged")
 SIDES = ("back", "free", "drive")
@@ -31,7 +30,7 @@ class Result:
 
 
 def dataset(
-    result: Result, *, period: Floats, periods: int, discard: int, samples: int
+    result: Result, *, period: NDArray[np.float64], periods: int, discard: int, samples: int
 ) -> xr.Dataset:
     import xarray as xr
 

@@ -15,8 +15,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import InputError, nearest
 
-Floats = NDArray[np.float64]
-
 _MM, _UM = 1e-3, 1e-6
 _STEP = math.sqrt(2.0)  # from grade to grade
 _GRADES = {"2013": (1, 11), "1995": (0, 12)}
@@ -70,7 +68,7 @@ class HelixTolerances(NamedTuple):
         return HelixTolerances(*(float(round_tolerance(value)) for value in self))
 
 
-def round_tolerance(value: ArrayLike) -> Floats:
+def round_tolerance(value: ArrayLike) -> NDArray[np.float64]:
     """A tolerance [m] to 1 um above 10 um, 0.5 um from 5 to 10 um, 0.1 um below; any shape.
 
     Halves round up. Source: ISO 1328-1:2013, rounding rule.

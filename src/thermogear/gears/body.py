@@ -10,8 +10,6 @@ from numpy.typing import ArrayLike, NDArray
 from thermogear.base.errors import ValidityWarning
 from thermogear.gears.geometry import Gear
 
-Floats = NDArray[np.float64]
-
 # Columns A..F of X* = A/th^2 + B h^2 + C h/th + D/th + E h + F
 SAINSOT = {
     "L": (-5.574e-5, -1.9986e-3, -2.3015e-4, 4.7702e-3, 0.0271, 6.8045),
@@ -42,7 +40,7 @@ def sainsot_compliance(
     t: ArrayLike,
     modulus: ArrayLike | None = None,
     face_width: float | None = None,
-) -> Floats:
+) -> NDArray[np.float64]:
     """Deflection of the tooth's foundation per unit normal force, 1/k_f [m/N].
 
     1/k_f = cos^2(beta)/(b E) {L* (u_f/S_f)^2 + M* (u_f/S_f) + P* (1 + Q* tan^2 beta)},

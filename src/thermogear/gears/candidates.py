@@ -14,13 +14,11 @@ from thermogear.gears.corner import ContactPoint, contact_point
 from thermogear.gears.deviations import Contacts
 from thermogear.gears.pair import GearPair
 
-Floats = NDArray[np.float64]
-
 
 class MeshPoints(NamedTuple):
     """The candidates for contact at each mesh position, arrays (position, pair)."""
 
-    s: Floats
+    s: NDArray[np.float64]
     point: ContactPoint
     contacts: Contacts
 

@@ -24,7 +24,6 @@ from numpy.typing import ArrayLike, NDArray
 from thermogear.gears.pair import GearPair
 
 Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 
 class ContactPoint(NamedTuple):
@@ -38,7 +37,7 @@ class ContactPoint(NamedTuple):
     gap: Floats
 
 
-def off_path(pair: GearPair, s: Floats) -> tuple[Flags, Flags]:
+def off_path(pair: GearPair, s: Floats) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """(s < s_A, s > s_E), rounding aside: where the wheel's, the pinion's tip corner touches.
 
     Where undercut ends the path there, its edge does.
@@ -91,8 +90,7 @@ def wheel_point(pair: GearPair, s: ArrayLike, *, rho: ArrayLike) -> tuple[Floats
     own = np.conj((r2 - 1j * rho_) * np.exp(1j * (s_ - (length - rho_)) / r2))
     point = (r1 + r2 + 1j * length) - own
     string = np.sqrt(np.maximum(np.abs(point) ** 2 - r1**2, 0.0))
-    turn = np.angle(point / (r1 + 1j * string))
-    return string, string + r1 * turn - s_
+    return string, string + r1 * np.angle(point / (r1 + 1j * string)) - s_
 
 
 def flank_ends(pair: GearPair) -> tuple[tuple[float, float], tuple[float, float]]:

@@ -22,7 +22,6 @@ from thermogear.gears.geometry import Gear
 from thermogear.gears.pair import GearPair
 
 Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 GEARS = ("pinion", "wheel")
 FLANKS = ("drive", "back", "both")
@@ -40,8 +39,8 @@ class Contacts(NamedTuple):
     s: Floats
     pinion: Floats
     wheel: Floats
-    pinion_tooth: Integers
-    wheel_tooth: Integers
+    pinion_tooth: NDArray[np.int64]
+    wheel_tooth: NDArray[np.int64]
     flank: str
 
     def gear(self, name: str) -> Gear:

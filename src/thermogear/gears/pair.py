@@ -143,15 +143,12 @@ class GearPair:
             longest = length - lowest
             too_long = reach > longest * (1.0 + 1e-9)
             if too_long and other.undercut and not other.allow_undercut:
-                needed = other.minimum_profile_shift
                 raise GeometryError(
                     f"{other_name}.profile_shift",
                     f"{other.profile_shift:g} for {other.teeth} teeth",
-                    why=f"undercut takes {millimetres(reach - longest)} of the path of contact; "
-                    f"no undercut from x = {needed:.3f}",
-                    fix=f"use x >= {math.ceil(100.0 * needed) / 100.0:.2f} or >= "
-                    f"{other.minimum_teeth} teeth, or allow_undercut (`new --allow-undercut`) to "
-                    "have the rest of the path",
+                    why=f"undercut takes {millimetres(reach - longest)} of the path of contact",
+                    fix=f"use {self._accepted(mine, other)}allow_undercut (`new --allow-undercut`) "
+                    "to have the rest of the path",
                 )
             if too_long and not (other.undercut and self._clears(mine, other, reach)):
                 where = "tangent point" if reach > length else "form circle"
@@ -170,6 +167,38 @@ class GearPair:
                     allowed=f"< {millimetres(self.centre_distance - other.root_radius)}",
                     why=f"the tip hits the {other_name}'s root (clearance {millimetres(gap)})",
                 )
+
+    def _accepted(self, mine: Gear, other: Gear) -> str:
+        """Least profile shift to a hundredth, and least teeth, at which no contact is cut away.
+
+        Of ``other`` beside ``mine`` as it is, at the centre distance given or, where that would
+        be too close, without backlash; in words, empty where neither does it.
+        """
+
+        reach = float(mine.curvature_radius(mine.tip_radius))
+
+        def whole(teeth: int, shift: float) -> bool:
+            higher = 0.5 * (teeth - other.teeth) + shift - other.profile_shift
+            tip = other.tip_radius + higher * other.module
+            try:
+                changed = replace(other, teeth=teeth, profile_shift=shift, tip_radius=tip)
+                lowest = changed.base_radius * changed.junction[1]
+            except GeometryError:
+                return False
+            both = mine.base_radius + changed.base_radius
+            apart = max(self.centre_distance, tight_distance(mine, changed))
+            return apart > both and reach <= (math.sqrt(apart**2 - both**2) - lowest) * (1.0 + 1e-9)
+
+        x, z = other.profile_shift, other.teeth
+        shifts = range(
+            math.floor(100.0 * x) + 1, math.ceil(100.0 * other.minimum_profile_shift) + 1
+        )
+        numbers = range(z + 1, other.minimum_teeth + 1)
+        ways = [f"x >= {0.01 * n:.2f}" for n in shifts if whole(z, 0.01 * n)][:1]
+        ways += [f">= {n} teeth" for n in numbers if whole(n, x)][:1]
+        return f"{' or '.join(ways)}, where what is cut lies below the flank in use, or " * bool(
+            ways
+        )
 
     def _clears(self, mine: Gear, other: Gear, reach: float) -> bool:
         """Whether the tip corner of ``mine`` stays out of the undercut tooth of ``other``.

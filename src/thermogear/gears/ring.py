@@ -126,8 +126,7 @@ def _foot_matrices(
     breathing /= 1.0 + poisson + (1.0 - poisson) * ratio2
     torsion = outer * (1.0 + poisson) * (1.0 / ratio2 - 1.0)
     table[:, 0, 0] += 2.0 * np.pi * outer * mean**2 * breathing
-    windup = 2.0 * np.pi * outer * mean**2 * torsion
-    return table, np.asarray(windup)
+    return table, np.asarray(2.0 * np.pi * outer * mean**2 * torsion)
 
 
 def foot_load(gear: Gear, t: ArrayLike) -> Floats:

@@ -121,9 +121,7 @@ def rotating_disc_gradient(prandtl: float, *, exponent: float) -> float:
 @cache
 def _gradient_table(exponent: float) -> Chebyshev:
     """ln(-theta'(0)) over ln Pr: smooth, so that a low degree gives six digits."""
-    if exponent == 2.0:
-        return Chebyshev(_GROWING, domain=_ends())
-    return _solved_table(exponent)
+    return Chebyshev(_GROWING, domain=_ends()) if exponent == 2.0 else _solved_table(exponent)
 
 
 def _ends() -> list[float]:

@@ -14,10 +14,8 @@ from thermogear.heat.lubrication import density, kinematic_viscosity
 from thermogear.heat.network import ThermalNetwork
 from thermogear.heat.still_air import free_face_convection
 
-Floats = NDArray[np.float64]
 
-
-def oil_expansion(lubricant: Lubricant, temperature: ArrayLike) -> Floats:
+def oil_expansion(lubricant: Lubricant, temperature: ArrayLike) -> NDArray[np.float64]:
     """Volume expansion of an oil, beta = -(d rho/dT)/rho [1/K]; ``temperature`` [K], any shape.
 
     >>> oil = lubricant("FVA3")
@@ -52,7 +50,7 @@ def with_free_convection(
         lubricant.thermal_conductivity,
         oil_prandtl(lubricant, oil),
     )
-    least: dict[str, Floats] = {}
+    least: dict[str, NDArray[np.float64]] = {}
     for (name, gear), share in zip(gears.items(), surroundings.wetted_share, strict=True):
         areas = {
             f"{name}_tooth": 2.0

@@ -13,8 +13,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import InputError
 
-Floats = NDArray[np.float64]
-
 
 class RegimeLimits(NamedTuple):
     """Film parameters [-] below which contact is boundary and above which the film is full.
@@ -46,7 +44,9 @@ ROUGHNESS_OF_TABLE = 0.5e-6
 """Ra [m] for which the permissible film parameter is drawn."""
 
 
-def permissible_film_parameter(viscosity_40: ArrayLike, *, load_stage: ArrayLike) -> Floats:
+def permissible_film_parameter(
+    viscosity_40: ArrayLike, *, load_stage: ArrayLike
+) -> NDArray[np.float64]:
     """lambda_GFP [-] of a mineral oil by its failure stage in the micropitting test C-GF/8.3/90.
 
     Straight lines in log(lambda) over log(viscosity) and over the stage, through values read off
@@ -78,7 +78,9 @@ def permissible_film_parameter(viscosity_40: ArrayLike, *, load_stage: ArrayLike
     return np.asarray(np.exp((1.0 - share) * ends[0] + share * ends[1]))
 
 
-def micropitting_safety(*, film_parameter: ArrayLike, permissible: ArrayLike) -> Floats:
+def micropitting_safety(
+    *, film_parameter: ArrayLike, permissible: ArrayLike
+) -> NDArray[np.float64]:
     """S_lambda = min lambda_GF/lambda_GFP [-], the least over the last axis.
 
     ``film_parameter`` lambda_GF (..., position), h over the mean Ra of both flanks

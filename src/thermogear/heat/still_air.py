@@ -7,8 +7,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.units import STANDARD_GRAVITY
 
-Floats = NDArray[np.float64]
-
 STEFAN_BOLTZMANN = 5.670374e-8
 """sigma [W/(m^2 K^4)], CODATA."""
 EMISSIVITY = 0.9
@@ -25,7 +23,7 @@ def free_face_convection(
     prandtl: ArrayLike,
     *,
     expansion: ArrayLike,
-) -> Floats:
+) -> NDArray[np.float64]:
     """Heat transfer coefficient of a vertical face by free convection, its mean [W/(m^2 K)].
 
     h = (k/L) {0.825 + 0.387 Ra^(1/6)/[1 + (0.492/Pr)^(9/16)]^(8/27)}^2,
@@ -50,7 +48,9 @@ def free_face_convection(
     return np.asarray(k / tall * (0.825 + 0.387 * rayleigh ** (1.0 / 6.0) / shape) ** 2)
 
 
-def still_air_coefficient(wall: ArrayLike, *, ambient: ArrayLike, height: ArrayLike) -> Floats:
+def still_air_coefficient(
+    wall: ArrayLike, *, ambient: ArrayLike, height: ArrayLike
+) -> NDArray[np.float64]:
     """Heat transfer coefficient of a wall in still air, convection and radiation [W/(m^2 K)].
 
     h = h_free(|T - T_0|, L) + eps sigma (T^2 + T_0^2)(T + T_0),

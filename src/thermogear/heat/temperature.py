@@ -92,8 +92,7 @@ def heat_partition(
     first = np.asarray(contact_coefficient_1) * np.sqrt(v1)
     second = np.asarray(contact_coefficient_2) * np.sqrt(v2)
     total = np.asarray(first + second)
-    share = _over(np.asarray(first), total)
-    return np.where(total == 0.0, 0.5, share)
+    return np.where(total == 0.0, 0.5, _over(np.asarray(first), total))
 
 
 def flank_exchange(

@@ -6,15 +6,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
 from thermogear.measured.record import Channel, Notice, Record, Samples
 from thermogear.measured.traps import MOST_STAMPS, health, is_time_name
 from thermogear.measured.units import kind_of
 from thermogear.signals.stamps import grain_of, pace_of
-
-Floats = NDArray[np.float64]
 
 _FIRST = 1 << 10  # samples in which nearly every vibration turns back
 _STRAIGHT = 0.05  # of its rise: how far a clock or a counter may be off a straight line

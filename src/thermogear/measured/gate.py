@@ -19,7 +19,6 @@ from thermogear.signals.filters import without_trend
 from thermogear.signals.quality import Damage, damages, filled
 
 Floats = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 FILLED = 0.05
 """Largest share of a channel's samples that is filled in; above it the longest whole stretch is
@@ -177,7 +176,7 @@ def _examined(values: Floats) -> list[Damage]:
     ]
 
 
-def _lost(own: Sequence[Damage], size: int) -> Mask:
+def _lost(own: Sequence[Damage], size: int) -> NDArray[np.bool_]:
     """Samples of which nothing is known."""
     kinds = [one.samples for one in own if one.kind in _GONE]
     held = [one.samples for one in own if one.kind == "held" and _in_blocks(one)]
@@ -190,7 +189,7 @@ def _in_blocks(one: Damage) -> bool:
     return one.count > 4 * runs
 
 
-def _longest(gone: Mask) -> tuple[int, int]:
+def _longest(gone: NDArray[np.bool_]) -> tuple[int, int]:
     edges = np.concatenate([[-1], np.flatnonzero(gone), [gone.size]])
     longest = int(np.argmax(np.diff(edges)))
     return int(edges[longest]) + 1, int(edges[longest + 1])

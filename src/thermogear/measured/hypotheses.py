@@ -41,9 +41,6 @@ from thermogear.measured.meshes import (
 )
 from thermogear.measured.peaks import Peaks
 
-Floats = NDArray[np.float64]
-
-
 _LOWEST = 40.0  # bins, of a mesh line
 _MESHES = 48  # lines tried as mesh lines
 _PAIRS = 60  # pairs of mesh line and teeth looked at closely
@@ -294,6 +291,8 @@ def _of_highest_beside(peaks: Peaks, mesh: float) -> list[int]:
     return [int(z) for z in dict.fromkeys(teeth[fits])]
 
 
-def _looked(gain: Floats, peaks: Peaks, position: NDArray[np.floating[Any]]) -> Floats:
+def _looked(
+    gain: NDArray[np.float64], peaks: Peaks, position: NDArray[np.floating[Any]]
+) -> NDArray[np.float64]:
     place = np.rint(position / peaks.bin_width).astype(int)
     return np.asarray(gain[np.where((place > 2) & (place < peaks.bins), place, peaks.bins + 1)])

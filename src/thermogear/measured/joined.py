@@ -8,15 +8,12 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError, nearest
 from thermogear.measured.options import place_of
 from thermogear.measured.parts import Joined, Part
 from thermogear.measured.record import Channel, Notice, Record, Samples
 from thermogear.measured.units import counts_turns
-
-Floats = NDArray[np.float64]
 
 JOINS = ("channels", "time")
 SIGN = "::"

@@ -167,9 +167,7 @@ def _separator(body: list[str], options: ReadOptions, path: Path) -> tuple[str |
             return separator, options.decimal or ("," if commas else ".")
     if sum("," in line for line in sample) > 0.5 * len(sample):
         blanks = sum(bool(re.search(r"\d\s+[-+\d]", line.strip())) for line in sample)
-        if blanks > 0.8 * len(sample):
-            return None, ","
-        return ",", options.decimal or "."
+        return (None, ",") if blanks > 0.8 * len(sample) else (",", options.decimal or ".")
     return None, options.decimal or "."
 
 

@@ -14,8 +14,6 @@ from thermogear.base.errors import InputError, printable
 from thermogear.measured.options import no_channel, no_tacho, place_of
 from thermogear.measured.units import UNITS, factor_of, kind_of, known_unit
 
-Floats = NDArray[np.float64]
-
 OTHER = {"time", "speed", "torque", "temperature", "angle", "frequency"}
 """Kinds of quantity that are no vibration."""
 _MOST_RPM = 1e9  # in one unit of a speed channel
@@ -73,14 +71,12 @@ class Channel:
     def __len__(self) -> int:
         return len(self.samples)
 
-    def values(self, start: int = 0, *, stop: int | None = None) -> Floats:
+    def values(self, start: int = 0, *, stop: int | None = None) -> NDArray[np.float64]:
         """Samples start..stop in the channel's own unit, as floats."""
         raw = np.asarray(self.samples[start : len(self) if stop is None else stop], dtype=float)
-        if self.scale == 1.0 and self.offset == 0.0:
-            return raw
-        return raw * self.scale + self.offset
+        return raw if self.scale == 1.0 and self.offset == 0.0 else raw * self.scale + self.offset
 
-    def blocks(self, size: int = BLOCK) -> Iterator[Floats]:
+    def blocks(self, size: int = BLOCK) -> Iterator[NDArray[np.float64]]:
         """The whole channel block by block: no more than ``size`` samples in memory."""
         for start in range(0, len(self), size):
             yield self.values(start, stop=min(start + size, len(self)))

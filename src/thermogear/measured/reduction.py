@@ -62,8 +62,6 @@ from thermogear.signals.lost import phase_jumps, phase_step
 from thermogear.signals.strong import strong_lines
 from thermogear.signals.windows import Window
 
-Floats = NDArray[np.float64]
-
 LONGEST = 1 << 21
 """Samples per channel reduced at once; a longer record is cut there with a notice."""
 
@@ -95,7 +93,7 @@ class Measurement:
     notices: tuple[Notice, ...]
     start: int
     findings: tuple[Finding, ...] = ()
-    values: Floats = field(default_factory=lambda: np.empty((0, 0)), repr=False)
+    values: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 0)), repr=False)
     slices: OrderSlices | None = None
     given: tuple[int | None, float | None] = (None, None)
     swelling: Swelling | None = None
@@ -292,7 +290,7 @@ def measure(
 def _swelling(
     record: Record,
     chosen: Sequence[Channel],
-    table: Floats,
+    table: NDArray[np.float64],
     gearing: Gearing | None,
     known: tuple[int | None, float | None],
 ) -> Swelling | None:

@@ -14,8 +14,6 @@ from numpy.typing import NDArray
 
 from thermogear.measured.prominence import Prominence
 
-Floats = NDArray[np.float64]
-
 _FEWEST = 17  # teeth of a further mesh: below, a standard gear of 20 degrees is undercut
 _SIGNIFICANT = 6.0  # standard deviations of a mean over noise lines
 
@@ -83,7 +81,7 @@ def shafts_of(sharp: Prominence, top: int, weights: dict[int, float]) -> tuple[S
     return tuple(found)
 
 
-def _sides(harmonics: NDArray[np.int64], teeth: int, ranks: tuple[int, ...]) -> Floats:
+def _sides(harmonics: NDArray[np.int64], teeth: int, ranks: tuple[int, ...]) -> NDArray[np.float64]:
     return np.array(
         [h + s * n / teeth for h in harmonics for n in ranks for s in (-1, 1)], dtype=float
     )

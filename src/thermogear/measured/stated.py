@@ -14,8 +14,6 @@ from thermogear.measured.meshes import Stated
 from thermogear.measured.rate_check import SURE
 from thermogear.measured.record import Notice, Record
 
-Floats = NDArray[np.float64]
-
 _MAINS = (50.0, 60.0)  # Hz
 _LEAST_TURNS = 1.0
 
@@ -40,7 +38,7 @@ def stated_of(record: Record, teeth: int | None, speed: float | None) -> Stated:
 
 
 def stated_gearing(
-    table: Floats, notices: list[Notice], expected: float | None, stated: Stated
+    table: NDArray[np.float64], notices: list[Notice], expected: float | None, stated: Stated
 ) -> Gearing | None:
     """What the lines say, with what is stated as evidence; the expected place only where a line
     is clear there as well."""

@@ -11,8 +11,6 @@ from numpy.typing import NDArray
 
 from thermogear.signals.envelope import envelope_rate
 
-Floats = NDArray[np.float64]
-
 CHANCE = 1e-3
 """How often noise may have a rate as clear for one to be told."""
 
@@ -56,7 +54,7 @@ class Swelling:
 
 
 def swelling_of(
-    channels: Sequence[str], table: Floats, rate: float | None, shaft: float | None
+    channels: Sequence[str], table: NDArray[np.float64], rate: float | None, shaft: float | None
 ) -> Swelling | None:
     """The clearest rate of the channels' envelopes; None where chance may explain it.
 

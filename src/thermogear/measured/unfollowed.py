@@ -11,9 +11,6 @@ from thermogear.signals.interval import APART, REACH, SIDE, Reading
 from thermogear.signals.lines import LineSpectrum
 from thermogear.signals.strong import UNEVEN, Strong, dirichlet, twins
 
-Floats = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
-
 AS_FAR = 3.0
 """Times the distance of the first sidebands, up to which is looked."""
 CLEAR = 3
@@ -85,7 +82,7 @@ def unfollowed(
 
 
 def around(
-    values: Floats, *, place: float, most: int, strong: Sequence[Strong], noise: float
+    values: NDArray[np.float64], *, place: float, most: int, strong: Sequence[Strong], noise: float
 ) -> tuple[float, float, float]:
     """Power of a line at ``place`` [bins], and beyond ``noise`` of a bin what up to ``most`` bins
     beside it changes its amplitude (I), and what turns it (Q). ``strong`` lines farther off are
@@ -124,7 +121,7 @@ def _next_to_sides(strong: Sequence[Strong], place: float, first: float) -> tupl
 
 def _beside_place(
     spectrum: LineSpectrum, place: float, most: int
-) -> tuple[Complexes, Complexes, float]:
+) -> tuple[NDArray[np.complex128], NDArray[np.complex128], float]:
     """A line at ``place`` [bins] and what is 1 .. ``most`` and half a lobe beside it.
 
     Above it and, conjugate, below, turned by the line's phase: Hann's window, powers that of noise
@@ -147,7 +144,7 @@ def _beside_place(
     return above, below, float(np.abs(plain[own + 1]) ** 2)
 
 
-def _highest(power: Floats, away: NDArray[np.int64]) -> dict[int, float]:
+def _highest(power: NDArray[np.float64], away: NDArray[np.int64]) -> dict[int, float]:
     """Power of lines ``away`` [bins], the highest first, none beside another."""
     found: dict[int, float] = {}
     for place in np.argsort(-power):

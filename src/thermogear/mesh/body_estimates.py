@@ -21,14 +21,12 @@ from thermogear.heat.scuffing import (
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.scuffing_rating import integral_flash
 
-Floats = NDArray[np.float64]
-
 ESTIMATES = ("ISO/TR 13989-1", "ISO/TR 13989-2", "ISO/TR 15144-1")
 
 
 def body_estimates(
-    pair: GearPair, operating: Operating, mean_flash: Floats, dipped: bool = True
-) -> Floats:
+    pair: GearPair, operating: Operating, mean_flash: NDArray[np.float64], dipped: bool = True
+) -> NDArray[np.float64]:
     """Body temperature [K] by each of :data:`ESTIMATES`, shape (estimate, operating).
 
     ``mean_flash`` [K] along the path, (operating,), for part 1; the oil's temperature is that of

@@ -39,7 +39,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 PATH = ("operating", "path_position")
 PHASE = ("operating", "mesh_phase")

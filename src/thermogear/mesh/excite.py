@@ -18,7 +18,7 @@ from thermogear.base.excitation import (
     fourier_rows,
     padded,
 )
-from thermogear.base.vocabulary import STATUS
+from thermogear.base.vocabulary import moves
 from thermogear.gears.geometry import Gear
 from thermogear.gears.pair import GearPair
 
@@ -122,7 +122,7 @@ def excitations(
     if friction is not None and len(friction) != count:
         raise InputError("friction", f"{len(friction)} of them", allowed=f"{count}, as the points")
     status = np.asarray(cycle["status"], dtype=np.int8)
-    moving = status == STATUS.index("ok")
+    moving = moves(status)
     samples = {}
     for name in ("mesh_stiffness", "spring_error"):
         values = np.asarray(cycle[name], dtype=float)

@@ -18,7 +18,6 @@ from thermogear.base.bounds import BODY
 from thermogear.base.errors import ThermogearError, ValidityWarning
 
 Floats = NDArray[np.float64]
-Indices = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 HOTTEST = 700.0
@@ -41,7 +40,7 @@ class Response(NamedTuple):
     known: Flags
 
 
-Respond = Callable[[Floats, Indices], Response]
+Respond = Callable[[Floats, NDArray[np.int64]], Response]
 
 
 @dataclass(eq=False, kw_only=True)
@@ -76,7 +75,9 @@ class Course:
         return np.asarray(found)
 
 
-def asked(respond: Respond, nodes: Floats, index: Indices, lost: dict[int, str]) -> Response:
+def asked(
+    respond: Respond, nodes: Floats, index: NDArray[np.int64], lost: dict[int, str]
+) -> Response:
     """``respond``, with the points at which it raises named in ``lost`` and left as they are.
 
     A batch that is refused is halved until the points that fail are alone.

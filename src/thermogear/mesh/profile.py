@@ -17,7 +17,6 @@ from thermogear.mesh.thermal import HotPair
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 
 POINTS = 61
 
@@ -29,7 +28,7 @@ def profiles(pair: GearPair, operating: Operating, *, printed: bool) -> xr.Datas
     asked for, ``printed`` the one with the angle as printed (whose second term carries 1/K).
     """
     hot = HotPair(pair, operating, MeshModel.consistent())
-    columns: dict[str, list[Floats]] = {}
+    columns: dict[str, list[NDArray[np.float64]]] = {}
     for gear in (pair.pinion, pair.wheel):
         r = np.linspace(max(gear.form_radius, gear.base_radius), gear.tip_radius, POINTS)
         psi = gear.half_thickness_angle(r)

@@ -128,9 +128,7 @@ def _plain(values: Mapping[str, Any]) -> dict[str, Any]:
             return [one(v) for v in value.tolist()]
         if isinstance(value, np.generic):
             value = value.item()
-        if isinstance(value, float) and not np.isfinite(value):
-            return str(value)
-        return value
+        return str(value) if isinstance(value, float) and not np.isfinite(value) else value
 
     return {str(k): one(v) for k, v in values.items()}
 

@@ -137,6 +137,8 @@ def _in_words(data: xr.Dataset) -> xr.Dataset:
             places = variable.values.astype(int)
             known = (places >= 0) & (places < meanings.size - 1)
             words[name] = (variable.dims, meanings[np.where(known, places, -1)])
+        elif "missing_value" in variable.attrs:
+            words[name] = variable.where(variable != variable.attrs["missing_value"])
         elif "flag_masks" in variable.attrs and "flags" in variable.attrs:
             words[name] = (variable.dims, _sums(variable))
     return data.assign(words)

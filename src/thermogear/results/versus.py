@@ -50,8 +50,6 @@ ALONG = dict.fromkeys(FIGURES, "") | {name: c for c, names in CURVES.items() for
 ABSENT = {"status": len(STATUS), "label": "", "present": 0}
 """What stands for texts and whole numbers where a case has no such point."""
 
-Floats = NDArray[np.float64]
-
 
 @dataclass(frozen=True, eq=False)
 class Stored:
@@ -427,7 +425,7 @@ def _groups(case: Stored) -> list[xr.Dataset]:
     return [case.groups[name] for name in GROUPS[case.kind] if name in case.groups]
 
 
-def _positions(case: Stored, curve: str) -> Floats:
+def _positions(case: Stored, curve: str) -> NDArray[np.float64]:
     """Where the curves along ``curve`` have their values; spectra end at the highest order."""
     for data in _groups(case):
         if curve in data.variables and any(n in data for n in CURVES[curve]):

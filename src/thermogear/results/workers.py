@@ -187,9 +187,7 @@ class Crew:
         async def everyone() -> list[Any]:
             return await asyncio.gather(*map(one, asked))
 
-        if not asked:
-            return {}
-        return dict(zip(asked, self.ask(client.sync, everyone), strict=True))
+        return {} if not asked else dict(zip(asked, self.ask(client.sync, everyone), strict=True))
 
     def difference(self, answer: object) -> str | None:
         """Why the worker that answers so is not to be believed; None where it is."""

@@ -17,8 +17,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import InputError
 
-Floats = NDArray[np.float64]
-
 
 @dataclass(frozen=True, kw_only=True)
 class InductionMotor:
@@ -96,7 +94,7 @@ class InductionMotor:
         """T_el = 1/(w_1 s_k) [s], w_1 = 2 pi ``line_frequency``."""
         return 1.0 / (2.0 * np.pi * self.line_frequency * self.breakdown_slip)
 
-    def torque(self, speed: ArrayLike) -> Floats:
+    def torque(self, speed: ArrayLike) -> NDArray[np.float64]:
         """Steady torque [N m] at ``speed`` [rad/s], any shape; negative above synchronous speed."""
         slip = 1.0 - np.asarray(speed, dtype=float) / self.synchronous_speed
         scaled = slip / self.breakdown_slip

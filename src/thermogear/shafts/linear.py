@@ -235,9 +235,7 @@ class LinearTrain:
         t, train = self.basis, self.assembly
         parts = [t.T @ one @ t for one in (train.mass, self.damping, train.gyroscopic)]
         stiff = t.T @ self.stiffness @ t
-        motor = np.zeros(t.shape[1])
-        if self.assembly.slip[0]:
-            motor = t[train.index["motor.tz"]]
+        motor = t[train.index["motor.tz"]] if self.assembly.slip[0] else np.zeros(t.shape[1])
         slips = self.slip_damping(w)
         pushed = np.broadcast_to(np.asarray(force, complex), (*w.shape, train.size)) @ t
         found = np.empty((*w.shape, t.shape[1]), complex)

@@ -92,8 +92,7 @@ class MeshFrame:
         m = self.sense * np.array([-n[1], n[0]])
         arms = np.tan(self.pressure_angle) * np.asarray(self.base_radii)
         pitch = np.array([*-m, -self.sense * arms[0], *m, -self.sense * arms[1]])
-        metre = np.array([0.0, 0.0, -self.sense, 0.0, 0.0, self.sense])
-        return pitch, metre
+        return pitch, np.array([0.0, 0.0, -self.sense, 0.0, 0.0, self.sense])
 
     def gaps(self, shift: ArrayLike, angles: ArrayLike = (0.0, 0.0)) -> Floats:
         """Exact (delta_d, delta_b) [m] where the wheel's centre moves by ``shift`` (..., 2) [m].

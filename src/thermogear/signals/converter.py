@@ -9,9 +9,6 @@ from thermogear.signals.bridged import smallest_step
 from thermogear.signals.lines import line_spectrum
 from thermogear.signals.strong import strong_lines
 
-Floats = NDArray[np.float64]
-Mask = NDArray[np.bool_]
-
 _EVERYWHERE = 0.7  # of the levels between the extremes occur
 _MANY = 10.0  # levels in a standard deviation: fine
 _FOLDED = 0.53  # 2 zeta(3/2)/pi^2: see coarse
@@ -19,7 +16,7 @@ _OWN = 1.0 / 12.0  # of a squared level: the rounding's own noise
 _WHOLE = 0.75  # of the samples count
 
 
-def coarse(x: Floats, free: Mask) -> float:
+def coarse(x: NDArray[np.float64], free: NDArray[np.bool_]) -> float:
     """How far levels may falsify a line, as a share of the strongest line's amplitude.
 
     Rounding to levels of step q adds sum_m (-1)^m q/(pi m) sin(2 pi m x/q). Of a line of amplitude

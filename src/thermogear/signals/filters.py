@@ -104,5 +104,4 @@ def without_trend(x: ArrayLike) -> Floats:
     >>> without_trend([1.0, 3.0, 5.0]).round(9) + 0.0
     array([0., 0., 0.])
     """
-    values = finite_record(x)
-    return np.asarray(signal.detrend(values, axis=-1, type="linear"))
+    return np.asarray(signal.detrend(finite_record(x), axis=-1, type="linear"))

@@ -143,8 +143,7 @@ def _least_block(every: Floats, wanted: Floats) -> float:
     """Turns that tell the wanted orders from the nearest others, and from their own images."""
     gaps = np.abs(every[:, None] - wanted[None, :])
     gaps[gaps < 1e-9] = np.inf
-    nearest = min(float(np.min(gaps)), 2.0 * float(np.min(wanted)))
-    return _APART / nearest - 1e-9
+    return _APART / min(float(np.min(gaps)), 2.0 * float(np.min(wanted))) - 1e-9
 
 
 class _Block:

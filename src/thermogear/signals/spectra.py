@@ -13,7 +13,6 @@ from thermogear.signals import windows
 from thermogear.signals.windows import Window
 
 Floats = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -141,7 +140,7 @@ def amplitude_spectrum(
 
 def order_lines(
     x: ArrayLike, *, samples_per_period: int, periods: int, orders: ArrayLike
-) -> Complexes:
+) -> NDArray[np.complex128]:
     """Complex lines of an exactly periodic record at given orders (cycles per period).
 
     c(q) = (2/N) sum_j x_j exp(-2 pi i q j/S),  N = S P samples, S a period's samples, P periods,

@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError, nearest
 
-Floats = NDArray[np.float64]
-
 # Cosine sums w_j = sum_q (-1)^q a_q cos(2 pi q j/N), j = 0..N-1 (DFT-even: the period is N).
 _COSINES: dict[str, tuple[float, ...]] = {
     "rectangular": (1.0,),
@@ -42,7 +40,7 @@ class Window:
         if self.name not in _COSINES:
             raise InputError("window", repr(self.name), fix=nearest(str(self.name), WINDOWS))
 
-    def samples(self, count: int) -> Floats:
+    def samples(self, count: int) -> NDArray[np.float64]:
         """The ``count`` weights over one DFT period, first one at phase 0."""
         if count < 1:
             raise InputError("count", count, allowed=">= 1 sample")
@@ -52,7 +50,7 @@ class Window:
             total += (-1.0) ** rank * coefficient * np.cos(rank * angle)
         return total
 
-    def response(self, offset: NDArray[np.float64] | float) -> Floats:
+    def response(self, offset: NDArray[np.float64] | float) -> NDArray[np.float64]:
         """Amplitude read at a bin ``offset`` bins from a line, over the line's amplitude.
 
         |a_0 S(d) + sum_q a_q [S(d - q) + S(d + q)]/2| / a_0, S(d) = sin(pi d)/(pi d): the

@@ -28,7 +28,6 @@ from thermogear.study.orbit import complex_rows, found, orbit_of
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 STEPS = 1000
 """Progress of a branch counts in thousandths of the parameter's way."""
 MOST_DEPTH = 6
@@ -56,7 +55,7 @@ def branch_results(
     period: int | None = None,
     transient: bool = True,
     switch: int = 0,
-    second: tuple[str, Floats] | None = None,
+    second: tuple[str, NDArray[np.float64]] | None = None,
     progress: Progress = silent,
 ) -> Result:
     """Follow the orbit of ``point`` in ``parameter`` to ``to``; at flips ``switch`` levels deeper.

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
 from thermogear.base.progress import Progress, silent
-from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import dressed, label
 from thermogear.case.case import GearCase
 from thermogear.case.thermal_state import HOT, UNDEFORMED, ThermalState
@@ -28,7 +27,6 @@ from thermogear.study.relief import EDGE_WORDS, Seen, one_point
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 KIND = "contact"
 PARTS = (0.1, 0.25, 0.5, 1.0, 2.0)
 """Loads, as parts of the case's greatest, where none are named."""
@@ -65,15 +63,18 @@ def loaded_survey(
     if not np.all(np.isfinite(moments) & (moments > 0.0)):
         raise InputError("torques", f"{moments} N m", allowed="> 0 N m, finite")
     model = case.models[0].override(stiffness="loaded", body=body or case.models[0].body)
-    named = {state.kind: state for state in (UNDEFORMED, HOT)}
-    for kelvin in case.gear_temperatures:
-        named[f"{kelvin - ZERO_CELSIUS:.4g} degC"] = ThermalState.of(kelvin)
-    states = {name: state.operating(case, case.models[0]) for name, state in named.items()}
+    states = [UNDEFORMED, HOT, *map(ThermalState.of, case.gear_temperatures)]
     progress("loaded contact", 0, 2)
-    ones = [one_point(state, float(moments[0])) for state in states.values()]
+    ones = [one_point(s.operating(case, case.models[0]), float(moments[0])) for s in states]
     contact = _solve(case, model, stacked(ones), moments)
     contact = contact.assign_coords(
-        temperature=list(states),
+        temperature=[state.words for state in states],
+        gear_temperature=dressed(
+            ("temperature",),
+            np.array([state.temperature for state in states], dtype=float),
+            "K",
+            "both addenda where they are given",
+        ),
         load=dressed(("load",), moments, "N m", "pinion torque"),
     )
     progress("loaded contact", 1, 2)
@@ -138,7 +139,9 @@ def loaded_survey(
     )
 
 
-def _solve(case: GearCase, model: MeshModel, operating: Operating, moments: Floats) -> xr.Dataset:
+def _solve(
+    case: GearCase, model: MeshModel, operating: Operating, moments: NDArray[np.float64]
+) -> xr.Dataset:
     """The loaded contact over (temperature, load, mesh_phase)."""
     hot = HotPair(case.pair, operating, model)
     first, second = (
@@ -183,8 +186,7 @@ def apart(point: Operating, difference: float) -> Operating:
         for name, kelvin in t.bodies.items()
         if name != "housing"
     }
-    moved = replace(t, **gears)
-    return replace(point, temperatures=moved)
+    return replace(point, temperatures=replace(t, **gears))
 
 
 def _notices(

@@ -18,7 +18,6 @@ from thermogear.study.motion import follow_gears
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 COUNT = 14
 """Temperatures of a dial."""
 BEYOND = 40.0
@@ -84,7 +83,7 @@ def dial(case: GearCase, cycle: xr.Dataset, progress: Progress = silent) -> xr.D
     )
 
 
-def stops(*, reference: float, hot: float, jam: float) -> Floats:
+def stops(*, reference: float, hot: float, jam: float) -> NDArray[np.float64]:
     """The temperatures [K] of a dial, ascending, whole degrees Celsius and ``hot`` itself.
 
     From the ``reference`` at which the gears are as drawn to well beyond ``hot``, and past ``jam``

@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
     import xarray as xr
 
-Floats = NDArray[np.float64]
 MOST_CURVES = 16
 STEPS = 1000
 SAME = 1e-3
@@ -35,7 +34,7 @@ class Plane:
     """The ``second`` parameter, the ``values`` asked for, and ``sheet`` (p, q) -> model."""
 
     second: Parameter
-    values: Floats
+    values: NDArray[np.float64]
     sheet: Sheet
 
     @property

@@ -6,7 +6,6 @@ import json
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermogear.base.vocabulary import REGIMES, label
 from thermogear.case.case import GearCase
@@ -19,8 +18,6 @@ from thermogear.mesh.friction_path import FrictionPath
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.thermal import HotPair
 from thermogear.results.result import Notice, Result
-
-Floats = NDArray[np.float64]
 
 KIND = "friction"
 

@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 
     from thermogear.results.result import Result
 
-Floats = NDArray[np.float64]
 
 MESH = ("mesh_stiffness", "mean_stiffness", "half_backlash", "jam_temperature",
         "proportional_jam_temperature")  # fmt: skip
@@ -184,7 +183,7 @@ class LiveRunUp:
 
 
 def run_ups(
-    case: GearCase, speeds: Floats, state: StateLike, alive: Alive = keep_going
+    case: GearCase, speeds: NDArray[np.float64], state: StateLike, alive: Alive = keep_going
 ) -> Iterator[LiveRunUp]:
     """A run-up over ``speeds`` [rad/s] in one state of heat: coarsely first, then all of it.
 
@@ -214,7 +213,7 @@ def _followed(found: LiveRunUp, alive: Alive) -> Iterator[LiveRunUp]:
         yield found
 
 
-def fingerprint(case: GearCase, speeds: Floats, state: StateLike) -> bytes:
+def fingerprint(case: GearCase, speeds: NDArray[np.float64], state: StateLike) -> bytes:
     """All that a run-up over ``speeds`` in one state hangs on; b"" where it cannot move."""
     try:
         plan = run_up_plan(case, speeds[[0, -1]], temperatures=[state], branch_period=0)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermogear.base.vocabulary import label
+from thermogear.base.vocabulary import NO_COUNT, label
 from thermogear.case.case import GearCase
 from thermogear.case.charts import Chart
 from thermogear.gears.deviations import Relief, active_profile
@@ -93,7 +93,9 @@ def _group(chart: Chart, pair: GearPair) -> xr.Dataset:
         "evaluated_to": float(ends[1]),
         "pitch_diameter": 2.0 * float(np.hypot(gear.base_radius, pitch)),
     }
-    return label(entries, coordinates, about)
+    data = label(entries, coordinates, about)
+    data["iso_class"].attrs |= NO_COUNT
+    return data
 
 
 def measured_notices(case: GearCase) -> Iterator[Notice]:

@@ -12,15 +12,14 @@ from numpy.typing import ArrayLike, NDArray
 from thermogear.analysis.settle import PERIODIC
 from thermogear.base.display import CELSIUS, reach, stretches
 from thermogear.base.units import RPM
+from thermogear.base.vocabulary import moves
 from thermogear.case.case import GearCase
 from thermogear.heat.friction import LUBRICATED, beyond
-from thermogear.results.beside import back_side_notice, with_notices
+from thermogear.results.beside import from_data, with_notices
 from thermogear.results.result import Notice, Result, stored_dataset
 
 if TYPE_CHECKING:
     import xarray as xr
-
-Floats = NDArray[np.float64]
 
 
 def finished(data: xr.Dataset, title: str = "") -> Result:
@@ -32,7 +31,7 @@ def contact_notices(data: xr.Dataset) -> list[str]:
     """Over which speeds of a run-up contact is lost, and where the back flanks are hit."""
     if "contact_loss_share" not in data or "pinion_speed" not in data["label"].dims:
         return []
-    moving = data["status"].values == 0
+    moving = moves(data["status"].values)
     if not moving.any():
         return ["nothing moves at these speeds: the pair is jammed, or its heat does not settle"]
     speeds = data["pinion_speed"].values / RPM
@@ -60,7 +59,7 @@ def differing(data: xr.Dataset) -> NDArray[np.bool_]:
     Of orbits the period, or the transmission error by 0.1 % of its peak to peak; of chaos, whose
     extremes are chance, by a quarter of it; an orbit and chaos always.
     """
-    both = (data["status"].values == 0).all(axis=1)
+    both = moves(data["status"].values).all(axis=1)
     size = data["dte_peak_to_peak"].values
     period = np.where(data["label"].values == PERIODIC, data["period"].values, 0)
     apart = np.abs(size[:, 0] - size[:, 1]) / np.maximum(size[:, 0], size[:, 1])
@@ -79,7 +78,7 @@ def difference_notices(data: xr.Dataset) -> list[str]:
 
 def range_notices(case: GearCase, data: xr.Dataset) -> list[str]:
     """Contact, the back side, and where the case's speeds lie."""
-    found = contact_notices(data) + back_side_notice(data)
+    found = contact_notices(data) + from_data(data)
     ratio = data["frequency_ratio"].values if "frequency_ratio" in data else np.empty(0)
     ratio = ratio[np.isfinite(ratio)]
     frequency = data["mesh_frequency"].values if "mesh_frequency" in data else np.empty(0)
@@ -179,7 +178,7 @@ def _film_beyond_oil(case: GearCase, groups: Mapping[str, xr.Dataset]) -> Iterat
             )
 
 
-def _left_out(case: GearCase, here: xr.Dataset, viscosity: Floats) -> list[str]:
+def _left_out(case: GearCase, here: xr.Dataset, viscosity: NDArray[np.float64]) -> list[str]:
     """Laws of oiled contacts outside their range, with the part of the path [%]."""
     pair = case.pair
     values: dict[str, ArrayLike | None] = {

@@ -24,7 +24,6 @@ from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair, ThermalDeviation
 from thermogear.results.result import Notice, Result
 
-Floats = NDArray[np.float64]
 KIND = "relief"
 LOADS = tuple(np.arange(0.1, 1.75, 0.1))
 """Loads, as parts of the one designed for, at which the pairs are compared."""
@@ -84,7 +83,7 @@ def relief_survey(
     progress("relief", most, most)
     phase = np.arange(PHASES) / PHASES
 
-    def mesh(reliefs: tuple[Relief, ...], forces: Floats) -> LoadedMesh:
+    def mesh(reliefs: tuple[Relief, ...], forces: NDArray[np.float64]) -> LoadedMesh:
         return solve_mesh(
             case.pair,
             forces,
@@ -191,7 +190,7 @@ class Seen:
     deviation: ThermalDeviation
     places: Any
 
-    def gap(self, at: Contacts) -> Floats:
+    def gap(self, at: Contacts) -> NDArray[np.float64]:
         """e [m], (places, position, pair)."""
         return np.asarray(self.deviation.gap(at)[self.places])
 

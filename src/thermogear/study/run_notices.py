@@ -31,7 +31,6 @@ from thermogear.study.notices import friction_notices, reasons, several_words
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 
 STUDIED_FREQUENCIES = (1.1, 1.3)
 """Frequency ratios of the thesis's bifurcation study."""
@@ -249,7 +248,7 @@ def _jams(here: xr.Dataset, reference: float) -> tuple[float, str]:
     return least, f"{words}, at {at} where shafts and housing {way} in proportion to the gears"
 
 
-def _degrees(kelvin: Floats, order: NDArray[np.int64], here: xr.Dataset) -> str:
+def _degrees(kelvin: NDArray[np.float64], order: NDArray[np.int64], here: xr.Dataset) -> str:
     """The first of some temperatures in ``order``, with its operating point where they differ."""
     first = int(order[0])
     if not math.isfinite(kelvin[first]):

@@ -37,6 +37,7 @@ from thermogear.base.plan import (
     stretches,
 )
 from thermogear.base.units import RPM
+from thermogear.base.vocabulary import NO_COUNT, moves
 from thermogear.case.case import GearCase, gear_case
 from thermogear.case.family import GearFamily, Tabulated
 from thermogear.case.points import Points
@@ -159,7 +160,10 @@ class RunUpPlan:
             found[f"end_{name}"] = real("state carried on", "1")
         found["end_speed"] = real("speed of the state carried on", "rad/s")
         found["end_period"] = Variable(
-            dims, "int32", 0, {"long_name": "periods of the orbit that is followed, 0: none"}
+            dims,
+            "int32",
+            0,
+            {"long_name": "periods of the orbit that is followed, 0: none"} | NO_COUNT,
         )
         found |= {name: real(*told, "leap") for name, told in LEAP.items()}
         early = {"long_name": "1: a run in these steps alone leaves its branch before this speed"}
@@ -265,7 +269,7 @@ def _with_folds(plan: RunUpPlan, data: xr.Dataset) -> xr.Dataset:
     speeds = np.array(plan.speeds)
     for state in range(len(plan.states) if speeds.size > 1 else 0):
         here = data.isel(state=state).expand_dims(start=1)
-        if np.any(here["status"].values == 0):
+        if moves(here["status"].values).any():
             family = Tabulated.of(plan.family(state), speeds)
             found[state] = with_branches(here, family, "pinion_speed", plan.branch_period)
     return with_branches_of_states(data, found, "rad/s")
@@ -301,7 +305,7 @@ class _Run:
         self.leaps, self.early = [], 0
         first = not np.isfinite(self.at)
         before = self.state if self.period > 0 else None
-        if self.table is None or first or point.status[0] != 0:
+        if self.table is None or first or point.jammed[0]:
             self.period = 0
         else:
             self._walk(self.table, speed)

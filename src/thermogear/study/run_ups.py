@@ -40,8 +40,6 @@ from thermogear.case.samples import fields_of
 from thermogear.case.thermal_state import HOT, StateLike, ThermalState
 from thermogear.results.work import Report, carry_out
 
-Floats = NDArray[np.float64]
-
 LANES = 64
 """Samples in one chunk."""
 
@@ -139,7 +137,7 @@ class RunUpsPlan:
             state = np.where(there[:, None], settled.state, state)
         return found
 
-    def _springs(self, chunk: int, rows: Floats) -> Excitations:
+    def _springs(self, chunk: int, rows: NDArray[np.float64]) -> Excitations:
         """What moves the samples; up and down share it."""
         if chunk not in self._kept:
             self._kept[chunk] = self.family.excitations(rows)

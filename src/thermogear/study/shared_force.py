@@ -178,9 +178,7 @@ def _summary(rest: xr.Dataset, moving: xr.Dataset) -> dict[str, Any]:
     def apart(data: xr.Dataset, quantity: str, of: Callable[..., Any] = np.max, **at: Any) -> float:
         here = data.sel(at, method="nearest")
         ratio = here[f"shared_{quantity}"] / here[f"one_spring_{quantity}"]
-        if not ratio.size:
-            return float("nan")
-        return float(of(np.abs(ratio.values - 1.0)))
+        return float("nan") if not ratio.size else float(of(np.abs(ratio.values - 1.0)))
 
     rested = rest.swap_dims(load="factor")
     play = rest["one_spring_clearance"].values

@@ -18,8 +18,8 @@ from numpy.typing import ArrayLike, NDArray
 from thermogear.analysis.side_by_side import motions_along
 from thermogear.base.excitation import Excitations
 from thermogear.base.units import RPM
-from thermogear.base.vocabulary import label
-from thermogear.case.points import points_of
+from thermogear.base.vocabulary import NO_COUNT, label
+from thermogear.case.points import Points, points_of
 from thermogear.case.response import Recording, respond
 
 if TYPE_CHECKING:
@@ -53,7 +53,10 @@ MOTIONS = {
 
 @dataclass(frozen=True, eq=False)
 class Speeds:
-    """What a look over the speeds found: ``columns`` over (motion), and what is read off it."""
+    """What a look over the speeds found: ``columns`` over (motion), and what is read off it.
+
+    Among them the ``state`` (motion, 2) that a motion goes on from, which is not stored.
+    """
 
     columns: Mapping[str, ArrayLike]
     step: float
@@ -71,7 +74,9 @@ class Speeds:
         speed = {
             "pinion_speed": (("motion",), self.columns["pinion_speed"], "rad/s", "pinion speed")
         }
-        return label(found, speed, {"own_speeds": self.own})
+        data = label(found, speed, {"own_speeds": self.own})
+        data["period"].attrs |= NO_COUNT
+        return data
 
     @property
     def grid(self) -> Floats:
@@ -87,12 +92,16 @@ class Speeds:
             for a, b in zip(edges[::2], edges[1::2], strict=True)
         ]
 
-    def within(self, speed: Floats, *, ranges: list[tuple[float, float]]) -> NDArray[np.bool_]:
-        """Which of ``speed`` [rad/s] lie in one of ``ranges``, half a step of the look allowed."""
-        ends = np.reshape(ranges, (-1, 2)) * (1.0 + 0.5 * self.step * np.array([-1.0, 1.0]))
-        return np.asarray(
-            ((speed[:, None] >= ends[:, 0]) & (speed[:, None] <= ends[:, 1])).any(axis=1)
-        )
+    def beside(self, speed: Floats, *, start: Floats) -> Floats:
+        """States (speed, k, 2) of the motions within a step of each ``speed`` [rad/s].
+
+        Where a speed has fewer than others, its own ``start`` (speed, 2) fills up.
+        """
+        away = np.abs(np.log(speed[:, None] / self.column("pinion_speed")))
+        near = away <= 1.01 * np.log1p(self.step)
+        nearest = np.argsort(away, axis=1)[:, : int(near.sum(axis=1).max())]
+        there = np.take_along_axis(near, nearest, axis=1)[..., None]
+        return np.where(there, self.column("state")[nearest], start[:, None])
 
     @property
     def lost(self) -> list[tuple[float, float]]:
@@ -135,8 +144,8 @@ def _valley(top: Floats, place: int, way: int) -> float:
 def look(mesh: Excitations, *, teeth: int, own: Floats) -> Speeds:
     """Motions of a ``mesh`` of one point over the speed of its pinion of so many ``teeth``.
 
-    Each of about 150 speeds is started at rest in static contact, with a far throw, and on
-    the back side. ``own``: the case's own speeds [rad/s], kept beside.
+    Each of about 150 speeds is started as :func:`starts_of` has it. ``own``: the case's own
+    speeds [rad/s], kept beside.
     """
     natural = float(mesh.natural_frequency[0])
     high = max(HIGHEST, min(1.1 * teeth * own.max() / natural, FARTHEST))
@@ -144,14 +153,19 @@ def look(mesh: Excitations, *, teeth: int, own: Floats) -> Speeds:
     ratio = np.geomspace(LOWEST, high, count + 1)
     along = mesh.take(np.zeros(ratio.size, int))
     lanes = points_of(replace(along, mesh_frequency=natural * ratio))
-    gap, force = float(lanes.flat.half_backlash[0]), float(lanes.flat.force[0, 0].real)
-    starts = [[gap + force, 0.0], [gap + 3.0 * force, 0.0], [-gap, 0.0]]
-    motions = motions_along(lanes.flat, starts)
+    motions = motions_along(lanes.flat, starts_of(lanes))
     found = respond(lanes.take(motions.lane), motions.state, RECORD, lines=False)
     columns = {name: found[name] for name in VALUES}
-    columns |= {"period": motions.period, "label_code": motions.label}
+    columns |= {"period": motions.period, "label_code": motions.label, "state": motions.state}
     columns["pinion_speed"] = lanes.mesh_frequency[motions.lane] / teeth
     return Speeds(columns, float(ratio[1] / ratio[0] - 1.0), np.unique(own))
+
+
+def starts_of(points: Points) -> Floats:
+    """States (point, 3, 2): at rest in static contact, a far throw, on the back side."""
+    gap, force = points.flat.half_backlash, points.flat.force[:, 0].real
+    at = np.stack([gap + force, gap + 3.0 * force, -gap], axis=1)
+    return np.stack([at, np.zeros_like(at)], axis=-1)
 
 
 def told(

@@ -112,6 +112,8 @@ def _flat(variable: xr.Variable, dims: list[str], shape: tuple[int, ...]) -> lis
         words = np.array(str(variable.attrs["flag_meanings"]).split())
         values = words[np.clip(values.astype(int), 0, words.size - 1)]
     texts = _texts(values)
+    if "missing_value" in variable.attrs:
+        texts[values == variable.attrs["missing_value"]] = ""
     own = [str(d) for d in variable.dims]
     wide = texts.transpose([own.index(d) for d in dims if d in own])
     spread = wide.reshape([variable.sizes[d] if d in own else 1 for d in dims])

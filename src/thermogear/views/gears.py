@@ -92,8 +92,7 @@ class GearDrawing:
 
     def nearest(self, phase: float) -> int:
         """Place of the drawn phase that is nearest, the period closing on itself."""
-        away = np.abs((self.phase - phase + 0.5) % 1.0 - 0.5)
-        return int(np.argmin(away))
+        return int(np.argmin(np.abs((self.phase - phase + 0.5) % 1.0 - 0.5)))
 
     # --- placing ----------------------------------------------------------------------------
     def centre(self, state: DrawnState, gear: int, *, factor: float | None = None) -> float:

@@ -17,13 +17,12 @@ from thermogear.base.vocabulary import QUANTITIES, told_labels
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 
 FAR = 400.0
 """Jam temperatures [degC] above this are not told apart: no gear lives there."""
 
 
-def shown(data: xr.Dataset, name: str) -> Floats:
+def shown(data: xr.Dataset, name: str) -> NDArray[np.float64]:
     """The values of ``data[name]`` in display units."""
     variable = data[name]
     return display(name, str(variable.attrs.get("units", QUANTITIES[name].unit)))(variable.values)

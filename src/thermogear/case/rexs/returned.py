@@ -81,8 +81,6 @@ class Exported:
             self._fields(before, self.made)
             again = _said_by(checked(self.stage, self.data))
         except InputError as error:
-            if all(self._called(key) in str(error) for key in self.keys):
-                raise
             raise self._refused(self.keys, str(error)) from error
         known = self.old | again
         wrong = [key for key in self.keys if key in known and not _agree(self.now, again, key)]

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from thermogear.base import bounds
 from thermogear.base.errors import InputError
-from thermogear.base.units import RPM
+from thermogear.base.units import ROUNDED, RPM
 from thermogear.case.rexs import gearbox
 from thermogear.case.rexs.attributes import Read, Reader, plain
 from thermogear.case.rexs.draft import Draft, Operating, tightest
@@ -277,6 +277,15 @@ def _tool(
     else:
         return
     radius = _of_tool(reader, tool, "tip_radius_factor", module * scale)
+    room = Rack(dedendum=dedendum, fillet_radius=0.0).largest_fillet_radius(angle)
+    if root is not None and radius is not None and radius.si * scale > room + ROUNDED:
+        raise InputError(
+            f"{gear.called}.number_of_teeth",
+            f"{teeth} beside a root_diameter of {root.text}",
+            why=f"a tool that reaches {dedendum:.4g} modules has no room for its round of "
+            f"{radius.si * scale:.4g} modules",
+            fix="teeth and diameters that go together",
+        )
     if radius is not None and scale != 1.0:
         said = "tip radius of the tool in modules of the gear"
         made.put(f"{place}.fillet_radius", radius.si * scale, DERIVED, said)
@@ -284,7 +293,6 @@ def _tool(
     if radius is not None:
         made.read(f"{place}.fillet_radius", radius, "tip radius of the tool")
         return
-    room = Rack(dedendum=dedendum, fillet_radius=0.0).largest_fillet_radius(angle)
     usual = Rack().fillet_radius
     if room < usual:
         made.put(f"{place}.fillet_radius", max(room, 0.0), DERIVED, "as round as the tool may be")

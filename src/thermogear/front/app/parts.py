@@ -24,7 +24,6 @@ from thermogear.views.moving import moving
 from thermogear.views.picture import Picture
 from thermogear.views.plots import live as plot
 
-Floats = NDArray[np.float64]
 OF_ALL = re.compile(r" \(in any state(, up or down)?\)$")
 """What notices of several states end with; a live run-up has one."""
 OFTEN = 0.25
@@ -100,7 +99,7 @@ class Look:
         return float(self.case.speeds[0])
 
     @property
-    def speeds(self) -> Floats:
+    def speeds(self) -> NDArray[np.float64]:
         """Of the run-up [rad/s]."""
         said = self.show.speeds
         return RPM * np.linspace(said.low, said.high, said.count)
@@ -347,7 +346,7 @@ def parameter_map(look: Look) -> Iterator[Part]:
 
 
 def _map_picture(
-    axes: dict[str, Floats], arrays: dict[str, NDArray[Any]], known: NDArray[np.bool_]
+    axes: dict[str, NDArray[np.float64]], arrays: dict[str, NDArray[Any]], known: NDArray[np.bool_]
 ) -> Picture:
     import xarray as xr
 

@@ -15,7 +15,6 @@ from thermogear.base.errors import InputError, nearest
 from thermogear.base.materials import Material
 from thermogear.shafts.bearings.geometry import RollingBearing
 
-Floats = NDArray[np.float64]
 CLASSES = ("C2", "CN", "C3", "C4")
 _BORES = {
     "ball": (10, 18, 24, 30, 40, 50, 65, 80),
@@ -127,7 +126,7 @@ def mounted_clearance(
     shaft_temperature: ArrayLike,
     housing_temperature: ArrayLike,
     reference: float,
-) -> Floats:
+) -> NDArray[np.float64]:
     """Half c_r [m] of the play of a mounted bearing, cold or hot, (...).
 
     ``play`` G_r [m] as delivered; ``temperatures`` (..., 3) [K] of inner ring, elements and outer
@@ -179,7 +178,7 @@ def thermal_clearance(
     element_diameter: float,
     expansions: tuple[float, float, float],
     temperatures: ArrayLike,
-) -> Floats:
+) -> NDArray[np.float64]:
     """c = (F_o (1 + a_o dT_o) - F_i (1 + a_i dT_i) - 2 D_w (1 + a_b dT_b))/2 [m], (...).
 
     Diameters [m] at the reference; ``expansions`` [1/K] and ``temperatures`` (..., 3), rises over

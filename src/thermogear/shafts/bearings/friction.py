@@ -14,7 +14,6 @@ from numpy.typing import ArrayLike, NDArray
 from thermogear.base.errors import InputError
 from thermogear.shafts.bearings.geometry import RollingBearing
 
-Floats = NDArray[np.float64]
 LUBRICATIONS = ("bath", "grease", "jet")
 F0 = {
     ("ball", "bath"): 2.0, ("ball", "grease"): 1.0, ("ball", "jet"): 4.0,
@@ -56,7 +55,9 @@ class PalmgrenFriction:
     def __post_init__(self) -> None:
         _known(self.lubrication)
 
-    def moment(self, *, force: ArrayLike, speed: ArrayLike, viscosity: ArrayLike) -> Floats:
+    def moment(
+        self, *, force: ArrayLike, speed: ArrayLike, viscosity: ArrayLike
+    ) -> NDArray[np.float64]:
         """M [N m] at ``force`` [N], ``speed`` [rad/s] and ``viscosity`` [m^2/s], any shape; 0 at
         rest."""
         kind, size = _kind(self.bearing), self.bearing.pitch_diameter
@@ -99,7 +100,9 @@ class SkfFriction:
                 fix='write friction = "palmgren"',
             )
 
-    def moment(self, *, force: ArrayLike, speed: ArrayLike, viscosity: ArrayLike) -> Floats:
+    def moment(
+        self, *, force: ArrayLike, speed: ArrayLike, viscosity: ArrayLike
+    ) -> NDArray[np.float64]:
         """M [N m] at ``force`` [N], ``speed`` [rad/s] and ``viscosity`` [m^2/s], any shape."""
         one = self.bearing
         rolling, sliding = SERIES[one.designation[:2]]

@@ -80,9 +80,7 @@ def ellipse_ratio(difference: float) -> float:
         k, e = complete_integrals(ratio)
         return float(1.0 - 2.0 / (ratio**2 - 1.0) * (k / e - 1.0) - difference)
 
-    if difference < 1e-9:
-        return 1.0
-    return float(np.exp(brentq(away, 1e-6, 12.0, xtol=1e-14)))
+    return 1.0 if difference < 1e-9 else float(np.exp(brentq(away, 1e-6, 12.0, xtol=1e-14)))
 
 
 def race_contact(

@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.analysis.outcome import settle_with_status
-from thermogear.analysis.side_by_side import RULE
+from thermogear.analysis.side_by_side import motions_along
 from thermogear.base.display import worded
 from thermogear.base.limits import LIMITS, NO_LIMIT
 from thermogear.base.progress import Progress
@@ -21,7 +20,7 @@ from thermogear.base.vocabulary import STATUS
 from thermogear.case.case import GearCase
 from thermogear.case.duty import chosen_point, point_duty
 from thermogear.case.points import excitations, points_of
-from thermogear.case.response import respond
+from thermogear.case.response import VALUES, respond
 from thermogear.mesh.balance import Gearbox, HeatBalance
 from thermogear.mesh.balance_table import LOSSES
 from thermogear.mesh.clearance import PARTS
@@ -29,7 +28,7 @@ from thermogear.mesh.excite import EXCITES
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.warm_up import WarmUp, warm_up
 from thermogear.results.answer import Answer
-from thermogear.study.speeds import RECORD, Speeds, look
+from thermogear.study.speeds import RECORD, Speeds, look, starts_of
 
 Floats = NDArray[np.float64]
 Cycle = Mapping[str, NDArray[Any]]
@@ -96,7 +95,24 @@ class Asked:
     def moves(self, point: int) -> bool:
         return STATUS[int(self.hot["status"][point])] == "ok"
 
+    def no_bath(self, point: int) -> str:
+        """Why no oil bath is kept at a point; empty where one is, or no oil is known.
+
+        Words for the figure "hottest_bath".
+        """
+        used = self.case.stated.lubricant
+        if not self.bodies[0][point] > used.hottest_bath:
+            return ""
+        bound = "its flash point" if used.flash_point else "as its flash point is not given"
+        return f"no oil bath exists above {{hottest_bath:.0f °C}}, {bound}"
+
     def unsettled(self, point: int) -> str:
+        """Why nothing hot is stated of a point; empty where it is."""
+        if why := self.lost(point):
+            return why
+        return "it rests on an oil bath that cannot exist" if self.no_bath(point) else ""
+
+    def lost(self, point: int) -> str:
         """Why nothing hot is known of a point; empty where it is."""
         if STATUS[int(self.hot["status"][point])] != "not_converged":
             return ""
@@ -189,7 +205,7 @@ class Asked:
     @cached_property
     def speeds(self) -> Speeds | None:
         """Motions over speed at the hardest point; None where it does not move."""
-        if not self.moves(self.hardest):
+        if not self.moves(self.hardest) or self.unsettled(self.hardest):
             return None
         self.progress("speeds", 0, 1)
         mesh = excitations(self.case, self._part([self.hardest]))
@@ -200,23 +216,32 @@ class Asked:
         return found
 
     @cached_property
-    def motion(self) -> dict[str, Any]:
-        """Figures of the motion from rest at the operating points answered, nan at the others.
+    def motion(self) -> dict[str, Floats]:
+        """Figures (point, motion) of the motions at the operating points answered, else nan.
 
-        Nan too where the pair turns so slowly that no motion is followed: the load is static.
+        From rest first, then from the other starts of the look over speeds and from the motions
+        that it found within a step of the point's own. Nan too where the pair turns so slowly that
+        no motion is followed: the load is static.
         """
         points = points_of(excitations(self.case, self._part(self.points)))
         slow = points.mesh_frequency < SLOWEST * points.rate
-        status = np.where(slow, STATUS.index("jammed"), points.status).astype(np.int8)
-        points = replace(points, status=status)
-        start = np.stack([points.half_backlash / points.length, np.zeros(len(self.points))], axis=1)
-        start[:, 0] += points.flat.force[:, 0].real
-        settled = settle_with_status(points.flat, points.status, start, RULE)
-        found = respond(points, settled.state, RECORD, lines=False)
+        stated = np.array([not self.unsettled(point) for point in self.points])
+        moving = np.flatnonzero((points.status == 0) & ~slow & stated)
+        if not moving.size:
+            return {name: np.full((self.count, 1), np.nan) for name in VALUES}
+        points = points.take(moving)
+        starts = starts_of(points)
+        if self.speeds is not None:
+            speed = points.mesh_frequency / self.case.pair.pinion.teeth
+            starts = np.concatenate([starts, self.speeds.beside(speed, start=starts[:, 0])], axis=1)
+        motions = motions_along(points.flat, starts)
+        lane = motions.lane
+        figures = respond(points.take(lane), motions.state, RECORD, lines=False)
+        place = np.arange(lane.size) - np.searchsorted(lane, lane)
         every = {}
-        for name, values in found.items():
-            every[name] = np.full(self.count, np.nan)
-            every[name][self.points] = values
+        for name, values in figures.items():
+            every[name] = np.full((self.count, place.max() + 1), np.nan)
+            every[name][np.array(self.points)[moving[lane]], place] = values
         return every
 
 
@@ -231,17 +256,19 @@ def answer(
     verdict: str = "",
     at: str = "",
     figures: Mapping[str, Any] = MappingProxyType({}),
+    units: Mapping[str, str] = MappingProxyType({}),
 ) -> Answer:
     """An answer held against its limit in the table.
 
     ``most`` is the bound where it hangs on the case, ``verdict`` overrules where it must. The
     ``figures`` stand in the ``sentence`` as :func:`~thermogear.base.display.worded` puts them, and
-    are kept beside it.
+    are kept beside it; ``units`` of those that it leaves out, or states without.
     """
     bound = LIMITS.get(limit or name, NO_LIMIT)
     if most is not None:
         bound = replace(bound, most=most)
-    words, units = worded(sentence, figures)
+    words, told = worded(sentence, figures)
+    kept = {name: number for name, number in figures.items() if not isinstance(number, str)}
     return Answer(
         name=name,
         question=question,
@@ -252,8 +279,8 @@ def answer(
         source=bound.source,
         verdict=verdict or bound.verdict(value),
         operating=at,
-        figures={name: number for name, number in figures.items() if not isinstance(number, str)},
-        units=units,
+        figures=kept,
+        units={name: told.get(name) or units.get(name, "") for name in kept},
     )
 
 

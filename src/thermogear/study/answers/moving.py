@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
 from thermogear.base.limits import FINE, LOAD_SHARE, PARTING
@@ -25,12 +24,13 @@ from thermogear.results.answer import Answer
 from thermogear.study.answers.asked import Asked, answer, undecided
 from thermogear.study.speeds import LOST, Speeds, told
 
-Floats = NDArray[np.float64]
-
 SPEEDS = "At which speeds does it resonate?"
 LOADS, ERROR = "How large is the dynamic factor?", "How large is the transmission error?"
 
 LOOKED = "speed looked at, {looked[0]:~3 rpm} to {looked[1]:~3 rpm}"
+OF_SPEEDS = {"ranges": "rpm", "looked": "rpm", "there": "rpm", "strong": "rpm", "off": "%",
+             "most": "%"}  # fmt: skip
+"""Units of figures that not every sentence states."""
 DRAWINGS = 16
 """Drawings of flanks of one class whose errors are told."""
 POSITIONS = 60
@@ -52,13 +52,10 @@ def speeds(asked: Asked) -> Iterator[Answer]:
     natural = np.sqrt(asked.hot["mean_stiffness"][asked.hardest] / asked.case.equivalent_mass)
     yield _resonance(asked, found, float(natural) / asked.case.pair.pinion.teeth)
     speed, share = found.column("pinion_speed"), found.column("contact_loss_share")
-    moving = np.isfinite(asked.motion["contact_loss_share"])
-    own = asked.case.stated.speed[moving]
+    moves = np.isfinite(asked.motion["contact_loss_share"])
     # a motion beside the one from rest counts too: a run may end on it
-    parted = (asked.motion["contact_loss_share"][moving] > LOST) | found.within(
-        own, ranges=found.lost
-    )
-    struck = (asked.motion["mesh_force_min"][moving] < 0.0) | found.within(own, ranges=found.back)
+    loss, force = (asked.motion[n][moves[:, 0]] for n in ("contact_loss_share", "mesh_force_min"))
+    parted, struck = (loss > LOST).any(axis=1), (force < 0.0).any(axis=1)
     ends = (float(speed.min()), float(speed.max()))
     for name, ranges, happens, never, apart in (
         ("contact_loss", found.lost,
@@ -81,18 +78,19 @@ def speeds(asked: Asked) -> Iterator[Answer]:
             words = f"{sentence[0].lower()}{sentence[1:]}"
             sentence = f"Not decided at its own speeds, too slow to vibrate; faster, {words}"
         value = 100.0 * float(np.mean(apart)) if apart.size else float("nan")
-        yield answer(SPEEDS, name, f"{sentence}.", value, figures=figures)
+        yield answer(SPEEDS, name, f"{sentence}.", value, figures=figures, units=OF_SPEEDS)
     words, figures = told(found.several, ends=ends)
-    here = bool(found.within(asked.case.stated.speed, ranges=found.several).any())
-    yield answer(
-        SPEEDS,
-        "coexisting",
-        f"Two motions exist {words}: it may jump there, up and down elsewhere."
+    several = moves[:, 1:].any(axis=1)
+    sentence = (
+        f"Two motions exist {words}: it may jump there, up and down elsewhere"
         if found.several
-        else f"One motion exists at every {LOOKED}: no jump.",
-        2.0 if here else 1.0,
-        figures=figures,
+        else f"One motion exists at every {LOOKED}: no jump"
     )
+    if several.any():
+        sentence += "; two or more at {points} of {of} operating points"
+        figures |= {"points": int(several.sum()), "of": several.size}
+    value = 2.0 if several.any() else 1.0
+    yield answer(SPEEDS, "coexisting", f"{sentence}.", value, figures=figures, units=OF_SPEEDS)
 
 
 def _resonance(asked: Asked, found: Speeds, main: float) -> Answer:
@@ -103,7 +101,7 @@ def _resonance(asked: Asked, found: Speeds, main: float) -> Answer:
     case itself where the motion there has one: it is off by nothing.
     """
     own, factor = asked.case.stated.speed, asked.motion["dynamic_factor"]
-    factor = np.where(np.isfinite(factor), factor, 0.0)  # without load there is none
+    factor = np.where(np.isfinite(factor), factor, 0.0).max(axis=1)  # without load there is none
     peaks = found.peaks()
     strong = [main, *(speed for speed, top in peaks if top > PARTING)]
     off = 100.0 * np.abs(own[:, None] / np.array(strong) - 1.0)
@@ -136,6 +134,7 @@ def _resonance(asked: Asked, found: Speeds, main: float) -> Answer:
         f"{words}; {where}.",
         value,
         figures=figures,
+        units=OF_SPEEDS,
     )
 
 
@@ -145,21 +144,26 @@ def _resonance(asked: Asked, found: Speeds, main: float) -> Answer:
 def loads(asked: Asked) -> Iterator[Answer]:
     for point in asked.points:
         at = asked.at(point)
-        own = float(asked.motion["dynamic_factor"][point]) if asked.moves(point) else float("nan")
+        every = asked.motion["dynamic_factor"][point]
+        every = every[np.isfinite(every)]
         words, figures = _rated_factor(asked, point)
         rated = figures.get("factor", np.inf)
         limit = "dynamic_factor" if rated < PARTING else "parting"
         about = {"limit": limit, "most": min(rated, PARTING), "at": at}
-        if not np.isfinite(own):
+        if not every.size:
             loaded = asked.case.stated.torque[point] > 0.0
             slow = "it turns too slowly to vibrate" if loaded else "there is no load"
             why = f"{asked.still(point) or slow}; ISO 6336-1 {words}"
             yield undecided(LOADS, "dynamic_factor", why, figures=figures, **about)
             continue
-        sentence = f"The vibration computed gives {{own:.2f}}; ISO 6336-1 {words}."
-        yield answer(
-            LOADS, "dynamic_factor", sentence, own, figures=figures | {"own": own}, **about
-        )
+        figures |= {"own": float(every.max())}
+        gives = "{own:.2f}"
+        if every.size > 1:
+            figures |= {"motions": every.tolist()}
+            others = ", ".join(f"{{motions[{n}]:.2f}}" for n in range(1, every.size))
+            gives = f"{{motions[0]:.2f}} from rest, {others} in another motion at the same speed"
+        sentence = f"The vibration computed gives {gives}; ISO 6336-1 {words}."
+        yield answer(LOADS, "dynamic_factor", sentence, figures["own"], figures=figures, **about)
 
 
 def _rated_factor(asked: Asked, point: int) -> tuple[str, dict[str, Any]]:
@@ -298,7 +302,8 @@ def _relief(asked: Asked) -> Answer:
         if gain >= 1.0
         else "No tip relief of both gears makes it smaller, hot: the flanks themselves decide."
     )
-    return answer(ERROR, "relief", sentence, gain, at=asked.at(point), figures=figures)
+    units = dict.fromkeys(figures, "µm")
+    return answer(ERROR, "relief", sentence, gain, at=asked.at(point), figures=figures, units=units)
 
 
 def _swing(

@@ -11,7 +11,7 @@ from thermogear.case.allowed import LANE
 from thermogear.case.case import GearCase
 from thermogear.case.family import BESIDE, GearFamily
 from thermogear.mesh.scuffing_rating import Scuffing, flash_rating, integral_rating
-from thermogear.study.answers.steady import unrated
+from thermogear.study.answers.steady import borne_by, unrated
 from thermogear.study.scuffing import load_stage
 
 Floats = NDArray[np.float64]
@@ -29,7 +29,11 @@ NUMBERS: dict[str, tuple[str, str]] = {
         "K",
         "temperature of the pinion's teeth at which the pair jams, housing as it is",
     ),
-    "jam_margin": ("K", "jam temperature less temperature of the pinion's teeth"),
+    "jam_margin": (
+        "K",
+        "jam temperature, or what the materials bear where that is less, less temperature of the "
+        "pinion's teeth",
+    ),
     "static_error": ("m", "transmission error, static and loaded, peak to peak"),
 }
 """Every number with its unit and words; those of the motion are sweeps' own."""
@@ -62,7 +66,8 @@ def answer_numbers(family: GearFamily, rows: ArrayLike) -> dict[str, Floats]:
     found = family.quasi_static(points, WANT, path_positions=case.path_positions)
     flash, film = found["flash_temperature"], found["film_parameter"]
     margin, safety = _scuffing(family, points, found)
-    jam = found["jam_temperature"]
+    jam, teeth = found["jam_temperature"], found["pinion_temperature"]
+    borne = borne_by(case.pair)[0]
     return {
         "oil_temperature": found["oil_temperature"],
         "tooth_temperature": found["tooth_temperature"],
@@ -72,7 +77,7 @@ def answer_numbers(family: GearFamily, rows: ArrayLike) -> dict[str, Floats]:
         "scuffing_safety": safety,
         "backlash": 2.0 * found["least_half_backlash"],
         "jam_temperature": jam,
-        "jam_margin": jam - found["pinion_temperature"],
+        "jam_margin": np.where(teeth < borne, np.minimum(jam, borne), jam) - teeth,
         "static_error": np.ptp(found["transmission_error"], axis=1),
     }
 

@@ -7,13 +7,13 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError, ThermogearError
 from thermogear.base.limits import FINE, LIMITS, LOOK, OPEN
-from thermogear.base.materials import NEVER, NO_BATH, Material
+from thermogear.base.materials import NEVER, Material
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.case.case import GearCase
+from thermogear.gears.pair import GearPair
 from thermogear.heat.transient import HOTTEST
 from thermogear.mesh.scuffing_rating import Scuffing, flash_rating, integral_rating
 from thermogear.results.answer import Answer
@@ -25,8 +25,6 @@ from thermogear.study.answers.asked import (
     undecided,
 )
 from thermogear.study.scuffing import load_stage, not_steel, steel
-
-Floats = NDArray[np.float64]
 
 MESH, HEAT, GAP = "Does it mesh?", "How hot does it run?", "What is left of the backlash?"
 FILM = "Is there a film, does it scuff?"
@@ -85,14 +83,12 @@ def mesh(asked: Asked) -> Iterator[Answer]:
 
 def heat(asked: Asked) -> Iterator[Answer]:
     (oil, teeth), used = asked.bodies, asked.case.stated.lubricant
-    kind, flash_point = f"oil_{used.kind}", used.flash_point
-    burning = (flash_point or NO_BATH) - ZERO_CELSIUS
-    bound = "its flash point" if flash_point else "as its flash point is not given"
+    kind = f"oil_{used.kind}"
     held = "oil" in asked.case.gearbox.measured
     of_teeth = _tooth_limit(asked.case)
     for point in asked.points:
         warm, at = float(oil[point]) - ZERO_CELSIUS, asked.at(point)
-        why = asked.unsettled(point)
+        why = asked.lost(point)
         if why and not (held and np.isfinite(warm)):
             excess, figures = _excess(asked, point)
             cause = f"{why}; {excess}" if excess else why
@@ -101,16 +97,15 @@ def heat(asked: Asked) -> Iterator[Answer]:
             continue
         how, figures = ("given", {}) if held else _how(asked, point, 0)
         sentence = f"The oil is at {warm:.0f} °C ({how})."
-        if warm > burning:
+        if none := asked.no_bath(point):
             excess, more = _excess(asked, point)
-            sentence = f"{sentence[:-1]}: no oil bath exists above {burning:.0f} °C, {bound}"
-            sentence += f"; {excess}." if excess else "."
-            figures = {**figures, **more, "hottest_bath": burning}
+            sentence = f"{sentence[:-1]}: {none}" + (f"; {excess}." if excess else ".")
+            figures = {**figures, **more, "hottest_bath": used.hottest_bath - ZERO_CELSIUS}
         yield answer(
             HEAT, "oil_temperature", sentence, warm, limit=kind, at=at, figures=figures,
-            verdict=LOOK if warm > burning else "",
+            verdict=LOOK if none else "",
         )  # fmt: skip
-        if why:
+        if why := asked.unsettled(point):
             yield undecided(HEAT, "tooth_temperature", why, limit=of_teeth, at=at)
             continue
         hottest = float(teeth[point]) - ZERO_CELSIUS
@@ -119,7 +114,7 @@ def heat(asked: Asked) -> Iterator[Answer]:
         yield answer(
             HEAT,
             "tooth_temperature",
-            f"The teeth are at {hottest:.0f} °C ({how}), the flash adds up to {flash:.0f} K.",
+            f"The teeth are at {hottest:.0f} °C ({how}), the flash adds up to {{flash:.0f K}}.",
             hottest,
             limit=of_teeth,
             at=at,
@@ -135,10 +130,9 @@ def _how(asked: Asked, point: int, body: int) -> tuple[str, dict[str, float]]:
     if not np.isfinite(kelvin):
         return "computed", {}
     share = asked.case.gearbox.surroundings.wetted_share[0]
-    other = kelvin - ZERO_CELSIUS
-    words = f"computed with {share:g} of the gears wetted, a guess; {other:.0f} °C with"
-    figures = {"wetted": share, "more_wetted": MOST_WETTED}
-    return f"{words} {MOST_WETTED:g}", {f"with_{MOST_WETTED:g}_wetted": other, **figures}
+    words = "computed with {wetted:g} of the gears wetted, a guess; {wetter:.0f °C} with"
+    figures = {"wetted": share, "more_wetted": MOST_WETTED, "wetter": kelvin - ZERO_CELSIUS}
+    return f"{words} {{more_wetted:g}}", figures
 
 
 def _excess(asked: Asked, point: int) -> tuple[str, dict[str, float]]:
@@ -149,15 +143,10 @@ def _excess(asked: Asked, point: int) -> tuple[str, dict[str, float]]:
     if not made > carried:
         return "", {}
     words = (
-        f"{made:.3g} kW are made and the bath carries {carried:.3g} kW with oil at "
-        f"{WARMEST_USUAL - ZERO_CELSIUS:.0f} °C: give oil.temperature, gearbox.oil_flow or "
-        "gearbox.housing_area"
+        "{made:.3g kW} are made and the bath carries {carried:.3g kW} with oil at "
+        "{carried_at:.0f °C}: give oil.temperature, gearbox.oil_flow or gearbox.housing_area"
     )
-    return words, {
-        "made_kW": made,
-        "carried_kW": carried,
-        "carried_at": WARMEST_USUAL - ZERO_CELSIUS,
-    }
+    return words, {"made": made, "carried": carried, "carried_at": WARMEST_USUAL - ZERO_CELSIUS}
 
 
 def _tooth_limit(case: GearCase) -> str:
@@ -190,38 +179,53 @@ def gap(asked: Asked) -> Iterator[Answer]:
         left = 2e6 * float(asked.hot["least_half_backlash"][point])
         nominal = 2e6 * float(asked.hot["cold_half_backlash"][point])
         parts = {n: 2e6 * float(asked.hot[f"half_backlash_by_{n}"][point]) for n in PARTS}
-        named = [f"{bored[n]} {v:+.1f} µm" for n, v in parts.items() if abs(v) >= 0.05]
+        named = [f"{bored[n]} {{{n}:+.1f µm}}" for n, v in parts.items() if abs(v) >= 0.05]
         yield answer(
             GAP,
             "backlash",
-            f"Of {nominal:.1f} µm nominal, {left:.1f} µm are left hot along the line of action"
+            f"Of {{nominal:.1f µm}} nominal, {left:.1f} µm are left hot along the line of action"
             f"{': ' * bool(named)}{', '.join(named)}.",
             left,
             at=at,
             verdict=FINE if left > 0.0 else LOOK,
             figures={"nominal": nominal, **parts},
+            units=dict.fromkeys(parts, "µm"),
         )
         jam = float(asked.hot["jam_temperature"][point]) - ZERO_CELSIUS
         hot = float(asked.pinion[point]) - ZERO_CELSIUS
+        most, why = borne_by(asked.case.pair)
+        borne = most - ZERO_CELSIUS
         if not np.isfinite(jam):
             free = left > 0.0
             sentence = f"No heat of the gears alone {'jams' if free else 'frees'} the pair."
             verdict = FINE if free else LOOK
             yield answer(GAP, "jam_margin", sentence, float("nan"), at=at, verdict=verdict)
             continue
+        beyond = hot < borne < jam
+        jams = "does not jam below {borne:.0f °C}" if beyond else "jams at {jam:.0f °C}"
+        why = f" ({why})" * beyond
+        margin = (borne if beyond else jam) - hot
         yield answer(
             GAP,
             "jam_margin",
-            "It jams with the pinion's teeth at {jam:.0f °C}, the wheel's changed alike and the "
-            f"housing as it is, {{off:.0f K}} {'above' if jam > hot else 'below'} what they have.",
-            jam - hot,
+            f"It {jams} of the pinion's teeth{why}, the wheel's changed alike and the "
+            f"housing as it is, {{off:.0f K}} {'above' if margin > 0.0 else 'below'} what they "
+            "have.",
+            margin,
             at=at,
-            figures={"jam": jam, "off": abs(jam - hot)},
+            figures={"borne" if beyond else "jam": borne if beyond else jam, "off": abs(margin)},
         )
     yield _worst_moment(asked)
 
 
+def borne_by(pair: GearPair) -> tuple[float, str]:
+    """Temperature [K] beyond which nothing is said of a jam, and why: of both gears the lower."""
+    return min(gear.material.bears for gear in (pair.pinion, pair.wheel))
+
+
 def _worst_moment(asked: Asked) -> Answer:
+    if (why := asked.unsettled(asked.hardest)) and not asked.lost(asked.hardest):
+        return undecided(GAP, "warm_up_backlash", why, limit="backlash")
     try:
         course = asked.warming
     except ThermogearError as error:
@@ -232,7 +236,7 @@ def _worst_moment(asked: Asked) -> Answer:
     held = " and ".join(name.replace("_", " ") for name in course.held)
     how = f" with {held} held" if held else ""
     how += "" if asked.case.computed else " by the heat balance"
-    words = f"Warming up from {start:.0f} °C{how} it is"
+    words = f"Warming up from {{start:.0f °C}}{how} it is"
     end = float(course.time[-1]) / 60.0
     steady_known = course.course.settled or asked.case.computed
     if course.course.too_hot or asked.unsettled(asked.hardest) or not steady_known:
@@ -241,26 +245,26 @@ def _worst_moment(asked: Asked) -> Answer:
             if course.course.too_hot or asked.unsettled(asked.hardest)
             else "it is not steady by then"
         )
-        burnt = f"until a node reaches {HOTTEST - ZERO_CELSIUS:.0f} °C after"
+        burnt = "until a node reaches {hottest:.0f °C} after"
         return answer(
             GAP, "warm_up_backlash",
-            f"{words} at least {least:.0f} µm {burnt if course.course.too_hot else 'within'} "
-            f"{end:.3g} min; {unknown}.",
+            f"{words} at least {{least:.0f µm}} {burnt if course.course.too_hot else 'within'} "
+            f"{{end:.3g min}}; {unknown}.",
             np.nan if least > 0.0 else least,
             limit="backlash", at=at, verdict=OPEN if least > 0.0 else LOOK,
-            figures={"least": least, "start": start, "end_minutes": end}
+            figures={"least": least, "start": start, "end": end}
             | ({"hottest": HOTTEST - ZERO_CELSIUS} if course.course.too_hot else {}),
         )  # fmt: skip
     sentence = f"{words} never less than when steady, {least:.0f} µm."
     if least < steady - 0.005 * abs(steady) - 0.05:
         sentence = (
-            f"{words} least after {worst.time / 60.0:.3g} min: {least:.0f} µm, {steady:.0f} µm "
-            "when steady."
+            f"{words} least after {{after:.3g min}}: {least:.0f} µm, {{steady:.0f µm}} when steady."
         )
     return answer(
         GAP, "warm_up_backlash", sentence, least,
         limit="backlash", at=at, verdict=FINE if least > 0.0 else LOOK,
-        figures={"steady": steady, "start": start, "minutes": worst.time / 60.0},
+        figures={"steady": steady, "start": start, "after": worst.time / 60.0},
+        units={"steady": "µm", "after": "min"},
     )  # fmt: skip
 
 
@@ -286,7 +290,7 @@ def film(asked: Asked) -> Iterator[Answer]:
                 FILM, "film", f"The least film parameter is {least:.2f} ({acting}).", least, at=at
             )
         torque, speed = (float(asked.hot[f"pinion_{n}"][point]) for n in ("torque", "speed"))
-        known = not unsettled or "oil" in case.gearbox.measured
+        known = not unsettled or ("oil" in case.gearbox.measured and not asked.no_bath(point))
         why = unrated(case, torque, float(oil[point])) if known else unsettled
         if why:
             for name in ("scuffing_margin", "scuffing_safety"):

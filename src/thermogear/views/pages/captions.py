@@ -18,7 +18,6 @@ from thermogear.views.typesetting import operating_names
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 
 NEAR = 0.02
 """Positions closer than this part of the path are the same place."""
@@ -70,7 +69,7 @@ def place(data: xr.Dataset, position: float) -> str:
     return f"at {number(1e3 * position, 4)} mm"
 
 
-def top_of(data: xr.Dataset, values: Floats) -> str:
+def top_of(data: xr.Dataset, values: NDArray[np.float64]) -> str:
     """Where the greatest of ``values`` along the path lies."""
     return place(data, float(data["path_position"].values[int(np.nanargmax(values))]))
 
@@ -199,7 +198,7 @@ def band_words(here: xr.Dataset) -> str:
     return f"{words}."
 
 
-def _falls_with_speed(here: xr.Dataset, values: Floats) -> str:
+def _falls_with_speed(here: xr.Dataset, values: NDArray[np.float64]) -> str:
     """How the mean coefficient goes with speed, where points differ in their speed alone."""
     speed, torque = here["pinion_speed"].values, here["pinion_torque"].values
     if np.unique(speed).size < 2 or np.unique(torque).size > 1 or not np.isfinite(values).all():

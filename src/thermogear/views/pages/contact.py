@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermogear.base.display import exactly, number
+from thermogear.base.display import CELSIUS, exactly, number
 from thermogear.results.result import Result
 from thermogear.views.page import Page, Shown, Table
 from thermogear.views.pages import survey_captions as words
@@ -141,8 +141,10 @@ def _numbers(result: Result) -> dict[str, Any]:
     return {
         "pinion_torque_Nm": [float(v) for v in data["load"].values],
         "temperature_degC": [
-            float(name.removesuffix(" degC")) if name.endswith(" degC") else name
-            for name in map(str, data["temperature"].values)
+            name if np.isnan(given) else float(CELSIUS(given))
+            for name, given in zip(
+                data["temperature"].values.tolist(), data["gear_temperature"].values, strict=True
+            )
         ],
         "mean_stiffness": table_of(data["mean_stiffness"]),
         "double_contact_length_m": table_of(data["double_contact_length"]),

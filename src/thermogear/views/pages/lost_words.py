@@ -16,7 +16,6 @@ from thermogear.views.plots.parameters import each_state, shown
 if TYPE_CHECKING:
     import xarray as xr
 
-Flags = NDArray[np.bool_]
 FILLED = 0.75
 """A stretch of the map is called by its ends alone where so much of it is meant."""
 
@@ -65,7 +64,7 @@ def lost_line(row: dict[str, Any]) -> str:
     return f"{state}{row['what']} {row['where']} ({row['points']} of {row['of']} points{more})"
 
 
-def where(data: xr.Dataset, flags: Flags) -> str:
+def where(data: xr.Dataset, flags: NDArray[np.bool_]) -> str:
     """Where on the axes of the result ``flags`` are set: ranges in the units shown."""
     axes = [str(n) for n in data["label"].dims if n not in ("direction", "start")]
     rest = tuple(i for i, n in enumerate(data["label"].dims) if str(n) not in axes)

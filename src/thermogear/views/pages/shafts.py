@@ -440,6 +440,4 @@ def _critical_lines(result: Result) -> list[str]:
             f"{_force(one):>38}{one['amplification']:>7.2f}"
             f"  {one['order']}: {one['mostly']}"
         )
-    if len(found) == 1:
-        return ["no order meets a mode it can drive in this range"]
-    return found
+    return ["no order meets a mode it can drive in this range"] if len(found) == 1 else found

@@ -14,8 +14,6 @@ from thermogear.base.vocabulary import STATUS
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
-
 
 def several(count: int, noun: str) -> str:
     """ "1 point", "3 points"."""
@@ -123,7 +121,7 @@ def contact_phase(data: xr.Dataset) -> str:
     return words + ("; the contact hardens with load." if _rises(mean) else ".")
 
 
-def _rises(values: Floats) -> bool:
+def _rises(values: NDArray[np.float64]) -> bool:
     return values.size > 1 and bool(np.all(np.diff(values) > 0.0))
 
 

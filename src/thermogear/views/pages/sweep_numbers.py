@@ -83,7 +83,7 @@ def _basins(result: Result) -> dict[str, Any]:
     data = result.data
     rows = [
         {
-            "period": int(data["attractor_period"].values[i]),
+            "period": int(data["attractor_period"].values[i]) or None,
             "x": float(data["attractor_x"].values[i, 0]),
             "v": float(data["attractor_v"].values[i, 0]),
             "count": int(data["count"].values[i]),

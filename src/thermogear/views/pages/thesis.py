@@ -249,8 +249,7 @@ def _flip_table(flips: xr.Dataset) -> Table:
         f"at {warm}. The gap alone moves nothing as long as no back flank is hit."
     )
     lines = [[*row[:2], row[-1], *row[2:-1]] for row in rows]
-    order = [head[0], head[1], head[-1], *head[2:-1]]
-    return Table(caption, order, lines, names=3)
+    return Table(caption, [head[0], head[1], head[-1], *head[2:-1]], lines, names=3)
 
 
 def _tests(results: Result, pictures: Pictures) -> list[Block]:

@@ -26,7 +26,6 @@ from thermogear.views.style import (
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 
 AXES = {
     "zeta": "damping ratio $ζ$ [–]",
@@ -61,7 +60,7 @@ def diagram(diagrams: Mapping[str, xr.Dataset], flips: xr.Dataset, row: str) -> 
     return Picture([panels], size=(WIDE, 3.5), share_y="row", between=0.3, resolution=200.0)
 
 
-def _points(data: xr.Dataset, parameter: str) -> tuple[Floats, Floats]:
+def _points(data: xr.Dataset, parameter: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Points of both directions that a reader can tell apart."""
     y = data["section_x"].transpose(..., parameter, "section").values
     x = np.broadcast_to(data[parameter].values[:, None], y.shape)

@@ -38,8 +38,7 @@ def periods_to_draw(label: str, *, samples_per_period: int, stored: int, least: 
     found = re.match(r"period-(\d+)$", label)
     if not found:
         return stored
-    wanted = max(int(found[1]), least)
-    return int(min(stored, wanted * samples_per_period + 1))
+    return int(min(stored, max(int(found[1]), least) * samples_per_period + 1))
 
 
 def thinned(

@@ -76,6 +76,4 @@ def floor_of(amplitudes: Floats, *, order: Floats, highest: float) -> tuple[floa
     values = np.asarray(amplitudes)[..., kept]
     values = values[np.isfinite(values)]
     greatest = float(values.max()) if values.size else 0.0
-    if greatest <= 0.0:
-        return 1e-6, 1.0
-    return greatest * 10.0**-DECADES, greatest * 3.0
+    return (1e-6, 1.0) if greatest <= 0.0 else (greatest * 10.0**-DECADES, greatest * 3.0)

@@ -14,7 +14,6 @@ from thermogear.views.style import INK, STATES, WIDE, names_of
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 HIGHEST = 12.0
 MANY = 128
 """Sections from which their dots are small."""
@@ -58,7 +57,9 @@ def four_panels(data: xr.Dataset, operating: int) -> Picture:
     return Picture([[teeth, mesh], [plane, felt]], size=(WIDE, 6.6), legend=4)
 
 
-def _lines(here: xr.Dataset, order: Floats, amplitude: Floats, words: str) -> Panel:
+def _lines(
+    here: xr.Dataset, order: NDArray[np.float64], amplitude: NDArray[np.float64], words: str
+) -> Panel:
     """A spectrum (state, order) over orders of the mesh frequency."""
     floor, top = floor_of(amplitude, order=order, highest=HIGHEST)
     panel = over_orders(
