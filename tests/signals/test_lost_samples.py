@@ -9,7 +9,7 @@ from scipy import signal
 
 from thermogear.measured.record import Channel, Record
 from thermogear.measured.reduction import measure
-from thermogear.signals.lost import phase_step
+
 
 RATE = 4000.0
 MESH = 400.0

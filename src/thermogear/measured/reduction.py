@@ -40,7 +40,6 @@ from thermogear.measured.lines import (
     told_withheld,
     wanted_lines,
 )
-from thermogear.measured.mate import known_teeth, told_of_mate
 from thermogear.measured.quantities import of_velocity
 from thermogear.measured.rate_check import check_rate
 from thermogear.measured.readers import read_record
@@ -54,11 +53,11 @@ from thermogear.measured.stated import (
 )
 from thermogear.measured.swelling import Swelling, swelling_of
 from thermogear.measured.traps import unknown_unit
-from thermogear.measured.turns import MeshTurns, clearest, mesh_turns
+from thermogear.measured.turns import MeshTurns, clearest, mesh_turns, told_of_mate
 from thermogear.measured.units import UNITS
 from thermogear.signals.interval import read_line
 from thermogear.signals.lines import LineSpectrum
-from thermogear.signals.lost import phase_jumps, phase_step
+from thermogear.signals.lost import phase_jumps
 from thermogear.signals.strong import strong_lines
 from thermogear.signals.windows import Window
 
@@ -416,11 +415,6 @@ def _whole_turns(through: Passed, gearing: Gearing | None, teeth: int | None) ->
     piece = _JUMP_TURNS * (teeth or gearing.teeth or 20)
     jumps = phase_jumps(values, gearing.mesh_frequency, cycles=piece)
     around = int(np.ceil(1.5 * piece / gearing.mesh_frequency))  # a jump is placed so well
-    known = known_teeth(gearing, teeth)
-    if len(jumps) < 2 and known:
-        step = phase_step(values, gearing.mesh_frequency, known)
-        if step is not None and all(abs(step[0] - at) < around for at in jumps):
-            jumps, around = [step[0]], 2 * step[1]
     if not jumps or _beats(spectrum, gearing.mesh_frequency):
         return False
     edges = [-around, *jumps, values.size + around]

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.signals.bridged import bridges
 from thermogear.signals.converter import coarse
 from thermogear.signals.events import quiet
 from thermogear.signals.lines import line_spectrum
@@ -62,8 +61,7 @@ class Damage:
 
 def damages(x: ArrayLike) -> list[Damage]:
     """Every damage of one channel: missing, sentinels, zeros, held samples, spikes, clipping,
-    straight lines in place of samples, stretches without vibration, and
-    coarse levels, of which all samples are.
+    stretches without vibration, and coarse levels, of which all samples are.
 
     ``x`` [any unit], NaN where a value is missing. No sample is in two others of them.
 
@@ -77,7 +75,7 @@ def damages(x: ArrayLike) -> list[Damage]:
     values = np.asarray(x, dtype=float)
     free = np.isfinite(values)
     found = [Damage(kind="missing", samples=~free)] if not free.all() else []
-    for one in (_sentinels, _clipped, _straight, _held, _quiet, _spikes):
+    for one in (_sentinels, _clipped, _held, _quiet, _spikes):
         for damage in one(values, free):
             found.append(damage)
             free = free & ~damage.samples
@@ -270,12 +268,6 @@ def _not_by_chance(x: Floats, free: Mask, short: Mask) -> bool:
     moves = np.abs(np.diff(kept))
     beside = int(np.count_nonzero((moves > 0.0) & (moves < 4.5 * step)))
     return int(np.count_nonzero(short)) > 2.0 * max(beside, 1)  # 16 of 8 levels
-
-
-def _straight(x: Floats, free: Mask) -> list[Damage]:
-    """Straight lines across gaps."""
-    where = bridges(x, free) if np.count_nonzero(free) >= 64 else np.zeros(x.size, dtype=bool)
-    return [Damage(kind="bridged", samples=where)] if where.any() else []
 
 
 def _spikes(x: Floats, free: Mask) -> list[Damage]:
