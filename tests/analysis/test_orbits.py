@@ -9,6 +9,7 @@ from scipy.optimize import brentq
 
 from thermogear.analysis.labels import label
 from thermogear.analysis.orbits import multipliers, periodic_orbit
+from thermogear.analysis.section import lanes_of
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.dynamics.integrate import simulate
 from thermogear.dynamics.models import TorsionalModel
@@ -19,7 +20,7 @@ ORBITS = [case for case in TRUTH["cases"] if "poincare_points" in case]
 
 def contact_multipliers(model):
     """Multipliers of one period in lasting drive contact: Hill's x'' + c x' + k(t) x = 0."""
-    section = model.return_map()
+    section = lanes_of(model).return_map()
     return multipliers(section.contact, section.determinant(1))
 
 

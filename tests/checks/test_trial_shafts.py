@@ -33,15 +33,3 @@ def test_the_page_tells_every_sort() -> None:
         for sort in TRIAL.SORTS
     ]
     assert [line.split(" | ")[0][2:] for line in TRIAL.table(rows)[2:8]] == list(TRIAL.SORTS)
-
-
-@pytest.mark.parametrize(("sort", "number"), [(2, 18), (3, 0)])
-def test_a_shaft_that_is_not_known_and_turns_the_phase_is_in_the_intervals(
-    sort: int, number: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """They were 3 and 11 half widths off: what turns the phase alone went with it."""
-    monkeypatch.setattr(
-        "thermogear.measured.gearing.weigh", Mock(return_value=Evidence(hypotheses=()))
-    )
-    row = TRIAL.run((sort, number))
-    assert max(abs(one) for name in TRIAL.LINES for one in row.errors[name]) < 1.8

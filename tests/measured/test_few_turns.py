@@ -46,13 +46,19 @@ def drawn(
 
 
 @pytest.mark.parametrize("turns", [4.6, 7.3])
-def test_few_turns_widen_what_a_mate_that_is_not_known_may_change(turns: float) -> None:
-    with NO_MATE:
-        without = drawn(turns, 0.006, 0)[0].lines[0].half_width
-    found, _, _ = drawn(turns, 0.006, 0)
-    line = found.lines[0]
-    assert without < line.half_width < without + 0.05
-    assert abs(1.0 / line.reading - 1.0) < line.half_width
+def test_few_turns_hold_what_a_mate_that_is_not_known_may_bring(turns: float) -> None:
+    """Its sidebands of a tenth, one and a half bins off, are no lines of their own."""
+    random = np.random.default_rng(7)
+    time = np.arange(int(turns * TEETH / 400.0 * RATE)) / RATE
+    values = 0.02 * random.normal(size=time.size)
+    for place, size in ((0.0, 1.0), (-1.5, 0.1), (1.5, 0.1)):
+        frequency = 400.0 + place * RATE / time.size
+        values += size * np.cos(2.0 * np.pi * frequency * time + random.uniform(0.0, 6.3))
+    record = Record((Channel("a", values, "m/s^2"),), "made", RATE, "made")
+    with patch("thermogear.measured.gearing.weigh", Mock(return_value=Evidence(hypotheses=()))):
+        line = measure(record, teeth=TEETH, sidebands=0, harmonics=1).lines[0]
+    assert abs(1.0 / line.reading - 1.0) < line.half_width < 0.1
+    assert abs(line.frequency - 400.0) < line.frequency_half_width
 
 
 @NO_MATE
