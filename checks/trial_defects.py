@@ -82,21 +82,8 @@ def _scattered(x: Floats, random: Random, count: int, value: Callable[[int], Flo
     return y
 
 
-def _dropped(x: Floats, random: Random, size: int) -> Floats:
-    first = int(random.integers(x.size // 4, 3 * x.size // 4))
-    return np.delete(x, np.arange(first, first + size))
-
-
 def _held(x: Floats, every: int) -> Floats:
     return np.repeat(x[::every], every)[: x.size]
-
-
-def _bridged(x: Floats, random: Random, gaps: int, size: int) -> Floats:
-    """Straight lines across gaps."""
-    y = x.copy()
-    for first in random.integers(size, x.size - 2 * size, gaps):
-        y[first : first + size + 1] = np.linspace(y[first], y[first + size], size + 1)
-    return y
 
 
 def _dead(x: Floats, random: Random, share: float) -> Floats:
@@ -116,8 +103,6 @@ DEFECTS: dict[str, Callable[[Floats, Random], Floats]] = {
     "every second sample repeated": lambda x, r: _held(x, 2),
     "zeros for 3 %": lambda x, r: _block(x, r, 0.03, 0.0),
     "zeros for 30 %": lambda x, r: _block(x, r, 0.30, 0.0),
-    "37 samples lost": lambda x, r: _dropped(x, r, 37),
-    "997 samples lost": lambda x, r: _dropped(x, r, 997),
     "12 spikes of 20 amplitudes": lambda x, r: _scattered(
         x, r, 12, lambda n: 20.0 * r.choice([-1.0, 1.0], n)
     ),
@@ -125,9 +110,6 @@ DEFECTS: dict[str, Callable[[Floats, Random], Floats]] = {
     "1 % NaN, one by one": lambda x, r: _scattered(x, r, 102, lambda n: np.full(n, np.nan)),
     "NaN for 4 %": lambda x, r: _block(x, r, 0.04, float("nan")),
     "NaN for 20 %": lambda x, r: _block(x, r, 0.20, float("nan")),
-    "a straight line across 4 %": lambda x, r: _bridged(x, r, 1, int(0.04 * x.size)),
-    "a straight line across 20 %": lambda x, r: _bridged(x, r, 1, int(0.2 * x.size)),
-    "20 straight lines across 15 samples": lambda x, r: _bridged(x, r, 20, 15),
     "levels of 0.7 amplitudes": lambda x, r: np.round(x / 0.7) * 0.7,
     "levels of 2 amplitudes": lambda x, r: np.round(x / 2.0) * 2.0,
     "a mean of 200 amplitudes": lambda x, r: x + 200.0,

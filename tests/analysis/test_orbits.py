@@ -8,13 +8,20 @@ import pytest
 from scipy.optimize import brentq
 
 from thermogear.analysis.labels import label
-from thermogear.analysis.orbits import contact_multipliers, periodic_orbit
+from thermogear.analysis.orbits import multipliers, periodic_orbit
+from thermogear.analysis.section import lanes_of
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.dynamics.integrate import simulate
 from thermogear.dynamics.models import TorsionalModel
 
 TRUTH = json.loads((Path(__file__).parents[1] / "dynamics" / "truth.json").read_text())
 ORBITS = [case for case in TRUTH["cases"] if "poincare_points" in case]
+
+
+def contact_multipliers(model):
+    """Multipliers of one period in lasting drive contact: Hill's x'' + c x' + k(t) x = 0."""
+    section = lanes_of(model).return_map()
+    return multipliers(section.contact, section.determinant(1))
 
 
 def model_of(params):

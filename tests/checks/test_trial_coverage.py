@@ -14,7 +14,6 @@ from thermogear.measured.gearing import Gearing
 from thermogear.measured.record import Channel, Record
 from thermogear.measured.reduction import measure
 from thermogear.measured.turns import mesh_turns
-from thermogear.signals.lost import phase_jumps
 
 TRIAL = script("trial_coverage")
 RUNS = 24
@@ -117,14 +116,6 @@ def test_far_wanders_are_followed(record: tuple[int, int], monkeypatch: pytest.M
     cell = TRIAL.run(place, 1, first=number)
     assert np.all(np.abs(cell.errors[:2, 0]) < 1.5 * cell.half_widths[:2, 0])
     assert np.all(cell.half_widths[:2, 0] < 0.02)
-
-
-@pytest.mark.parametrize("record", [(312026, 247), (91, 65), (91, 137), (92, 2)])
-def test_a_steep_wander_is_no_lost_sample(record: tuple[int, int]) -> None:
-    seed, number = record
-    made = TRIAL.drawn(TRIAL.SCENARIOS[9], np.random.default_rng([seed, 9, number]))
-    x = made.record.channels[0].values()
-    assert phase_jumps(x - x.mean(), made.frequency / 2560.0, cycles=75.0) == []
 
 
 def test_a_line_is_no_pair_of_itself() -> None:

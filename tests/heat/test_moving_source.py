@@ -17,13 +17,11 @@ from thermogear.heat.moving_source import (
     moving_source_rise,
     peclet_factor,
     peclet_flash,
-    peclet_partition,
 )
 from thermogear.heat.temperature import (
     FLASH_FACTORS,
     blok_flash,
     flank_exchange,
-    heat_partition,
 )
 
 STEEL = MATERIALS["steel"]
@@ -222,34 +220,6 @@ def test_blok_method_is_bloks_formula() -> None:
         contact_coefficient_2=STEEL.thermal_contact_coefficient,
     )
     assert flash_temperature(**given, method="blok") == plain
-
-
-def test_partition_of_the_corrected_method() -> None:
-    given = point(50.0, 25.0)
-    v1, v2 = given["speed_1"], given["speed_2"]
-    ours = peclet_partition(
-        speed_1=v1, speed_2=v2, half_width=190e-6, material_1=STEEL, material_2=STEEL
-    )
-    assert ours == pytest.approx(
-        float(
-            heat_partition(
-                speed_1=v1, speed_2=v2, contact_coefficient_1=1.0, contact_coefficient_2=1.0
-            )
-        ),
-        abs=1e-3,  # type: ignore[arg-type]
-    )
-    assert (
-        peclet_partition(
-            speed_1=0.0, speed_2=0.0, half_width=190e-6, material_1=STEEL, material_2=STEEL
-        )
-        == 0.5
-    )
-    assert (
-        peclet_partition(
-            speed_1=1.0, speed_2=0.0, half_width=190e-6, material_1=STEEL, material_2=STEEL
-        )
-        == 1.0
-    )
 
 
 def test_batch_is_one_by_one() -> None:

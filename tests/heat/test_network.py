@@ -1,5 +1,7 @@
 """Thermal networks: closed forms, energy balance, exact warm-up, refusals."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -111,8 +113,13 @@ def test_transient_starts_at_its_start_ends_steady_and_obeys_the_equation() -> N
     assert network.capacities["n1"] * slope == pytest.approx(inflow, rel=1e-5)
 
 
+def held_at(network: ThermalNetwork, **temperatures: float) -> ThermalNetwork:
+    """The same network with further nodes held at measured temperatures [K]."""
+    return replace(network, fixed={**network.fixed, **temperatures})
+
+
 def test_a_measured_node_overrides_its_balance() -> None:
-    held = two_nodes().with_fixed(oil=340.0).steady()
+    held = held_at(two_nodes(), oil=340.0).steady()
     assert held["oil"] == 340.0
     assert held["body"] == pytest.approx(340.0 + 12.5, rel=1e-14)
     # the ambient takes more than the sources give: the held node supplies the rest
@@ -123,7 +130,7 @@ def test_a_measured_node_overrides_its_balance() -> None:
 
 
 def test_all_nodes_given_needs_no_solution() -> None:
-    held = two_nodes().with_fixed(oil=340.0, body=350.0).steady()
+    held = held_at(two_nodes(), oil=340.0, body=350.0).steady()
     assert held["body"] == 350.0
     assert held.residual == 0.0
 
@@ -142,7 +149,7 @@ def test_all_nodes_given_needs_no_solution() -> None:
             "thermal node: got 'oli'; did you mean 'oil'?",
         ),
         (
-            lambda: two_nodes().with_fixed(oil=-3.0),
+            lambda: held_at(two_nodes(), oil=-3.0),
             "temperature of oil: got -3.0 K; allowed > 0 K",
         ),
         (

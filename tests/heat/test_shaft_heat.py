@@ -185,7 +185,9 @@ def test_rings_over_the_shaft_they_sit_on() -> None:
     """One bearing in steady state by hand: dT = q_inner/(G_ring) with no heat from the gear."""
     chain = train(seat=1e12)
     found = network(chain, value=6.0).steady()
-    held = network(chain, value=6.0).with_fixed(pinion_shaft=300.0, housing=300.0).steady()
+    cold = {"pinion_shaft": 300.0, "housing": 300.0}
+    free = network(chain, value=6.0)
+    held = replace(free, fixed={**free.fixed, **cold}).steady()
     ring = float(ring_conductance(200.0, elements=9, element_diameter=7.938e-3, bore=25e-3))
     along = STEEL.thermal_conductivity * 0.25 * np.pi * 0.025**2 / 0.06
     share = inner_share(element_diameter=7.938e-3, pitch_diameter=38.5e-3)

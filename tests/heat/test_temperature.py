@@ -14,7 +14,6 @@ from thermogear.heat.temperature import (
     blok_flash,
     conduction_power,
     contact_temperature,
-    flank_flash,
     flash_factor,
     frictional_heat,
     heat_partition,
@@ -107,8 +106,10 @@ def test_both_flanks_reach_the_same_flash_with_their_shares_of_the_heat() -> Non
     share = heat_partition(
         speed_1=v1, speed_2=v2, contact_coefficient_1=b1, contact_coefficient_2=b2
     )
-    first = flank_flash(share * heat, v1, 1e-4, b1)
-    second = flank_flash((1.0 - share) * heat, v2, 1e-4, b2)
+    # u q_i/(B_i sqrt(v_i) sqrt(B)), of the heat q_i that enters one flank
+    factor = FLASH_FACTORS["ellipse"]
+    first = factor * share * heat / (b1 * np.sqrt(v1 * 1e-4))
+    second = factor * (1.0 - share) * heat / (b2 * np.sqrt(v2 * 1e-4))
     whole = blok_flash(
         0.05,
         1e5,

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from thermogear.measured.evidence import Evidence
-from thermogear.measured.mate import Wave
 from thermogear.measured.record import Channel, Record
 from thermogear.measured.reduction import Measurement, measure
+from thermogear.measured.turns import MeshTurns
 
-NO_MATE = patch("thermogear.measured.turns.wave_of_mate", Mock(return_value=Wave(0.0, 0.0, True)))
+NO_MATE = patch.object(MeshTurns, "leaked", Mock(return_value=0.0))
 """As if both gears were known."""
 RATE = 4000.0
 TEETH = 64
@@ -46,14 +46,19 @@ def drawn(
 
 
 @pytest.mark.parametrize("turns", [4.6, 7.3])
-def test_a_mate_that_is_not_known_adds_what_sidebands_of_a_fifth_may_bring(turns: float) -> None:
-    """All the lower end may lack is a part 0.1/1.1 of the power: 2.4 % to both sides."""
-    with NO_MATE:
-        without = drawn(turns, 0.006, 0)[0].lines[0].half_width
-    found, _, _ = drawn(turns, 0.006, 0)
-    line, most = found.lines[0], np.sqrt(1.0 - 0.1 / 1.1)
-    assert without < line.half_width <= without + (1.0 - most) / (1.0 + most) + 1e-9
-    assert abs(1.0 / line.reading - 1.0) < line.half_width
+def test_few_turns_hold_what_a_mate_that_is_not_known_may_bring(turns: float) -> None:
+    """Its sidebands of a tenth, one and a half bins off, are no lines of their own."""
+    random = np.random.default_rng(7)
+    time = np.arange(int(turns * TEETH / 400.0 * RATE)) / RATE
+    values = 0.02 * random.normal(size=time.size)
+    for place, size in ((0.0, 1.0), (-1.5, 0.1), (1.5, 0.1)):
+        frequency = 400.0 + place * RATE / time.size
+        values += size * np.cos(2.0 * np.pi * frequency * time + random.uniform(0.0, 6.3))
+    record = Record((Channel("a", values, "m/s^2"),), "made", RATE, "made")
+    with patch("thermogear.measured.gearing.weigh", Mock(return_value=Evidence(hypotheses=()))):
+        line = measure(record, teeth=TEETH, sidebands=0, harmonics=1).lines[0]
+    assert abs(1.0 / line.reading - 1.0) < line.half_width < 0.1
+    assert abs(line.frequency - 400.0) < line.frequency_half_width
 
 
 @NO_MATE

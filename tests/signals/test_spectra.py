@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 from scipy.signal import windows as reference_windows
 
 from conftest import Compared
 from thermogear.base.errors import InputError
 from thermogear.signals.spectra import (
+    Spectrum,
     amplitude_spectrum,
     line_shares,
     order_amplitudes,
@@ -19,6 +21,12 @@ from thermogear.signals.spectra import (
 from thermogear.signals.windows import WINDOWS, Window
 
 SCIPY_NAMES = {"rectangular": "boxcar", "blackman-harris": "blackmanharris"}
+
+
+def mean_square(spectrum: Spectrum) -> NDArray[np.float64]:
+    """Of the windowed record, from the lines alone: (A_0^2 + sum A_k^2/2 + A_Nyquist^2)/ENBW."""
+    shares = line_shares(spectrum.samples) * spectrum.amplitudes**2
+    return np.asarray(np.sum(shares, axis=-1) / spectrum.noise_bandwidth)
 
 
 @given(
@@ -31,12 +39,12 @@ def test_parseval_holds_for_every_window_and_length(count: int, seed: int, name:
     spectrum = amplitude_spectrum(x, 5120.0, name)
     weights = spectrum.window.samples(count)
     expected = np.sum((weights * x) ** 2, axis=-1) / np.sum(weights**2)
-    np.testing.assert_allclose(spectrum.mean_square, expected, rtol=1e-9)
+    np.testing.assert_allclose(mean_square(spectrum), expected, rtol=1e-9)
 
 
 def test_parseval_with_a_rectangular_window_is_the_mean_square_itself() -> None:
     x = np.random.default_rng(3).standard_normal(4097)
-    assert amplitude_spectrum(x).mean_square == pytest.approx(np.mean(x**2), rel=1e-12)
+    assert mean_square(amplitude_spectrum(x)) == pytest.approx(np.mean(x**2), rel=1e-12)
 
 
 @pytest.mark.parametrize("name", WINDOWS)

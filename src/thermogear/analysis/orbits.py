@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.analysis.section import lanes_of
 from thermogear.base.bounds import whole
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.dynamics.return_map import ReturnMap, return_map
@@ -146,16 +145,6 @@ def multipliers(jacobian: Floats, determinant: float) -> Complexes:
         return np.array([complex(half, np.sqrt(-square)), complex(half, -np.sqrt(-square))])
     large = half + np.copysign(np.sqrt(square), half)
     return np.array([large, determinant / large], complex)
-
-
-def contact_multipliers(model: object) -> Complexes:
-    """Multipliers of one period in lasting drive contact: Hill's equation x'' + c x' + k(t) x = 0.
-
-    The largest modulus above 1 means that the motion cannot stay in contact, whatever the force.
-    ``model`` has one lane; backlash and force do not enter.
-    """
-    section = lanes_of(model).return_map()
-    return multipliers(section.contact, section.determinant(1))
 
 
 def shoot(

@@ -68,18 +68,6 @@ def theoretical_single_stiffness(
     return np.asarray(1e9 / flexibility)
 
 
-def virtual_teeth(teeth: ArrayLike, *, helix_angle: float, pressure_angle: float) -> Floats:
-    """z_n = z/(cos^2(beta_b) cos(beta)), sin(beta_b) = sin(beta) cos(alpha_n) (ISO 21771-1).
-
-    Angles in [rad]; z itself for a spur gear.
-
-    >>> f"{virtual_teeth(20, helix_angle=0.3, pressure_angle=math.radians(20)):.2f}"
-    '22.68'
-    """
-    base = np.arcsin(np.sin(helix_angle) * np.cos(pressure_angle))
-    return np.asarray(np.asarray(teeth, dtype=float) / (np.cos(base) ** 2 * np.cos(helix_angle)))
-
-
 def single_stiffness(
     theoretical: ArrayLike,
     *,

@@ -31,17 +31,9 @@ REGIME_LIMITS: dict[str, RegimeLimits] = {
     "AGMA 925": RegimeLimits(0.4, 1.0, "public gear codes after AGMA 925 and NASA", True),
 }
 
-WEAR_BANDS = (0.05, 0.30)
-"""Probability of wear by AGMA 925: low below, high above; usual, unconfirmed."""
-SAFETY_BANDS = (1.0, 2.0)
-"""S_lambda of micropitting: limited risk above the first, low above the second; usual,
-unconfirmed: ISO/TS 6336-22 sets no least safety."""
-
 _GRADES = (32.0, 100.0, 220.0, 460.0)  # ISO VG, mm^2/s at 40 C
 _STAGES = (5.0, 10.0)
 _PERMISSIBLE = ((0.13, 0.055), (0.25, 0.09), (0.40, 0.145), (0.57, 0.20))
-ROUGHNESS_OF_TABLE = 0.5e-6
-"""Ra [m] for which the permissible film parameter is drawn."""
 
 
 def permissible_film_parameter(

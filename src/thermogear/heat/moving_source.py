@@ -149,33 +149,6 @@ def _carrying(
     return np.asarray(np.divide(above, below, out=np.zeros(pe.shape), where=below > 0.0))
 
 
-def peclet_partition(
-    *,
-    speed_1: ArrayLike,
-    speed_2: ArrayLike,
-    half_width: ArrayLike,
-    material_1: Material,
-    material_2: Material,
-    distribution: str = "ellipse",
-) -> Floats:
-    """Share of heat into flank 1 that makes the exact maxima of both flanks equal [-].
-
-    Arguments as :func:`peclet_flash`. Equal to :func:`temperature.heat_partition` within
-    0.001 for Pe >= 5; 1/2 where neither moves.
-
-    >>> steel = material("steel")
-    >>> share = peclet_partition(
-    ...     speed_1=5.0, speed_2=5.0, half_width=0.15e-3, material_1=steel, material_2=steel
-    ... )
-    >>> f"{share:.3f}"
-    '0.500'
-    """
-    one = _carrying(speed_1, half_width, material_1, distribution)
-    two = _carrying(speed_2, half_width, material_2, distribution)
-    total = np.asarray(one + two)
-    return np.asarray(np.divide(one, total, out=np.full(total.shape, 0.5), where=total > 0.0))
-
-
 def peclet_flash(
     heat: ArrayLike,
     *,

@@ -143,12 +143,6 @@ class ThermalNetwork:
         values += [*self.sources.values(), *self.fixed.values()]
         return np.broadcast_shapes(*(np.shape(v) for v in values))
 
-    def with_fixed(self, **temperatures: ArrayLike) -> ThermalNetwork:
-        """The same network with further nodes held at given (measured) temperatures [K]."""
-        return ThermalNetwork(
-            self.links, self.sources, {**self.fixed, **temperatures}, self.capacities
-        )
-
     def _matrices(self) -> tuple[Floats, Floats, Floats]:
         """(Laplacian over all nodes, sources, given temperatures or 0), batch axes first."""
         names, shape = self.nodes, self.shape

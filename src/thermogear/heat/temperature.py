@@ -134,30 +134,6 @@ def flank_exchange(
     return np.asarray(2.0 / np.sqrt(np.pi) * np.sqrt(2.0 * b) * both)
 
 
-def flank_flash(
-    heat: ArrayLike,
-    speed: ArrayLike,
-    half_width: ArrayLike,
-    contact_coefficient: ArrayLike,
-    factor: ArrayLike = FLASH_FACTORS["ellipse"],
-) -> Floats:
-    """Greatest temperature rise of one flank under the heat that enters it [K].
-
-    dT = u q_i / (B_i sqrt(v_i) sqrt(B)).
-
-    ``heat`` q_i [W/m] into this flank, ``speed`` v_i [m/s], ``half_width`` B [m],
-    ``contact_coefficient`` B_i [J/(m^2 K s^0.5)], ``factor`` u [-]. Any shape; 0 where a
-    denominator is 0. With the shares of :func:`heat_partition` both flanks give
-    :func:`blok_flash`. Holds for Peclet numbers v B/a above about 10.
-
-    >>> f"{flank_flash(5e3, 4.0, 0.16e-3, 14e3):.1f} K"
-    '11.1 K'
-    """
-    q, v, b = (np.asarray(a, dtype=float) for a in (heat, speed, half_width))
-    below = np.asarray(contact_coefficient, dtype=float) * np.sqrt(v) * np.sqrt(b)
-    return _over(np.asarray(np.asarray(factor) * q), np.asarray(below))
-
-
 def blok_flash(
     friction: ArrayLike,
     line_load: ArrayLike,

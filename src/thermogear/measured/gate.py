@@ -137,7 +137,7 @@ def require_samples(record: Record) -> None:
 def passed(channels: Sequence[Channel], longest: int) -> Passed:
     """The first ``longest`` samples of the channels through the gate.
 
-    Up to FILLED of a channel's samples (missing, sentinels, zeros, held, bridged, spikes, clipped)
+    Up to FILLED of a channel's samples (missing, sentinels, zeros, held, spikes, clipped)
     are filled in by the channel's own strong lines. More missing: the longest whole stretch of all
     channels. More clipped or held: amplitudes are withheld. Copies are left out.
 
@@ -319,11 +319,10 @@ _WORDS = {
     "held": "held samples",
     "spikes": "spikes",
     "clipping": "clipping at",
-    "bridged": "straight lines in place of samples",
     "coarse": "coarse levels",
     "quiet": "no vibration",
 }
-_GONE = ("missing", "sentinel", "zeros", "bridged", "quiet")
+_GONE = ("missing", "sentinel", "zeros", "quiet")
 _TOO_MUCH = {
     "clipping": "lines are too small, and harmonics are made, by an unknown amount",
     "held": "a sample that repeats the one before weakens lines and makes images",

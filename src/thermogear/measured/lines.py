@@ -12,10 +12,8 @@ from thermogear.base.units import STANDARD_GRAVITY
 from thermogear.measured.chain import Chain, reduced
 from thermogear.measured.gate import turned_by
 from thermogear.measured.gearing import Gearing
-from thermogear.measured.mate import known_teeth, sides_of
 from thermogear.measured.record import Channel, Notice, Record
-from thermogear.measured.turns import MeshTurns
-from thermogear.measured.unfollowed import unfollowed
+from thermogear.measured.turns import MeshTurns, known_teeth, sides_of, unfollowed
 from thermogear.measured.units import kind_of
 from thermogear.signals.interval import APART, REACH, Reading, read_line
 from thermogear.signals.lines import LineSpectrum
@@ -309,7 +307,7 @@ def channel_lines(
             relative = max(relative, 1.0)
         else:  # a short event beside it, or its own
             low = min(low, 1.0 / float(np.sqrt(1.0 + comes)))
-        if turns is not None and turns.lacks:
+        if turns is not None and turns.turning is None:
             high = max(high, 1.0 / alone)
         else:
             low = min(low, alone)

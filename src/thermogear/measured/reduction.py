@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -40,7 +39,6 @@ from thermogear.measured.lines import (
     told_withheld,
     wanted_lines,
 )
-from thermogear.measured.mate import known_teeth, told_of_mate
 from thermogear.measured.quantities import of_velocity
 from thermogear.measured.rate_check import check_rate
 from thermogear.measured.readers import read_record
@@ -54,19 +52,13 @@ from thermogear.measured.stated import (
 )
 from thermogear.measured.swelling import Swelling, swelling_of
 from thermogear.measured.traps import unknown_unit
-from thermogear.measured.turns import MeshTurns, clearest, mesh_turns
+from thermogear.measured.turns import MeshTurns, mesh_turns, told_of_mate
 from thermogear.measured.units import UNITS
-from thermogear.signals.interval import read_line
-from thermogear.signals.lines import LineSpectrum
-from thermogear.signals.lost import phase_jumps, phase_step
-from thermogear.signals.strong import strong_lines
 from thermogear.signals.windows import Window
 
 LONGEST = 1 << 21
 """Samples per channel reduced at once; a longer record is cut there with a notice."""
 
-_BEAT = 0.05  # of the line, that two steady lines may leave
-_JUMP_TURNS = 3  # of the shaft in a piece whose phase is looked at
 
 _MOST = 64
 """Harmonics, sidebands and orders that may be asked for."""
@@ -191,8 +183,6 @@ def measure(
         gearing = stated_gearing(through.table, notices, expected, stated)
     if changing is not None and changing.slices is not None:
         return _of_slices(record, through, chain, changing, notices, given)
-    if changing is None and _whole_turns(through, gearing, teeth):
-        gearing = stated_gearing(through.table, [], expected, stated)
     through.findings += events_of(through)
     chosen, start, table = through.channels, through.start, through.table
     if changing is None:
@@ -404,49 +394,6 @@ def _filtered(chain: Chain, rate: float, mesh: float, gearing: Gearing | None) -
             f"{band.taps} taps: the filter passes {float(band.gain(mesh)):.3f} of the mesh "
             f"line ({kept})",
         )
-
-
-def _whole_turns(through: Passed, gearing: Gearing | None, teeth: int | None) -> bool:
-    """Cut to the longest stretch between jumps of the mesh line's phase; whether there were any."""
-    if gearing is None:
-        return False
-    values, spectrum = clearest(through.table, gearing.mesh_frequency)
-    piece = _JUMP_TURNS * (teeth or gearing.teeth or 20)
-    jumps = phase_jumps(values, gearing.mesh_frequency, cycles=piece)
-    around = int(np.ceil(1.5 * piece / gearing.mesh_frequency))  # a jump is placed so well
-    known = known_teeth(gearing, teeth)
-    if len(jumps) < 2 and known:
-        step = phase_step(values, gearing.mesh_frequency, known)
-        if step is not None and all(abs(step[0] - at) < around for at in jumps):
-            jumps, around = [step[0]], 2 * step[1]
-    if not jumps or _beats(spectrum, gearing.mesh_frequency):
-        return False
-    edges = [-around, *jumps, values.size + around]
-    first, stop = max(
-        ((a + around, b - around) for a, b in pairwise(edges)), key=lambda pair: pair[1] - pair[0]
-    )
-    least = max(256, int(np.ceil(20.0 / gearing.mesh_frequency)))
-    if stop - first < least:
-        return False
-    places = ", ".join(str(through.start + at) for at in jumps[:5])
-    through.findings.append(
-        Finding(
-            kind=f"the mesh line's phase jumps near sample {places}: samples are lost there",
-            done=f"only the longest stretch between is used, samples {through.start + first}.."
-            f"{through.start + stop - 1}",
-            effect="none on that stretch",
-        )
-    )
-    through.cut(first, stop=stop)
-    _whole_turns(through, gearing, teeth)  # a smaller jump shows beside no larger one
-    return True
-
-
-def _beats(spectrum: LineSpectrum, mesh: float) -> bool:
-    """Whether two steady lines or more make what is near the mesh line: their beat turns the phase
-    where it is low, as lost samples would."""
-    reading = read_line(spectrum, mesh, strong=strong_lines(spectrum))
-    return bool(reading.neighbours) and max(reading.changing, reading.turning) < _BEAT
 
 
 def require_teeth(teeth: int | None) -> None:

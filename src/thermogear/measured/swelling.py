@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,8 +13,6 @@ from thermogear.signals.envelope import envelope_rate
 CHANCE = 1e-3
 """How often noise may have a rate as clear for one to be told."""
 
-_WHOLE = 6  # denominators of the speeds of a train's shafts
-_SAME = 2e-3
 _LONGEST = 1 << 19  # samples
 
 
@@ -47,10 +44,7 @@ class Swelling:
         )
         if self.order is None:
             return f"{said}: impacts of a bearing or of a shaft, or a load that swings"
-        ratio = Fraction(self.order).limit_denominator(_WHOLE)
-        if ratio > 0 and abs(self.order / float(ratio) - 1.0) < _SAME:
-            return f"{said}: {ratio} of the first shaft, as a shaft of the train does"
-        return f"{said}: {self.order:.3f} of the first shaft, as impacts of a bearing do"
+        return f"{said}: {self.order:.3f} of the first shaft"
 
 
 def swelling_of(

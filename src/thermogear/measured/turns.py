@@ -11,8 +11,7 @@ from scipy import signal
 
 from thermogear.measured.chain import Turning
 from thermogear.measured.gearing import Gearing
-from thermogear.measured.mate import SLOW, known_teeth, may_be_slow, sides_of, wave_of_mate
-from thermogear.measured.unfollowed import AS_FAR, CLEAR, around, unfollowed
+from thermogear.measured.record import Notice
 from thermogear.signals.following import (
     Followed,
     band_power,
@@ -36,9 +35,11 @@ _ALIKE = 1.5  # of the phase's noise
 _EXPLAINED = 1.1  # times the power of lines beside a line, all that is there
 _STILL = 0.1  # of a line, that no steady one explains
 _FEW = 4.0  # turns of a shaft over the record
+_AS_FAR = 3.0  # times the distance of the first sidebands, up to which is looked
+_CLEAR = 3  # bins of a line's own lobe, Hann's window
+_SLOW = 12.0  # turns of a gear over the record: four of a mate three times as large
+_SLOWEST = 32.0  # the same of one eight times as large: a mate seldom is larger
 _CLEARLY = 3.0  # times the power of Q
-_ALONE = 10.0  # times the power of I
-_SEEN = 2.0  # times the noise
 _UNKNOWN = (
     "the lines beside it may as well be sidebands of a shaft that is not known: the intervals hold "
     "both"
@@ -57,9 +58,9 @@ class MeshTurns:
     noise brings to that angle and what of the turning it misses, in the mesh line's own phase;
     ``unfollowed``: power beside the line that its reading lacks and that may be its own, of its
     power; ``spread``: what of ``half_width`` comes of that; ``doubt``: share of the power near the
-    line that may be its own or others', which its reading ``lacks`` or holds; ``withheld``: why
-    lines nearer to it and its harmonics than ``near`` are; ``mate``: a gear that is not known may
-    turn a few times and be among what changes the line.
+    line that may be its own or others'; ``withheld``: why lines nearer to it and its harmonics than
+    ``near`` are; ``mate``: a gear that is not known may turn a few times and be among what changes
+    the line.
     """
 
     frequency: float
@@ -72,7 +73,6 @@ class MeshTurns:
     unfollowed: float = 0.0
     spread: float = 0.0
     doubt: float = 0.0
-    lacks: bool = False
     withheld: str = ""
     near: float = 0.0
     mate: bool = False
@@ -82,8 +82,7 @@ class MeshTurns:
         where they may be what changes it, turns it or is beside it."""
         if not self.mate:
             return 0.0
-        own = max(reading.amplitude, 1e-300)
-        told = 0.0 if reading.explained else reading.half_width / own
+        told = 0.0 if reading.explained else reading.half_width / max(reading.amplitude, 1e-300)
         change = np.linalg.norm([reading.changing, reading.turning, _of_neighbours(reading)])
         return max(LEAK * float(change) - told, 0.0)
 
@@ -91,6 +90,36 @@ class MeshTurns:
         """Why a line at this place [cycles/sample], no harmonic itself, is withheld, or ''."""
         harmonic = max(1.0, float(np.rint(position / self.frequency))) * self.frequency
         return self.withheld if abs(position - harmonic) < self.near else ""
+
+
+def known_teeth(gearing: Gearing, teeth: int | None) -> list[int]:
+    """Teeth of the shafts that are decided, and those given."""
+    given = [teeth] if teeth else []
+    return list(dict.fromkeys([*(shaft.teeth for shaft in gearing.shafts), *given]))
+
+
+def sides_of(gearing: Gearing, *, teeth: int | None, rank: int, mesh: float) -> tuple[float, ...]:
+    """Where the shafts' sidebands of a mesh harmonic stand, ``mesh`` in any unit."""
+    return tuple(
+        mesh * (rank + sign * n / z)
+        for z in known_teeth(gearing, teeth)
+        for n in (1, 2, 3)
+        for sign in (-1, 1)
+    )
+
+
+def told_of_mate(gearing: Gearing, *, teeth: int | None, samples: int) -> list[Notice]:
+    """What a slower mate that is not known would change: it may turn fewer than four times."""
+    known = known_teeth(gearing, teeth)
+    turns = gearing.mesh_frequency * samples / known[0] if known else np.inf
+    if len(known) != 1 or turns >= _SLOWEST:
+        return []
+    text = (
+        f"the record holds {turns:.3g} turns of the gear of {known[0]} teeth; what a mate that is "
+        f"not known, of more than {turns * known[0] / _FEW:.0f} teeth, changes of the mesh line "
+        "counts as the line's own: it turned fewer than four times"
+    )
+    return [Notice("warning" if turns < _SLOW else "info", text)]
 
 
 def mesh_turns(
@@ -118,13 +147,12 @@ def mesh_turns(
         turns = _follow(values, spectrum, line.frequency, per_cycle, least=least, beside=beside)
     nearest = min((abs(one - line.frequency) for one in beside), default=np.inf)
     few = nearest < _FEW * spectrum.bin_width
-    mate = may_be_slow(gearing, teeth=teeth, samples=values.size)
+    mate = len(known_teeth(gearing, teeth)) == 1 and nearest < _SLOW * spectrum.bin_width
     if turns is not None:
+        turns = replace(turns, mate=mate)
         if few:
-            return _or_sidebands(turns, values, spectrum, reading, strong, nearest)
-        turns = _or_steady(turns, spectrum, reading, beside, strong)
-        known = known_teeth(gearing, teeth)
-        return turns if len(known) != 1 else _or_mate(turns, known[0], nearest / spectrum.bin_width)
+            return _or_sidebands(turns, values, spectrum, reading, nearest)
+        return _or_steady(turns, spectrum, reading, beside, strong)
     best = reading.frequency, reading.frequency_half_width
     for rank in range(2, harmonics + 1):
         if 2.56 * rank * reading.frequency > 1.0:
@@ -148,7 +176,49 @@ def mesh_turns(
         spread=spread,
         mate=mate,
     )
-    return _or_sidebands(steady, values, spectrum, reading, strong, nearest) if few else steady
+    return _or_sidebands(steady, values, spectrum, reading, nearest) if few else steady
+
+
+def unfollowed(
+    spectrum: LineSpectrum, reading: Reading, beside: Sequence[float], strong: Sequence[Strong]
+) -> tuple[float, float]:
+    """Power beside a line that its reading lacks and that may be its own, over its own; and by how
+    much its turns over time may differ from its place.
+
+    A phase or an amplitude that oscillates makes lines at equal distances to both sides, which
+    count up to three times the distance of the first sidebands of known shafts (``beside``).
+    """
+    nearest = min((abs(one - reading.frequency) for one in beside), default=0.0)
+    share, turned = _pairs(spectrum, reading, beside, strong, _AS_FAR * nearest)
+    # a phase that oscillates by sqrt(2 turned) [rad] may be at any place at both ends
+    return share, float(np.sqrt(2.0 * turned)) / np.pi * spectrum.bin_width
+
+
+def _pairs(
+    spectrum: LineSpectrum,
+    reading: Reading,
+    beside: Sequence[float],
+    strong: Sequence[Strong],
+    reach: float,
+) -> tuple[float, float]:
+    """Power of lines at equal distances to both sides of one, up to ``reach`` from it, that are no
+    known sidebands, over its own; and what of it turns the line's phase (Q)."""
+    width, own = spectrum.bin_width, reading.amplitude**2
+    free = [
+        one
+        for one in strong
+        if APART * width < abs(one.place * width - reading.frequency) < reach
+        and not _is_side(one, beside, width)
+    ]
+    line = min(strong, key=lambda one: abs(one.place * width - reading.frequency), default=None)
+    if line is None or own <= 0.0:
+        return 0.0, 0.0
+    phase = np.conj(line.amplitude) / abs(line.amplitude)
+    power = turned = 0.0
+    for above, below in twins(free, reading.frequency / width):
+        power += abs(above.amplitude) ** 2 + abs(below.amplitude) ** 2
+        turned += abs(above.amplitude * phase - np.conj(below.amplitude * phase)) ** 2 / 2.0
+    return max(power, reading.pairs) / own, float(turned) / own
 
 
 def _or_steady(
@@ -164,26 +234,18 @@ def _or_steady(
     the sidebands of a shaft that is not known. Where such pairs hold nearly all the power that the
     line itself does not, the line may be what is read between them.
     """
-    width, own = spectrum.bin_width, reading.amplitude**2
+    own = reading.amplitude**2
     if max(reading.turning, reading.changing) > _STILL or own <= 0.0:
         return turns
     widths = filter_widths(spectrum, reading.frequency)
-    free = [
-        one
-        for one in strong
-        if APART * width < abs(one.place * width - reading.frequency) < max(widths)
-        and not _is_side(one, beside, width)
-    ]
-    found = twins(free, reading.frequency / width)
-    pairs = sum(abs(one.amplitude) ** 2 for pair in found for one in pair)
-    pairs = max(pairs, reading.pairs)
+    share, _ = _pairs(spectrum, reading, beside, strong, max(widths))
     most = max(_missing(spectrum, reading, beside, one) for one in widths)
-    if pairs < _MISSED * own or most > _EXPLAINED * pairs:
+    if share < _MISSED or most > _EXPLAINED * share * own:
         return turns
     off = abs(turns.frequency - reading.frequency)
     return replace(
         turns,
-        doubt=max(turns.doubt, pairs / (own + pairs)),
+        doubt=max(turns.doubt, share / (1.0 + share)),
         half_width=turns.half_width + off,
         said=turns.said if _UNKNOWN in turns.said else f"{turns.said}; {_UNKNOWN}",
     )
@@ -194,69 +256,42 @@ def _or_sidebands(
     values: Floats,
     spectrum: LineSpectrum,
     reading: Reading,
-    strong: Sequence[Strong],
     nearest: float,
 ) -> MeshTurns:
     """A line over few turns of a shaft, whose sidebands are ``nearest``.
 
     A speed that wanders puts power where the sidebands are, and what they hold turns the line's
-    phase. Where the line was followed, all power near it that a steady one has not may be the one
-    or the other's, and half of it may turn the line at both ends. Where it was not, that which
-    turns it may be its own if hardly anything changes its amplitude: sidebands would do both.
-    Lines beside one that was followed, or less than two bins off, are withheld.
+    phase. Where the line was followed, or the sidebands are less than two bins off, all power near
+    it that a steady one has not may be the one's or the other's, and may turn the line at both
+    ends. Lines that near are withheld.
     """
-    width, most = spectrum.bin_width, int(AS_FAR * nearest / spectrum.bin_width + 2.0)
+    width, near = spectrum.bin_width, 2.0 * spectrum.bin_width
     why = (
         f"the record holds {nearest / width:.2g} turns of the slowest shaft: below {_FEW:g} its "
         "sidebands are not told from a speed that wanders"
     )
-    place = reading.frequency / width
-    own, even, odd = around(values, place=place, most=most, strong=strong, noise=reading.noise)
-    doubt, turned, near = 0.0, 0.0, 2.0 * width
+    reach, said = _AS_FAR * nearest + near, turns.said
+    turned = 0.0
     if turns.turning is not None:
-        doubt, near = (even + odd) / (own + even + odd), AS_FAR * nearest + near
-        straight = turns.turning.resampled(values, 0)
-        per_cycle = turns.turning.per_cycle
-        strong, place = strong_lines(line_spectrum(straight, 1.0)), straight.size / per_cycle
-        own, even, odd = around(
-            straight, place=place, most=most, strong=strong, noise=reading.noise
-        )
-        turned = (even + odd) / own
-        why = f"the speed wanders, and {why}"
-    elif odd > max(_ALONE * even, _SEEN * most * reading.noise**2):
-        doubt, turned = odd / (own + odd), 2.0 * odd / own
+        why, near = f"the speed wanders, and {why}", reach
+        straight = line_spectrum(turns.turning.resampled(values, 0), float(turns.turning.per_cycle))
+        turned = max(band_power(straight, 1.0, reach / turns.frequency) / turns.power - 1.0, 0.0)
+    elif nearest >= near:
+        return replace(turns, withheld=why, near=near)
+    else:
+        said = "; ".join(one for one in (said, why) if one)
+    own = reading.amplitude**2 / (1.0 + reading.changing**2 + reading.turning**2)
+    more = max(band_power(spectrum, reading.frequency, reach) - own, 0.0)
     # a phase that oscillates by sqrt(turned) [rad] may be at any place at both ends
     spread = float(np.sqrt(turned)) / np.pi * width
-    told = turns.turning is not None or nearest < near
     return replace(
         turns,
-        doubt=max(turns.doubt, doubt),
-        lacks=turns.turning is None,
+        doubt=max(turns.doubt, more / (own + more)),
         half_width=float(np.hypot(turns.half_width, spread)),
         spread=float(np.hypot(turns.spread, spread)),
         withheld=why,
         near=near,
-        said=turns.said if told else "; ".join(one for one in (turns.said, why) if one),
-    )
-
-
-def _or_mate(turns: MeshTurns, teeth: int, nearest: float) -> MeshTurns:
-    """A line followed whose phase a gear may turn that is not known: the intervals hold both.
-
-    ``nearest``: turns of the known gear of ``teeth`` over the record.
-    """
-    assert turns.turning is not None
-    cycles = turns.turning.cycles
-    wave = wave_of_mate(cycles, nearest)
-    spread = float(np.sqrt(2.0 * wave.power)) / np.pi / cycles.size
-    told = wave.words(teeth * nearest) if wave.power > _MISSED else ""
-    return replace(
-        turns,
-        doubt=max(turns.doubt, wave.power / (1.0 + wave.power)),
-        half_width=float(np.hypot(turns.half_width, spread)),
-        spread=float(np.hypot(turns.spread, spread)),
-        mate=nearest < SLOW,
-        said=turns.said + told,
+        said=said,
     )
 
 
@@ -428,7 +463,7 @@ def _with_pairs(
     free = [
         one
         for one in strong
-        if CLEAR * width < abs(one.place * width - 1.0) < found.last / frequency
+        if _CLEAR * width < abs(one.place * width - 1.0) < found.last / frequency
         and not _is_side(one, sides, width)
     ]
     both_sides = twins(free, 1.0 / width) if line else []

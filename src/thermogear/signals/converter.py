@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.signals.bridged import smallest_step
 from thermogear.signals.lines import line_spectrum
 from thermogear.signals.strong import strong_lines
 
@@ -14,6 +13,17 @@ _MANY = 10.0  # levels in a standard deviation: fine
 _FOLDED = 0.53  # 2 zeta(3/2)/pi^2: see coarse
 _OWN = 1.0 / 12.0  # of a squared level: the rounding's own noise
 _WHOLE = 0.75  # of the samples count
+
+
+def smallest_step(kept: NDArray[np.float64]) -> float:
+    """The smallest step between values that occur, 0 of a single one; of numbers with all their
+    digits next to 0.
+
+    >>> smallest_step(np.array([2.0, 0.5, 1.0, 2.0]))
+    0.5
+    """
+    levels = np.unique(kept)
+    return float(np.min(np.diff(levels))) if levels.size > 1 else 0.0
 
 
 def coarse(x: NDArray[np.float64], free: NDArray[np.bool_]) -> float:

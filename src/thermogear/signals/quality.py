@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.signals.bridged import bridges
 from thermogear.signals.converter import coarse
 from thermogear.signals.events import quiet
 from thermogear.signals.lines import line_spectrum
@@ -23,8 +22,7 @@ SENTINELS = (-9999.0, 9999.0, -999.0, 999.0, -99999.0, 99999.0, -999.25, -32768.
 _CHANCE = 1e-4  # of a run that long in an undamaged record
 _SHORTEST = 8  # samples of a run of one value
 _PILE = 8.0  # times as many samples at a limit as at the levels beside
-_LIMITS = 6  # values that may be limits inside the range
-_VISITS, _BACK = 10, 0.9  # to such a limit, and how many of them turn back there
+_VISITS = 10  # to a limit
 _BANDS, _DOUBLED = 10_000, 8  # of the range; how often they are made twice as wide
 _EVERYWHERE = 0.7  # of the widest bands hold samples
 _SATURATED, _HIGHER = 30, 10.0  # samples at a limit, and times those of another band
@@ -62,8 +60,7 @@ class Damage:
 
 def damages(x: ArrayLike) -> list[Damage]:
     """Every damage of one channel: missing, sentinels, zeros, held samples, spikes, clipping,
-    straight lines in place of samples, stretches without vibration, and
-    coarse levels, of which all samples are.
+    stretches without vibration, and coarse levels, of which all samples are.
 
     ``x`` [any unit], NaN where a value is missing. No sample is in two others of them.
 
@@ -77,7 +74,7 @@ def damages(x: ArrayLike) -> list[Damage]:
     values = np.asarray(x, dtype=float)
     free = np.isfinite(values)
     found = [Damage(kind="missing", samples=~free)] if not free.all() else []
-    for one in (_sentinels, _clipped, _straight, _held, _quiet, _spikes):
+    for one in (_sentinels, _clipped, _held, _quiet, _spikes):
         for damage in one(values, free):
             found.append(damage)
             free = free & ~damage.samples
@@ -122,12 +119,10 @@ def _quiet(x: Floats, free: Mask) -> list[Damage]:
 
 
 def _clipped(x: Floats, free: Mask) -> list[Damage]:
-    """Samples piled up at a limit: the highest or lowest value, or one that others are beyond.
+    """Samples piled up at a limit: the highest or the lowest value.
 
     A line alone piles up at its own extremes, three times as high as at the levels beside; a limit
-    far higher. Levels are those that occur, so that a coarse converter is no limit. A part of the
-    record may have a lower limit than the rest, or a spike stand beyond it: of such a limit ten
-    visits or more are seen, nine of ten coming from the middle and going back there.
+    far higher. Levels are those that occur, so that a coarse converter is no limit.
     """
     kept = x[free]
     if kept.size < 64:
@@ -143,7 +138,6 @@ def _clipped(x: Floats, free: Mask) -> list[Damage]:
         beside = float(np.mean(sizes[:5])) if levels.size >= 5 else 0.0
         if levels.size >= 5 and count > _PILE * beside:
             found.append(Damage(kind="clipping", samples=at, value=limit))
-    found += _clipped_inside(x, free, [one.value for one in found])
     return found or _saturated(x, free)
 
 
@@ -181,54 +175,6 @@ def _saturated(x: Floats, free: Mask) -> list[Damage]:
         if visits >= _VISITS:
             found.append(Damage(kind="clipping", samples=at, value=limit))
     return found
-
-
-def _clipped_inside(x: Floats, free: Mask, known: Sequence[float | None]) -> list[Damage]:
-    """Limits that some samples are beyond, of values that follow each other unchanged."""
-    same = np.zeros(x.size, dtype=bool)
-    same[1:] = (x[1:] == x[:-1]) & free[1:] & free[:-1]
-    values, counts = np.unique(x[same], return_counts=True)
-    often = values[np.argsort(-counts)[:_LIMITS]][: int(np.count_nonzero(counts >= _VISITS))]
-    kept = x[free]
-    if often.size == 0:
-        return []
-    middle = float(np.median(kept))
-    low, high = float(kept.min()), float(kept.max())
-    found = []
-    for limit in map(float, often):
-        if limit in known or limit in (low, high, middle, 0.0):
-            continue
-        at = free & (x == limit)
-        if _piled(kept, limit, int(np.count_nonzero(at))) and _turns_back(x, at, limit < middle):
-            found.append(Damage(kind="clipping", samples=at, value=limit))
-    return found
-
-
-def _piled(kept: Floats, limit: float, count: int) -> bool:
-    """Whether far more samples are at the limit than at the five levels on either side."""
-    for side in (1.0, -1.0):
-        away = side * (kept - limit)
-        away = away[away > 0.0]
-        most = min(away.size, 64 * count)
-        near = np.partition(away, most - 1)[:most] if most else away
-        sizes = np.unique(near, return_counts=True)[1]
-        if sizes.size and count <= _PILE * float(np.mean(sizes[:5])):
-            return False
-    return True
-
-
-def _turns_back(x: Floats, at: Mask, lower: bool) -> bool:
-    """Whether the visits to a limit come from the middle and go back there."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], at.astype(np.int8), [0]])))
-    starts, stops = edges[::2], edges[1::2]
-    inner = (starts > 0) & (stops < x.size)
-    starts, stops = starts[inner], stops[inner]
-    if starts.size < _VISITS:
-        return False
-    sign = 1.0 if lower else -1.0
-    limit = x[starts]
-    inside = (sign * (x[starts - 1] - limit) > 0.0) & (sign * (x[stops] - limit) > 0.0)
-    return bool(np.mean(inside) >= _BACK)
 
 
 def _held(x: Floats, free: Mask) -> list[Damage]:
@@ -270,12 +216,6 @@ def _not_by_chance(x: Floats, free: Mask, short: Mask) -> bool:
     moves = np.abs(np.diff(kept))
     beside = int(np.count_nonzero((moves > 0.0) & (moves < 4.5 * step)))
     return int(np.count_nonzero(short)) > 2.0 * max(beside, 1)  # 16 of 8 levels
-
-
-def _straight(x: Floats, free: Mask) -> list[Damage]:
-    """Straight lines across gaps."""
-    where = bridges(x, free) if np.count_nonzero(free) >= 64 else np.zeros(x.size, dtype=bool)
-    return [Damage(kind="bridged", samples=where)] if where.any() else []
 
 
 def _spikes(x: Floats, free: Mask) -> list[Damage]:

@@ -44,17 +44,6 @@ class Spectrum:
         """Distance of two lines, in the unit of ``rate``."""
         return self.rate / self.samples
 
-    @property
-    def mean_square(self) -> Floats:
-        """Mean square of the windowed record, sum(w^2 x^2)/sum(w^2), from the lines alone.
-
-        Parseval: (A_0^2 + sum A_k^2/2 + A_Nyquist^2)/ENBW. With a rectangular window it is the
-        mean square of the record itself.
-        """
-        return np.asarray(
-            np.sum(line_shares(self.samples) * self.amplitudes**2, axis=-1) / self.noise_bandwidth
-        )
-
 
 def line_shares(samples: int) -> Floats:
     """Mean square of each one-sided line over its amplitude squared: 1, 1/2, ..., 1/2, (1).
