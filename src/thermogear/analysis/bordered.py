@@ -11,8 +11,9 @@ and dmu/da = w^H (dJ/da) v/(w^H v). As second derivatives commute, w^T (dJ/dz_i)
 times one difference of J along v: a step costs as many runs for thirty coordinates as for one.
 J is that of the variational equations; derivatives of J, and those by p and q, are central
 differences and steer Newton's method alone. Of a grazing g is how far the nearest extreme of x
-lies from an edge of the backlash, with the sign of whether the contacts are those of the last
-point; it is bracketed along the branch of orbits, without Newton's method.
+lies from an edge of the backlash, with the sign of whether the contacts are still those where a
+search began; it is bracketed along the branch of orbits, without Newton's method. Where two
+grazings cross, the phase of the extreme tells them apart.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ from thermogear.analysis.curve import Curve, Family, Point
 from thermogear.analysis.nearby import zero_near
 from thermogear.analysis.orbits import multipliers
 from thermogear.base.errors import InputError
-from thermogear.dynamics.return_map import is_moved
+from thermogear.dynamics.return_map import is_moved, return_map
 
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
@@ -45,6 +46,8 @@ ROUNDING = 1e-8
 MOST_STEPS = 10
 SLOW = 0.5
 """A residual that falls less in a step asks for fresh derivatives."""
+SAMPLES, PHASE = 128, 0.05
+"""A mesh period, to see which extreme of x touches; the same one from point to point [orbits]."""
 LEAP = 1e-3
 """A zero through which g jumps by more is none."""
 WIDTH = 1e-4
@@ -64,8 +67,8 @@ class Located:
     tangent: Floats
     jacobian: Floats
     multipliers: Complexes
-    contacts: tuple[int, int]
-    """Losses of contact and back-side impacts per orbit."""
+    touch: tuple[float, float] = (np.nan, np.nan)
+    """Of a grazing the phase [mesh periods] of the extreme that touches, and x there [b]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,8 +112,7 @@ class Bordered:
             mu = complex(given[int(off.argmin())])
             self.mu = complex(mu.real, abs(mu.imag))
         self.borders: tuple[Floats, Floats] | None = None
-        orbit = bifurcation.orbit
-        self.contacts = (orbit.contact_losses, orbit.back_impacts)
+        self.touch = (np.nan, np.nan)
 
     def _made(self, second: float, value: float) -> Curve:
         return self._over(lambda first: self.sheet(first, second), value, self.spans[0])
@@ -276,7 +278,6 @@ class Bordered:
             tangent=tangent,
             jacobian=jacobian,
             multipliers=self.orbit_multipliers(scaled, jacobian=jacobian),
-            contacts=self.contacts,
         )
 
     def on_line(self, guess: Floats, *, held: int) -> Path:
@@ -321,10 +322,13 @@ class Bordered:
             values = path.at(float(point.scaled[-1] * path.span))
             return np.append(point.scaled[:-1], np.array(values) / self.whole[-2:])
 
+        begun: list[tuple[int, int]] = []
+
         def measured(point: Point) -> float:
             if self.kind == GRAZING:
+                begun.append(point.contacts)
                 size = min(max(point.margin, 1e-300), 1.0)
-                return size if point.contacts == self.contacts else -size
+                return size if point.contacts == begun[0] else -size
             gap, jacobian, _ = curve.residual(point.scaled)
             return self.vectors(self._scaled(jacobian))[0] if np.isfinite(gap).all() else np.nan
 
@@ -336,11 +340,24 @@ class Bordered:
         jacobian = self.closing(scaled)[1]
         if self.kind != GRAZING:
             return self._located(scaled, jacobian, direction=direction)
-        values = self.orbit_multipliers(scaled, jacobian=jacobian)
+        touch = self._touch(scaled)
+        apart = np.abs((touch[0] - self.touch[0] + 0.5) % 1.0 - 0.5)
+        if apart > PHASE or touch[1] * self.touch[1] < 0.0:
+            return None  # another extreme that touches nearby
         return Located(
-            scaled=scaled, matrix=np.zeros((0, scaled.size)), tangent=direction,
-            jacobian=jacobian, multipliers=values, contacts=found.contacts,
+            scaled=scaled, matrix=np.zeros((0, scaled.size)), tangent=direction, touch=touch,
+            jacobian=jacobian, multipliers=self.orbit_multipliers(scaled, jacobian=jacobian),
         )  # fmt: skip
+
+    def _touch(self, scaled: Floats) -> tuple[float, float]:
+        """Phase of the orbit's extreme nearest to an edge of the backlash, and x there."""
+        value = scaled * self.whole
+        section = return_map(self.sheet(float(value[-2]), float(value[-1])), SAMPLES)
+        period = self.bifurcation.period
+        x = section.visit(value[:-2], period, sampled=True).samples[:, 0] / section.unit[0]
+        turns = (x - np.roll(x, 1)) * (np.roll(x, -1) - x) <= 0.0
+        place = int(np.argmin(np.where(turns, np.abs(np.abs(x) - 1.0), np.inf)))
+        return place / SAMPLES / period, float(x[place])
 
     def orbit_multipliers(self, scaled: Floats, *, jacobian: Floats) -> Complexes:
         """Those of the whole orbit, also of a symmetric one."""
@@ -353,9 +370,9 @@ class Bordered:
         return multipliers(whole, section.determinant(period))
 
     def settle(self, point: Located) -> None:
-        """Take borders, multiplier and contacts from a point, for those that come."""
+        """Take borders, multiplier and touch from a point, for those that come."""
         self.border(point.jacobian)
-        self.contacts = point.contacts
+        self.touch = point.touch
         if self.kind == TORUS:
             values = np.linalg.eigvals(point.jacobian).astype(complex)
             self.mu = complex(values[int(np.argmin(np.abs(values - self.mu)))])

@@ -59,16 +59,6 @@ class EventCurve:
         steps = np.sign(np.diff(self.values[:, 1]))
         return tuple((np.flatnonzero(steps[1:] * steps[:-1] < 0.0) + 1).tolist())
 
-    def at(self, second: float) -> Floats:
-        """Values of p where the curve passes ``second`` of q, straight between its points."""
-        p, q = self.values.T
-        found = [float(p[i]) for i in range(q.size) if q[i] == second]
-        for i in range(q.size - 1):
-            if (q[i] - second) * (q[i + 1] - second) < 0.0:
-                share = (second - q[i]) / (q[i + 1] - q[i])
-                found.append(float(p[i] + share * (p[i + 1] - p[i])))
-        return np.array(found)
-
     def dataset(self) -> xr.Dataset:
         """The curve over ``point``."""
         first, second = self.parameters
@@ -243,6 +233,8 @@ def _tried(walk: Bordered, here: Located, guess: Floats, step: float) -> Located
     chord = chord / np.linalg.norm(chord)
     # derivatives are of little use here: on along the chord, on a short step around a corner too
     least = ALONG if step > CORNER else AHEAD
+    if walk.kind == GRAZING:  # smooth, but of its first point no direction is known
+        least = 0.0 if abs(here.tangent[-1]) == 1.0 else ALONG
     return replace(there, tangent=chord) if float(chord @ here.tangent) > least else None
 
 

@@ -58,7 +58,7 @@ def matches(
 
     ``families`` the diagrams were made of. A row holds ``kind``, ``period`` [mesh periods],
     ``one`` and ``other`` (the parameter there, None where it has no partner), ``partner``:
-    matched; meets another bifurcation of its own diagram (``met``: where that stands); leaves the
+    matched; meets another bifurcation of its own diagram (``met``: where that is); leaves the
     range; or is not followed to an end, and ``why``; and ``share``, how far from one to the other
     that is. ``drawn``: the other diagram lists the partner; it lists none of a branch that it does
     not show. ``most`` curves are followed, grazings last. ``progress`` gets how many are done, of

@@ -135,12 +135,12 @@ class ThermalState:
         fixed = not given and self.temperature is None
         return ~balance.settled if fixed or case.follow != "proportional" else balance.unknown
 
-    def settled(self, case: GearCase, model: MeshModel, place: int = 0) -> bool:
-        """Whether the temperatures of the operating point ``place`` are known."""
+    def settled(self, case: GearCase, model: MeshModel, place: int | slice = 0) -> bool:
+        """Whether the temperatures of the operating point ``place``, or of all, are known."""
         balance = None if self == UNDEFORMED else self.balance(case, model)
-        return balance is None or not bool(self.open(case, balance)[place])
+        return balance is None or not np.any(self.open(case, balance)[place])
 
-    def require_settled(self, case: GearCase, model: MeshModel, place: int = 0) -> None:
+    def require_settled(self, case: GearCase, model: MeshModel, place: int | slice = 0) -> None:
         """InputError where they are not."""
         if not self.settled(case, model, place):
             raise still(HEAT_NOT_SETTLED, self.words)

@@ -105,7 +105,7 @@ class Lanes:
 
 
 def mixed(one: Lanes, other: Lanes, share: float) -> Lanes:
-    """Lanes whose every coefficient stands at a ``share`` of its way from ``one`` to ``other``.
+    """Lanes with every coefficient at a ``share`` of its way from ``one`` to ``other``.
 
     Raises InputError where their tables jump otherwise than each other's, or differ in length.
     """

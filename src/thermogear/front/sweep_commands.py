@@ -19,7 +19,6 @@ from thermogear.base.units import RPM
 from thermogear.front import delivery
 
 if TYPE_CHECKING:
-    from thermogear.analysis.diagram import DiagramPlan
     from thermogear.base.plan import Plan
     from thermogear.case.case import DimensionlessCase, GearCase
     from thermogear.case.thermal_state import ThermalState
@@ -139,7 +138,7 @@ def bifurcation(
     train = _train_of(read, options)
     changes = parse_numbers(but)
 
-    def plan(state: ThermalState, changed: dict[str, float]) -> DiagramPlan:
+    def plan(state: ThermalState, changed: dict[str, float]) -> Any:
         return case_diagram(
             read, name, values, bundle=bundle, state=state, changes=changed,
             branch_period=branch_period, starts=begin, train=train,

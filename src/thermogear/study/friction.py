@@ -28,8 +28,7 @@ KIND = "friction"
 
 def friction_path(case: GearCase, model: MeshModel, positions: int) -> FrictionPath:
     """The lubricated contact of every operating point of ``case``, hot."""
-    for place in range(case.stated.speed.size):
-        HOT.require_settled(case, model, place)
+    HOT.require_settled(case, model, np.s_[:])
     hot = HotPair(case.pair, case.operating_of(model), model)
     s = path_of_contact(case.pair, positions)
     return FrictionPath(elastic_pair(hot, case.deviations), s).checked()

@@ -229,8 +229,7 @@ class _Maker:
         """
         case, model = self.case, self.case.models[0]
         try:
-            for place in range(case.stated.speed.size):
-                HOT.require_settled(case, model, place)
+            HOT.require_settled(case, model, np.s_[:])
             operating = case.operating_of(model)
             cycle = case.cycle(operating, model)
         except ThermogearError as error:

@@ -99,9 +99,7 @@ class WaterfallPlan:
     block: int = BLOCK
     threads: int | None = field(default=None, compare=False)
     kind: str = KIND
-    _trains: dict[int, tuple[MovingTrain | None, int]] = field(
-        repr=False, compare=False, default_factory=dict
-    )
+    _trains: dict[int, MovingTrain | None] = field(repr=False, compare=False, default_factory=dict)
 
     @property
     def orders(self) -> Floats:
@@ -147,18 +145,19 @@ class WaterfallPlan:
 
     def train(self, state: int) -> MovingTrain | None:
         """The train in one state of heat, at the operating point; None where nothing moves."""
-        return self._made(state)[0]
-
-    def _made(self, state: int) -> tuple[MovingTrain | None, int]:
-        """The train and its status."""
         with _MAKING:
             if state not in self._trains:
                 ((one,),) = settled(self.case, [self.place], states=[self.states[state]])
-                made = None
-                if one.status == 0:
-                    rub = rubbing(self.case, one)
-                    made = moving(self.case, one, coordinates=self.size or None, friction=rub)
-                self._trains[state] = made, one.status
+                self._trains[state] = (
+                    moving(
+                        self.case,
+                        one,
+                        coordinates=self.size or None,
+                        friction=rubbing(self.case, one),
+                    )
+                    if one.status == 0
+                    else None
+                )
             return self._trains[state]
 
     def __getstate__(self) -> dict[str, Any]:
@@ -229,9 +228,10 @@ class WaterfallPlan:
         every = np.array(self.speeds)
         mine = np.arange(every.size)[ranges_of(self, key)["pinion_speed"]]
         found = empty_arrays(self, key)
-        train, status = self._made(key[0])
+        train = self.train(key[0])
         if train is None:
-            found["status"][...] = status
+            ((rest,),) = settled(self.case, [self.place], states=[self.states[key[0]]])
+            found["status"][...] = rest.status
             return found
         order = np.arange(mine.size) if up else np.arange(mine.size)[::-1]
         state, turn, at = train.start, 0.0, float("nan")
