@@ -4,9 +4,9 @@
 equation and ten of gear pairs over the speed, each undeformed and hot, and writes
 docs/trial_matched.md. A pair by order is the first fold with the first fold, the second with the
 second, and so on, of one kind and period. Where both ways differ the row is listed. A followed pair
-is confirmed at a third value: half way between both states the diagram is computed afresh, and its
-located bifurcation is held against the curve of the followed one. ``python checks/trial_matched.py
-2`` prints a short one.
+is confirmed at a third value: half way between both states the diagram is computed afresh, and the
+way over its own located bifurcations must lead to the same partner. Exit code 1: one leads to
+another. ``python checks/trial_matched.py 2`` prints a short one.
 """
 
 from __future__ import annotations
@@ -222,11 +222,11 @@ def page(found: Found, count: int, seconds: float) -> str:
         "---",
         "# Trial of matched bifurcations",
         "",
-        f"Made by `make trial-matched` (seed {SEED}, {seconds:.0f} s). {count} drawn diagrams, half",
-        "of the dimensionless equation over its frequency and half of gear pairs over the speed,",
-        "each without heat and with it. A pair by order is the first fold with the first fold, the",
-        "second with the second, and so on, within one kind and period. A followed pair is confirmed",
-        "where the way from the first diagram to one computed half way, and from there to the",
+        f"Made by `make trial-matched` (seed {SEED}, {seconds:.0f} s). {count} drawn diagrams,",
+        "half of the dimensionless equation over its frequency and half of gear pairs over the",
+        "speed, each without heat and with it. A pair by order is the first fold with the first fold, the",
+        "second with the second, and so on, within one kind and period. A followed pair is",
+        "confirmed where the way from the first diagram to one computed half way, and from there to the",
         "second, over bifurcations that the third one has located by itself, leads to the same",
         f"value. At most {MOST} bifurcations of a diagram are followed, grazings last.",
         "",
