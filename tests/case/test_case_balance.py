@@ -12,14 +12,20 @@ import xarray as xr
 from said import numbers
 from thermogear.base.errors import InputError
 from thermogear.base.materials import ZERO_CELSIUS
+from thermogear.base.units import RPM
 from thermogear.base.vocabulary import STATUS
 from thermogear.case.case import GearCase, load_case
 from thermogear.case.derived import facts
 from thermogear.case.examples import example_text
+from thermogear.case.family import family
+from thermogear.case.one_point import of_case
 from thermogear.heat.gearbox import Surroundings
 from thermogear.heat.measured_temperature import InfraredReading
 from thermogear.mesh.balance import Gearbox, heat_balance
+from thermogear.study.live import mesh
 from thermogear.study.run import balances, carried_uncertainty, run
+from thermogear.study.sweep import sweep
+from thermogear.views.plots.live import told_mesh
 
 GIVEN = r"^(pinion_addendum|wheel_addendum|\w+_below_addendum) = .*\n"
 SMALL = [
@@ -253,14 +259,58 @@ def test_a_point_without_a_steady_temperature_is_a_status_without_motion() -> No
         )
     )
     status = hopeless["mesh"]["status"].sel(state="hot").isel(bundle=0).values
-    lost = STATUS.index("not_converged")
+    lost = STATUS.index("heat_not_settled")
     assert status[-1] == lost
     assert status[0] != lost
     motion = hopeless["motion"].sel(state="hot").isel(bundle=0, operating=-1)
-    assert str(motion["label"].values) == "not converged"
+    assert str(motion["label"].values) == "heat not settled"
     assert int(motion["status"]) == lost
     texts = [notice["text"] for notice in json.loads(hopeless.attrs["notices"])]
     assert any("steady" in one for one in texts)
+
+
+@pytest.mark.filterwarnings("ignore::thermogear.base.errors.ValidityWarning")
+def test_jammed_means_no_gap_left_and_heat_that_does_not_settle_is_a_status_of_its_own() -> None:
+    """Of diagrams, maps, sweeps and run-ups; temperatures that are given need no steady state."""
+    case = left_out(
+        'operating.speed=["10000 rpm"]', 'operating.torque=["1000 N m"]',
+        'backlash.value="0.07 mm"',
+    )  # fmt: skip
+    assert not case.balance(case.models[0]).settled[0]
+    slow_and_fast = RPM * np.array([[100.0], [10000.0]])
+    words = [
+        [
+            STATUS[code]
+            for code in family(case, ("pinion_speed",), state=state)(slow_and_fast).status
+        ]
+        for state in ("hot", "computed", "undeformed", 273.15 + 134.0)
+    ]
+    assert words[0] == words[1] == ["ok", "heat_not_settled"]
+    assert words[2] == words[3] == ["ok", "ok"]
+
+    hot = np.linspace(300.0, 700.0, 4)
+    want = ("half_backlash", "proportional_jam_temperature")
+    places = np.array([[speed, kelvin] for speed in slow_and_fast[:, 0] for kelvin in hot])
+    over = family(case, ("pinion_speed", "gear_temperature"))
+    rows, hot = over.quasi_static(places, want), places[:, 1]
+    jammed = rows["status"] == STATUS.index("jammed")
+    assert set(rows["status"].tolist()) == {0, STATUS.index("jammed")}
+    assert np.array_equal(jammed, rows["half_backlash"] <= 0.0)
+    assert np.array_equal(jammed, rows["proportional_jam_temperature"] <= hot)
+    with pytest.raises(InputError) as refused:
+        of_case(case)
+    assert str(refused.value) == (
+        "operating: got heat not settled (hot); the heat balance did not settle; choose another "
+        "operating point, or give temperatures"
+    )
+    assert of_case(case, state=273.15 + 134.0).points.status.tolist() == [0]
+    swept = sweep(case, {"pinion_speed": slow_and_fast[:, 0]})
+    assert [one.text for one in swept.notices if "no motion" in one.text] == [
+        "1 of 2 points have no motion: the heat balance did not settle"
+    ]
+    labels = swept.to_frame()["label"]
+    assert labels.tolist() == ["periodic", "heat_not_settled"]
+    assert told_mesh(mesh(case))[1] == "hot: the heat balance did not settle"
 
 
 COLD_DAY = (
@@ -277,7 +327,7 @@ def test_a_point_beyond_a_law_costs_no_other_point() -> None:
     both = run(left_out(*COLD_DAY))
     # the mesh alone is asked of the other
     alone = run(left_out(*COLD_DAY, "operating.speed=2000 rpm", 'draw.pictures=["path"]'))
-    lost = STATUS.index("not_converged")
+    lost = STATUS.index("heat_not_settled")
     mesh, path, balance = (both[name].isel(bundle=0) for name in ("mesh", "path", "balance"))
     assert mesh["status"].sel(state="hot").values.tolist() == [lost, STATUS.index("ok")]
     assert balance["status"].values.tolist() == [lost, STATUS.index("ok")]
@@ -293,7 +343,7 @@ def test_a_point_beyond_a_law_costs_no_other_point() -> None:
     node = alone["balance"]["node_temperature"].isel(bundle=0, operating=0)
     np.testing.assert_array_equal(balance["node_temperature"].isel(operating=1), node)
     motion = both["motion"].isel(bundle=0).sel(state="hot")
-    assert motion["label"].values[0] == "not converged"
+    assert motion["label"].values[0] == "heat not settled"
     assert both["temperature"]["status"].isel(bundle=0).values[0].tolist()[0] == lost
     texts = [notice["text"] for notice in json.loads(both.attrs["notices"])]
     assert any("prandtl: got" in one for one in texts)

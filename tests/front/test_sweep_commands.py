@@ -1,6 +1,7 @@
 """Commands for diagrams, maps, basins, run-ups and sweeps: from words to stores and pages."""
 
 import json
+import re
 
 import pandas as pd
 import pytest
@@ -10,8 +11,10 @@ from click.testing import CliRunner
 from thermogear.base.errors import InputError
 from thermogear.case.examples import example_text
 from thermogear.front.sweep_commands import COMMANDS
+from thermogear.results.result import open_results
 from thermogear.results.store import RESULT
 from thermogear.study import diagrams
+from thermogear.views.write import page_of
 
 GRID = ("--over", "zeta=0.1:0.2:3", "--over", "w=1:2:3")
 BY_NAME = {command.name: command for command in COMMANDS}
@@ -41,13 +44,25 @@ def test_bifurcation_with_and_without_heat_in_one_table(cases, tmp_path):
     found = call(
         "bifurcation", cases / "table-4.2.toml", "--over", "zeta=0.165:0.18:3",
         "--branch-period", 1, "--against", "eps_T=0.02", "--against", "b=0.8",
-        "-o", tmp_path / "d", "--json",
+        "-o", tmp_path / "d", "--json", "--csv", tmp_path / "both.csv",
     )  # fmt: skip
     (row,) = [r for r in found["moved"] if r["kind"] == "period doubling" and r["period"] == 1]
     assert row["one"] == pytest.approx(0.17004302692235368, abs=1e-9)
     assert row["other"] == pytest.approx(0.174447855, abs=1e-8)
     assert row["moved"] == pytest.approx(row["other"] - row["one"], abs=1e-15)
+    assert (row["partner"], row["drawn"]) == ("matched", True)
+    assert found["states"] == ["as in the case", "eps_T=0.02, b=0.8"]
+    assert [found[side]["points"] for side in ("one", "other")] == [6, 6]
+    points = pd.read_csv(tmp_path / "both.csv")
+    assert dict(points["state"].value_counts()) == dict.fromkeys(found["states"], 6)
+    events = pd.read_csv(tmp_path / "d" / "overlay_bifurcations.csv")
+    flips = events[events["kind"] == "period doubling"]
+    assert float(flips["moved by"].iloc[0]) == pytest.approx(row["moved"], rel=1e-8)
     assert (tmp_path / "d" / "one" / "report.html").exists()
+    page = (tmp_path / "d" / "overlay.html").read_text(encoding="utf-8")
+    assert page.count("<figure") == 1
+    table = [line for line in page_of(open_results(tmp_path / "d")).lines() if "doubling" in line]
+    assert re.split(r" {2,}", table[0])[:3] == ["period doubling", "1", "0.170043027"]
 
 
 def test_map_resumes_and_refuses_other_words(cases, tmp_path):

@@ -3,48 +3,94 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 import xarray as xr
+from tests.analysis.test_event_curve import DOUBLING
+from tests.analysis.test_event_curve import FORCED as BENT
 
 from own_pair import OWN_PAIR
-from thermogear.analysis.branches import KINDS
+from thermogear.analysis.bifurcations import FLIP, FOLD, GRAZING
+from thermogear.analysis.diagram import diagram_plan
+from thermogear.analysis.matched import matches
 from thermogear.analysis.settle import PERIODIC
 from thermogear.base.errors import InputError
 from thermogear.base.plan import gather
 from thermogear.base.units import RPM
 from thermogear.base.vocabulary import ASSUMED
 from thermogear.case.case import load_case, load_example
+from thermogear.dynamics.models import TorsionalModel
 from thermogear.results.work import carry_out
 from thermogear.study import diagrams
-from thermogear.study.diagrams import case_map, moved_points, whole_or_spared
+from thermogear.study.diagrams import case_map, whole_or_spared
 from thermogear.views.plots.lost_contact import PARTED
 
-
-def diagram(*values: float) -> xr.Dataset:
-    """A diagram with flips of period 1 at ``values``."""
-    count = len(values)
-    return xr.Dataset(
-        {
-            "bifurcation_kind": ("bifurcation", np.zeros(count, int)),
-            "bifurcation_period": ("bifurcation", np.ones(count, int)),
-            "bifurcation_value": ("bifurcation", np.array(values)),
-        }
-    )
+SCALED = ("damping_ratio", "frequency", "stiffness_amplitude", "mean_force", "force_amplitude")
 
 
-def test_points_are_matched_by_the_least_way_not_by_their_rank() -> None:
-    rows = moved_points(diagram(1.2913), diagram(1.1428, 1.3042))
-    assert [(row["one"], row["other"]) for row in rows] == [(None, 1.1428), (1.2913, 1.3042)]
-    assert rows[1]["moved"] == 1.3042 - 1.2913
-    assert rows[0]["moved"] is None
-    assert {row["kind"] for row in rows} == {KINDS[0]}
+def both(
+    model: TorsionalModel, other: TorsionalModel, values: Any, period: int = 1
+) -> tuple[list[xr.Dataset], tuple[Any, Any]]:
+    """Two diagrams over the frequency, and their families."""
+    plans = [diagram_plan(one, "frequency", values, branch_period=period) for one in (model, other)]
+    return [gather(plan, threads=1) for plan in plans], (plans[0].family, plans[1].family)
+
+
+def test_a_bifurcation_is_matched_by_following_it_not_by_its_order() -> None:
+    """Scaled by s in time, the equation is the same one: the flip and the fold move by s.
+
+    The flip's partner lies outside the range, and another flip inside it where it was: by their
+    order, and by the least way, the two would be a pair.
+    """
+    s = 1.05
+    model = DOUBLING
+    other = model.replace(
+        thermal_stiffness=s * s - 1.0,
+        **{n: s ** (1 if n == "damping_ratio" else 2) * getattr(model, n) for n in SCALED
+           if n != "frequency"},
+    )  # fmt: skip
+    data, families = both(model, other, np.linspace(1.2, 1.4, 5))
+    (row,) = matches(*data, families)
+    assert (row["kind"], row["period"], row["partner"], row["drawn"]) == (FLIP, 1, "matched", True)
+    assert row["other"] == pytest.approx(s * row["one"], rel=1e-9)
+    back = matches(*data[::-1], families[::-1])
+    assert [back[0]["one"], back[0]["other"]] == pytest.approx([row["other"], row["one"]])
+
+    data, families = both(model, other, np.linspace(1.26, 1.31, 5))
+    (row,) = matches(*data, families)
+    left = (1.31 - row["one"]) / ((s - 1.0) * row["one"])
+    assert (row["other"], row["partner"]) == (None, "leaves the range")
+    assert row["share"] == pytest.approx(left, abs=0.05)
+
+
+def test_folds_that_meet_on_the_way_have_no_partner() -> None:
+    """Damping closes a bent resonance: both its folds end in one cusp, at one share of the way."""
+    data, families = both(BENT, BENT.replace(damping_ratio=0.12), np.linspace(0.4, 1.1, 8))
+    rows = [row for row in matches(*data, families, most=2) if row["kind"] == FOLD]
+    assert [row["partner"] for row in rows] == ["meets another"]
+    (low, high) = sorted((rows[0]["one"], rows[0]["met"]))
+    folds = data[0]["bifurcation_value"].values[data[0]["bifurcation_kind"].values == 0]
+    assert [low, high] == pytest.approx(sorted(folds), rel=1e-9)
+    assert rows[0]["other"] is None
+    assert 0.0 < rows[0]["share"] < 1.0
 
 
 def test_a_diagram_against_itself_moves_nothing() -> None:
-    rows = moved_points(diagram(1.0, 2.0, 3.0), diagram(3.0, 1.0, 2.0))
-    assert [row["moved"] for row in rows] == [0.0, 0.0, 0.0]
+    """Grazings too; what the other diagram has not drawn is said to be so."""
+    data, families = both(BENT, BENT, np.linspace(0.4, 1.1, 8))
+    rows = matches(*data, families)
+    assert {FOLD, GRAZING} <= {row["kind"] for row in rows}
+    assert {row["partner"] for row in rows} == {"matched"}
+    assert max(abs(row["one"] - row["other"]) for row in rows) < 1e-9
+    bare = data[1].drop_isel(bifurcation=range(data[1].sizes["bifurcation"]))
+    undrawn = matches(data[0], bare, families)
+    assert [row["drawn"] for row in undrawn] == [False] * len(rows)
+    few = matches(*data, families, most=1)
+    assert [row["why"] for row in few if row["why"]] == ["more than 1 bifurcations"] * (
+        len(few) - 1
+    )
 
 
 PAIRS = (
@@ -120,5 +166,5 @@ def test_a_map_goes_on_as_it_was_begun_whatever_the_next_estimate_says(
 
 def test_diagrams_without_branches_have_no_points_that_moved():
     """A KeyError ended the command line with --against and --branch-period 0."""
-    bare = xr.Dataset({"label": ("value", [1])})
-    assert moved_points(bare, bare) == []
+    data, families = both(BENT, BENT, np.linspace(0.4, 1.1, 2), period=0)
+    assert matches(*data, families) == []

@@ -185,7 +185,7 @@ def test_one_point_that_cannot_be_computed_does_not_cost_the_map() -> None:
     case = rig('gearbox.ambient="-40 degC"')
     tree = thermal_map(case, tuple(RPM * np.array([10.0, 2000.0])), (10.0, 200.0))
     grid = tree["map"]
-    lost = STATUS.index("not_converged")
+    lost = STATUS.index("heat_not_settled")
     np.testing.assert_array_equal(grid["status"].values == lost, [[True, True], [False, False]])
     for name in ("greatest_flash", "least_half_backlash", "mean_friction"):
         np.testing.assert_array_equal(np.isnan(grid[name].values), grid["status"].values == lost)
@@ -211,7 +211,7 @@ def test_a_point_that_does_not_settle_has_a_status_and_no_number() -> None:
     )  # fmt: skip
     tree = thermal_map(case, tuple(RPM * np.array([100.0, 6000.0])), (10.0, 5000.0))
     grid = tree["map"]
-    lost = grid["status"].values == STATUS.index("not_converged")
+    lost = grid["status"].values == STATUS.index("heat_not_settled")
     assert lost.any()
     assert not lost.all()
     for name, values in grid.data_vars.items():
@@ -223,7 +223,7 @@ def test_a_point_that_does_not_settle_has_a_status_and_no_number() -> None:
             assert known[~lost].any(), name
     assert not (grid["tempered"].values[lost] | grid["within_oil_range"].values[lost]).any()
     frame = tree.to_frame()
-    rows = frame["status"] == "not_converged"
+    rows = frame["status"] == "heat_not_settled"
     assert int(rows.sum()) == int(lost.sum())
     assert frame.loc[rows, "greatest_flash [K]"].isna().all()
     (line,) = (one for one in page(tree).lines() if one.startswith("greatest flash"))

@@ -1,4 +1,4 @@
-"""The equations of a fold, period doubling, pitchfork or torus in two parameters.
+"""The equations of a fold, period doubling, pitchfork, torus or grazing in two parameters.
 
 Unknown are the state z (d,) on the section and both parameters p and q. The orbit closes, G(z, p,
 q) = 0, and one scalar g vanishes. Of a real multiplier s = +1 or -1, with J = DP^n,
@@ -10,7 +10,10 @@ that the bordered matrix is regular, also where the curve turns. Of a complex pa
 and dmu/da = w^H (dJ/da) v/(w^H v). As second derivatives commute, w^T (dJ/dz_i) v for all i is w^T
 times one difference of J along v: a step costs as many runs for thirty coordinates as for one.
 J is that of the variational equations; derivatives of J, and those by p and q, are central
-differences and steer Newton's method alone.
+differences and steer Newton's method alone. Of a grazing g is how far the nearest extreme of x
+lies from an edge of the backlash, with the sign of whether the contacts are still those where a
+search began; it is bracketed along the branch of orbits, without Newton's method. Where two
+grazings cross, the phase of the extreme tells them apart.
 """
 
 from __future__ import annotations
@@ -22,12 +25,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.analysis.bifurcations import FLIP, PITCHFORK, TORUS, Bifurcation
+from thermogear.analysis.bifurcations import FLIP, GRAZING, PITCHFORK, TORUS, Bifurcation
 from thermogear.analysis.curve import Curve, Family, Point
 from thermogear.analysis.nearby import zero_near
 from thermogear.analysis.orbits import multipliers
 from thermogear.base.errors import InputError
-from thermogear.dynamics.return_map import is_moved
+from thermogear.dynamics.return_map import is_moved, return_map
 
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
@@ -43,6 +46,8 @@ ROUNDING = 1e-8
 MOST_STEPS = 10
 SLOW = 0.5
 """A residual that falls less in a step asks for fresh derivatives."""
+SAMPLES, PHASE = 128, 0.05
+"""A mesh period, to see which extreme of x touches; the same one from point to point [orbits]."""
 LEAP = 1e-3
 """A zero through which g jumps by more is none."""
 WIDTH = 1e-4
@@ -62,6 +67,8 @@ class Located:
     tangent: Floats
     jacobian: Floats
     multipliers: Complexes
+    touch: tuple[float, float] = (np.nan, np.nan)
+    """Of a grazing the phase [mesh periods] of the extreme that touches, and x there [b]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -105,6 +112,7 @@ class Bordered:
             mu = complex(given[int(off.argmin())])
             self.mu = complex(mu.real, abs(mu.imag))
         self.borders: tuple[Floats, Floats] | None = None
+        self.touch = (np.nan, np.nan)
 
     def _made(self, second: float, value: float) -> Curve:
         return self._over(lambda first: self.sheet(first, second), value, self.spans[0])
@@ -217,7 +225,10 @@ class Bordered:
         """Newton onto the curve in the plane through ``guess`` normal to ``normal``.
 
         It begins with a ``matrix`` from nearby, and takes a fresh one where that converges slowly.
+        None of a grazing, which is searched for.
         """
+        if self.kind == GRAZING:
+            return None
         scaled, own = guess.copy(), None if matrix is None else matrix.copy()
         best: tuple[float, Floats, Floats] | None = None
         last, stalled = np.inf, 0
@@ -311,7 +322,13 @@ class Bordered:
             values = path.at(float(point.scaled[-1] * path.span))
             return np.append(point.scaled[:-1], np.array(values) / self.whole[-2:])
 
+        begun: list[tuple[int, int]] = []
+
         def measured(point: Point) -> float:
+            if self.kind == GRAZING:
+                begun.append(point.contacts)
+                size = min(max(point.margin, 1e-300), 1.0)
+                return size if point.contacts == begun[0] else -size
             gap, jacobian, _ = curve.residual(point.scaled)
             return self.vectors(self._scaled(jacobian))[0] if np.isfinite(gap).all() else np.nan
 
@@ -320,7 +337,27 @@ class Bordered:
         if found is None or not abs(measured(found)) < LEAP:
             return None
         scaled = whole(found)
-        return self._located(scaled, self.closing(scaled)[1], direction=direction)
+        jacobian = self.closing(scaled)[1]
+        if self.kind != GRAZING:
+            return self._located(scaled, jacobian, direction=direction)
+        touch = self._touch(scaled)
+        apart = np.abs((touch[0] - self.touch[0] + 0.5) % 1.0 - 0.5)
+        if apart > PHASE or touch[1] * self.touch[1] < 0.0:
+            return None  # another extreme that touches nearby
+        return Located(
+            scaled=scaled, matrix=np.zeros((0, scaled.size)), tangent=direction, touch=touch,
+            jacobian=jacobian, multipliers=self.orbit_multipliers(scaled, jacobian=jacobian),
+        )  # fmt: skip
+
+    def _touch(self, scaled: Floats) -> tuple[float, float]:
+        """Phase of the orbit's extreme nearest to an edge of the backlash, and x there."""
+        value = scaled * self.whole
+        section = return_map(self.sheet(float(value[-2]), float(value[-1])), SAMPLES)
+        period = self.bifurcation.period
+        x = section.visit(value[:-2], period, sampled=True).samples[:, 0] / section.unit[0]
+        turns = (x - np.roll(x, 1)) * (np.roll(x, -1) - x) <= 0.0
+        place = int(np.argmin(np.where(turns, np.abs(np.abs(x) - 1.0), np.inf)))
+        return place / SAMPLES / period, float(x[place])
 
     def orbit_multipliers(self, scaled: Floats, *, jacobian: Floats) -> Complexes:
         """Those of the whole orbit, also of a symmetric one."""
@@ -333,8 +370,9 @@ class Bordered:
         return multipliers(whole, section.determinant(period))
 
     def settle(self, point: Located) -> None:
-        """Take borders and multiplier from a point, for those that come."""
+        """Take borders, multiplier and touch from a point, for those that come."""
         self.border(point.jacobian)
+        self.touch = point.touch
         if self.kind == TORUS:
             values = np.linalg.eigvals(point.jacobian).astype(complex)
             self.mu = complex(values[int(np.argmin(np.abs(values - self.mu)))])
@@ -345,6 +383,6 @@ class Bordered:
         if outside == 0:
             return True
         near = np.abs(np.abs(found) - 1.0)
-        own = 2 if self.kind == TORUS else 1
+        own = {TORUS: 2, GRAZING: 0}.get(self.kind, 1)
         rest = np.delete(found, np.argsort(near)[:own])
         return not bool(np.any(np.abs(rest) > 1.0 + OUTSIDE))

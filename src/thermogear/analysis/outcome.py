@@ -9,10 +9,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.family import taken
-from thermogear.analysis.settle import JAMMED, LABELS, Rule, Settled, settle
+from thermogear.analysis.settle import LABELS, Rule, Settled, settle
 from thermogear.base.errors import InputError
 from thermogear.base.plan import Alive, Arrays, Variable, keep_going
-from thermogear.base.vocabulary import FASTER_RULE, NO_COUNT, STATUS, moves, status_attributes
+from thermogear.base.vocabulary import (
+    FASTER_RULE,
+    NO_COUNT,
+    STATUS,
+    STILL,
+    moves,
+    status_attributes,
+)
 from thermogear.dynamics.plane import plane_of
 from thermogear.dynamics.tables import Lanes
 
@@ -132,8 +139,9 @@ def settle_with_status(
     """:func:`settle` for the lanes that move; the others carry their status as a label."""
     result = Settled.empty(len(lanes), keep=keep, dimension=start.shape[1])
     result.state[:] = start
+    for word in STILL:
+        result.label[status == STATUS.index(word)] = LABELS.index(word)
     moving = np.flatnonzero(moves(status))
-    result.label[~moves(status)] = JAMMED
     if moving.size:
         result.put(moving, settle(taken(lanes, moving), start[moving], rule, keep, alive))
     return result

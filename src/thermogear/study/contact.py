@@ -64,6 +64,8 @@ def loaded_survey(
         raise InputError("torques", f"{moments} N m", allowed="> 0 N m, finite")
     model = case.models[0].override(stiffness="loaded", body=body or case.models[0].body)
     states = [UNDEFORMED, HOT, *map(ThermalState.of, case.gear_temperatures)]
+    for state in states:
+        state.require_settled(case, case.models[0])
     progress("loaded contact", 0, 2)
     ones = [one_point(s.operating(case, case.models[0]), float(moments[0])) for s in states]
     contact = _solve(case, model, stacked(ones), moments)

@@ -16,7 +16,7 @@ from thermogear.base.display import worded
 from thermogear.base.limits import LIMITS, NO_LIMIT
 from thermogear.base.progress import Progress
 from thermogear.base.units import RPM, ZERO_CELSIUS
-from thermogear.base.vocabulary import STATUS
+from thermogear.base.vocabulary import HEAT_NOT_SETTLED, STATUS, STILL, is_known
 from thermogear.case.case import GearCase
 from thermogear.case.duty import chosen_point, point_duty
 from thermogear.case.points import excitations, points_of
@@ -114,13 +114,12 @@ class Asked:
 
     def lost(self, point: int) -> str:
         """Why nothing hot is known of a point; empty where it is."""
-        if STATUS[int(self.hot["status"][point])] != "not_converged":
+        status = int(self.hot["status"][point])
+        if is_known(status):
             return ""
-        balance = self.case.balance(self.model) if self.case.computed else None
-        if balance is None or balance.settled[point]:
-            return "the loaded contact did not settle"
-        why = balance.lost.get(point)
-        return "the heat balance did not settle" + (f": {why}" if why else "")
+        words = STILL[STATUS[status]]
+        why = self.case.balance(self.model).lost.get(point) if status == HEAT_NOT_SETTLED else ""
+        return words + f": {why}" * bool(why)
 
     def still(self, point: int) -> str:
         """Why the hot pair does not move at a point; empty where it does."""

@@ -12,6 +12,7 @@ from thermogear.base.errors import InputError, ThermogearError
 from thermogear.base.limits import FINE, LIMITS, LOOK, OPEN
 from thermogear.base.materials import NEVER, Material
 from thermogear.base.units import ZERO_CELSIUS
+from thermogear.base.vocabulary import STILL
 from thermogear.case.case import GearCase
 from thermogear.gears.pair import GearPair
 from thermogear.heat.transient import HOTTEST
@@ -312,7 +313,7 @@ def unrated(case: GearCase, torque: float, oil: float) -> str:
         return f"the rating is for steel on steel, not {other}"
     if torque <= 0.0:
         return "there is no load"
-    return "" if np.isfinite(oil) else "the heat balance did not settle"
+    return "" if np.isfinite(oil) else STILL["heat_not_settled"]
 
 
 def _rated(name: str, make: Callable[[], tuple[str, float, dict[str, Any]]], at: str) -> Answer:

@@ -144,7 +144,7 @@ class WaterfallPlan:
         }
 
     def train(self, state: int) -> MovingTrain | None:
-        """The train in one state of heat, at the operating point; None where it is jammed."""
+        """The train in one state of heat, at the operating point; None where nothing moves."""
         with _MAKING:
             if state not in self._trains:
                 ((one,),) = settled(self.case, [self.place], states=[self.states[state]])
@@ -230,7 +230,8 @@ class WaterfallPlan:
         found = empty_arrays(self, key)
         train = self.train(key[0])
         if train is None:
-            found["status"][...] = STATUS.index("jammed")
+            ((rest,),) = settled(self.case, [self.place], states=[self.states[key[0]]])
+            found["status"][...] = rest.status
             return found
         order = np.arange(mine.size) if up else np.arange(mine.size)[::-1]
         state, turn, at = train.start, 0.0, float("nan")
@@ -350,7 +351,7 @@ class WaterfallPlan:
         return int(there is not None and _held_apart(there, states, int(row["part"])))
 
     def _critical(self, state: int) -> list[dict[str, Any]]:
-        """Critical speeds in one state of heat; none where the train is jammed."""
+        """Critical speeds in one state of heat; none where nothing moves."""
         one = self.train(state)
         found = () if one is None else critical_speeds(self.case, one.state, max(self.speeds))
         return [asdict(speed) for speed in found]

@@ -46,7 +46,8 @@ def _two_ways(data: xr.Dataset) -> str:
     rest = [str(n) for n in axes if n != "direction"]
     other = tuple(i for i, n in enumerate(rest) if n != name)
     if (codes > UNDECIDED).all():
-        return "No value has a motion: all are jammed or diverge"
+        words = [CLASSES[code][0] for code in np.unique(codes)]
+        return f"No value has a motion: {', '.join(words)}"
     known = (codes != UNDECIDED).all(axis=0)
     apart = np.asarray(((codes[0] != codes[1]) | _swings_apart(data, codes)) & known)
     apart = np.asarray(apart.any(axis=other))

@@ -49,7 +49,8 @@ def _labels(result: Result) -> dict[str, Any]:
     return found
 
 
-def _bifurcations(data: xr.Dataset, name: str) -> list[dict[str, Any]]:
+def bifurcation_rows(data: xr.Dataset, name: str) -> list[dict[str, Any]]:
+    """Kind, period, value as shown and state of heat of the located bifurcations."""
     if "bifurcation_kind" not in data:
         return []
     kinds = words_of(data["bifurcation_kind"])
@@ -75,7 +76,7 @@ def _diagram(result: Result) -> dict[str, Any]:
     return {
         **_labels(result),
         "parameter": parameter,
-        "bifurcations": _bifurcations(result.data, parameter),
+        "bifurcations": bifurcation_rows(result.data, parameter),
     }
 
 
@@ -100,13 +101,13 @@ def _basins(result: Result) -> dict[str, Any]:
     return {"points": points, "attractors": rows, **figures, "rule": FASTER_RULE}
 
 
-def _run_up(result: Result) -> dict[str, Any]:
-    data = result.data
+def jump_rows(data: xr.Dataset) -> list[dict[str, Any]]:
+    """The jumps of a run-up, in the units shown."""
 
     def rpm(name: str, place: int) -> float:
         return float(shown("pinion_speed", data[name].values[place]))
 
-    jumps = [
+    return [
         {
             "gears_degC": _degrees(data, int(data["jump_state"].values[i])),
             "direction": "up" if int(data["jump_direction"].values[i]) > 0 else "down",
@@ -121,10 +122,14 @@ def _run_up(result: Result) -> dict[str, Any]:
         }
         for i in range(data.sizes["jump"])
     ]
+
+
+def _run_up(result: Result) -> dict[str, Any]:
+    data = result.data
     return {
         **_labels(result),
-        "jumps": jumps,
-        "bifurcations": _bifurcations(data, "pinion_speed"),
+        "jumps": jump_rows(data),
+        "bifurcations": bifurcation_rows(data, "pinion_speed"),
     }
 
 

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from thermogear.base.display import number
-from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import ASSUMED, FASTER_RULE
 from thermogear.results.result import Result
 from thermogear.views.page import LEAD, Block, Page, Pictures, Section, Table, Text
 from thermogear.views.pages.findings import finding
 from thermogear.views.pages.lost_words import lost_words
-from thermogear.views.pages.sweep_numbers import JUMPS_AT, lines, numbers
+from thermogear.views.pages.sweep_numbers import bifurcation_rows, jump_rows, lines, numbers
 from thermogear.views.picture import Picture
 from thermogear.views.plots import sweeps
 from thermogear.views.plots.lost_contact import (
@@ -190,13 +189,11 @@ def _points(data: xr.Dataset, result: Result) -> Section:
     if data.sizes.get("bifurcation"):
         rows = [
             (
-                sweeps.KINDS[int(kind)],
-                str(int(period)),
-                number(float(shown(parameter, value)), 8),
-                "" if state is None else number(float(state) - ZERO_CELSIUS, 4),
+                row["kind"], str(row["period"]), number(row["value"], 8),
+                number(row["gears_degC"], 4) if "gears_degC" in row else "",
             )
-            for kind, period, value, state in _bifurcations(data)
-        ]
+            for row in bifurcation_rows(data, parameter)
+        ]  # fmt: skip
         head = ["kind", "period", page_words(parameter), "gears [°C]"]
         if not any(row[3] for row in rows):
             head, rows = head[:3], [row[:3] for row in rows]  # type: ignore[misc]
@@ -204,24 +201,13 @@ def _points(data: xr.Dataset, result: Result) -> Section:
         kinds = {row[0] for row in rows}
         blocks.append(Text(" ".join(w for kind, w in EXPLAINED.items() if kind in kinds)))
     if data.sizes.get("jump"):
-        jumps = []
-        for i in range(data.sizes["jump"]):
-            fold = float(data["jump_fold"].values[i])
-            jumps.append(
-                (
-                    "up" if int(data["jump_direction"].values[i]) > 0 else "down",
-                    number(
-                        float(data["gear_temperature"].values[int(data["jump_state"].values[i])])
-                        - ZERO_CELSIUS,
-                        4,
-                    ),
-                    number(float(shown("pinion_speed", fold)), 8),
-                    JUMPS_AT[int(data["jump_kind"].values[i])],
-                    _returns(data, i),
-                    number(1e6 * float(data["jump_before"].values[i])),
-                    number(1e6 * float(data["jump_after"].values[i])),
-                )
+        jumps = [
+            (
+                row["direction"], number(row["gears_degC"], 4), number(row["fold_rpm"], 8),
+                row["at"], _returns(row), number(row["before_um"]), number(row["after_um"]),
             )
+            for row in jump_rows(data)
+        ]  # fmt: skip
         head = ["run", "gears [°C]", "jumps at [rpm]", "which is a", "run back jumps at [rpm]",
                 "p-p before [µm]", "p-p after [µm]"]  # fmt: skip
         blocks.append(Table("Jumps", head, jumps))
@@ -237,22 +223,19 @@ def _points(data: xr.Dataset, result: Result) -> Section:
             )
         )
     if data.sizes.get("attractor_number"):
-        rows_ = []
-        for i in range(data.sizes["attractor_number"]):
-            period = int(data["attractor_period"].values[i])
-            rows_.append(
-                (
-                    f"period {period}" if period else "chaotic, estimate",
-                    number(float(data["attractor_x"].values[i, 0]), 9),
-                    number(float(data["attractor_v"].values[i, 0]), 9),
-                    number(float(data["attractor_multiplier"].values[i]), 6),
-                    str(int(data["count"].values[i])),
-                    number(100.0 * float(data["fraction"].values[i]), 5),
-                    number(float(data["border_distance"].values[i]), 3),
-                )
+        columns = [
+            data[f"attractor_{name}"].values for name in ("period", "x", "v", "multiplier")
+        ] + [data[name].values for name in ("count", "fraction", "border_distance")]
+        found = [
+            (
+                f"period {int(period)}" if period else "chaotic, estimate",
+                number(float(x[0]), 9), number(float(v[0]), 9), number(float(mu), 6),
+                str(int(count)), number(100.0 * float(share), 5), number(float(border), 3),
             )
+            for period, x, v, mu, count, share, border in zip(*columns, strict=True)
+        ]  # fmt: skip
         head = ["attractor", "x", "x′", "multiplier", "starts", "share [%]", "to the border [b]"]
-        blocks.append(Table("Attractors", head, rows_))
+        blocks.append(Table("Attractors", head, found))
         entropy = data.attrs
         blocks.append(
             Text(
@@ -265,30 +248,11 @@ def _points(data: xr.Dataset, result: Result) -> Section:
     return Section("points", "Located points", blocks)
 
 
-def _returns(data: xr.Dataset, i: int) -> str:
+def _returns(row: Mapping[str, Any]) -> str:
     """Where a run back jumps again, in words where it does not."""
-    back = float(data["jump_return"].values[i])
-    if np.isfinite(back):
-        return number(float(shown("pinion_speed", back)), 8)
-    return "not in range" if int(data["jump_into"].values[i]) else "from chaos"
-
-
-def _bifurcations(data: xr.Dataset) -> list[tuple[int, int, float, float | None]]:
-    found: list[tuple[int, int, float, float | None]] = []
-    for i in range(data.sizes["bifurcation"]):
-        state = None
-        if "bifurcation_state" in data:
-            place = int(data["bifurcation_state"].values[i])
-            state = float(data["gear_temperature"].values[place])
-        found.append(
-            (
-                int(data["bifurcation_kind"].values[i]),
-                int(data["bifurcation_period"].values[i]),
-                float(data["bifurcation_value"].values[i]),
-                state,
-            )
-        )
-    return found
+    if np.isfinite(row["return_rpm"]):
+        return number(row["return_rpm"], 8)
+    return "not in range" if row["into_period"] else "from chaos"
 
 
 def _settings(data: xr.Dataset) -> Section:
