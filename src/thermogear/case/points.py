@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.excitation import Excitations, Periodic
-from thermogear.base.vocabulary import STATUS, moves
+from thermogear.base.vocabulary import moves
 from thermogear.case.case import GearCase
 from thermogear.dynamics.models import DeadZoneModel, TorsionalModel
 from thermogear.dynamics.tables import Lanes
