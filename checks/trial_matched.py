@@ -226,7 +226,7 @@ def page(found: Found, count: int, seconds: float) -> str:
         "half of the dimensionless equation over its frequency and half of gear pairs over the",
         "speed, each without heat and with it. A pair by order is the first fold with the first",
         "fold, the second with the second, and so on, within one kind and period. A followed pair",
-        "is confirmed where the way from the first diagram to one computed half way, and from there",
+        "is confirmed where the way from the first diagram to one half way, and from there",
         "to the second, over bifurcations that the third one has located by itself, leads to the",
         f"same value. At most {MOST} bifurcations of a diagram are followed, grazings last.",
         "",
