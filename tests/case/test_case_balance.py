@@ -13,7 +13,7 @@ from said import numbers
 from thermogear.base.errors import InputError
 from thermogear.base.materials import ZERO_CELSIUS
 from thermogear.base.units import RPM
-from thermogear.base.vocabulary import STATUS
+from thermogear.base.vocabulary import STATUS, STILL
 from thermogear.case.case import GearCase, load_case
 from thermogear.case.derived import facts
 from thermogear.case.examples import example_text
@@ -263,7 +263,7 @@ def test_a_point_without_a_steady_temperature_is_a_status_without_motion() -> No
     assert status[-1] == lost
     assert status[0] != lost
     motion = hopeless["motion"].sel(state="hot").isel(bundle=0, operating=-1)
-    assert str(motion["label"].values) == "heat not settled"
+    assert str(motion["label"].values) == STATUS[lost].replace("_", " ")
     assert int(motion["status"]) == lost
     texts = [notice["text"] for notice in json.loads(hopeless.attrs["notices"])]
     assert any("steady" in one for one in texts)
@@ -305,12 +305,11 @@ def test_jammed_means_no_gap_left_and_heat_that_does_not_settle_is_a_status_of_i
     )
     assert of_case(case, state=273.15 + 134.0).points.status.tolist() == [0]
     swept = sweep(case, {"pinion_speed": slow_and_fast[:, 0]})
-    assert [one.text for one in swept.notices if "no motion" in one.text] == [
-        "1 of 2 points have no motion: the heat balance did not settle"
-    ]
+    (words,) = (one.text for one in swept.notices if STILL["heat_not_settled"] in one.text)
+    assert numbers(words) == [1.0, 2.0]
     labels = swept.to_frame()["label"]
     assert labels.tolist() == ["periodic", "heat_not_settled"]
-    assert told_mesh(mesh(case))[1] == "hot: the heat balance did not settle"
+    assert told_mesh(mesh(case))[1].removeprefix("hot: ") == STILL["heat_not_settled"]
 
 
 COLD_DAY = (
@@ -343,7 +342,7 @@ def test_a_point_beyond_a_law_costs_no_other_point() -> None:
     node = alone["balance"]["node_temperature"].isel(bundle=0, operating=0)
     np.testing.assert_array_equal(balance["node_temperature"].isel(operating=1), node)
     motion = both["motion"].isel(bundle=0).sel(state="hot")
-    assert motion["label"].values[0] == "heat not settled"
+    assert motion["label"].values[0] == STATUS[lost].replace("_", " ")
     assert both["temperature"]["status"].isel(bundle=0).values[0].tolist()[0] == lost
     texts = [notice["text"] for notice in json.loads(both.attrs["notices"])]
     assert any("prandtl: got" in one for one in texts)

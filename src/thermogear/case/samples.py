@@ -26,7 +26,7 @@ from thermogear.case.backlash import cold_from_soaked, normal_half
 from thermogear.case.build import Follows, TemperatureRule
 from thermogear.case.case import GearCase
 from thermogear.case.fields import BODY
-from thermogear.case.thermal_state import UNDEFORMED, ThermalState
+from thermogear.case.thermal_state import UNDEFORMED, ThermalState, unknown_where
 from thermogear.gears.contact import path_of_contact
 from thermogear.gears.geometry import Gear
 from thermogear.heat.lubrication import grade
@@ -312,8 +312,8 @@ def quasi_static(
 
     ``want`` names them (:func:`~thermogear.mesh.cycle.mesh_cycle`); only they are computed, and
     with them ``pinion_speed``, ``pinion_torque`` and ``status``. A sample that no case could
-    have is "impossible" with nan, one whose heat or mesh does not settle says so, and no other
-    one notices. Raises what is wrong where no sample is possible. ``alive`` is called
+    have is "impossible", one whose heat or mesh does not settle says so, both are nan, and no
+    other one notices. Raises what is wrong where no sample is possible. ``alive`` is called
     before each cycle and raises to end the work.
     """
     refused: list[ThermogearError] = []
@@ -381,4 +381,5 @@ def _cycle(
     if balance is not None:
         lost = state.open(case, balance, given=temperature is not None)
         found["status"] = np.where(lost, HEAT_NOT_SETTLED, found["status"])
+        found |= unknown_where(lost, found, want)
     return found | {"pinion_speed": operating.speed, "pinion_torque": operating.torque}

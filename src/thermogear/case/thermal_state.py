@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -154,12 +154,13 @@ class ThermalState:
         balance = self.balance(case, model)
         if balance is None:
             return cycle
+        lost = self.open(case, balance)
         if self == UNDEFORMED:
-            return blanked(cycle, balance.unknown, OF_OIL)
+            return blanked(cycle, lost, OF_OIL)
         status = cycle["status"]
-        values = np.where(self.open(case, balance), HEAT_NOT_SETTLED, status.values)
+        values = np.where(lost, HEAT_NOT_SETTLED, status.values)
         kept = cycle.assign(status=(status.dims, values.astype(np.int8), status.attrs))
-        return blanked(kept, balance.unknown)
+        return blanked(kept, lost)
 
     def quantities(
         self, case: GearCase, model: MeshModel, want: Sequence[str]
@@ -176,14 +177,21 @@ class ThermalState:
         balance = self.balance(case, model)
         if balance is None:
             return found
+        lost = self.open(case, balance)
         if self != UNDEFORMED:
-            lost = self.open(case, balance)
             found["status"] = np.where(lost, HEAT_NOT_SETTLED, found["status"]).astype(np.int8)
-        for name in OF_OIL if self == UNDEFORMED else want:
-            if name in found and name not in STATED and found[name].dtype.kind == "f":
-                known = ~balance.unknown.reshape(-1, *(1,) * (found[name].ndim - 1))
-                found[name] = np.where(known, found[name], np.nan)
-        return found
+        return found | unknown_where(lost, found, OF_OIL if self == UNDEFORMED else want)
+
+
+def unknown_where(
+    lost: NDArray[np.bool_], found: Mapping[str, NDArray[Any]], names: Iterable[str]
+) -> dict[str, NDArray[Any]]:
+    """The numbers ``names`` of a cycle, nan at the points that are ``lost``."""
+    return {
+        name: np.where(lost.reshape(-1, *(1,) * (found[name].ndim - 1)), np.nan, found[name])
+        for name in names
+        if name in found and name not in STATED and found[name].dtype.kind == "f"
+    }
 
 
 StateLike: TypeAlias = "ThermalState | str | float | None"

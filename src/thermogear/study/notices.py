@@ -102,7 +102,7 @@ def still_notices(data: xr.Dataset) -> list[str]:
     label = data["label"].values
     counts = {word: int(np.sum(label == LABELS.index(word))) for word in STILL}
     return [
-        f"{count} of {label.size} points have no motion: {STILL[word]}"
+        f"{count} of {label.size} points have no motion ({word.replace('_', ' ')}): {STILL[word]}"
         for word, count in counts.items()
         if count
     ]
