@@ -103,7 +103,8 @@ def test_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     assert "dynamics.damping_ratio" in rows
     # a unit is one, counts are whole, real numbers are real
     gap = rows["backlash.value"]
-    assert (gap["unit"], gap["note"]) == ("mm", "total, normal")
+    kind = {"extent": "total", "direction": "normal"}
+    assert (gap["unit"], gap["note"].split(", ")) == ("mm", [*kind.values()])
     for name, row in rows.items():
         assert row["unit"] in ("", "um", "l/min", *(kind.shown for kind in KINDS.values()))
         counted = name.startswith(("grid.", "flanks.")) or (

@@ -15,6 +15,7 @@ from thermogear.analysis.settle import PERIODIC, Rule, Settled, settle
 from thermogear.dynamics.tables import Lanes
 
 Floats = NDArray[np.float64]
+Whole = NDArray[np.int64]
 
 RULE = Rule(first=32, cap=1024, chaos_periods=200)
 APART = 1e-2
@@ -27,12 +28,12 @@ class Motions:
     """One entry per motion: its ``lane``, the ``state`` (motion, 2) it goes on from at phase 0,
     ``label`` (code of :data:`~thermogear.analysis.settle.LABELS`) and ``period`` (0: none)."""
 
-    lane: NDArray[np.int64]
+    lane: Whole
     state: Floats
     label: NDArray[np.int8]
     period: NDArray[np.int32]
 
-    def count(self, lanes: int) -> NDArray[np.int64]:
+    def count(self, lanes: int) -> Whole:
         """How many motions each of ``lanes`` lanes has."""
         return np.bincount(self.lane, minlength=lanes)
 

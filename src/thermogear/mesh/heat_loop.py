@@ -18,6 +18,7 @@ from thermogear.base.bounds import BODY
 from thermogear.base.errors import ThermogearError, ValidityWarning
 
 Floats = NDArray[np.float64]
+Indices = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 HOTTEST = 700.0
@@ -40,7 +41,7 @@ class Response(NamedTuple):
     known: Flags
 
 
-Respond = Callable[[Floats, NDArray[np.int64]], Response]
+Respond = Callable[[Floats, Indices], Response]
 
 
 @dataclass(eq=False, kw_only=True)
@@ -75,9 +76,7 @@ class Course:
         return np.asarray(found)
 
 
-def asked(
-    respond: Respond, nodes: Floats, index: NDArray[np.int64], lost: dict[int, str]
-) -> Response:
+def asked(respond: Respond, nodes: Floats, index: Indices, lost: dict[int, str]) -> Response:
     """``respond``, with the points at which it raises named in ``lost`` and left as they are.
 
     A batch that is refused is halved until the points that fail are alone.
