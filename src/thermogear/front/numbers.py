@@ -34,3 +34,17 @@ def number(
 ) -> Callable[[Any], Any]:
     """A click option that takes a :class:`Number`; ``words`` of its help."""
     return click.option(option, type=Number(allowed, example, whole=whole), help=words, **more)
+
+
+def grid(option: str, text: str) -> Any:
+    """The numbers of ``FROM:TO:COUNT``, evenly apart."""
+    import numpy as np
+
+    try:
+        low, high, count = text.split(":")
+        values = np.linspace(float(low), float(high), int(count))
+    except ValueError:
+        raise InputError(option, repr(text), allowed="FROM:TO:COUNT") from None
+    if values.size < 1:
+        raise InputError(option, repr(text), allowed="a count >= 1")
+    return values

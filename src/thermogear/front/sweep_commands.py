@@ -17,6 +17,7 @@ import click
 from thermogear.base.errors import InputError
 from thermogear.base.units import RPM
 from thermogear.front import delivery
+from thermogear.front.numbers import grid
 
 if TYPE_CHECKING:
     from thermogear.base.plan import Plan
@@ -247,7 +248,7 @@ def basins(
     train = _train_of(read, options, plane)
     usual = "-2:2:401" if train is None else "-2:2:25"
     plan = case_basins(
-        read, x=_grid("x", x or usual), v=_grid("v", v or usual), bundle=bundle, state=state,
+        read, x=grid("x", x or usual), v=grid("v", v or usual), bundle=bundle, state=state,
         changes=parse_numbers(but), train=train,
     )  # fmt: skip
     _carry(plan, Path(output), read.title, as_json, options)
@@ -277,7 +278,7 @@ def runup(
     from thermogear.study.run_up import run_up_plan
 
     read = delivery.load_gears(case, options["overrides"])
-    speeds = _grid("rpm", rpm) * RPM
+    speeds = grid("rpm", rpm) * RPM
     bundle, state = _choice(read, options)
     if hot and options["state"] is not None:
         raise InputError("--state", options["state"], why="beside --hot", fix="leave one out")
@@ -337,7 +338,7 @@ def waterfall(
     from thermogear.study.shafts.waterfall import waterfall_plan
 
     read = delivery.load_gears(case, options["overrides"])
-    speeds = _grid("rpm", rpm) * RPM
+    speeds = grid("rpm", rpm) * RPM
     bundle, state = _choice(read, options)
     named = read
     if bundle:
@@ -387,19 +388,6 @@ def _pair_of(text: str) -> tuple[float, float]:
     except ValueError:
         raise InputError("start", repr(text), allowed="X,V") from None
     return x, v
-
-
-def _grid(name: str, text: str) -> Any:
-    import numpy as np
-
-    try:
-        low, high, count = text.split(":")
-        values = np.linspace(float(low), float(high), int(count))
-    except ValueError:
-        raise InputError(name, repr(text), allowed="FROM:TO:COUNT") from None
-    if values.size < 1:
-        raise InputError(name, repr(text), allowed="a count >= 1")
-    return values
 
 
 def _show(name: str) -> Callable[[float], float]:

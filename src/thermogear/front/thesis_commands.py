@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -19,7 +19,12 @@ if TYPE_CHECKING:
 MOST_TRAINS = 10_000
 
 
+OF_A_PAIR = ("operating", "bundle", "temperatures", "values", "records", "overrides")
+"""Options that say something of CASE."""
+
+
 @click.command()
+@click.argument("case", metavar="[CASE]", required=False)
 @delivery.output("Directory of the report; made if new.")
 @click.option("--redraw", is_flag=True, help="Draw the page anew from what DIR holds already.")
 @click.option(
@@ -29,13 +34,48 @@ MOST_TRAINS = 10_000
     help="Sample N drive trains of the test rig anew, seconds each; left out, the 256 that come "
     "with the package.",
 )
+@click.option(
+    "--operating", type=int, metavar="N",
+    help="Operating point of CASE, from 1 [the one nearest to resonance].",
+)  # fmt: skip
+@click.option("--bundle", metavar="NAME", help="Bundle of CASE [the first].")
+@click.option(
+    "--temperatures", metavar="FROM:TO:COUNT", help="Gear temperatures in degC [100:160:4]."
+)
+@click.option("--values", type=int, metavar="N", help="Values of each diagram [61].")
+@click.option(
+    "--record", "records", multiple=True, metavar="FILE[=RPM]",
+    help="A record to put beside CASE, with its pinion speed where the file does not say it. May "
+    "be repeated.",
+)  # fmt: skip
+@delivery.overrides
 @delivery.as_json
-def thesis(output: str, redraw: bool, experiment: int | None, as_json: bool) -> None:
-    """Judge every claim of the thesis and write the report to DIR.
+def thesis(
+    case: str | None,
+    output: str,
+    redraw: bool,
+    experiment: int | None,
+    as_json: bool,
+    **options: Any,
+) -> None:
+    """Judge every claim of the thesis, or redo the thesis for CASE, and write the report to DIR.
 
-    Sections 2 to 6: what is said, what is computed as in the thesis and consistently, a verdict,
-    its argument and the code behind it. Ctrl+C keeps the claims judged so far.
+    Without CASE sections 2 to 6: what is said, what is computed as in the thesis and consistently,
+    a verdict, its argument and the code behind it. With CASE the thesis's steps for one operating
+    point of it: gear temperatures, damping, speed and stiffness fluctuation, friction, records,
+    outlook. Ctrl+C keeps what is finished.
     """
+    if case is not None:
+        for name, value in (("redraw", redraw), ("experiment", experiment)):
+            if value:
+                raise InputError(f"--{name}", value, why="beside CASE", fix="leave one out")
+        _redone(case, output, as_json, options)
+        return
+    for name in OF_A_PAIR:
+        if options[name]:
+            option = {"records": "record", "overrides": "set"}.get(name, name)
+            value = options[name] if name not in ("records", "overrides") else options[name][0]
+            raise InputError(f"--{option}", value, why="no case is named", fix="name a CASE")
     if experiment is not None and not 8 <= experiment <= MOST_TRAINS:
         raise InputError("--experiment", experiment, allowed=f"8..{MOST_TRAINS} drive trains")
     if redraw:
@@ -59,6 +99,43 @@ def thesis(output: str, redraw: bool, experiment: int | None, as_json: bool) -> 
         )
 
     delivery.deliver(make, output, as_json=as_json, kept="the claims judged so far stay")
+
+
+def _redone(path: str, output: str, as_json: bool, options: dict[str, Any]) -> None:
+    """The thesis's steps for the pair of a case file."""
+    from thermogear.case.allowed import kelvin
+    from thermogear.front.numbers import grid
+    from thermogear.study.thesis_pair import Steps, thesis_pair
+
+    given = {name: options[name] for name in ("values", "bundle") if options[name] is not None}
+    if options["operating"] is not None:
+        given["operating"] = options["operating"] - 1
+    if options["temperatures"] is not None:
+        degrees = grid("--temperatures", options["temperatures"])
+        given["temperatures"] = [kelvin("--temperatures", float(value)) for value in degrees]
+    steps = Steps(**given)
+    records = dict(_record(text) for text in options["records"])
+    read = delivery.load_gears(path, options["overrides"])
+
+    def make(report: Progress) -> Result:
+        return thesis_pair(read, steps, records, progress=report)
+
+    delivery.deliver(make, output, as_json=as_json)
+
+
+def _record(text: str) -> tuple[Path, float | None]:
+    """File and speed [rad/s] of ``FILE[=RPM]``."""
+    name, sign, value = text.rpartition("=")
+    path = Path(name if sign else value)
+    try:
+        rpm = float(value) if sign else None
+    except ValueError:
+        rpm = float("nan")
+    if rpm is not None and not 0.0 < abs(rpm) < 1e6:
+        raise InputError("--record", repr(text), allowed="FILE=RPM, below 1e6 rpm")
+    if not path.is_file():
+        raise InputError("--record", str(path), why="there is no such file")
+    return path, None if rpm is None else rpm * RPM
 
 
 @click.command()

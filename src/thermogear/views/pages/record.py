@@ -269,10 +269,8 @@ _SHOWN_AS = {
 }
 
 
-def _comparison(results: Result) -> Section | None:
-    data = results.group("comparison")
-    if data is None:
-        return None
+def comparison_table(data: xr.Dataset) -> Table:
+    """Measured and simulated values with the errors of every model and their uncertainties."""
     models = [str(name) for name in data["model"].values]
     placed = [str(one) for one in data["where"].values] if "where" in data.coords else []
     placed = placed if any(placed) else []
@@ -300,9 +298,14 @@ def _comparison(results: Result) -> Section | None:
                 *(f"{100 * float(one[u]):.2f}" for u in ("u_num", "u_input", "u_data", "u_val")),
             ]
         )
-    blocks: list[Block] = [
-        Table("Error: (simulated − measured)/measured.", head, rows, names=3 + bool(placed))
-    ]
+    return Table("Error: (simulated − measured)/measured.", head, rows, names=3 + bool(placed))
+
+
+def _comparison(results: Result) -> Section | None:
+    data = results.group("comparison")
+    if data is None:
+        return None
+    blocks: list[Block] = [comparison_table(data)]
     implied = results.group("implied")
     if implied is not None:
         lines: list[list[str | Markup]] = [

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -13,8 +13,21 @@ from markupsafe import Markup
 from thermogear.base.display import celsius
 from thermogear.base.units import RPM
 from thermogear.results.result import Result
-from thermogear.views.page import Block, Cell, Gallery, Page, Pictures, Section, Table, Text, Tile
-from thermogear.views.pages import gear_sections, rig_trains, row_sections
+from thermogear.views.page import (
+    LEAD,
+    Block,
+    Cell,
+    Code,
+    Gallery,
+    Page,
+    Pictures,
+    Section,
+    Table,
+    Text,
+    Tile,
+    without,
+)
+from thermogear.views.pages import captions, gear_sections, rig_trains, row_sections
 from thermogear.views.pages.background import background
 from thermogear.views.pages.sensitivity import sensitivity_section
 from thermogear.views.plots import claims as plots
@@ -31,6 +44,10 @@ SECTIONS = {
     5: "Tests",
     6: "Conclusions",
 }
+CONCLUSIONS = 6
+OPENING = "warming"
+"""The picture that the page opens with."""
+NOT_HERE = "Stopped before it was computed."
 MARKED = ("contradicted",)
 BASE_SETS = ("base_sets/table-4.2", "base_sets/section-4.1")
 
@@ -39,9 +56,11 @@ KINDS = ("thesis",)
 
 
 def page(result: Result) -> Page:
-    """Verdicts, then every section of the document with its claims and pictures."""
+    """What holds and what does not, verdicts, then every section with its claims and pictures."""
     pictures = Pictures()
     sections = _thesis_sections(result, pictures)
+    opening = _opening(result, sections)
+    sections = [opening, *(without(one, {OPENING}) for one in sections), _outlook(result)]
     if "sensitivity" in result.groups:
         sections.append(sensitivity_section(result, pictures))
     return Page(
@@ -69,6 +88,66 @@ def _summary(results: Result) -> str:
         f"{sentences.get('all', 0)} sentences claim something; the others are headings, background "
         f"and outlook. Computed in {float(results.text('seconds')):.0f} s."
     )
+
+
+def _opening(results: Result, sections: Sequence[Section]) -> Section:
+    """The conclusions, those that hold first, one picture, and the same for the reader's gears."""
+    claims, verdicts = results.groups["claims"], list(results.table("counts"))
+    rows: list[list[Cell]] = [
+        [
+            Markup("<b>{}</b>").format(str(one["verdict"].item())),
+            Markup('{} <a href="#claim-{}">{}</a>').format(
+                prose(str(one["words"].item())), name, name
+            ),
+            prose(str(one["argument"].item())),
+        ]
+        for place, name in enumerate(_names(claims))
+        for one in (claims.isel(claim=place),)
+        if _section(name) == CONCLUSIONS
+    ]
+    rows.sort(key=lambda row: verdicts.index(Markup(row[0]).striptags()))
+    blocks: list[Block] = []
+    if rows:
+        head = ["verdict", "conclusion of the document", "why"]
+        blocks.append(Table("Its conclusions, one by one.", head, rows, names=3, wordy=True))
+    galleries = [b for one in sections for b in one.blocks if isinstance(b, Gallery)]
+    shown = [one for gallery in galleries for one in gallery.pictures if one.name == OPENING]
+    blocks += [Gallery(shown)] * bool(shown)
+    blocks += [
+        Text("Redo this for your gears: every step of the document for one pair."),
+        Code("thermogear new -o mine.toml\nthermogear thesis mine.toml -o mine"),
+    ]
+    return Section(LEAD, "What holds, what does not, and why", blocks, folded=False)
+
+
+def _outlook(results: Result) -> Section:
+    """What the document leaves to later work: what is computed of it, here and for any pair."""
+    path, trains = results.group("path"), results.group("rig_trains")
+    film = "" if path is None else captions.regimes(path.isel(bundle=-1, state=-1))
+    rows: list[list[Cell]] = [
+        [
+            "other regimes of lubrication", film or NOT_HERE,
+            "thermogear friction CASE",
+        ],
+        [
+            "shafts that bend, bearings with clearance",
+            NOT_HERE if trains is None else str(trains.attrs["sentence"]),
+            "thermogear run CASE, with [[shafts]] and [[bearings]]",
+        ],
+        [
+            "temperatures measured better",
+            "The rig's temperatures are given. Readings in the case are corrected, and the heat "
+            "balance is held to them.",
+            "thermogear temperature CASE, with [gearbox.readings]",
+        ],
+        [
+            "design, and diagnosis of faults",
+            "An appraisal, not judged here.",
+            "thermogear answers CASE; thermogear measure FILE",
+        ],
+    ]  # fmt: skip
+    head = ["left to later work", "of the rig", "for any gears"]
+    return Section("outlook", "Outlook", [Table("", head, rows, names=3, wordy=True)])
 
 
 def _tiles(results: Result) -> list[Tile]:

@@ -99,7 +99,7 @@ def over_grid(data: xr.Dataset, name: str, unit: str, scale: float = 1.0) -> Pic
 def warming(data: xr.Dataset) -> Picture:
     """The largest Floquet multiplier over temperature, and where it reaches the border."""
     panel = Panel(
-        Axis("gear temperature $T$ [°C]"), Axis("largest Floquet multiplier, modulus [–]")
+        Axis("gear temperature T [°C]"), Axis("largest Floquet multiplier, modulus [–]")
     )
     celsius = data["temperature"].values - ZERO_CELSIUS
     for row, colour in (("thesis", HOT), ("consistent", MIXED)):

@@ -1,0 +1,156 @@
+"""The steps of the thesis for any gear pair: heat, bifurcations, friction, records, its outlook.
+
+One operating point under one bundle: its motion over gear temperatures, its bifurcations over
+damping, speed and stiffness fluctuation undeformed and hot, its friction mixed and dry, and its
+records beside both states. The tree is that of a run of this point (:mod:`thermogear.study.run`)
+and ``diagrams/PARAMETER``, ``comparison``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.base.errors import InputError
+from thermogear.base.progress import Progress, silent
+from thermogear.base.units import ZERO_CELSIUS
+from thermogear.case.allowed import FLUCTUATION
+from thermogear.case.case import GearCase
+from thermogear.case.family import GearFamily
+from thermogear.case.points import Points, largest_fluctuation
+from thermogear.case.thermal_state import UNDEFORMED
+from thermogear.measured.comparison import result_of
+from thermogear.results.result import Result
+from thermogear.study.compare import compare
+from thermogear.study.run import run
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Floats = NDArray[np.float64]
+
+KIND = "thesis-pair"
+PREFIX = "diagrams/"
+TEMPERATURES = tuple(ZERO_CELSIUS + t for t in (100.0, 120.0, 140.0, 160.0))
+"""Gear temperatures [K] of section 4.1 of the thesis."""
+DAMPING = (0.02, 0.18)
+"""Damping ratios: from lightly damped gears in oil to the greatest of the thesis's table."""
+SPEEDS = (0.25, 1.35)
+"""Speeds, as parts of the one at which the mesh meets the natural frequency of the mean
+stiffness: the second and third superharmonic resonance, the main one, and the thesis's 1.1 to
+1.3 beyond it."""
+PARTS = (0.1, 0.9)
+"""Fluctuations of the mesh stiffness, as parts of the one at which it would reach zero: the
+thesis's amplitudes 0.1 to 0.9, which reach zero at 1."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Steps:
+    """What is asked: ``operating`` point from 0 (None: the one nearest the resonance of the mean
+    stiffness), ``bundle`` ("": the first), gear ``temperatures`` [K], ``values`` of each diagram.
+    """
+
+    operating: int | None = None
+    bundle: str = ""
+    temperatures: Sequence[float] = TEMPERATURES
+    values: int = 61
+
+    def __post_init__(self) -> None:
+        if not 2 <= self.values <= 10_000:
+            raise InputError("--values", self.values, allowed="2..10000")
+
+
+def thesis_pair(
+    case: GearCase,
+    steps: Steps | None = None,
+    records: Mapping[Path, float | None] | None = None,
+    progress: Progress = silent,
+) -> Result:
+    """The steps of the thesis for one operating point of ``case``.
+
+    ``records``: file -> nominal speed [rad/s] of the pinion, None where the record says it; they
+    are compared with the case at all its speeds. After Ctrl+C what was finished, once the motion
+    over temperature is there; ``interrupted`` says so.
+    """
+    steps = Steps() if steps is None else steps
+    alone, point = _alone(case, steps)
+    wanted = replace(
+        alone, pictures=("motion", "temperature"), gear_temperatures=tuple(steps.temperatures)
+    )
+    beside = _beside(case, records, progress) if records else {}
+    ran = run(wanted, progress=progress)
+    groups = {**ran.groups, **beside}
+    cut = False
+    try:
+        if not point.jammed.any():
+            for name, values in _axes(alone, point, steps.values).items():
+                break
+                groups[PREFIX + name] = _diagram(alone, name, values, progress)
+    except KeyboardInterrupt:
+        cut = True
+    return replace(ran, kind=KIND, groups=groups).with_(
+        interrupted=cut, records=[path.name for path in records or ()]
+    )
+
+
+def _alone(case: GearCase, steps: Steps) -> tuple[GearCase, Points]:
+    """The case with the chosen bundle and point alone, and this point undeformed."""
+    at = case.stated
+    names = ("pinion_speed", "pinion_torque")
+    every = GearFamily(case, names, steps.bundle, UNDEFORMED)
+    points = every(np.stack([at.speed, at.torque], axis=1))
+    place, count = steps.operating, at.speed.size
+    if place is None:
+        ratio = np.where(points.jammed, np.nan, points.mesh_frequency / points.rate)
+        far = np.abs(ratio - 1.0)
+        place = 0 if np.isnan(far).all() else int(np.nanargmin(far))
+    if not 0 <= place < count:
+        raise InputError("--operating", place + 1, allowed=f"1..{count}")
+    here = np.array([place])
+    alone = replace(
+        case,
+        models=tuple(m for m in case.models if m.name == every.bundle),
+        speeds=(float(at.speed[place]),),
+        torques=(float(at.torque[place]),),
+        stated=replace(at, speed=at.speed[here], torque=at.torque[here]),
+    )
+    return alone, points.take(here)
+
+
+def _axes(case: GearCase, point: Points, count: int) -> dict[str, Floats]:
+    """Parameter -> its values [SI]: the ranges above, and the case's own value within them."""
+    critical = float(np.copysign(point.rate[0], case.speeds[0])) / case.pair.pinion.teeth
+    ends = {
+        "damping_ratio": (*DAMPING, case.damping_ratio),
+        "pinion_speed": (*(part * critical for part in SPEEDS), case.speeds[0]),
+    }
+    most = float(largest_fluctuation(point)[0])
+    if np.isfinite(most):
+        ends[FLUCTUATION] = tuple(part * most for part in PARTS)
+    return {name: np.linspace(min(some), max(some), count) for name, some in ends.items()}
+
+
+def _beside(
+    case: GearCase, records: Mapping[Path, float | None], progress: Progress
+) -> dict[str, xr.Dataset]:
+    """Every record against the case, in one table: the group of its name."""
+    import xarray as xr
+
+    tables = []
+    for number, (path, speed) in enumerate(records.items()):
+        progress("records", number, len(records))
+        found = compare(case, path, teeth=case.pair.pinion.teeth, speed=speed)
+        table = result_of(found).groups["comparison"]
+        tables.append(table.assign_coords(record=("row", [path.name] * table.sizes["row"])))
+    progress("records", len(records), len(records))
+    return {"comparison": xr.concat(tables, "row", combine_attrs="override")}
+
+
+def _diagram(case: GearCase, name: str, values: Floats, progress: Progress) -> xr.Dataset:
+    """The diagram over one parameter, undeformed and hot."""
+    raise NotImplementedError
