@@ -95,6 +95,28 @@ def _here(tmp_path, monkeypatch):
         ("run rig -o file/x", "output: got file/x; file is a file; name a directory"),
         ("runup rig -o file/x", "store: got file/x; file is a file; name a directory"),
         ("thesis -o file/x", "output: got file/x; file is a file; name a directory"),
+        ("thesis rig -o out --redraw", "--redraw: got true; beside CASE; leave one out"),
+        (
+            "thesis rig -o out --experiment 9",
+            "--experiment: got 9; beside CASE; leave one out",
+        ),
+        ("thesis -o out --values 9", "--values: got 9; no case is named; name a CASE"),
+        ("thesis -o out --record file", "--record: got file; no case is named; name a CASE"),
+        ("thesis rig -o out --record no.csv", "--record: got no.csv; there is no such file"),
+        (
+            "thesis rig -o out --record file=fast",
+            "--record: got 'file=fast'; allowed FILE=RPM, below 1e6 rpm",
+        ),
+        ("thesis rig -o out --operating 9", "--operating: got 9; allowed 1..3"),
+        ("thesis rig -o out --values 1", "--values: got 1; allowed 2..10000"),
+        ("thesis rig -o out --bundle thesys", "bundle: got 'thesys'; did you mean 'thesis'?"),
+        (
+            "thesis rig -o out --temperatures 100:160",
+            "--temperatures: got '100:160'; allowed FROM:TO:COUNT",
+        ),
+        ("thesis rig -o out --temperatures 100:900:3", "--temperatures: got 900 degC; allowed"),
+        ("thesis table-4.2 -o out", "allowed a case with gears"),
+        ("thesis rig -o out --tempratures 1:2:3", "No such option: --tempratures"),
         ("measure record.csv -o file/x", "output: got file/x; file is a file; name a directory"),
         (
             "measure record.csv --pulses 0",

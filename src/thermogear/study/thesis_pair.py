@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,10 +23,11 @@ from thermogear.case.allowed import FLUCTUATION
 from thermogear.case.case import GearCase
 from thermogear.case.family import GearFamily
 from thermogear.case.points import Points, largest_fluctuation
-from thermogear.case.thermal_state import UNDEFORMED
+from thermogear.case.thermal_state import UNDEFORMED, ThermalState
 from thermogear.measured.comparison import result_of
 from thermogear.results.result import Result
 from thermogear.study.compare import compare
+from thermogear.study.notices import friction_notices
 from thermogear.study.run import run
 
 if TYPE_CHECKING:
@@ -79,9 +80,8 @@ def thesis_pair(
     """
     steps = Steps() if steps is None else steps
     alone, point = _alone(case, steps)
-    wanted = replace(
-        alone, pictures=("motion", "temperature"), gear_temperatures=tuple(steps.temperatures)
-    )
+    kept, refused = _possible(alone, steps.temperatures)
+    wanted = replace(alone, pictures=("motion", "temperature"), gear_temperatures=kept)
     beside = _beside(case, records, progress) if records else {}
     ran = run(wanted, progress=progress)
     groups = {**ran.groups, **beside}
@@ -93,8 +93,9 @@ def thesis_pair(
                 groups[PREFIX + name] = _diagram(alone, name, values, progress)
     except KeyboardInterrupt:
         cut = True
-    return replace(ran, kind=KIND, groups=groups).with_(
-        interrupted=cut, records=[path.name for path in records or ()]
+    told = tuple(friction_notices(alone, groups))
+    return replace(ran, kind=KIND, groups=groups, notices=told).with_(
+        interrupted=cut, left_out=refused
     )
 
 
@@ -120,6 +121,29 @@ def _alone(case: GearCase, steps: Steps) -> tuple[GearCase, Points]:
         stated=replace(at, speed=at.speed[here], torque=at.torque[here]),
     )
     return alone, points.take(here)
+
+
+def _possible(
+    case: GearCase, temperatures: Sequence[float]
+) -> tuple[tuple[float, ...], list[dict[str, Any]]]:
+    """The temperatures [K] that the materials have, and the others with the reason.
+
+    Raises that of the first where they have none.
+    """
+    kept: list[float] = []
+    refused: list[InputError] = []
+    left: list[dict[str, Any]] = []
+    for value in temperatures:
+        try:
+            ThermalState.at(value).quantities(case, case.models[0], ("half_backlash",))
+            kept.append(value)
+        except InputError as error:
+            refused.append(error)
+            why = f"{error.field}: allowed {error.allowed}, {error.why}"
+            left.append({"gear_temperature_K": value, "why": why})
+    if not kept:
+        raise refused[0]
+    return tuple(kept), left
 
 
 def _axes(case: GearCase, point: Points, count: int) -> dict[str, Floats]:

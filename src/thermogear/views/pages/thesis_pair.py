@@ -89,22 +89,24 @@ def _temperature(result: Result, pictures: Pictures) -> Section:
     here = row.isel(bundle=0, operating=0)
     points = [here.isel(gear_temperature=k) for k in range(here.sizes["gear_temperature"])]
     drawn = section is not None and any(map(moving, points)) if "displacement" in here else False
-    blocks = list(section.blocks[1:]) if drawn and section is not None else []
-    return Section("temperature", "Gear temperature", [Text(_warming(points)), *blocks], False)
+    blocks = [one for one in section.blocks if one.kind != "text"] if drawn and section else []
+    words = _warming(points, result.rows("left_out"))
+    return Section("temperature", "Gear temperature", [Text(words), *blocks], False)
 
 
-def _warming(points: list[xr.Dataset]) -> str:
+def _warming(points: list[xr.Dataset], left_out: list[dict[str, Any]]) -> str:
     """What the motion does over the gears' temperature."""
     places = [celsius(float(one["gear_temperature"])) for one in points]
     there = [one for one in points if "displacement" in one and moving(one)]
     told = []
     if there:
         first, last = there[0], there[-1]
-        ends = f"{celsius(float(first['gear_temperature']))}"
-        ends += f" to {celsius(float(last['gear_temperature']))}" if len(there) > 1 else ""
+        ends = f"At {celsius(float(first['gear_temperature']))}"
+        if len(there) > 1:
+            ends = f"From{ends[2:]} to {celsius(float(last['gear_temperature']))}"
         labels = [label_of(one) for one in there]
         if len(set(labels)) == 1:
-            words = f"At {ends} the motion is {labels[0]}"
+            words = f"{ends} the motion is {labels[0]}"
         else:
             each = (
                 f"{name} at {celsius(float(one['gear_temperature']))}"
@@ -132,7 +134,11 @@ def _warming(points: list[xr.Dataset]) -> str:
         where = [at for at, one in zip(places, points, strict=True) if int(one["status"]) == status]
         if where:
             told.append(f"at {', '.join(where)} {words}")
-    return f"{'; '.join(told)}."[:1].upper() + f"{'; '.join(told)}."[1:]
+    for why in dict.fromkeys(str(one["why"]) for one in left_out):
+        where = [celsius(one["gear_temperature_K"]) for one in left_out if one["why"] == why]
+        told.append(f"{', '.join(where)} left out, {why}")
+    words = f"{'; '.join(told)}."
+    return words[:1].upper() + words[1:]
 
 
 SWING, HALF = "peak_to_peak_displacement", "half_order_amplitude"

@@ -29,9 +29,9 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 
 AXES = {
-    "zeta": "damping ratio $ζ$ [–]",
+    "zeta": "damping ratio ζ [–]",
     "omega": "excitation frequency $ω_{h}$ [–]",
-    "epsilon": "stiffness amplitude $ε$ [–]",
+    "epsilon": "stiffness amplitude ε [–]",
 }
 HEATS = {
     "none": ("without heat", COLD),
