@@ -1,4 +1,4 @@
-"""The equations of a fold, period doubling, pitchfork or torus in two parameters.
+"""The equations of a fold, period doubling, pitchfork, torus or grazing in two parameters.
 
 Unknown are the state z (d,) on the section and both parameters p and q. The orbit closes, G(z, p,
 q) = 0, and one scalar g vanishes. Of a real multiplier s = +1 or -1, with J = DP^n,
@@ -10,7 +10,9 @@ that the bordered matrix is regular, also where the curve turns. Of a complex pa
 and dmu/da = w^H (dJ/da) v/(w^H v). As second derivatives commute, w^T (dJ/dz_i) v for all i is w^T
 times one difference of J along v: a step costs as many runs for thirty coordinates as for one.
 J is that of the variational equations; derivatives of J, and those by p and q, are central
-differences and steer Newton's method alone.
+differences and steer Newton's method alone. Of a grazing g is how far the nearest extreme of x
+lies from an edge of the backlash, with the sign of whether the contacts are those of the last
+point; it is bracketed along the branch of orbits, without Newton's method.
 """
 
 from __future__ import annotations
@@ -22,7 +24,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.analysis.bifurcations import FLIP, PITCHFORK, TORUS, Bifurcation
+from thermogear.analysis.bifurcations import FLIP, GRAZING, PITCHFORK, TORUS, Bifurcation
 from thermogear.analysis.curve import Curve, Family, Point
 from thermogear.analysis.nearby import zero_near
 from thermogear.analysis.orbits import multipliers
@@ -62,6 +64,8 @@ class Located:
     tangent: Floats
     jacobian: Floats
     multipliers: Complexes
+    contacts: tuple[int, int]
+    """Losses of contact and back-side impacts per orbit."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -105,6 +109,8 @@ class Bordered:
             mu = complex(given[int(off.argmin())])
             self.mu = complex(mu.real, abs(mu.imag))
         self.borders: tuple[Floats, Floats] | None = None
+        orbit = bifurcation.orbit
+        self.contacts = (orbit.contact_losses, orbit.back_impacts)
 
     def _made(self, second: float, value: float) -> Curve:
         return self._over(lambda first: self.sheet(first, second), value, self.spans[0])
@@ -217,7 +223,10 @@ class Bordered:
         """Newton onto the curve in the plane through ``guess`` normal to ``normal``.
 
         It begins with a ``matrix`` from nearby, and takes a fresh one where that converges slowly.
+        None of a grazing, which is searched for.
         """
+        if self.kind == GRAZING:
+            return None
         scaled, own = guess.copy(), None if matrix is None else matrix.copy()
         best: tuple[float, Floats, Floats] | None = None
         last, stalled = np.inf, 0
@@ -267,6 +276,7 @@ class Bordered:
             tangent=tangent,
             jacobian=jacobian,
             multipliers=self.orbit_multipliers(scaled, jacobian=jacobian),
+            contacts=self.contacts,
         )
 
     def on_line(self, guess: Floats, *, held: int) -> Path:
@@ -312,6 +322,9 @@ class Bordered:
             return np.append(point.scaled[:-1], np.array(values) / self.whole[-2:])
 
         def measured(point: Point) -> float:
+            if self.kind == GRAZING:
+                size = min(max(point.margin, 1e-300), 1.0)
+                return size if point.contacts == self.contacts else -size
             gap, jacobian, _ = curve.residual(point.scaled)
             return self.vectors(self._scaled(jacobian))[0] if np.isfinite(gap).all() else np.nan
 
@@ -320,7 +333,14 @@ class Bordered:
         if found is None or not abs(measured(found)) < LEAP:
             return None
         scaled = whole(found)
-        return self._located(scaled, self.closing(scaled)[1], direction=direction)
+        jacobian = self.closing(scaled)[1]
+        if self.kind != GRAZING:
+            return self._located(scaled, jacobian, direction=direction)
+        values = self.orbit_multipliers(scaled, jacobian=jacobian)
+        return Located(
+            scaled=scaled, matrix=np.zeros((0, scaled.size)), tangent=direction,
+            jacobian=jacobian, multipliers=values, contacts=found.contacts,
+        )  # fmt: skip
 
     def orbit_multipliers(self, scaled: Floats, *, jacobian: Floats) -> Complexes:
         """Those of the whole orbit, also of a symmetric one."""
@@ -333,8 +353,9 @@ class Bordered:
         return multipliers(whole, section.determinant(period))
 
     def settle(self, point: Located) -> None:
-        """Take borders and multiplier from a point, for those that come."""
+        """Take borders, multiplier and contacts from a point, for those that come."""
         self.border(point.jacobian)
+        self.contacts = point.contacts
         if self.kind == TORUS:
             values = np.linalg.eigvals(point.jacobian).astype(complex)
             self.mu = complex(values[int(np.argmin(np.abs(values - self.mu)))])
@@ -345,6 +366,6 @@ class Bordered:
         if outside == 0:
             return True
         near = np.abs(np.abs(found) - 1.0)
-        own = 2 if self.kind == TORUS else 1
+        own = {TORUS: 2, GRAZING: 0}.get(self.kind, 1)
         rest = np.delete(found, np.argsort(near)[:own])
         return not bool(np.any(np.abs(rest) > 1.0 + OUTSIDE))

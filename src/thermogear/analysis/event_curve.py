@@ -1,4 +1,4 @@
-"""A fold, period doubling, pitchfork or torus as a curve in two parameters.
+"""A fold, period doubling, pitchfork, torus or grazing as a curve in two parameters.
 
 Its equations and Newton's method are :mod:`~thermogear.analysis.bordered`.
 """
@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.analysis.bifurcations import FLIP, FOLD, PITCHFORK, TORUS, Bifurcation
+from thermogear.analysis.bifurcations import FLIP, FOLD, GRAZING, PITCHFORK, TORUS, Bifurcation
 from thermogear.analysis.bordered import Bordered, Located, Sheet
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.dynamics.return_map import is_moved
@@ -20,7 +20,7 @@ from thermogear.dynamics.return_map import is_moved
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
 
-CARRIED = (FOLD, FLIP, PITCHFORK, TORUS)
+CARRIED = (FOLD, FLIP, PITCHFORK, TORUS, GRAZING)
 LONGEST, FIRST, SHORTEST = 0.05, 0.01, 1e-6
 """Steps along the curve, scaled as :class:`~thermogear.analysis.curve.Curve` scales."""
 ALONG = 0.9
@@ -29,7 +29,7 @@ CORNER, AHEAD = 2.5e-3, -0.2
 """The same within so short a step, where multipliers have a kink and the curve a corner."""
 SHORT, AROUND = 1e-5, 0.2
 """The shortest step for a search on a circle, and how far it goes on that."""
-REACHED = "reached the end"
+REACHED, BACK, LEFT = "reached the end", "came back", "left the range"
 LOST = "no further point"
 
 
@@ -128,8 +128,8 @@ def event_curve(
     ends at the last of these, at a limit of p, back at ``start``, where no further point is found,
     where a complex pair of multipliers turns real, or after ``most_points``: ``ended`` says it.
 
-    Raises InputError for a grazing or a birth, which have no multiplier of their own;
-    ConvergenceError where the bifurcation is not found at ``start``.
+    Raises InputError for a birth, which is the flip of another orbit; ConvergenceError where the
+    bifurcation is not found at ``start``.
     """
     if bifurcation.kind not in CARRIED:
         raise InputError("bifurcation", bifurcation.kind, allowed=" | ".join(CARRIED))
@@ -264,11 +264,11 @@ def _landed(
         ends[float(marks[-1]), -1] = REACHED
     elif way * (q1 - start) < 0.0:
         stops.append((start, -1, False))
-        ends[start, -1] = f"came back to the first value of {names[1]}"
+        ends[start, -1] = f"{BACK} to the first value of {names[1]}"
     for limit in limits:
         if (p1 - limit) * (p0 - limit) < 0.0:
             stops.append((limit, -2, False))
-            ends[limit, -2] = f"left the range of {names[0]}"
+            ends[limit, -2] = f"{LEFT} of {names[0]}"
     found: list[tuple[float, Located | None, bool, str]] = []
     for value, place, mark in stops:
         before, after = here.scaled[place], there.scaled[place]

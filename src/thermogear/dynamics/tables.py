@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.errors import InputError
 from thermogear.base.excitation import Periodic
 from thermogear.base.pieces import Pieces as Pieces
 
@@ -101,6 +102,20 @@ class Lanes:
             if piece is not None:
                 total[..., lane] += piece(phi)
         return total
+
+
+def mixed(one: Lanes, other: Lanes, share: float) -> Lanes:
+    """Lanes whose every coefficient stands at a ``share`` of its way from ``one`` to ``other``.
+
+    Raises InputError where their tables jump otherwise than each other's, or differ in length.
+    """
+    alike = one.stiffness_pieces == other.stiffness_pieces, one.force_pieces == other.force_pieces
+    names = ("period", "damping", "half_backlash", "stiffness", "force")
+    if not all((*alike, *(getattr(one, n).shape == getattr(other, n).shape for n in names))):
+        raise InputError("lanes", "tables that differ", allowed="as many harmonics, the same jumps")
+    rows = {n: (1.0 - share) * getattr(one, n) + share * getattr(other, n) for n in names}
+    pieces = {n: getattr(one, n) for n in ("stiffness_pieces", "force_pieces")}
+    return Lanes(**rows, **pieces)
 
 
 def _maps(name: str) -> Any:

@@ -20,6 +20,7 @@ from thermogear.front import delivery
 from thermogear.front.numbers import grid
 
 if TYPE_CHECKING:
+    from thermogear.analysis.diagram import DiagramPlan
     from thermogear.base.plan import Plan
     from thermogear.case.case import DimensionlessCase, GearCase
     from thermogear.case.thermal_state import ThermalState
@@ -117,8 +118,8 @@ _but = click.option(
 @click.option("--branch-period", type=click.IntRange(0, 64), default=4, show_default=True,
               help="Follow branches of orbits up to this period; 0: none.")  # fmt: skip
 @click.option("--against", multiple=True, metavar="NAME=VALUE",
-              help="A second diagram with these numbers changed (state=VALUE for a gear case), "
-              "and a table of what moved.")  # fmt: skip
+              help="A second diagram with these numbers changed (state=VALUE for a gear case): both in "
+              "one picture and one table; bifurcations are followed.")  # fmt: skip
 @_train
 @_common
 def bifurcation(
@@ -127,9 +128,8 @@ def bifurcation(
 ) -> None:  # fmt: skip
     """Orbit diagram of CASE over one parameter, up and down, with located bifurcations."""
     from thermogear.case.axes import parse_axis, parse_numbers
-    from thermogear.results.files import json_text
-    from thermogear.study.diagrams import case_diagram, moved_points
-    from thermogear.views.write import page_of
+    from thermogear.results.files import claimed
+    from thermogear.study.diagrams import case_diagram, overlaid
 
     read = delivery.load(case, options["overrides"])
     if len(over) != 1:
@@ -140,7 +140,7 @@ def bifurcation(
     train = _train_of(read, options)
     changes = parse_numbers(but)
 
-    def plan(state: ThermalState, changed: dict[str, float]) -> Plan:
+    def plan(state: ThermalState, changed: dict[str, float]) -> DiagramPlan:
         return case_diagram(
             read, name, values, bundle=bundle, state=state, changes=changed,
             branch_period=branch_period, starts=begin, train=train,
@@ -158,24 +158,24 @@ def bifurcation(
     if "state" in second:
         _, other_state = _choice(read, {"bundle": None, "state": second.pop("state")}, "--against")
     texts = [f"{k}={v}" for k, v in second.items()]
-    other = plan(other_state, changes | parse_numbers(texts))
-    one = _compute(whole, directory / "one", read.title, options)
-    two = _compute(other, directory / "other", read.title, options)
-    if one is None or two is None:
+    plans = (whole, plan(other_state, changes | parse_numbers(texts)))
+    if not options["only_estimate"]:
+        with claimed(directory):
+            pass  # refused before anything is computed, or ours from here on
+    both = [
+        _compute(each, directory / part, read.title, options)
+        for each, part in zip(plans, ("one", "other"), strict=True)
+    ]
+    found = tuple(result.data for result in both if result is not None)
+    if len(found) < len(plans):
         return
-    rows = moved_points(one.data, two.data)
-    if as_json:
-        both = {name: page_of(result).numbers() for name, result in (("one", one), ("other", two))}
-        click.echo(json_text({**both, "moved": rows}), nl=False)
-        return
-    shown = _show(name)
-    click.echo(f"{'kind':<17}{'period':>6}{'one':>16}{'other':>16}{'moved by':>14}")
-    for row in rows:
-        cells = [
-            "-" if row[key] is None else f"{shown(row[key]) - base:.9g}"
-            for key, base in (("one", 0.0), ("other", 0.0), ("moved", shown(0.0)))
-        ]
-        click.echo(f"{row['kind']:<17}{row['period']:>6}{cells[0]:>16}{cells[1]:>16}{cells[2]:>14}")
+    words = (state.words, other_state.words)
+    if read.kind != "gear":
+        words = (", ".join(but) or "as in the case", ", ".join((*but, *texts)))
+    delivery.deliver(
+        lambda report: overlaid(read.title, words, plans, found, progress=report), output,
+        as_json=as_json,
+    )  # fmt: skip
 
 
 @click.command("map")
@@ -390,13 +390,6 @@ def _pair_of(text: str) -> tuple[float, float]:
     return x, v
 
 
-def _show(name: str) -> Callable[[float], float]:
-    from thermogear.base.parameters import PARAMETERS
-
-    one = PARAMETERS.get(name)
-    return (lambda v: v) if one is None else one.show
-
-
 # --- running ------------------------------------------------------------------------------
 
 
@@ -462,7 +455,6 @@ def _compute(plan: Plan, directory: Path, title: str, options: dict[str, Any]) -
         took = round(time.monotonic() - begun, 3)
         result = finished(data, title).with_(**about, seconds=took)
         write(page_of(result), directory)
-        delivery.put_csv(result)
     except KeyboardInterrupt:
         from thermogear.front.progress import Stopped
 
@@ -482,4 +474,5 @@ def _carry(plan: Plan, directory: Path, title: str, as_json: bool, options: dict
     _estimate_alone(options, as_json)
     result = _compute(plan, directory, title, options)
     if result is not None:
+        delivery.put_csv(result)
         delivery.tell(page_of(result), directory / "report.html", as_json=as_json)

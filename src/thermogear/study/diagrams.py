@@ -1,4 +1,4 @@
-"""Diagrams, maps and basins of a case: its words become plans, two states become one table."""
+"""Diagrams, maps and basins of a case: its words become plans, two states become one overlay."""
 
 from __future__ import annotations
 
@@ -6,25 +6,28 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import linear_sum_assignment
 
 from thermogear.analysis.basins import BASIN_RULE, BasinPlan, basin_plan
-from thermogear.analysis.branches import KINDS
+from thermogear.analysis.branches import with_branches_of_states
 from thermogear.analysis.diagram import BRANCH_PERIOD, DIAGRAM_RULE, DiagramPlan, diagram_plan
 from thermogear.analysis.family import Family
 from thermogear.analysis.maps import MAP_RULE, MapPlan, map_plan
+from thermogear.analysis.matched import MOST_FOLLOWED, matches
 from thermogear.analysis.settle import Rule
 from thermogear.analysis.stacked import StackedPlan
 from thermogear.base.errors import InputError
+from thermogear.base.progress import Progress, silent
 from thermogear.base.stores import read_manifests
 from thermogear.case.base import Case
 from thermogear.case.case import gear_case
 from thermogear.case.family import GearFamily, NumberFamily, Tabulated, family, moving
 from thermogear.case.thermal_state import HOT, StateLike, ThermalState
+from thermogear.results.beside import back_side_notice
+from thermogear.results.result import Result
 from thermogear.results.work import Estimate, estimate
 from thermogear.study.shafts.family import TabulatedTrains, TrainFamily
 from thermogear.study.shafts.motion import LONGEST
@@ -215,53 +218,42 @@ def case_basins(
     return basin_plan(points.model() if points.gears else whole.model, x=x, v=v)
 
 
-def _nearest_pairs(
-    first: list[float], second: list[float]
-) -> list[tuple[float | None, float | None]]:
-    """Both lists paired with the least total distance, in ascending order; the rest alone."""
-    distance = np.abs(np.subtract.outer(first, second))
-    rows, columns = linear_sum_assignment(distance)
-    found: list[tuple[float | None, float | None]] = [
-        (first[i], second[j]) for i, j in zip(rows, columns, strict=True)
-    ]
-    found += [(value, None) for i, value in enumerate(first) if i not in rows]
-    found += [(None, value) for j, value in enumerate(second) if j not in columns]
-    return sorted(found, key=lambda pair: next(v for v in pair if v is not None))
+def overlaid(
+    title: str,
+    words: Sequence[str],
+    plans: Sequence[DiagramPlan],
+    found: Sequence[xr.Dataset],
+    *,
+    most: int = MOST_FOLLOWED,
+    progress: Progress = silent,
+) -> Result:
+    """Two diagrams over the same values as one result, with every bifurcation followed between.
 
-
-def moved_points(one: xr.Dataset, other: xr.Dataset) -> list[dict[str, Any]]:
-    """Bifurcations of two diagrams side by side: kind, period, both values, what moved.
-
-    Within each kind and period the pairs are those that move the least in all; one that the
-    other diagram lacks has None there. Without branches nothing is located: no rows.
+    ``words`` name their states, ``found`` is what their ``plans`` gave. The group "states" has the
+    axis ``state``; branches and bifurcations carry ``branch_state`` and ``bifurcation_state``.
+    ``rows("matches")`` are those of :func:`~thermogear.analysis.matched.matches`, of which ``most``
+    are followed.
     """
-    if any("bifurcation_kind" not in data for data in (one, other)):
-        return []
+    import xarray as xr
 
-    def sorted_values(data: xr.Dataset, kind: int, period: int) -> list[float]:
-        chosen = (data["bifurcation_kind"].values == kind) & (
-            data["bifurcation_period"].values == period
-        )
-        return sorted(map(float, data["bifurcation_value"].values[chosen]))
-
-    pairs = {
-        (int(k), int(n))
-        for data in (one, other)
-        for k, n in zip(
-            data["bifurcation_kind"].values, data["bifurcation_period"].values, strict=True
-        )
-    }
-    rows: list[dict[str, Any]] = []
-    for kind, period in sorted(pairs, key=lambda p: (p[1], p[0])):
-        first, second = sorted_values(one, kind, period), sorted_values(other, kind, period)
-        for a, b in _nearest_pairs(first, second):
-            rows.append(
-                {
-                    "kind": KINDS[kind],
-                    "period": period,
-                    "one": a,
-                    "other": b,
-                    "moved": None if a is None or b is None else b - a,
-                }
-            )
-    return rows
+    one, other = found
+    kept = [
+        data.drop_vars([n for n in data if str(n).startswith(("branch_", "bifurcation_"))])
+        for data in found
+    ]
+    data = xr.concat(kept, "state", combine_attrs="drop_conflicts")
+    data.attrs["state_names"] = json.dumps(words)
+    name = str(data.attrs["parameter"])
+    if "bifurcation_kind" in one and "bifurcation_kind" in other:
+        units = str(data[name].attrs["units"])
+        data = with_branches_of_states(data, dict(enumerate(found)), units)
+    rows = matches(
+        one, other, (plans[0].family, plans[1].family), most=most,
+        progress=lambda done, count: progress("bifurcations followed", done, count),
+    )  # fmt: skip
+    notices = [
+        f"{state}: {told}"
+        for state, data_ in zip(words, found, strict=True)
+        for told in back_side_notice(data_)
+    ]
+    return Result.of("overlay", title, {"states": data}, notices, matches=rows, states=words)

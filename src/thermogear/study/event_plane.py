@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 MOST_CURVES = 16
 STEPS = 1000
+OF_ONE_MASS = (GRAZING, PITCHFORK)
+"""Followed where one mass moves alone."""
 SAME = 1e-3
 """Of the range: a curve that comes back this near to another event ends at it."""
 
@@ -51,16 +53,17 @@ class Plane:
         limits: tuple[float, float],
         progress: Progress,
     ) -> tuple[list[EventCurve], list[str], bool]:
-        """A curve for every fold, doubling, pitchfork and torus; notices; whether Ctrl+C cut it."""
-        events = [b for branch in branches for b in branch.bifurcations]
-        chosen = [b for b in events if b.kind in CARRIED and (b.kind != PITCHFORK or one_mass(b))]
-        notices = []
-        for kind, why in (
-            (GRAZING, "they have no multiplier to be followed by"),
-            (PITCHFORK, "those of a drive train are not followed"),
-        ):
-            if any(b.kind == kind and b not in chosen for b in events):
-                notices.append(f"{kind}s stand at the first value of {self.second.name}: {why}")
+        """A curve for every bifurcation, grazings last; notices; whether Ctrl+C cut it."""
+        events = [b for branch in branches for b in branch.bifurcations if b.kind in CARRIED]
+        chosen = [b for b in events if b.kind not in OF_ONE_MASS or one_mass(b)]
+        chosen.sort(key=lambda event: event.kind == GRAZING)
+        left = {b.kind for b in events} - {b.kind for b in chosen}
+        notices = [
+            f"{kind}s stand at the first value of {self.second.name}: those of a drive train are "
+            "not followed"
+            for kind in OF_ONE_MASS
+            if kind in left
+        ]
         curves: list[EventCurve] = []
         try:
             for event in chosen:

@@ -17,16 +17,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
+from thermogear.base.parameters import PARAMETERS
+from thermogear.base.plan import gather
 from thermogear.base.progress import Progress, silent
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.case.allowed import FLUCTUATION
 from thermogear.case.case import GearCase
 from thermogear.case.family import GearFamily
 from thermogear.case.points import Points, largest_fluctuation
-from thermogear.case.thermal_state import UNDEFORMED, ThermalState
+from thermogear.case.thermal_state import HOT, UNDEFORMED, ThermalState
 from thermogear.measured.comparison import result_of
 from thermogear.results.result import Result
 from thermogear.study.compare import compare
+from thermogear.study.diagrams import case_diagram, overlaid
 from thermogear.study.notices import friction_notices
 from thermogear.study.run import run
 
@@ -48,6 +51,9 @@ stiffness: the second and third superharmonic resonance, the main one, and the t
 PARTS = (0.1, 0.9)
 """Fluctuations of the mesh stiffness, as parts of the one at which it would reach zero: the
 thesis's amplitudes 0.1 to 0.9, which reach zero at 1."""
+FOLLOWED = 12
+"""Bifurcations of each diagram that are followed from one state to the other, grazings last: a
+second of processor time each, about."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,17 +91,19 @@ def thesis_pair(
     beside = _beside(case, records, progress) if records else {}
     ran = run(wanted, progress=progress)
     groups = {**ran.groups, **beside}
+    matches: dict[str, list[dict[str, Any]]] = {}
     cut = False
     try:
         if not point.jammed.any():
             for name, values in _axes(alone, point, steps.values).items():
-                break
-                groups[PREFIX + name] = _diagram(alone, name, values, progress)
+                both = _overlaid(alone, name, values, progress)
+                groups[PREFIX + name] = both.data
+                matches[name] = both.rows("matches")
     except KeyboardInterrupt:
         cut = True
     told = tuple(friction_notices(alone, groups))
     return replace(ran, kind=KIND, groups=groups, notices=told).with_(
-        interrupted=cut, left_out=refused
+        interrupted=cut, left_out=refused, matches=matches
     )
 
 
@@ -175,6 +183,16 @@ def _beside(
     return {"comparison": xr.concat(tables, "row", combine_attrs="override")}
 
 
-def _diagram(case: GearCase, name: str, values: Floats, progress: Progress) -> xr.Dataset:
-    """The diagram over one parameter, undeformed and hot."""
-    raise NotImplementedError
+def _overlaid(case: GearCase, name: str, values: Floats, progress: Progress) -> Result:
+    """The diagrams over one parameter, undeformed and hot, with their bifurcations matched."""
+    states = (UNDEFORMED, HOT)
+    plans = [case_diagram(case, name, values, state=state) for state in states]
+    words = PARAMETERS[name].words
+    found = [
+        gather(plan, progress=lambda done, total, at=state.words: progress(f"{words}, {at}", done, total))
+        for plan, state in zip(plans, states, strict=True)
+    ]
+    return overlaid(
+        case.title, [state.words for state in states], plans, found, most=FOLLOWED,
+        progress=progress,
+    )  # fmt: skip

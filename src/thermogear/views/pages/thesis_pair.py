@@ -5,21 +5,25 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from thermogear.base.display import celsius, exactly, number, span
+from thermogear.base.parameters import PARAMETERS
 from thermogear.base.units import RPM
 from thermogear.base.vocabulary import STATUS
 from thermogear.results.result import Result
 from thermogear.views import tables
 from thermogear.views.page import Block, Gallery, Page, Pictures, Section, Table, Text, notice_lines
-from thermogear.views.pages import captions, gear_sections
+from thermogear.views.pages import captions, gear_sections, overlay
 from thermogear.views.pages.background import background
 from thermogear.views.pages.record import comparison_table
 from thermogear.views.plots import laws
 from thermogear.views.plots.motion import label_of, moving
+from thermogear.views.plots.parameters import shown
+from thermogear.views.plots.sweeps import CLASSES, classes_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -157,6 +161,64 @@ def _no_gap(points: list[xr.Dataset]) -> str:
     return f"no gap is left: half backlash {span(gaps)} µm{at}"
 
 
+# --- bifurcations -------------------------------------------------------------------------
+
+
+def _diagram(name: str, title: str, result: Result, pictures: Pictures) -> Section:
+    """The diagrams over one parameter, undeformed and hot, in one picture and one table."""
+    data = result.group(f"diagrams/{name}")
+    if data is None:
+        words = "Not computed: "
+        words += "stopped before it." if result.interrupted else f"{_undeformed(result)}."
+        return Section(name, title, [Text(words)], False)
+    states = json.loads(str(data.attrs["state_names"]))
+    rows = result.table("matches").get(name, [])
+    both = Result.of("overlay", title, {"states": data}, matches=rows, states=states)
+    here = [overlay.state_of(data, place) for place in range(len(states))]
+    values = shown(name, data[name].values)
+    unit = PARAMETERS[name].shown
+    told = [f"{state} {_share(one)}" for state, one in zip(states, here, strict=True)]
+    if rows:
+        matched = sum(row["partner"] == "matched" for row in rows)
+        found = [one.sizes.get("bifurcation", 0) for one in here]
+        told.append(
+            f"{found[0]} bifurcations {states[0]}, {found[1]} {states[1]}, {matched} of them "
+            "followed from one state to the other"
+        )
+    else:
+        told.append("no bifurcation was found")
+    span_ = f"{exactly(float(values[0]), 4)} to {exactly(float(values[-1]), 4)} {unit}".strip()
+    blocks: list[Block] = [Text(f"From {span_}: {'; '.join(told)}.")]
+    if any((one["status"].values == 0).any() for one in here):
+        pictures.add(
+            f"diagram-{name}", f"{title}, undeformed and hot", overlay.CAPTION, data, (),
+            lambda: overlay.overlay_picture(data, states, rows), wide=True,
+        )  # fmt: skip
+        blocks += pictures.take()
+    if rows:
+        head, lines = overlay.table_of(both)
+        blocks.append(Table(overlay.FOLLOWED, head, lines))
+    return Section(name, title, blocks, False)
+
+
+def _share(one: xr.Dataset) -> str:
+    """Which motions one state settles on, by their shares of the values."""
+    status = one["status"].values
+    if not (status == 0).any():
+        return "has no gap left at any value" if (status == JAMMED).any() else UNSETTLED
+    code = classes_of(one)[status == 0]
+    parts = [f"{CLASSES[n][0]} at {number(100.0 * np.mean(code == n))} %" for n in np.unique(code)]
+    left = float(np.mean(status != 0))
+    return ", ".join(parts + [f"no motion at {number(100.0 * left)} %"] * (left > 0.0))
+
+
+def _undeformed(result: Result) -> str:
+    """Why a pair does not move undeformed."""
+    mesh = result.groups["mesh"].isel(bundle=0, operating=0, state=0)
+    gap = number(1e6 * float(mesh["half_backlash"]))
+    return f"undeformed no gap is left, half backlash {gap} µm"
+
+
 # --- friction and the film ----------------------------------------------------------------
 
 
@@ -250,7 +312,11 @@ def _sensors(result: Result, pictures: Pictures) -> Section:
 
 
 STEPS: tuple[Callable[[Result, Pictures], Section], ...] = (
-    _temperature, _friction, _records, _film, _sensors,
+    _temperature,
+    partial(_diagram, "damping_ratio", "Damping"),
+    partial(_diagram, "pinion_speed", "Speed"),
+    partial(_diagram, "stiffness_fluctuation", "Stiffness fluctuation"),
+    _friction, _records, _film, _sensors,
 )  # fmt: skip
 
 

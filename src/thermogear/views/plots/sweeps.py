@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.units import ZERO_CELSIUS
-from thermogear.base.vocabulary import ASSUMED, STATUS
+from thermogear.base.vocabulary import ASSUMED, STATUS, UNDEFORMED
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.parameters import axis_words, shown
 from thermogear.views.style import COLD, FAINT, HOT, INK, OKABE_ITO, QUIET, WIDE, scale
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Floats = NDArray[np.float64]
+Rows = Sequence[Mapping[str, Any]]
 DIVERGED = STATUS.index("diverged")
 
 CLASSES = (
@@ -34,6 +36,7 @@ CLASSES = (
     ("jammed", "#ffffff"),
 )
 KINDS = ("fold", "period doubling", "grazing", "period halving", "pitchfork", "torus")
+DRAWN = ("fold", "period doubling", "pitchfork", "torus")
 MARKS = ("square", "diamond", "upright", "thin diamond", "plus", "circle")
 
 
@@ -97,33 +100,84 @@ def orbit_diagram_picture(data: xr.Dataset) -> Picture:
         for row in data["lyapunov"].values[direction]:
             low.curve(p, row, colour=colour, dash=dash, width=0.8, marker=_dot(p))
     _branches(top, data, name)
+    return _above_exponent(top, low)
+
+
+def _above_exponent(top: Panel, low: Panel) -> Picture:
     low.line(y=0.0, colour=INK, width=0.8)
     return Picture(
         [[top], [low]], size=(WIDE, 6.0), share_x="column", above=0.15, heights=(3, 1), legend=6
     )
 
 
-def _branches(panel: Panel, data: xr.Dataset, name: str) -> None:
+def overlay_picture(data: xr.Dataset, states: Sequence[str], matches: Rows) -> Picture:
+    """Two orbit diagrams over each other, a colour for each state, up and down alike.
+
+    A thin line leads from a bifurcation of one to the same one of the other.
+    """
+    name = _parameter(data)
+    p = shown(name, data[name].values)
+    top = Panel(Axis(), Axis("X at phase 0 [–]"))
+    low = Panel(_along(data, name), Axis("exponent λ₁ [–]"))
+    each = [state_of(data, place) for place in range(len(states))]
+    colours = (COLD, HOT) if states[0] == UNDEFORMED else (HOT, COLD)
+    for here, words, colour in zip(each, states, colours, strict=True):
+        x = here["section_x"].values
+        top.points(
+            np.broadcast_to(p[:, None], x.shape).ravel(), x.ravel(), colour=colour, marker="dot",
+            edge_width=0.0, opacity=0.5, size=1.6 if p.size > FEW else 8.0, pixels=True,
+        )  # fmt: skip
+        top.points([], [], marker="dot", colour=colour, label=words)
+        for row in here["lyapunov"].values.reshape(-1, p.size):
+            low.curve(p, row, colour=colour, width=0.8, marker=_dot(p))
+        _branches(top, here, name, colour)
+    for match in matches:
+        if match["kind"] in DRAWN and match["drawn"] and match["partner"] == "matched":
+            ends = [match["one"], match["other"]]
+            up = [_height(here, value) for here, value in zip(each, ends, strict=True)]
+            top.curve(shown(name, ends), up, colour=OKABE_ITO[3], width=0.8, order=4)
+    return _above_exponent(top, low)
+
+
+def _height(data: xr.Dataset, value: float) -> float:
+    """X of the bifurcation at a value of the parameter."""
+    place = int(np.argmin(np.abs(data["bifurcation_value"].values - value)))
+    return float(data["bifurcation_x"].values[place])
+
+
+def state_of(data: xr.Dataset, place: int) -> xr.Dataset:
+    """One diagram of an overlay: its points, branches and bifurcations."""
+    here = data.isel(state=place)
+    for thing in ("branch", "bifurcation"):
+        if f"{thing}_state" in here:
+            mine = here[f"{thing}_state"].values == place
+            here = here.isel({thing: mine}).drop_vars(f"{thing}_state")
+    return here
+
+
+def _branches(panel: Panel, data: xr.Dataset, name: str, colour: str = "") -> None:
+    """Branches with their bifurcations; those of an overlay in the ``colour`` of their state."""
     if "branch_value" not in data:
         return
     value, x = shown(name, data["branch_value"].values), data["branch_x"].values
     stable = data["branch_multiplier"].values < 1.0
     looks: tuple[tuple[NDArray[np.bool_], str, tuple[float, ...], str], ...] = (
-        (stable, INK, (), "stable branch"), (~stable, QUIET, (4, 2), "unstable branch")
+        (stable, colour or INK, (), "stable branch"),
+        (~stable, colour or QUIET, (4, 2), "unstable branch"),
     )  # fmt: skip
-    for kept, colour, dash, words in looks:
+    for kept, ink, dash, words in looks:
         for row in range(value.shape[0]):
             along = np.where(kept[row], value[row], np.nan)
-            panel.curve(along, x[row], colour=colour, width=0.7, dash=dash, order=3)
+            panel.curve(along, x[row], colour=ink, width=0.7, dash=dash, order=3)
         if (kept & np.isfinite(value)).any():
-            panel.curve([], [], colour=colour, width=0.9, dash=dash, label=words)
+            panel.curve([], [], colour=INK if colour else ink, width=0.9, dash=dash, label=words)
     at = shown(name, data["bifurcation_value"].values)
-    for kind in (0, 1, 4, 5):
+    for kind in map(KINDS.index, DRAWN):
         chosen = data["bifurcation_kind"].values == kind
         if chosen.any():
             up = data["bifurcation_x"].values[chosen]
             panel.points(
-                at[chosen], up, marker=MARKS[kind], colour=OKABE_ITO[3], size=4,
+                at[chosen], up, marker=MARKS[kind], colour=colour or OKABE_ITO[3], size=4,
                 label=KINDS[kind], order=4,
             )  # fmt: skip
 

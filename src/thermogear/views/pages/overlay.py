@@ -1,0 +1,122 @@
+"""The page of two orbit diagrams over each other, and of what became of each bifurcation."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from thermogear.base.display import number
+from thermogear.base.parameters import PARAMETERS, long_name
+from thermogear.results.result import Result
+from thermogear.views.csv_files import table_text
+from thermogear.views.page import LEAD, Page, Pictures, Section, Table, notice_lines
+from thermogear.views.pages.findings import finding
+from thermogear.views.pages.sweep_numbers import numbers
+from thermogear.views.plots.parameters import shown
+from thermogear.views.plots.sweeps import overlay_picture, state_of
+
+KINDS = ("overlay",)
+PLACES = ("one", "other", "met")
+CAPTION = (
+    "Sections at phase 0 of the settled motion in both states, up and down; branches from "
+    "continuation, and thin lines from a bifurcation to the same one in the other state. The "
+    "largest Lyapunov exponent below."
+)
+FOLLOWED = (
+    "Each bifurcation is followed while every coefficient of the equation goes from one state to "
+    "the other; neither order nor nearness makes a pair. Where two of one state meet on the way, "
+    "neither has a partner."
+)
+
+
+def page(result: Result) -> Page:
+    """One picture, one table."""
+    data, states = result.data, result.values("states")
+    pictures = Pictures()
+    pictures.add(
+        "orbits", "Both orbit diagrams", CAPTION, data, (),
+        lambda: overlay_picture(data, states, result.rows("matches")), wide=True,
+    )  # fmt: skip
+    head, rows = table_of(result)
+    sections = [Section(LEAD, "In pictures", pictures.take(), folded=False)]
+    if rows:
+        sections.append(Section("matches", "Bifurcations", [Table(FOLLOWED, head, rows)]))
+    parts = [f"{words}: {finding(state_of(data, i))}" for i, words in enumerate(states)]
+    return Page(
+        result, " ".join((*parts, _headline(result))), sections,
+        numbers=lambda: _numbers(result),
+        lines=lambda: [*parts, _headline(result), *_aligned([head, *rows]), *notice_lines(result)],
+        tables=lambda: {"overlay_bifurcations.csv": table_text(head, rows)},
+    )  # fmt: skip
+
+
+def _headline(result: Result) -> str:
+    rows = result.rows("matches")
+    matched = sum(row["partner"] == "matched" for row in rows)
+    return f"{matched} of {len(rows)} bifurcations were followed from one state to the other."
+
+
+def _numbers(result: Result) -> dict[str, Any]:
+    """Both diagrams, and what became of each bifurcation, in the units shown."""
+    data, name = result.data, str(result.data.attrs["parameter"])
+
+    def alone(place: int) -> dict[str, Any]:
+        part = replace(result, kind="diagram", groups={"": state_of(data, place)}, notices=())
+        return numbers(part.with_(parameter=name))
+
+    return {
+        "kind": result.kind, "parameter": name, "states": result.values("states"),
+        "one": alone(0), "other": alone(1), "moved": _moved(result),
+        "notices": [notice.text for notice in result.notices],
+    }  # fmt: skip
+
+
+def _moved(result: Result) -> list[dict[str, Any]]:
+    """The matches with their values as shown, and how far each moved."""
+    name, rows = str(result.data.attrs["parameter"]), []
+    for row in result.rows("matches"):
+        at = {k: None if row[k] is None else float(shown(name, row[k])) for k in PLACES}
+        moved = None if at["one"] is None or at["other"] is None else at["other"] - at["one"]
+        rows.append({**row, **at, "moved": moved})
+    return rows
+
+
+def table_of(result: Result) -> tuple[list[str], list[list[str]]]:
+    """Head and rows of the bifurcations, and in words what became of each on the way."""
+    name = long_name(str(result.data.attrs["parameter"]))
+    unit = PARAMETERS[name].shown if name in PARAMETERS else ""
+    tail = f" [{unit}]" * bool(unit)
+    at = [f"{words}{tail}" for words in (*result.values("states"), "moved by")]
+    head = ["kind", "period", *at, "on the way"]
+    rows = [
+        [
+            row["kind"], str(row["period"]),
+            *("" if row[k] is None else number(row[k], 9) for k in ("one", "other", "moved")),
+            _became(row, unit),
+        ]
+        for row in _moved(result)
+    ]  # fmt: skip
+    return head, rows
+
+
+def _became(row: Mapping[str, Any], unit: str) -> str:
+    """What became of a bifurcation on the way to the other state."""
+    share = row["share"] if row["one"] is not None else 1.0 - row["share"]
+    at = f"at {number(100.0 * share, 3)} % of the way"
+    if row["partner"] == "matched":
+        return "" if row["drawn"] else "its branch is not among those drawn"
+    if row["partner"] == "meets another":
+        return f"meets the one at {number(row['met'], 9)} {unit}".rstrip() + f" {at}: no partner"
+    if row["partner"] == "leaves the range":
+        return f"leaves the range {at}: no partner in it"
+    return f"not followed beyond, {at}: {row['why']}"
+
+
+def _aligned(rows: Sequence[Sequence[str]]) -> list[str]:
+    """Rows as columns of a terminal, two spaces between them."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return [
+        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+        for row in rows
+    ]
