@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import replace
 from html import unescape
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,7 +19,7 @@ from thermogear.case.case import GearCase, gear_case, load_case
 from thermogear.case.family import family
 from thermogear.case.points import largest_fluctuation
 from thermogear.results.result import Result
-from thermogear.study.thesis_pair import Steps, thesis_pair
+from thermogear.study.thesis_pair import thesis_pair
 from thermogear.views.page import Table, render
 from thermogear.views.plots import temperature
 from thermogear.views.write import page_of
@@ -27,7 +28,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::thermogear.base.errors.Validity
 SMALL = ["grid.path_positions=21", "grid.mesh_positions=32", "simulation.periods=16",
          "simulation.samples=32", "grid.harmonics=8", "simulation.discard=100"]  # fmt: skip
 TWO_SPEEDS = 'operating.speed=["1500 rpm", "9000 rpm"]'
-STEPS = Steps(temperatures=(353.15, 393.15), values=7)
+STEPS: dict[str, Any] = {"temperatures": (353.15, 393.15), "values": 7}
 
 
 def own(*changes: str) -> GearCase:
@@ -48,12 +49,12 @@ def _told() -> Iterator[None]:
 
 @pytest.fixture(scope="module")
 def moving() -> Result:
-    return thesis_pair(own(TWO_SPEEDS), STEPS)
+    return thesis_pair(own(TWO_SPEEDS), **STEPS)
 
 
 @pytest.fixture(scope="module")
 def jammed() -> Result:
-    return thesis_pair(own("backlash.value=0.02 mm"), STEPS)
+    return thesis_pair(own("backlash.value=0.02 mm"), **STEPS)
 
 
 def test_a_factor_scales_the_fluctuation_of_the_stiffness_and_nothing_else() -> None:
@@ -92,7 +93,7 @@ def test_the_point_nearest_to_resonance_is_taken(moving: Result) -> None:
     assert abs(faster - 1.0) < abs(slower - 1.0)
     assert float(mesh["pinion_speed"].item()) == pytest.approx(9000.0 * np.pi / 30.0)
     with pytest.raises(InputError, match=re.escape("--operating: got 3; allowed 1..2")):
-        thesis_pair(own(TWO_SPEEDS), replace(STEPS, operating=2))
+        thesis_pair(own(TWO_SPEEDS), operating=3)
 
 
 def test_every_temperature_has_its_four_views(moving: Result) -> None:
@@ -154,9 +155,9 @@ def test_pages_have_no_empty_table_and_speak_of_a_jam_where_one_is(
 def test_temperatures_that_a_material_does_not_have_are_left_out() -> None:
     """POM's modulus ends at 133.6 degC; without any that it has the first is refused."""
     plastic = own('gears.pinion.material="POM"', "operating.torque=1 N m")
-    found = thesis_pair(plastic, Steps(temperatures=(333.15, 433.15), values=3))
+    found = thesis_pair(plastic, temperatures=(333.15, 433.15), values=3)
     assert found.groups["temperature"]["gear_temperature"].values.tolist() == [333.15]
     told = page_of(found).figures["findings"]["Gear temperature"]
     assert numbers(told)[-2:] == [160.0, 133.6]
     with pytest.raises(InputError, match=r"^temperature of POM: got .* degC; allowed < 133\.6"):
-        thesis_pair(plastic, Steps(temperatures=(433.15,)))
+        thesis_pair(plastic, temperatures=(433.15,))

@@ -16,20 +16,16 @@ if TYPE_CHECKING:
     from thermogear.results.result import Result
 
 
-MOST_TRAINS = 10_000
-
-
-OF_A_PAIR = ("operating", "bundle", "temperatures", "values", "records", "overrides")
-"""Options that say something of CASE."""
+OPTIONS = {"records": "record", "overrides": "set"}
+"""Options of many values by their parameters."""
 
 
 @click.command()
 @click.argument("case", metavar="[CASE]", required=False)
 @delivery.output("Directory of the report; made if new.")
-@click.option("--redraw", is_flag=True, help="Draw the page anew from what DIR holds already.")
 @click.option(
     "--experiment",
-    type=int,
+    type=click.IntRange(8, 10_000),
     metavar="N",
     help="Sample N drive trains of the test rig anew, seconds each; left out, the 256 that come "
     "with the package.",
@@ -42,7 +38,9 @@ OF_A_PAIR = ("operating", "bundle", "temperatures", "values", "records", "overri
 @click.option(
     "--temperatures", metavar="FROM:TO:COUNT", help="Gear temperatures in degC [100:160:4]."
 )
-@click.option("--values", type=int, metavar="N", help="Values of each diagram [61].")
+@click.option(
+    "--values", type=click.IntRange(2, 10_000), metavar="N", help="Values of each diagram [61]."
+)
 @click.option(
     "--record", "records", multiple=True, metavar="FILE[=RPM]",
     help="A record to put beside CASE, with its pinion speed where the file does not say it. May "
@@ -53,7 +51,6 @@ OF_A_PAIR = ("operating", "bundle", "temperatures", "values", "records", "overri
 def thesis(
     case: str | None,
     output: str,
-    redraw: bool,
     experiment: int | None,
     as_json: bool,
     **options: Any,
@@ -66,25 +63,13 @@ def thesis(
     outlook. Ctrl+C keeps what is finished.
     """
     if case is not None:
-        for name, value in (("redraw", redraw), ("experiment", experiment)):
-            if value:
-                raise InputError(f"--{name}", value, why="beside CASE", fix="leave one out")
+        if experiment is not None:
+            raise InputError("--experiment", experiment, why="beside CASE", fix="leave one out")
         _redone(case, output, as_json, options)
         return
-    for name in OF_A_PAIR:
-        if options[name]:
-            option = {"records": "record", "overrides": "set"}.get(name, name)
-            value = options[name] if name not in ("records", "overrides") else options[name][0]
-            raise InputError(f"--{option}", value, why="no case is named", fix="name a CASE")
-    if experiment is not None and not 8 <= experiment <= MOST_TRAINS:
-        raise InputError("--experiment", experiment, allowed=f"8..{MOST_TRAINS} drive trains")
-    if redraw:
-        if experiment is not None:
-            raise InputError("--experiment", experiment, why="beside --redraw", fix="leave it out")
-        from thermogear.views.write import write_report
-
-        click.echo(write_report(Path(output)))
-        return
+    for name, value in options.items():
+        if value:
+            raise InputError(f"--{OPTIONS.get(name, name)}", value, why="no case is named")
     from thermogear.study.sensitivity import require_salib
 
     require_salib()
@@ -105,37 +90,30 @@ def _redone(path: str, output: str, as_json: bool, options: dict[str, Any]) -> N
     """The thesis's steps for the pair of a case file."""
     from thermogear.case.allowed import kelvin
     from thermogear.front.numbers import grid
-    from thermogear.study.thesis_pair import Steps, thesis_pair
+    from thermogear.study.thesis_pair import thesis_pair
 
-    given = {name: options[name] for name in ("values", "bundle") if options[name] is not None}
-    if options["operating"] is not None:
-        given["operating"] = options["operating"] - 1
+    names = ("operating", "bundle", "values")
+    given = {name: options[name] for name in names if options[name] is not None}
     if options["temperatures"] is not None:
-        degrees = grid("--temperatures", options["temperatures"])
-        given["temperatures"] = [kelvin("--temperatures", float(value)) for value in degrees]
-    steps = Steps(**given)
-    records = dict(_record(text) for text in options["records"])
+        degrees = grid("--temperatures", options["temperatures"]).tolist()
+        given["temperatures"] = [kelvin("--temperatures", value) for value in degrees]
+    given["records"] = dict(_record(text) for text in options["records"])
     read = delivery.load_gears(path, options["overrides"])
-
-    def make(report: Progress) -> Result:
-        return thesis_pair(read, steps, records, progress=report)
-
-    delivery.deliver(make, output, as_json=as_json)
+    delivery.deliver(
+        lambda report: thesis_pair(read, progress=report, **given), output, as_json=as_json
+    )
 
 
 def _record(text: str) -> tuple[Path, float | None]:
     """File and speed [rad/s] of ``FILE[=RPM]``."""
-    name, sign, value = text.rpartition("=")
-    path = Path(name if sign else value)
+    name, sign, value = text.rpartition("=") if not Path(text).is_file() else (text, "", "")
+    if not Path(name).is_file():
+        raise InputError("--record", repr(text), allowed="FILE or FILE=RPM, a file that there is")
     try:
-        rpm = float(value) if sign else None
+        speed = float(value) * RPM if sign else None
     except ValueError:
-        rpm = float("nan")
-    if rpm is not None and not 0.0 < abs(rpm) < 1e6:
-        raise InputError("--record", repr(text), allowed="FILE=RPM, below 1e6 rpm")
-    if not path.is_file():
-        raise InputError("--record", str(path), why="there is no such file")
-    return path, None if rpm is None else rpm * RPM
+        raise InputError("--record", repr(text), allowed="FILE=RPM, a number of rpm") from None
+    return Path(name), speed
 
 
 @click.command()

@@ -298,24 +298,27 @@ def _printed(printed: Printed, names: Sequence[str], quantity: str, number: int)
     return found if any(found) else ()
 
 
+def _misprinted(row: Row) -> dict[int, tuple[float, float]]:
+    """Place of each model whose printed error its entries cannot give -> the errors [%] they can."""
+    found = {}
+    for place, (simulated, text) in enumerate(zip(row.simulated, row.printed, strict=False)):
+        ends = rounded_error(simulated=simulated, measured=row.measured, quantity=row.quantity)
+        if text and not allowed(text, low=ends[0], high=ends[1]):
+            found[place] = ends
+    return found
+
+
 def _misprints(rows: Sequence[Row], names: Sequence[str]) -> list[Notice]:
-    notices = []
-    for row in rows:
-        for name, simulated, text in zip(names, row.simulated, row.printed or (), strict=False):
-            if not text:
-                continue
-            low, high = rounded_error(
-                simulated=simulated, measured=row.measured, quantity=row.quantity
-            )
-            if not allowed(text, low=low, high=high):
-                notices.append(
-                    Notice(
-                        "important",
-                        f"{row.speed / RPM:.0f} rpm, {row.quantity}, {name}: printed {text} %, "
-                        f"recomputed {100.0 * abs(simulated / row.measured - 1.0):.2f} %, "
-                        f"{low:.2f} to {high:.2f} % as the entries are rounded",
-                    )
-                )
+    notices = [
+        Notice(
+            "important",
+            f"{row.speed / RPM:.0f} rpm, {row.quantity}, {names[place]}: printed "
+            f"{row.printed[place]} %, recomputed {100.0 * abs(row.errors[place]):.2f} %, "
+            f"{low:.2f} to {high:.2f} % as the entries are rounded",
+        )
+        for row in rows
+        for place, (low, high) in _misprinted(row).items()
+    ]
     wrong = [row for row in rows if row.verdict.startswith("impossible")]
     if wrong:
         notices.append(
@@ -390,6 +393,11 @@ def result_of(found: Comparison) -> Result:
         where=("row", column(rows, "where")),
         verdict=("row", column(rows, "verdict")),
     )
+    if any(row.printed for row in rows):
+        table = table.assign_coords(
+            printed=(("row", "model"), [row.printed or [""] * len(found.models) for row in rows]),
+            misprinted=("row", [int(bool(_misprinted(row))) for row in rows]),
+        )
     said = label(
         {
             "pinion_speed": (("speed",), column(implied, "speed")),

@@ -9,7 +9,7 @@ and ``diagrams/PARAMETER``, ``comparison``.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -56,74 +56,59 @@ FOLLOWED = 12
 second of processor time each, about."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Steps:
-    """What is asked: ``operating`` point from 0 (None: the one nearest the resonance of the mean
-    stiffness), ``bundle`` ("": the first), gear ``temperatures`` [K], ``values`` of each diagram.
-    """
-
-    operating: int | None = None
-    bundle: str = ""
-    temperatures: Sequence[float] = TEMPERATURES
-    values: int = 61
-
-    def __post_init__(self) -> None:
-        if not 2 <= self.values <= 10_000:
-            raise InputError("--values", self.values, allowed="2..10000")
-
-
 def thesis_pair(
     case: GearCase,
-    steps: Steps | None = None,
+    *,
+    operating: int | None = None,
+    bundle: str = "",
+    temperatures: Sequence[float] = TEMPERATURES,
+    values: int = 61,
     records: Mapping[Path, float | None] | None = None,
     progress: Progress = silent,
 ) -> Result:
-    """The steps of the thesis for one operating point of ``case``.
+    """The steps of the thesis for one ``operating`` point of ``case``, from 1, under one bundle.
 
+    Left out, the point is the one nearest to the resonance of the mean stiffness, undeformed, and
+    the bundle the first. ``temperatures`` [K] of the gears; ``values`` of each diagram.
     ``records``: file -> nominal speed [rad/s] of the pinion, None where the record says it; they
     are compared with the case at all its speeds. After Ctrl+C what was finished, once the motion
     over temperature is there; ``interrupted`` says so.
     """
-    steps = Steps() if steps is None else steps
-    alone, point = _alone(case, steps)
-    kept, refused = _possible(alone, steps.temperatures)
-    wanted = replace(alone, pictures=("motion", "temperature"), gear_temperatures=kept)
+    alone, point = _alone(case, operating, bundle)
+    kept, left_out = _possible(alone, temperatures)
     beside = _beside(case, records, progress) if records else {}
-    ran = run(wanted, progress=progress)
-    groups = {**ran.groups, **beside}
+    ran = run(
+        replace(alone, pictures=("motion", "temperature"), gear_temperatures=kept),
+        progress=progress,
+    )
+    groups, cut = {**ran.groups, **beside}, False
     matches: dict[str, list[dict[str, Any]]] = {}
-    cut = False
     try:
-        if not point.jammed.any():
-            for name, values in _axes(alone, point, steps.values).items():
-                both = _overlaid(alone, name, values, progress)
-                groups[PREFIX + name] = both.data
-                matches[name] = both.rows("matches")
+        for name, axis in _axes(alone, point, values).items():
+            both = _overlaid(alone, name, axis, progress)
+            groups[PREFIX + name] = both.data
+            matches[name] = both.rows("matches")
     except KeyboardInterrupt:
         cut = True
     told = tuple(friction_notices(alone, groups))
     return replace(ran, kind=KIND, groups=groups, notices=told).with_(
-        interrupted=cut, left_out=refused, matches=matches
+        interrupted=cut, left_out=left_out, matches=matches
     )
 
 
-def _alone(case: GearCase, steps: Steps) -> tuple[GearCase, Points]:
+def _alone(case: GearCase, operating: int | None, bundle: str) -> tuple[GearCase, Points]:
     """The case with the chosen bundle and point alone, and this point undeformed."""
     at = case.stated
-    names = ("pinion_speed", "pinion_torque")
-    every = GearFamily(case, names, steps.bundle, UNDEFORMED)
+    every = GearFamily(case, ("pinion_speed", "pinion_torque"), bundle, UNDEFORMED)
     points = every(np.stack([at.speed, at.torque], axis=1))
-    place, count = steps.operating, at.speed.size
-    if place is None:
-        ratio = np.where(points.jammed, np.nan, points.mesh_frequency / points.rate)
-        far = np.abs(ratio - 1.0)
-        place = 0 if np.isnan(far).all() else int(np.nanargmin(far))
-    if not 0 <= place < count:
-        raise InputError("--operating", place + 1, allowed=f"1..{count}")
+    far = np.where(points.jammed, np.inf, np.abs(points.mesh_frequency / points.rate - 1.0))
+    place = int(np.argmin(far)) if operating is None else operating - 1
+    if not 0 <= place < far.size:
+        raise InputError("--operating", operating, allowed=f"1..{far.size}")
     here = np.array([place])
     alone = replace(
         case,
-        models=tuple(m for m in case.models if m.name == every.bundle),
+        models=(every.model,),
         speeds=(float(at.speed[place]),),
         torques=(float(at.torque[place]),),
         stated=replace(at, speed=at.speed[here], torque=at.torque[here]),
@@ -136,35 +121,41 @@ def _possible(
 ) -> tuple[tuple[float, ...], list[dict[str, Any]]]:
     """The temperatures [K] that the materials have, and the others with the reason.
 
-    Raises that of the first where they have none.
+    Raises that of the last where they have none.
     """
     kept: list[float] = []
-    refused: list[InputError] = []
     left: list[dict[str, Any]] = []
     for value in temperatures:
         try:
             ThermalState.at(value).quantities(case, case.models[0], ("half_backlash",))
             kept.append(value)
         except InputError as error:
-            refused.append(error)
             why = f"{error.field}: allowed {error.allowed}, {error.why}"
             left.append({"gear_temperature_K": value, "why": why})
-    if not kept:
-        raise refused[0]
+            if len(left) == len(temperatures):
+                raise
     return tuple(kept), left
 
 
 def _axes(case: GearCase, point: Points, count: int) -> dict[str, Floats]:
-    """Parameter -> its values [SI]: the ranges above, and the case's own value within them."""
+    """Parameter -> its values [SI]: the ranges above with the case's own value; none without gap.
+
+    A stiffness that does not fluctuate has no axis of its fluctuation.
+    """
+    if point.jammed.any():
+        return {}
     critical = float(np.copysign(point.rate[0], case.speeds[0])) / case.pair.pinion.teeth
+    most = float(largest_fluctuation(point)[0])
     ends = {
         "damping_ratio": (*DAMPING, case.damping_ratio),
         "pinion_speed": (*(part * critical for part in SPEEDS), case.speeds[0]),
+        FLUCTUATION: tuple(part * most for part in PARTS),
     }
-    most = float(largest_fluctuation(point)[0])
-    if np.isfinite(most):
-        ends[FLUCTUATION] = tuple(part * most for part in PARTS)
-    return {name: np.linspace(min(some), max(some), count) for name, some in ends.items()}
+    return {
+        name: np.linspace(min(some), max(some), count)
+        for name, some in ends.items()
+        if np.isfinite(some).all()
+    }
 
 
 def _beside(
@@ -189,7 +180,10 @@ def _overlaid(case: GearCase, name: str, values: Floats, progress: Progress) -> 
     plans = [case_diagram(case, name, values, state=state) for state in states]
     words = PARAMETERS[name].words
     found = [
-        gather(plan, progress=lambda done, total, at=state.words: progress(f"{words}, {at}", done, total))
+        gather(
+            plan,
+            progress=lambda done, total, at=state.words: progress(f"{words}, {at}", done, total),
+        )
         for plan, state in zip(plans, states, strict=True)
     ]
     return overlaid(

@@ -277,7 +277,8 @@ def comparison_table(data: xr.Dataset) -> Table:
     head: list[Cell] = ["speed [rpm]", "quantity", "verdict", "measured", *models]
     if placed:
         head.insert(1, "channel: place, axis; line")
-    head += [f"error {name} [%]" for name in models]
+    printed, blank = "printed" in data.coords, [""] * len(models)
+    head += [f"error {name} [%]{', printed | recomputed' * printed}" for name in models]
     head += [html_symbol(f"{u} [%]") for u in ("u_num", "u_input", "u_D", "u_val")]
     rows: list[list[str | Markup]] = []
     for place in range(data.sizes["row"]):
@@ -292,13 +293,40 @@ def comparison_table(data: xr.Dataset) -> Table:
                 number(float(one["measured_value"]) * factor, 5),
                 *(number(float(v) * factor, 5) for v in one["simulated_value"].values),
                 *(
-                    f"{100 * float(v):+.2f}".replace("-", "−")
-                    for v in one["comparison_error"].values
+                    f"{text} | {100 * v:+.2f}".removeprefix(" | ").replace("-", "−")
+                    for v, text in zip(
+                        one["comparison_error"].values.tolist(),
+                        one["printed"].values if printed else blank,
+                        strict=True,
+                    )
                 ),
                 *(f"{100 * float(one[u]):.2f}" for u in ("u_num", "u_input", "u_data", "u_val")),
             ]
         )
-    return Table("Error: (simulated − measured)/measured.", head, rows, names=3 + bool(placed))
+    marked = np.flatnonzero(data["misprinted"].values).tolist() if printed else []
+    wrong = " Marked: a printed error that its entries cannot give, however they were rounded."
+    return Table(
+        f"Error: (simulated − measured)/measured.{wrong * bool(marked)}", head, rows,
+        names=3 + bool(placed), marked=frozenset(marked),
+    )  # fmt: skip
+
+
+def implied_table(implied: xr.Dataset) -> Table:
+    """Acceleration, speed and distance from the mesh line that measured lines imply."""
+    lines: list[list[str | Markup]] = [
+        [
+            number(float(implied["pinion_speed"].values[i]) / RPM, 4),
+            f"{float(implied['implied_acceleration'].values[i]) / STANDARD_GRAVITY:.1f}",
+            _maybe(float(implied["implied_shaft_speed"].values[i]) / RPM, 1),
+            _maybe(float(implied["mesh_line_offset"].values[i]), 2),
+            _maybe(float(implied["line_bin_offset"].values[i]), 2),
+        ]
+        for i in range(implied.sizes["speed"])
+    ]
+    names = [
+        "speed [rpm]", "implied a [g]", "implied speed [rpm]", "off mesh [Hz]", "off mesh [bins]",
+    ]  # fmt: skip
+    return Table("What the measured lines imply.", names, lines, names=0)
 
 
 def _comparison(results: Result) -> Section | None:
@@ -307,25 +335,7 @@ def _comparison(results: Result) -> Section | None:
         return None
     blocks: list[Block] = [comparison_table(data)]
     implied = results.group("implied")
-    if implied is not None:
-        lines: list[list[str | Markup]] = [
-            [
-                number(float(implied["pinion_speed"].values[i]) / RPM, 4),
-                f"{float(implied['implied_acceleration'].values[i]) / STANDARD_GRAVITY:.1f}",
-                _maybe(float(implied["implied_shaft_speed"].values[i]) / RPM, 1),
-                _maybe(float(implied["mesh_line_offset"].values[i]), 2),
-                _maybe(float(implied["line_bin_offset"].values[i]), 2),
-            ]
-            for i in range(implied.sizes["speed"])
-        ]
-        names = [
-            "speed [rpm]",
-            "implied a [g]",
-            "implied speed [rpm]",
-            "off mesh [Hz]",
-            "off mesh [bins]",
-        ]
-        blocks.append(Table("What the measured lines imply.", names, lines, names=0))
+    blocks += [implied_table(implied)] if implied is not None else []
     return Section("comparison", "Comparison", blocks, folded=False)
 
 

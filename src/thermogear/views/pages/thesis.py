@@ -11,7 +11,6 @@ import numpy as np
 from markupsafe import Markup
 
 from thermogear.base.display import celsius
-from thermogear.base.units import RPM
 from thermogear.results.result import Result
 from thermogear.views.page import (
     LEAD,
@@ -29,6 +28,7 @@ from thermogear.views.page import (
 )
 from thermogear.views.pages import captions, gear_sections, rig_trains, row_sections
 from thermogear.views.pages.background import background
+from thermogear.views.pages.record import comparison_table, implied_table
 from thermogear.views.pages.sensitivity import sensitivity_section
 from thermogear.views.plots import claims as plots
 from thermogear.views.typesetting import html_symbol, prose
@@ -342,43 +342,10 @@ def _tests(results: Result, pictures: Pictures) -> list[Block]:
         "processing leaves open: a smaller difference of two bars tells nothing.",
         data, ("u_val",), lambda: plots.experiment(data),
     )  # fmt: skip
-    found: list[Block] = [_experiment_table(data), *pictures.take()]
+    found: list[Block] = [comparison_table(data)]
+    found += [implied_table(results.groups["implied"]), *pictures.take()]
     found += rig_trains.blocks(results, pictures)
     return found + _blocks(gear_sections.vibration(results, pictures))
-
-
-def _experiment_table(data: xr.Dataset) -> Table:
-    rows: list[list[Cell]] = []
-    marked: set[int] = set()
-    for k in range(data.sizes["entry"]):
-        one = data.isel(entry=k)
-        wrong = [
-            f"{float(one[f'{n}_error']):.{len(str(one[f'{n}_printed'].item()).partition('.')[2])}f}"
-            != str(one[f"{n}_printed"].item())
-            for n in ("with", "without")
-        ]
-        if any(wrong):
-            marked.add(k)
-        unit = "Hz" if one["quantity"].item() == "frequency" else "µm"
-        rows.append([
-            f"{float(one['speed']) / RPM:.0f} rpm",
-            f"{one['quantity'].item()} [{unit}]",
-            str(one["verdict"].item()).partition(":")[0],
-            *(f"{float(one[f'{n}_value']):g}" for n in ("with", "without")),
-            f"{float(one['measured']):g}",
-            *(f"{one[f'{n}_printed'].item()} | {float(one[f'{n}_error']):.2f}"
-              for n in ("with", "without")),
-            f"{float(one['u_val']):.1f}",
-            f"{float(one['implied_rpm']):.1f}",
-            f"{float(one['implied_g']):.1f}",
-        ])  # fmt: skip
-    head: list[Cell] = [
-        "speed", "quantity", "what can be told", "with heat", "without heat", "measured",
-        "error with heat [%], printed | recomputed", "error without heat [%], printed | recomputed",
-        "u_val [%]", "implied speed [rpm]", "implied [g]",
-    ]  # fmt: skip
-    caption = "The table of section 5.2 recomputed; rows with a misprinted error are marked."
-    return Table(caption, head, rows, names=3, marked=frozenset(marked))
 
 
 # --- figures as the terminal and JSON want them -----------------------------------------------

@@ -98,9 +98,7 @@ def over_grid(data: xr.Dataset, name: str, unit: str, scale: float = 1.0) -> Pic
 
 def warming(data: xr.Dataset) -> Picture:
     """The largest Floquet multiplier over temperature, and where it reaches the border."""
-    panel = Panel(
-        Axis("gear temperature T [°C]"), Axis("largest Floquet multiplier, modulus [–]")
-    )
+    panel = Panel(Axis("gear temperature T [°C]"), Axis("largest Floquet multiplier, modulus [–]"))
     celsius = data["temperature"].values - ZERO_CELSIUS
     for row, colour in (("thesis", HOT), ("consistent", MIXED)):
         modulus = data["multiplier"].sel(row=row).values
@@ -122,21 +120,22 @@ def warming(data: xr.Dataset) -> Picture:
 
 def experiment(data: xr.Dataset) -> Picture:
     """Errors of the displacement, printed and recomputed, beside the validation uncertainty."""
-    here = data.isel(entry=np.flatnonzero(data["quantity"].values == "displacement"))
-    rpm = here["speed"].values / RPM
+    here = data.isel(row=np.flatnonzero(data["quantity"].values == "displacement"))
+    rpm = here["pinion_speed"].values / RPM
     place = np.arange(rpm.size)
     panel = Panel(
         Axis("pinion speed [rpm]", ticks=place, names=[f"{v:.0f}" for v in rpm]),
         Axis("error of the displacement [%]"),
     )
-    words = "validation uncertainty u_val"
-    panel.bars(place, here["u_val"].values, width=0.86, colour=FAINT, label=words, order=0.6)
-    for shift, name, colour in ((-0.2, "with", HOT), (0.2, "without", COLD)):
+    words, uncertain = "validation uncertainty u_val", 100.0 * here["u_val"].values
+    panel.bars(place, uncertain, width=0.86, colour=FAINT, label=words, order=0.6)
+    for column, (shift, colour) in enumerate(((-0.2, HOT), (0.2, COLD))):
+        one = here.isel(model=column)
         panel.bars(
-            place + shift, here[f"{name}_error"].values, width=0.36, colour=colour,
-            label=f"{name} heat, recomputed",
+            place + shift, 100.0 * np.abs(one["comparison_error"].values), width=0.36,
+            colour=colour, label=f"{one['model'].item()}, recomputed",
         )  # fmt: skip
-        printed = [float(v) for v in here[f"{name}_printed"].values]
+        printed = [float(v) for v in one["printed"].values]
         panel.points(
             place + shift, printed, marker="level", size=14, colour=INK, label="as printed"
         )
