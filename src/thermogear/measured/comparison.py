@@ -299,12 +299,12 @@ def _printed(printed: Printed, names: Sequence[str], quantity: str, number: int)
 
 
 def _misprinted(row: Row) -> dict[int, tuple[float, float]]:
-    """Place of each model whose printed error its entries cannot give -> the errors [%] they can."""
+    """Place of a model whose printed error its entries cannot give -> the errors [%] they can."""
     found = {}
     for place, (simulated, text) in enumerate(zip(row.simulated, row.printed, strict=False)):
-        ends = rounded_error(simulated=simulated, measured=row.measured, quantity=row.quantity)
-        if text and not allowed(text, low=ends[0], high=ends[1]):
-            found[place] = ends
+        low, high = rounded_error(simulated=simulated, measured=row.measured, quantity=row.quantity)
+        if text and not allowed(text, low=low, high=high):
+            found[place] = low, high
     return found
 
 

@@ -114,15 +114,18 @@ def _warming(result: Result, pictures: Pictures) -> Told:
                 f"{number(sizes[0], 4)} to {number(sizes[1], 4)} in modulus"
             )
         lines = any(float(one[HALF]) > ROUNDING * float(one[SWING]) for one in there.values())
-        ends = f"goes from {_micro(first, HALF)} to {_micro(last, HALF)} µm"
-        told.append(f"its line at half the mesh frequency {ends if lines else 'is none'}")
+        ends = f"whose height goes from {_micro(first, HALF)} to {_micro(last, HALF)} µm"
+        told.append(f"it has {'a' if lines else 'no'} line at half the mesh frequency")
+        told[-1] += f", {ends}" * lines
         section = gear_sections.row(result, pictures)
         blocks = [one for one in section.blocks if one.kind != "text"] if section else []
     for status, words in ((JAMMED, _no_gap(points)), (LOST, UNSETTLED)):
         where = [_at(one) for one in points if int(one["status"]) == status]
         told += [f"at {', '.join(where)} {words}"] * bool(where)
     left = result.rows("left_out")
-    told += [f"{celsius(one['gear_temperature_K'])} is left out, {one['why']}" for one in left]
+    for why in dict.fromkeys(str(one["why"]) for one in left):
+        where = [celsius(one["gear_temperature_K"]) for one in left if one["why"] == why]
+        told.append(f"{', '.join(where)} left out, {why}")
     return _sentence(told), blocks
 
 
@@ -148,7 +151,9 @@ def _diagram(name: str, result: Result, pictures: Pictures) -> Told:
     rows = result.table("matches")[name]
     here = [overlay.state_of(data, place) for place in range(len(states))]
     ends = [exactly(float(v), 4) for v in shown(name, data[name].values[[0, -1]])]
-    told = [f"{state} {_shares(one)}" for state, one in zip(states, here, strict=True)]
+    motions = [_shares(one) for one in here]
+    told = [f"{state} {words}" for state, words in zip(states, motions, strict=True)]
+    told = told if len(set(motions)) > 1 else [f"{' and '.join(states)} alike {motions[0]}"]
     counts = [f"{one.sizes.get('bifurcation', 0)} {s}" for s, one in zip(states, here, strict=True)]
     matched = sum(row["partner"] == "matched" for row in rows)
     told.append(
