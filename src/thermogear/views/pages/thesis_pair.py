@@ -166,10 +166,11 @@ def _diagram(name: str, result: Result, pictures: Pictures) -> Told:
             f"diagram-{name}", "Undeformed and hot", overlay.CAPTION, data, (),
             lambda: overlay.overlay_picture(data, states, rows), wide=True,
         )  # fmt: skip
-    blocks = pictures.take()
-    if rows:
-        both = Result.of("overlay", "", {"states": data}, matches=rows, states=states)
-        blocks.append(Table(overlay.FOLLOWED, *overlay.table_of(both)))
+    blocks, kept = pictures.take(), [row for row in rows if row["partner"] != "not followed"]
+    if kept:
+        left = f" {len(rows) - len(kept)} more were not followed." * (len(kept) < len(rows))
+        both = Result.of("overlay", "", {"states": data}, matches=kept, states=states)
+        blocks.append(Table(overlay.FOLLOWED + left, *overlay.table_of(both)))
     return _sentence([f"from {' to '.join(ends)} {PARAMETERS[name].shown}".strip(), *told]), blocks
 
 
