@@ -173,10 +173,7 @@ def _diagram_caption(data: xr.Dataset) -> str:
 def _sweep_caption(data: xr.Dataset) -> str:
     words = "Every point from the case's own start."
     rest = [str(name) for name in data["label"].dims[2:]]
-    at = [
-        f"{page_words(name, data[name])} {number(float(shown(name, data[name][0])))}"
-        for name in rest
-    ]
+    at = [f"{page_words(n, data[n])} {number(float(shown(n, data[n][0])))}" for n in rest]
     return f"{words} Drawn at {', '.join(at)}." if at else words
 
 
@@ -277,7 +274,10 @@ def _lost_table(data: xr.Dataset) -> Table:
     rows = []
     for place, value in enumerate(shown(name, data[name])):
         here = [what for what, flags in lost.items() if flags[..., place].any()]
-        motions, free, forces = (
+        free = [what for what in here if what.startswith("bearing ")]
+        if len(free) == data.sizes["bearing"] > 1:
+            here = [*(what for what in here if what not in free), "every bearing is free at times"]
+        motions, shares, forces = (
             " / ".join(dict.fromkeys(words(one) for one in values[..., place].ravel()))
             for values, words in (
                 (code, lambda one: sweeps.CLASSES[int(one)][0]),
@@ -286,7 +286,7 @@ def _lost_table(data: xr.Dataset) -> Table:
             )
         )
         jump = "two motions: one of them jumps" if apart[place] else "one motion"
-        rows.append([exactly(value), motions, jump, "; ".join(here) or "nothing", free, forces])
+        rows.append([exactly(value), motions, jump, "; ".join(here) or "nothing", shares, forces])
     head = [page_words(name, data[name]), "motion", "up and down", "what loses contact",
             "drive flank apart [% of the time]", "greatest force of the teeth [N]"]  # fmt: skip
     return Table("Contact over the parameter; up / down where they differ.", head, rows)
