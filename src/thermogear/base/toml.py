@@ -142,14 +142,15 @@ def at_the_ends(data: dict[str, Any], *, moved: bool = False) -> dict[str, Any]:
     more, kept = [], []
     for one in shafts:
         named = one.get("bearings") if isinstance(one, dict) else None
-        types = [named] if isinstance(named, str) else named
+        types: Any = [named] if isinstance(named, str) else named
         known = isinstance(one, dict) and one.get("gear") in ("pinion", "wheel")
-        texts = isinstance(types, list) and all(isinstance(t, str) for t in types)
-        if known and texts and 1 <= len(types) <= 2:  # else the shaft itself says what is wrong
+        fits = isinstance(types, list) and 1 <= len(types) <= 2
+        if not known or not fits or not all(isinstance(t, str) for t in types):
+            kept.append(one)  # the shaft itself says what is wrong
+        else:
             ends = zip(("left", "right"), (types[0], types[-1]), strict=True)
             more += [{"shaft": one["gear"], "end": end, "type": t} for end, t in ends]
-            one = {key: value for key, value in one.items() if not (moved and key == "bearings")}
-        kept.append(one)
+            kept.append({k: v for k, v in one.items() if not (moved and k == "bearings")})
     return {**data, "shafts": kept, "bearings": [*bearings, *more]} if more else data
 
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from thermogear.base.display import exactly, number
 from thermogear.base.units import ZERO_CELSIUS
@@ -272,21 +273,23 @@ def _lost_table(data: xr.Dataset) -> Table:
     code, apart = sweeps.classes_of(data), ways_apart(data)
     lost = things(data)
     rows = []
-    for place, value in enumerate(shown(name, data[name])):
+    values: tuple[tuple[NDArray[Any], Callable[[Any], str]], ...] = (
+        (code, lambda one: sweeps.CLASSES[int(one)][0]),
+        (data["drive_free_share"].values, lambda one: number(100.0 * one)),
+        (data["greatest_mesh_force"].values, lambda one: number(one, 4)),
+    )
+    for place, at in enumerate(shown(name, data[name])):
         here = [what for what, flags in lost.items() if flags[..., place].any()]
         free = [what for what in here if what.startswith("bearing ")]
         if len(free) == data.sizes["bearing"] > 1:
             here = [*(what for what in here if what not in free), "every bearing is free at times"]
         motions, shares, forces = (
-            " / ".join(dict.fromkeys(words(one) for one in values[..., place].ravel()))
-            for values, words in (
-                (code, lambda one: sweeps.CLASSES[int(one)][0]),
-                (data["drive_free_share"].values, lambda one: number(100.0 * one)),
-                (data["greatest_mesh_force"].values, lambda one: number(one, 4)),
-            )
+            " / ".join(dict.fromkeys(words(one) for one in every[..., place].ravel()))
+            for every, words in values
         )
-        jump = "two motions: one of them jumps" if apart[place] else "one motion"
-        rows.append([exactly(value), motions, jump, "; ".join(here) or "nothing", shares, forces])
+        ways = "two motions: one of them jumps" if apart[place] else "one motion"
+        lose = "; ".join(here) or "nothing"
+        rows.append([exactly(float(at)), motions, ways, lose, shares, forces])
     head = [page_words(name, data[name]), "motion", "up and down", "what loses contact",
             "drive flank apart [% of the time]", "greatest force of the teeth [N]"]  # fmt: skip
     return Table("Contact over the parameter; up / down where they differ.", head, rows)
