@@ -19,6 +19,7 @@ from thermogear.base.parameters import (
     long_name,
     named,
 )
+from thermogear.base.toml import dotted
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.case.dimensionless_schema import DimensionlessFile
 from thermogear.case.fields import BODY, Count, Measure, Number, Reader, Several
@@ -37,6 +38,7 @@ def gear_parameter(name: str, option: str = "parameter") -> Parameter:
 
     Raises :class:`InputError` where there is no such field, or none that holds numbers.
     """
+    name = dotted(name)
     if "." not in name:
         try:
             return named(name, (*GEARS, *LANE), option)

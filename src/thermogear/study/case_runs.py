@@ -13,12 +13,14 @@ from typing import Any
 import numpy as np
 
 from thermogear.base.errors import InputError
-from thermogear.base.toml import literal, overridden, pairs
+from thermogear.base.toml import entries_of, held, overridden, pairs
 from thermogear.case.allowed import gear_parameter
 from thermogear.case.base import Case
 from thermogear.case.case import GearCase, gear_case, load_case
 from thermogear.results.result import Notice
 
+AMPLITUDE = "transmission_error.amplitude"
+"""What is no field of the case: the amplitudes of all harmonics."""
 DRAWINGS = 8
 """Drawings of flanks of a class, seeds 1 to 8, that say how far another pair of gears may be."""
 
@@ -86,18 +88,16 @@ class CaseRuns:
             )
 
 
-def _stated(text: str, changes: Mapping[str, str], name: str) -> str:
+def _stated(data: Mapping[str, Any], name: str) -> str:
     """A field as the case states it, as text."""
-    value: Any = overridden(tomllib.loads(text), pairs(changes))
-    for part in name.split("."):
-        if not isinstance(value, dict) or part not in value:
-            raise InputError(
-                "tolerances",
-                repr(name),
-                why="the case states no such field",
-                fix=f"state {name} in the case, or leave its tolerance out",
-            )
-        value = value[part]
+    depth, value = held(data, name)
+    if depth < len(name.split(".")):
+        raise InputError(
+            "tolerances",
+            repr(name),
+            why="the case states no such field",
+            fix=f"state {name} in the case, or leave its tolerance out",
+        )
     if not isinstance(value, (str, int, float)) or isinstance(value, bool):
         raise InputError(
             "tolerances",
@@ -123,16 +123,13 @@ def overrides_of(text: str, changes: Mapping[str, str], name: str, factor: float
     ``name``: a gear parameter by any of its names, or a dotted field;
     "transmission_error.amplitude" means the amplitudes of all its harmonics.
     """
-    if name != "transmission_error.amplitude":
-        fields = gear_parameter(name, "tolerances").fields
-        return {one: scaled(_stated(text, changes, one), factor) for one in fields}
-    field = "transmission_error.harmonics"
-    table = overridden(tomllib.loads(text), pairs(changes)).get("transmission_error", {})
-    rows = table.get("harmonics", [])
-    if not rows:
+    data = overridden(tomllib.loads(text), pairs(changes))
+    if name == AMPLITUDE and not data.get("transmission_error", {}).get("harmonics"):
         raise InputError("parameters", repr(name), why="the case states no transmission error")
-    parts = []
-    for row in rows:
-        grown = {**row, "amplitude": scaled(str(row["amplitude"]), factor)}
-        parts.append(grown)
-    return {field: literal(parts)}
+    meant = "transmission_error.harmonics.all.amplitude" if name == AMPLITUDE else name
+    places = [
+        place
+        for field in gear_parameter(meant, "tolerances").fields
+        for place in entries_of(data, field)
+    ]
+    return {place: scaled(_stated(data, place), factor) for place in places}

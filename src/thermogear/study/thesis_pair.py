@@ -105,15 +105,10 @@ def _alone(case: GearCase, operating: int | None, bundle: str) -> tuple[GearCase
     place = int(np.argmin(far)) if operating is None else operating - 1
     if not 0 <= place < far.size:
         raise InputError("--operating", operating, allowed=f"1..{far.size}")
-    here = np.array([place])
-    alone = replace(
-        case,
-        models=(every.model,),
-        speeds=(float(at.speed[place]),),
-        torques=(float(at.torque[place]),),
-        stated=replace(at, speed=at.speed[here], torque=at.torque[here]),
-    )
-    return alone, points.take(here)
+    speed, torque = float(at.speed[place]), float(at.torque[place])
+    values = {"pinion_speed": speed, "pinion_torque": torque}
+    alone = case.with_values(values, told=False) if far.size > 1 else case
+    return replace(alone, models=(every.model,)), points.take(np.array([place]))
 
 
 def _possible(

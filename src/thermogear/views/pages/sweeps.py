@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from thermogear.base.display import number
+from thermogear.base.display import exactly, number
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import ASSUMED, FASTER_RULE
 from thermogear.results.result import Result
 from thermogear.views.page import LEAD, Block, Page, Pictures, Section, Table, Text
-from thermogear.views.pages.findings import finding
+from thermogear.views.pages.findings import finding, ways_apart
 from thermogear.views.pages.lost_words import lost_words
 from thermogear.views.pages.sweep_numbers import JUMPS_AT, lines, numbers
 from thermogear.views.picture import Picture
@@ -23,6 +24,7 @@ from thermogear.views.plots.lost_contact import (
     has_lost,
     lost_contact_picture,
     map_picture,
+    things,
 )
 from thermogear.views.plots.parameters import page_words, shown
 
@@ -172,7 +174,7 @@ def _diagram_caption(data: xr.Dataset) -> str:
 def _sweep_caption(data: xr.Dataset) -> str:
     words = "Every point from the case's own start."
     rest = [str(name) for name in data["label"].dims[2:]]
-    at = [f"{page_words(name)} {number(float(shown(name, data[name].values[0])))}" for name in rest]
+    at = [f"{page_words(n, data[n])} {number(float(shown(n, data[n][0])))}" for n in rest]
     return f"{words} Drawn at {', '.join(at)}." if at else words
 
 
@@ -185,19 +187,19 @@ def _run_up_caption(data: xr.Dataset) -> str:
 
 
 def _points(data: xr.Dataset, result: Result) -> Section:
-    blocks: list[Block] = []
+    blocks: list[Block] = [_lost_table(data)] if result.kind == "diagram" and has_lost(data) else []
     parameter = str(data.attrs.get("parameter", "pinion_speed"))
     if data.sizes.get("bifurcation"):
         rows = [
             (
                 sweeps.KINDS[int(kind)],
                 str(int(period)),
-                number(float(shown(parameter, value)), 8),
+                number(float(value), 8),
                 "" if state is None else number(float(state) - ZERO_CELSIUS, 4),
             )
             for kind, period, value, state in _bifurcations(data)
         ]
-        head = ["kind", "period", page_words(parameter), "gears [°C]"]
+        head = ["kind", "period", page_words(parameter, data["bifurcation_value"]), "gears [°C]"]
         if not any(row[3] for row in rows):
             head, rows = head[:3], [row[:3] for row in rows]  # type: ignore[misc]
         blocks.append(Table("Located bifurcations", head, rows))
@@ -265,6 +267,34 @@ def _points(data: xr.Dataset, result: Result) -> Section:
     return Section("points", "Located points", blocks)
 
 
+def _lost_table(data: xr.Dataset) -> Table:
+    """Of every value the motion, what loses contact and the greatest force, up and down."""
+    name = str(data.attrs["parameter"])
+    code, apart = sweeps.classes_of(data), ways_apart(data)
+    lost = things(data)
+    rows = []
+    values: tuple[tuple[NDArray[Any], Callable[[Any], str]], ...] = (
+        (code, lambda one: sweeps.CLASSES[int(one)][0]),
+        (data["drive_free_share"].values, lambda one: number(100.0 * one)),
+        (data["greatest_mesh_force"].values, lambda one: number(one, 4)),
+    )
+    for place, at in enumerate(shown(name, data[name])):
+        here = [what for what, flags in lost.items() if flags[..., place].any()]
+        free = [what for what in here if what.startswith("bearing ")]
+        if len(free) == data.sizes["bearing"] > 1:
+            here = [*(what for what in here if what not in free), "every bearing is free at times"]
+        motions, shares, forces = (
+            " / ".join(dict.fromkeys(words(one) for one in every[..., place].ravel()))
+            for every, words in values
+        )
+        ways = "two motions: one of them jumps" if apart[place] else "one motion"
+        lose = "; ".join(here) or "nothing"
+        rows.append([exactly(float(at)), motions, ways, lose, shares, forces])
+    head = [page_words(name, data[name]), "motion", "up and down", "what loses contact",
+            "drive flank apart [% of the time]", "greatest force of the teeth [N]"]  # fmt: skip
+    return Table("Contact over the parameter; up / down where they differ.", head, rows)
+
+
 def _returns(data: xr.Dataset, i: int) -> str:
     """Where a run back jumps again, in words where it does not."""
     back = float(data["jump_return"].values[i])
@@ -275,6 +305,8 @@ def _returns(data: xr.Dataset, i: int) -> str:
 
 def _bifurcations(data: xr.Dataset) -> list[tuple[int, int, float, float | None]]:
     found: list[tuple[int, int, float, float | None]] = []
+    parameter = str(data.attrs.get("parameter", "pinion_speed"))
+    values = shown(parameter, data["bifurcation_value"])
     for i in range(data.sizes["bifurcation"]):
         state = None
         if "bifurcation_state" in data:
@@ -284,7 +316,7 @@ def _bifurcations(data: xr.Dataset) -> list[tuple[int, int, float, float | None]
             (
                 int(data["bifurcation_kind"].values[i]),
                 int(data["bifurcation_period"].values[i]),
-                float(data["bifurcation_value"].values[i]),
+                float(values[i]),
                 state,
             )
         )
