@@ -3,7 +3,7 @@
 One operating point under one bundle: its motion over gear temperatures, its bifurcations over
 damping, speed and stiffness fluctuation undeformed and hot, its friction mixed and dry, and its
 records beside both states. The tree is that of a run of this point (:mod:`thermogear.study.run`)
-and ``diagrams/PARAMETER``, ``comparison``.
+and ``diagrams/PARAMETER``, ``comparison``, ``play``.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from thermogear.case.thermal_state import HOT, UNDEFORMED, ThermalState
 from thermogear.measured.comparison import result_of
 from thermogear.results.result import Result
 from thermogear.study.compare import compare
-from thermogear.study.diagrams import case_diagram, overlaid
+from thermogear.study.diagrams import Train, case_diagram, overlaid
 from thermogear.study.notices import friction_notices
 from thermogear.study.run import run
 
@@ -51,6 +51,9 @@ stiffness: the second and third superharmonic resonance, the main one, and the t
 PARTS = (0.1, 0.9)
 """Fluctuations of the mesh stiffness, as parts of the one at which it would reach zero: the
 thesis's amplitudes 0.1 to 0.9, which reach zero at 1."""
+ALL_PLAY = "bearings.all.play"
+PLAYS = np.array([0.0, 20e-6, 40e-6, 60e-6])
+"""Play of all bearings [m]: none, and that of new to worn ball bearings of 30 to 50 mm bore."""
 FOLLOWED = 12
 """Bifurcations of each diagram that are followed from one state to the other, grazings last: a
 second of processor time each, about."""
@@ -88,6 +91,8 @@ def thesis_pair(
             both = _overlaid(alone, name, axis, progress)
             groups[PREFIX + name] = both.data
             matches[name] = both.rows("matches")
+        if case.train is not None:
+            groups["play"] = _played(alone, progress)
     except KeyboardInterrupt:
         cut = True
     told = tuple(friction_notices(alone, groups))
@@ -151,6 +156,12 @@ def _axes(case: GearCase, point: Points, count: int) -> dict[str, Floats]:
         for name, some in ends.items()
         if np.isfinite(some).all()
     }
+
+
+def _played(case: GearCase, progress: Progress) -> xr.Dataset:
+    """The drive train hot over the play of all its bearings, up and down."""
+    plan = case_diagram(case, ALL_PLAY, PLAYS, branch_period=0, train=Train())
+    return gather(plan, progress=lambda done, total: progress("bearing play", done, total))
 
 
 def _beside(

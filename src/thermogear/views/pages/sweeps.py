@@ -187,7 +187,7 @@ def _run_up_caption(data: xr.Dataset) -> str:
 
 
 def _points(data: xr.Dataset, result: Result) -> Section:
-    blocks: list[Block] = [_lost_table(data)] if result.kind == "diagram" and has_lost(data) else []
+    blocks: list[Block] = [lost_table(data)] if result.kind == "diagram" and has_lost(data) else []
     parameter = str(data.attrs.get("parameter", "pinion_speed"))
     if data.sizes.get("bifurcation"):
         rows = [
@@ -267,7 +267,7 @@ def _points(data: xr.Dataset, result: Result) -> Section:
     return Section("points", "Located points", blocks)
 
 
-def _lost_table(data: xr.Dataset) -> Table:
+def lost_table(data: xr.Dataset) -> Table:
     """Of every value the motion, what loses contact and the greatest force, up and down."""
     name = str(data.attrs["parameter"])
     code, apart = sweeps.classes_of(data), ways_apart(data)

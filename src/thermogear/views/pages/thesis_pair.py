@@ -18,8 +18,12 @@ from thermogear.results.result import Result
 from thermogear.views.page import Block, Gallery, Page, Pictures, Section, Table, Text, notice_lines
 from thermogear.views.pages import captions, gear_sections, overlay
 from thermogear.views.pages.background import background
+from thermogear.views.pages.findings import finding
+from thermogear.views.pages.lost_words import lost_words
 from thermogear.views.pages.record import comparison_table
+from thermogear.views.pages.sweeps import LOST_DIAGRAM, lost_table
 from thermogear.views.plots import laws
+from thermogear.views.plots.lost_contact import forces_picture
 from thermogear.views.plots.motion import label_of, moving
 from thermogear.views.plots.parameters import shown
 from thermogear.views.plots.sweeps import CLASSES, classes_of
@@ -150,7 +154,7 @@ def _diagram(name: str, result: Result, pictures: Pictures) -> Told:
     states = json.loads(str(data.attrs["state_names"]))
     rows = result.table("matches")[name]
     here = [overlay.state_of(data, place) for place in range(len(states))]
-    ends = [exactly(float(v), 4) for v in shown(name, data[name].values[[0, -1]])]
+    ends = [exactly(float(v), 4) for v in shown(name, data[name][[0, -1]])]
     motions = [_shares(one) for one in here]
     told = [f"{state} {words}" for state, words in zip(states, motions, strict=True)]
     told = told if len(set(motions)) > 1 else [f"{' and '.join(states)} alike {motions[0]}"]
@@ -215,7 +219,7 @@ def _records(result: Result, pictures: Pictures) -> Told:
 
 
 def _outlook(result: Result, pictures: Pictures) -> Told:
-    """Film regime, sensors: what the thesis leaves to later work."""
+    """Film regime, play of bearings, sensors: what the thesis leaves to later work."""
     path = result.groups["path"].isel(bundle=0, state=-1)
     if np.isfinite(path["film_parameter"].values).any():
         pictures.add(
@@ -225,8 +229,17 @@ def _outlook(result: Result, pictures: Pictures) -> Told:
             path, (), lambda: laws.film(path),
         )  # fmt: skip
     film = captions.regimes(path) or f"The film is not known: {UNSETTLED}."
+    play = result.group("play")
+    words = "The play of bearings is not varied: the case has no [[shafts]] and [[bearings]]."
+    if play is not None:
+        words = f"Over the play of all bearings: {lost_words(play)} {finding(play)}"
+        pictures.add(
+            "play", "Forces over the play of all bearings", LOST_DIAGRAM, play, (),
+            lambda: forces_picture(play), wide=True,
+        )  # fmt: skip
     sensors, table = _sensors(result)
-    return f"{film} {sensors}", [*pictures.take(), *table]
+    blocks = [*pictures.take(), *([lost_table(play)] if play is not None else []), *table]
+    return f"{film} {words} {sensors}", blocks
 
 
 def _sensors(result: Result) -> Told:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import ASSUMED, STATUS, UNDEFORMED
 from thermogear.views.picture import Axis, Panel, Picture
-from thermogear.views.plots.parameters import axis_words, shown
+from thermogear.views.plots.parameters import axis_words, parameter_of, shown
 from thermogear.views.style import COLD, FAINT, HOT, INK, OKABE_ITO, QUIET, WIDE, scale
 
 if TYPE_CHECKING:
@@ -135,7 +135,8 @@ def overlay_picture(data: xr.Dataset, states: Sequence[str], matches: Rows) -> P
         if match["kind"] in DRAWN and match["drawn"] and match["partner"] == "matched":
             ends = [match["one"], match["other"]]
             up = [_height(here, value) for here, value in zip(each, ends, strict=True)]
-            top.curve(shown(name, ends), up, colour=OKABE_ITO[3], width=0.8, order=4)
+            at = parameter_of(name, data[name]).show(np.array(ends))
+            top.curve(at, up, colour=OKABE_ITO[3], width=0.8, order=4)
     return _above_exponent(top, low)
 
 
