@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.family import taken
-from thermogear.analysis.settle import JAMMED, LABELS, Rule, Settled, settle
+from thermogear.analysis.settle import LABELS, Rule, Settled, settle
 from thermogear.base.errors import InputError
 from thermogear.base.plan import Alive, Arrays, Variable, keep_going
-from thermogear.base.vocabulary import FASTER_RULE, STATUS, status_attributes
+from thermogear.base.vocabulary import FASTER_RULE, STATUS, STILL, status_attributes
 from thermogear.dynamics.plane import plane_of
 from thermogear.dynamics.tables import Lanes
 
@@ -140,7 +140,8 @@ def settle_with_status(
     """:func:`settle` for the lanes that move; the others carry their status as a label."""
     result = Settled.empty(len(lanes), keep=keep, dimension=start.shape[1])
     result.state[:] = start
-    result.label[status != 0] = JAMMED
+    for word in STILL:
+        result.label[status == STATUS.index(word)] = LABELS.index(word)
     moving = np.flatnonzero(status == 0)
     if moving.size:
         result.put(moving, settle(taken(lanes, moving), start[moving], rule, keep, alive))

@@ -22,6 +22,7 @@ from thermogear.analysis.section import units_of as units_of
 from thermogear.base.bounds import require_share, whole
 from thermogear.base.errors import InputError
 from thermogear.base.plan import Alive, keep_going
+from thermogear.base.vocabulary import STILL
 from thermogear.dynamics.bundle import Bundle, Visits, bundles
 from thermogear.dynamics.tables import Lanes
 
@@ -29,8 +30,8 @@ Floats = NDArray[np.float64]
 Whole = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
-LABELS = ("undecided", "periodic", "chaotic", "diverged", "jammed")
-"""Meaning of the label codes 0, 1, 2, ..."""
+LABELS = ("undecided", "periodic", "chaotic", "diverged", *STILL)
+"""Meaning of the label codes 0, 1, 2, ...; the last ones have no motion."""
 UNDECIDED, PERIODIC, CHAOTIC, DIVERGED, JAMMED = range(5)
 TRIES = 4
 WATCHED = 128

@@ -32,12 +32,24 @@ class Quantity:
 UNDEFORMED, HOT = STATES = ("undeformed", "hot")
 """States of a run: the drawing's sizes with the oil of operation, and as hot as the case says."""
 
-STATUS = ("ok", "jammed", "not_converged", "diverged", "assumed")
+STATUS = (
+    "ok", "jammed", "not_converged", "diverged", "assumed", "heat_not_settled", "impossible"
+)  # fmt: skip
 """Meaning of the values 0, 1, 2, ... of every ``status`` variable.
 
-Assumed: not computed, equal neighbours of a map spoke for it.
+Jammed: no half backlash is left. Not converged: the loaded contact, or a motion, did not settle.
+Assumed: not computed, equal neighbours of a map spoke for it. Heat not settled: the heat balance
+has no steady state. Impossible: no case could have these values.
 """
 ASSUMED = STATUS.index("assumed")
+HEAT_NOT_SETTLED = STATUS.index("heat_not_settled")
+STILL = {
+    "jammed": "the half backlash is used up: no clearance is left to move in",
+    "not_converged": "the loaded contact did not settle",
+    "heat_not_settled": "the heat balance did not settle",
+    "impossible": "no case could have these values",
+}
+"""Statuses of points that have no motion, and why: the only words for these causes."""
 
 EDGE_CONTACT = ("no_edge_contact", "wheel_tip_corner", "pinion_tip_corner", "both_tip_corners")
 """Meaning of the values 0, 1, 2, 3 of every ``edge_contact``: the tip corner that carries load."""
@@ -315,6 +327,21 @@ def attributes(name: str) -> dict[str, str]:
     return {key: value for key, value in pairs.items() if value}
 
 
+def still(status: int, words: str) -> InputError:
+    """What to raise where a motion is asked of a point that has none, in the state ``words``."""
+    name = STATUS[status]
+    fix = "lower the temperature or raise the backlash"
+    if name != "jammed":
+        fix = "choose another operating point, or give temperatures"
+    return InputError("operating", f"{name.replace('_', ' ')} ({words})", why=STILL[name], fix=fix)
+
+
+def is_known(status: ArrayLike) -> NDArray[np.bool_]:
+    """Where heat and loaded contact are known, jammed or not, of values of ``status``."""
+    unknown = [STATUS.index(word) for word in STILL if word != "jammed"]
+    return ~np.isin(status, unknown)
+
+
 def status_attributes() -> dict[str, Any]:
     """CF flag attributes of a ``status`` variable."""
     return {
@@ -370,7 +397,7 @@ def told_operating(data: xr.Dataset) -> int:
     if "status" not in data or "operating" not in data["status"].dims:
         return 0
     status = data["status"].isel(state=-1) if "state" in data["status"].dims else data["status"]
-    known = (status != STATUS.index("not_converged")).transpose("operating", ...).values
+    known = is_known(status.transpose("operating", ...).values)
     places = np.flatnonzero(known.reshape(known.shape[0], -1).all(axis=1))
     return int(places[0]) if places.size else 0
 

@@ -17,7 +17,9 @@ import numpy as np
 from thermogear.base.errors import InputError, nearest
 from thermogear.base.toml import literal
 from thermogear.base.units import RPM, ZERO_CELSIUS
+from thermogear.base.vocabulary import STILL
 from thermogear.case.case import GearCase
+from thermogear.case.thermal_state import HOT
 
 Changes = tuple[tuple[str, str], ...]
 """Dotted fields of the file and what is put there; nothing: the field is left out."""
@@ -69,6 +71,8 @@ class _Kind:
 
 def _kinds(case: GearCase) -> dict[str, _Kind]:
     held = "the heat balance computes it" if case.computed else ""
+    if not HOT.settled(case, case.models[0]):
+        held = STILL["heat_not_settled"]
     below = not case.computed and _given(case, "temperatures.housing_below_addendum")
     housing = ("housing below the gears", "K") if below else ("housing temperature", "degC")
     field = "temperatures.housing_below_addendum" if below else "temperatures.housing"
@@ -165,6 +169,7 @@ def balanced(case: GearCase, on: bool) -> Changes:
         return ()
     if on:
         return tuple((field, "") for field in GIVEN if _given(case, field))
+    HOT.require_settled(case, case.models[0])
     at = case.operating_of(case.models[0])
     body = at.temperatures
     first = {
@@ -172,11 +177,6 @@ def balanced(case: GearCase, on: bool) -> Changes:
         for name in ("pinion_addendum", "wheel_addendum", "pinion_bore", "wheel_bore", "housing")
     }
     oil = float(np.ravel(at.oil_temperature)[0])
-    if not all(map(math.isfinite, (*first.values(), oil))):
-        raise InputError(
-            "temperatures", "a heat balance that does not settle",
-            fix="give temperatures in the case file",
-        )  # fmt: skip
     tips = {n: round(first[n] - ZERO_CELSIUS, 2) for n in ("pinion_addendum", "wheel_addendum")}
     found = [(f"temperatures.{name}", f"{value!r} degC") for name, value in tips.items()]
     for name in ("pinion_bore", "wheel_bore", "housing"):

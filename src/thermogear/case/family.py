@@ -21,7 +21,7 @@ from thermogear.base.errors import InputError, ThermogearError, nearest
 from thermogear.base.excitation import Excitations, Periodic
 from thermogear.base.parameters import NUMBERS
 from thermogear.base.plan import Alive, keep_going
-from thermogear.base.vocabulary import STATUS
+from thermogear.base.vocabulary import STATUS, still
 from thermogear.case.allowed import (
     LANE,
     gear_parameter,
@@ -229,7 +229,7 @@ class GearFamily:
         groups, place = self._placed(np.asarray(rows, dtype=float))
         found = Excitations.joined([self._excited(group) for group in groups])
         every = found.take(np.maximum(place, 0))
-        lost = np.int8(STATUS.index("not_converged"))
+        lost = np.int8(STATUS.index("impossible"))
         return replace(every, status=np.where(place < 0, lost, every.status))
 
     def quasi_static(
@@ -241,8 +241,8 @@ class GearFamily:
         "tooth_temperature" (the hotter addendum), "pinion_temperature" (its addendum) [K]; only
         they are computed. ``path_positions`` along the path of contact, where a quantity runs over
         it.
-        With them ``status``: a row that no case could have, or whose heat or mesh does not
-        settle, is "not_converged" and nan, and the others do not notice.
+        With them ``status``: a row that no case could have ("impossible"), or whose heat or mesh
+        does not settle, is nan, and the others do not notice.
         """
         groups, place = self._placed(np.asarray(rows, dtype=float))
         parts = [self._cycled(group, tuple(want), path_positions) for group in groups]
@@ -250,7 +250,7 @@ class GearFamily:
         for name in parts[0]:
             values = np.concatenate([one[name] for one in parts])[np.maximum(place, 0)]
             if name == "status":
-                values[place < 0] = STATUS.index("not_converged")
+                values[place < 0] = STATUS.index("impossible")
             elif np.any(place < 0):
                 values = np.array(values, dtype=float)
                 values[place < 0] = np.nan
@@ -383,7 +383,7 @@ def _keep(kept: dict[Any, Any], key: object, value: object) -> None:
 def along(family: GearFamily | NumberFamily) -> Callable[[float], Points]:
     """value -> the one moving point of a family of one parameter, remembered.
 
-    InputError where the pair is jammed.
+    InputError where nothing moves.
     """
 
     @lru_cache(maxsize=256)
@@ -394,15 +394,9 @@ def along(family: GearFamily | NumberFamily) -> Callable[[float], Points]:
 
 
 def moving(points: Points, family: GearFamily | NumberFamily) -> Points:
-    """``points`` themselves; InputError where the pair is jammed."""
-    if points.jammed.any():
-        words = family.state.words if isinstance(family, GearFamily) else ""
-        raise InputError(
-            "operating",
-            f"a jammed pair ({words})",
-            why="the half backlash is used up: no clearance is left to move in",
-            fix="lower the temperature or raise the backlash",
-        )
+    """``points`` themselves; InputError where nothing moves."""
+    if points.still.any():
+        raise still(int(points.status.max()), getattr(family, "state", HOT).words)
     return points
 
 

@@ -76,7 +76,7 @@ class OnePoint:
 
     @cached_property
     def points(self) -> Points:
-        """The one point; InputError where the pair is jammed."""
+        """The one point; InputError where nothing moves."""
         return moving(self._family(np.empty((1, 0))), self._family)
 
     @property
@@ -85,7 +85,7 @@ class OnePoint:
         return self.gears.models[0]
 
     def excitation(self) -> Excitation:
-        """k(t), e(t), backlash and force in SI; InputError where the pair is jammed."""
+        """k(t), e(t), backlash and force in SI; InputError where nothing moves."""
         _ = self.points
         whole = GearFamily(self.gears, (), state=self._held)
         found = whole.excitations(np.empty((1, 0))).one(0)
@@ -218,6 +218,7 @@ def of_case(
     model = dict(zip(names, case.models, strict=True))[named("--bundle", bundle, names)]
     most = len(case.speeds) * len(case.torques)
     here = counted("--operating", 1 if operating is None else operating, most=most)
+    state.require_settled(case, model, here)
     one = state.operating(case, model).point(here)
     speed, torque = float(one.speed[0]), float(one.torque[0])
     alone = replace(

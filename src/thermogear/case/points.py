@@ -29,8 +29,8 @@ Whole = NDArray[np.int64]
 class Points:
     """Lanes of operating points; the first axis of every array is the point.
 
-    ``status`` 1 where the pair is jammed (its lane is a placeholder). ``length`` b_c [m], ``rate``
-    omega_n [rad/s], ``stiffness`` mean k_m [N/m], ``force`` mean F [N], ``error`` Fourier
+    ``status`` other than 0 where nothing moves (its lane is a placeholder). ``length`` b_c [m],
+    ``rate`` omega_n [rad/s], ``stiffness`` mean k_m [N/m], ``force`` mean F [N], ``error`` Fourier
     coefficients of e [m] (point, harmonic), ``mesh_frequency`` [rad/s], ``half_backlash`` hot b'
     [m]. Without gears (:meth:`plain`) lengths, rates and stiffness are 1, the mesh frequency 0.
     """
@@ -76,8 +76,8 @@ class Points:
         return bool(np.any(self.mesh_frequency != 0.0))
 
     @property
-    def jammed(self) -> NDArray[np.bool_]:
-        """Where no clearance is left to move in."""
+    def still(self) -> NDArray[np.bool_]:
+        """Where nothing moves: jammed, or no state is known to move in."""
         return np.asarray(self.status != 0)
 
     def kinematic(self, phase: Floats) -> Floats:
@@ -134,11 +134,11 @@ def points_of(found: Excitations) -> Points:
             force_amplitude=0.0,
         ).lanes()
         nan = np.full(count, np.nan)
-        status = np.full(count, STATUS.index("jammed"), np.int8)
         none = np.full((count, 1), np.nan, complex)
-        return Points(idle, status, nan, nan, nan, nan, none, nan, nan)
+        return Points(idle, found.status.astype(np.int8), nan, nan, nan, nan, none, nan, nan)
+    status = found.status.astype(np.int8)
     if still.any():
-        # a jammed point borrows the lane of a moving one; its status keeps it still
+        # a still point borrows the lane of a moving one; its status keeps it still
         found = found.take(np.where(still, int(np.argmin(still)), np.arange(count)))
     length, mean = found.reference_half_backlash, found.stiffness[:, 0].real
     rate = found.natural_frequency
@@ -161,7 +161,7 @@ def points_of(found: Excitations) -> Points:
     )
     return Points(
         lanes,
-        np.where(still, STATUS.index("jammed"), 0).astype(np.int8),
+        status,
         length,
         rate,
         mean,

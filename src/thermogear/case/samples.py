@@ -20,7 +20,7 @@ from thermogear.base.materials import Lubricant
 from thermogear.base.parameters import PARAMETERS
 from thermogear.base.plan import Alive, keep_going
 from thermogear.base.units import ZERO_CELSIUS
-from thermogear.base.vocabulary import STATUS
+from thermogear.base.vocabulary import HEAT_NOT_SETTLED, STATUS
 from thermogear.case.allowed import within
 from thermogear.case.backlash import cold_from_soaked, normal_half
 from thermogear.case.build import Follows, TemperatureRule
@@ -313,8 +313,8 @@ def quasi_static(
 
     ``want`` names them (:func:`~thermogear.mesh.cycle.mesh_cycle`); only they are computed, and
     with them ``pinion_speed``, ``pinion_torque`` and ``status``. A sample that no case could
-    have, or whose heat or mesh does not settle, is "not_converged", the first with nan, and
-    no other one notices. Raises what is wrong where no sample is possible. ``alive`` is called
+    have is "impossible" with nan, one whose heat or mesh does not settle says so, and no other
+    one notices. Raises what is wrong where no sample is possible. ``alive`` is called
     before each cycle and raises to end the work.
     """
     refused: list[ThermogearError] = []
@@ -343,7 +343,7 @@ def quasi_static(
         for places, values in parts:
             found[name][places] = values[name]
     lost = np.isnan(found["status"])
-    found["status"] = np.where(lost, STATUS.index("not_converged"), found["status"]).astype(np.int8)
+    found["status"] = np.where(lost, STATUS.index("impossible"), found["status"]).astype(np.int8)
     return found
 
 
@@ -380,6 +380,6 @@ def _cycle(
         if name in BODIES_OF:
             found[name] = np.broadcast_to(BODIES_OF[name](operating), hot.count).copy()
     if balance is not None:
-        lost = STATUS.index("not_converged")
-        found["status"] = np.where(balance.settled, found["status"], lost)
+        lost = state.open(case, balance, given=temperature is not None)
+        found["status"] = np.where(lost, HEAT_NOT_SETTLED, found["status"])
     return found | {"pinion_speed": operating.speed, "pinion_torque": operating.torque}

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from thermogear.base import vocabulary
 from thermogear.base.errors import InputError
 from thermogear.base.units import ZERO_CELSIUS
-from thermogear.base.vocabulary import STATUS
+from thermogear.base.vocabulary import HEAT_NOT_SETTLED, still
 from thermogear.case.allowed import within
 from thermogear.case.case import GearCase
 from thermogear.case.fields import BODY
@@ -124,11 +124,31 @@ class ThermalState:
         teeth = None if case.follow == "proportional" else self.temperature
         return case.balance(model, teeth, from_hot=from_hot)
 
+    def open(
+        self, case: GearCase, balance: HeatBalance, *, given: bool = False
+    ) -> NDArray[np.bool_]:
+        """Where ``balance`` leaves the temperatures open, (operating,).
+
+        Temperatures that are ``given`` ask a balance at most for the proportions of the other
+        bodies to the gears (``follow`` "proportional"): its last nodes say them, steady or not.
+        """
+        fixed = not given and self.temperature is None
+        return ~balance.settled if fixed or case.follow != "proportional" else balance.unknown
+
+    def settled(self, case: GearCase, model: MeshModel, place: int = 0) -> bool:
+        """Whether the temperatures of the operating point ``place`` are known."""
+        balance = None if self == UNDEFORMED else self.balance(case, model)
+        return balance is None or not bool(self.open(case, balance)[place])
+
+    def require_settled(self, case: GearCase, model: MeshModel, place: int = 0) -> None:
+        """InputError where they are not."""
+        if not self.settled(case, model, place):
+            raise still(HEAT_NOT_SETTLED, self.words)
+
     def cycle(self, case: GearCase, model: MeshModel) -> xr.Dataset:
         """The mesh cycle of every operating point, nan where nothing is known of its temperatures.
 
-        Points are not_converged where these did not settle; undeformed gears ask only for the
-        oil's.
+        Points are heat_not_settled where these are open; undeformed gears ask only for the oil's.
         """
         cycle = case.cycle(self.operating(case, model), model)
         balance = self.balance(case, model)
@@ -137,7 +157,7 @@ class ThermalState:
         if self == UNDEFORMED:
             return blanked(cycle, balance.unknown, OF_OIL)
         status = cycle["status"]
-        values = np.where(balance.settled, status.values, STATUS.index("not_converged"))
+        values = np.where(self.open(case, balance), HEAT_NOT_SETTLED, status.values)
         kept = cycle.assign(status=(status.dims, values.astype(np.int8), status.attrs))
         return blanked(kept, balance.unknown)
 
@@ -157,8 +177,8 @@ class ThermalState:
         if balance is None:
             return found
         if self != UNDEFORMED:
-            lost = STATUS.index("not_converged")
-            found["status"] = np.where(balance.settled, found["status"], lost).astype(np.int8)
+            lost = self.open(case, balance)
+            found["status"] = np.where(lost, HEAT_NOT_SETTLED, found["status"]).astype(np.int8)
         for name in OF_OIL if self == UNDEFORMED else want:
             if name in found and name not in STATED and found[name].dtype.kind == "f":
                 known = ~balance.unknown.reshape(-1, *(1,) * (found[name].ndim - 1))

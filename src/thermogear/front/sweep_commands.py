@@ -118,8 +118,8 @@ _but = click.option(
 @click.option("--branch-period", type=click.IntRange(0, 64), default=4, show_default=True,
               help="Follow branches of orbits up to this period; 0: none.")  # fmt: skip
 @click.option("--against", multiple=True, metavar="NAME=VALUE",
-              help="A second diagram with these numbers changed (state=VALUE for a gear case): both in "
-              "one picture and one table; bifurcations are followed.")  # fmt: skip
+              help="A second diagram with these numbers changed (state=VALUE for a gear case); "
+              "both in one picture and one table; bifurcations are followed.")  # fmt: skip
 @_train
 @_common
 def bifurcation(

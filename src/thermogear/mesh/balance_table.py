@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.base.vocabulary import STATUS, label
+from thermogear.base.vocabulary import HEAT_NOT_SETTLED, STATUS, label
 from thermogear.heat.gearbox import Losses
 from thermogear.mesh.balance import HeatBalance
 
@@ -60,8 +60,8 @@ def of_bearings(
 def balance_dataset(balance: HeatBalance) -> xr.Dataset:
     """Node temperatures, losses, iterations, residual and status, axis ``operating`` first.
 
-    Of each bearing of a drawn train its loss, temperature and viscosity. Status not_converged where
-    the loop did not settle.
+    Of each bearing of a drawn train its loss, temperature and viscosity. Status heat_not_settled
+    where the loop did not settle.
     """
     count = balance.operating.speed.size
     nodes = {
@@ -84,7 +84,7 @@ def balance_dataset(balance: HeatBalance) -> xr.Dataset:
     }
     described: dict[str, Any] = {n: (*entry, *_MEANING[n]) for n, entry in values.items()}
     bearings, names = of_bearings(balance.losses, "operating", count)
-    status = np.where(balance.settled, STATUS.index("ok"), STATUS.index("not_converged"))
+    status = np.where(balance.settled, STATUS.index("ok"), HEAT_NOT_SETTLED)
     return label(
         described | bearings | {"status": (("operating",), status)},
         {

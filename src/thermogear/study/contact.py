@@ -68,6 +68,8 @@ def loaded_survey(
     named = {state.kind: state for state in (UNDEFORMED, HOT)}
     for kelvin in case.gear_temperatures:
         named[f"{kelvin - ZERO_CELSIUS:.4g} degC"] = ThermalState.of(kelvin)
+    for state in named.values():
+        state.require_settled(case, case.models[0])
     states = {name: state.operating(case, case.models[0]) for name, state in named.items()}
     progress("loaded contact", 0, 2)
     ones = [one_point(state, float(moments[0])) for state in states.values()]

@@ -13,6 +13,7 @@ from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import STATUS, attributes, label
 from thermogear.case.case import GearCase
 from thermogear.case.family import GearFamily
+from thermogear.case.thermal_state import HOT
 from thermogear.study.motion import follow_gears
 
 if TYPE_CHECKING:
@@ -39,9 +40,9 @@ def dial(case: GearCase, cycle: xr.Dataset, progress: Progress = silent) -> xr.D
     operating point did not settle.
     """
     model = case.models[0]
-    hot = float(np.ravel(case.operating_of(model).temperatures.pinion_addendum)[0])
-    if not np.isfinite(hot):
+    if not HOT.settled(case, model):
         return None
+    hot = float(np.ravel(case.operating_of(model).temperatures.pinion_addendum)[0])
     jam = "proportional_jam_temperature" if case.follow == "proportional" else "jam_temperature"
     temperatures = stops(
         reference=case.stated.temperatures.reference,

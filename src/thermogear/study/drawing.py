@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from thermogear.base.errors import InputError
-from thermogear.base.vocabulary import STATUS, UNDEFORMED
+from thermogear.base.vocabulary import UNDEFORMED, is_known
 from thermogear.case.case import GearCase, gear_case
 from thermogear.case.one_point import counted, named
 from thermogear.case.thermal_state import HOT, StateLike, ThermalState
@@ -51,14 +51,7 @@ def drawing(
     model = dict(zip(names, case.models, strict=True))[named("bundle", bundle, names)]
     most = len(case.speeds) * len(case.torques)
     here = counted("operating", 1 if operating is None else operating, most=most)
-    balance = hot.balance(case, model)
-    if balance is not None and not bool(np.ravel(balance.settled)[here]):
-        raise InputError(
-            "state",
-            hot.words,
-            why="the heat balance of this operating point did not settle",
-            fix="choose another operating point, or give temperatures",
-        )
+    hot.require_settled(case, model, here)
     data = _drawn(case, model, hot, [here], PHASES if phase is None else (phase,), fineness)
     return Result.of(
         KIND,
@@ -75,7 +68,7 @@ def drawn_points(case: GearCase, status: xr.DataArray) -> xr.Dataset | None:
 
     None where there is none.
     """
-    known = np.flatnonzero(status.values != STATUS.index("not_converged"))
+    known = np.flatnonzero(is_known(status.values))
     if not known.size:
         return None
     places = known[np.unique(np.linspace(0, known.size - 1, min(MOST, known.size)).round())

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.vocabulary import REGIMES, label
 from thermogear.case.case import GearCase
+from thermogear.case.thermal_state import HOT
 from thermogear.gears.contact import path_of_contact
 from thermogear.heat.contact_state import ContactState
 from thermogear.heat.film import FILM_UNCERTAINTY, regime, regime_shares
@@ -27,6 +28,8 @@ KIND = "friction"
 
 def friction_path(case: GearCase, model: MeshModel, positions: int) -> FrictionPath:
     """The lubricated contact of every operating point of ``case``, hot."""
+    for place in range(case.stated.speed.size):
+        HOT.require_settled(case, model, place)
     hot = HotPair(case.pair, case.operating_of(model), model)
     s = path_of_contact(case.pair, positions)
     return FrictionPath(elastic_pair(hot, case.deviations), s).checked()

@@ -16,7 +16,7 @@ from thermogear.base.vocabulary import STATES, STATUS, attributes, label
 from thermogear.case.case import GearCase
 from thermogear.case.family import GearFamily
 from thermogear.case.one_point import OnePoint, of_case
-from thermogear.case.thermal_state import StateLike, ThermalState
+from thermogear.case.thermal_state import HOT, StateLike, ThermalState
 from thermogear.dynamics.integrate import simulate
 from thermogear.study.dial import stops
 from thermogear.study.orbit import settled, told_orbit
@@ -71,10 +71,9 @@ def gap(case: GearCase, alive: Alive = keep_going) -> xr.Dataset | None:
     the heat of the operating point did not settle. ``jam_temperature`` is that of the gears alone.
     """
     model = case.models[0]
-    at = case.operating_of(model).temperatures
-    hot = float(np.ravel(at.pinion_addendum)[0])
-    if not np.isfinite(hot):
+    if not HOT.settled(case, model):
         return None
+    hot = float(np.ravel(case.operating_of(model).temperatures.pinion_addendum)[0])
     points = GearFamily(case, ("gear_temperature",), alive=alive)
     here = GearFamily(case, (), alive=alive).quasi_static(np.empty((1, 0)), ("jam_temperature",))
     jam = float(here["jam_temperature"][0])

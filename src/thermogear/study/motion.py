@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from thermogear.analysis.labels import labels
 from thermogear.analysis.proof import Label
-from thermogear.base.vocabulary import STATUS
+from thermogear.base.vocabulary import STATUS, STILL
 from thermogear.case.base import Simulation
 from thermogear.case.points import Points
 from thermogear.case.response import lost_share
@@ -161,10 +161,10 @@ def proofs(found: Sequence[Label]) -> dict[str, NDArray[np.generic]]:
 
 @dataclass(frozen=True, eq=False)
 class GearMotion:
-    """:class:`Motion` in SI over a whole array of points, those of a jammed pair included.
+    """:class:`Motion` in SI over a whole array of points, those that do not move included.
 
     ``values`` map names to arrays of the points' shape, then sample, section or order;
-    jammed points are NaN with the label "jammed".
+    points that do not move are NaN, their label says why.
     """
 
     motion: Motion
@@ -174,8 +174,8 @@ class GearMotion:
 def follow_gears(
     points: Points, simulation: Simulation, advance: Advance | None = None
 ) -> GearMotion | None:
-    """Motion of every point that is not jammed; None when all are."""
-    alive = np.flatnonzero(~points.jammed)
+    """Motion of every point that moves; None when none does."""
+    alive = np.flatnonzero(~points.still)
     if not alive.size:
         return None
     present = points.take(alive)
@@ -185,29 +185,27 @@ def follow_gears(
     scales: dict[str, Any] = {"velocity": length * rate, "section_velocity": length * rate}
     plain = {"contact_loss_share", "back_impacts", "status", "label", "label_reason", *PROOFS}
     values: dict[str, NDArray[np.generic]] = {}
+    missing = dict.fromkeys(WHOLE, 0) | still_values(points.status)
     for name, rows in motion.values.items():
         if name not in plain:
             rows = rows * scales.get(name, length).reshape(-1, *([1] * (rows.ndim - 1)))
-        values[name] = _spread(rows, alive, len(points.status), _missing(name))
+        values[name] = _spread(rows, alive, len(points.status), missing.get(name, np.nan))
     return GearMotion(motion, values)
 
 
-def _missing(name: str) -> object:
-    """What a jammed point stores."""
-    if name == "label":
-        return "jammed"
-    if name == "label_reason":
-        return "the half backlash is used up: no clearance is left to move in"
-    if name in WHOLE:
-        return 0
-    return STATUS.index("jammed") if name == "status" else np.nan
+def still_values(status: NDArray[np.int8]) -> dict[str, NDArray[np.generic]]:
+    """Status, label and reason of points that do not move, from their ``status``."""
+    labels = np.array([word.replace("_", " ") for word in STATUS])
+    reasons = np.array([STILL.get(word, "") for word in STATUS])
+    return {"status": status, "label": labels[status], "label_reason": reasons[status]}
 
 
 def _spread(
     rows: NDArray[np.generic], places: NDArray[np.int64], count: int, missing: object
 ) -> NDArray[np.generic]:
-    """``rows`` put at ``places`` of ``count``, ``missing`` elsewhere."""
+    """``rows`` put at ``places`` of ``count``, ``missing``, one or one each, elsewhere."""
     words = rows.dtype.kind == "U"
-    spread = np.full((count, *rows.shape[1:]), missing, dtype=object if words else rows.dtype)
+    spread = np.empty((count, *rows.shape[1:]), dtype=object if words else rows.dtype)
+    spread[...] = missing
     spread[places] = rows
     return spread.astype(str) if words else spread

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.analysis.settle import PERIODIC
+from thermogear.analysis.settle import LABELS, PERIODIC
 from thermogear.base.display import CELSIUS, reach, stretches
 from thermogear.base.units import RPM
+from thermogear.base.vocabulary import STILL
 from thermogear.case.case import GearCase
 from thermogear.heat.friction import LUBRICATED, beyond
 from thermogear.results.beside import back_side_notice, with_notices
@@ -29,19 +30,18 @@ def finished(data: xr.Dataset, title: str = "") -> Result:
 
 
 def contact_notices(data: xr.Dataset) -> list[str]:
-    """Over which speeds of a run-up contact is lost, and where the back flanks are hit."""
-    if "contact_loss_share" not in data or "pinion_speed" not in data["label"].dims:
-        return []
+    """What does not move; over which speeds contact is lost, and where the back flanks are hit."""
+    found = still_notices(data)
     moving = data["status"].values == 0
-    if not moving.any():
-        return ["nothing moves at these speeds: the pair is jammed, or its heat does not settle"]
+    over_speed = "contact_loss_share" in data and "pinion_speed" in data["label"].dims
+    if not (over_speed and moving.any()):
+        return found
     speeds = data["pinion_speed"].values / RPM
     axis = data["label"].dims.index("pinion_speed")
     others = tuple(i for i in range(data["label"].ndim) if i != axis)
     lost = moving & (data["contact_loss_share"].values > 0.0)
     # of a motion that is not periodic the impacts are not counted; its least force tells
     hit = moving & ((data["back_impacts"].values > 0) | (data["mesh_force_min"].values < 0.0))
-    found = []
     for flags, yes, no in (
         (lost, "contact is lost", "contact is never lost at these speeds"),
         (hit, "the back flanks are hit", ""),
@@ -96,10 +96,18 @@ def range_notices(case: GearCase, data: xr.Dataset) -> list[str]:
             f"{natural * turns:.0f} rpm; the case's own speeds ({shown} rpm) lie at omega_h "
             f"{reach(tests, '.3f')}"
         )
-    jammed = int(np.count_nonzero(data["status"].values == 1))
-    if jammed:
-        found.append(f"{jammed} of {data['status'].size} points are jammed and have no motion")
     return found
+
+
+def still_notices(data: xr.Dataset) -> list[str]:
+    """How many points of a sweep or run-up have no motion, and why."""
+    label = data["label"].values
+    counts = {word: int(np.sum(label == LABELS.index(word))) for word in STILL}
+    return [
+        f"{count} of {label.size} points have no motion: {STILL[word]}"
+        for word, count in counts.items()
+        if count
+    ]
 
 
 def reasons(why: Iterable[str]) -> str:

@@ -61,6 +61,7 @@ def relief_survey(
         raise InputError("torque", f"{moment} N m", allowed="> 0 N m")
     model = case.models[0].override(stiffness="loaded")
     state = HOT if gear_temperature is None else ThermalState.of(gear_temperature)
+    state.require_settled(case, case.models[0])
     found = state.operating(case, case.models[0])
     hot = HotPair(case.pair, one_point(found, moment), model)
     elastic = LoadedPair(hot)

@@ -26,7 +26,6 @@ from thermogear.base.progress import Progress, asking, silent
 from thermogear.base.vocabulary import (
     QUANTITIES,
     STATES,
-    STATUS,
     attributes,
     dressed,
     label,
@@ -51,7 +50,7 @@ from thermogear.study.answers.survey import notices as answer_notices
 from thermogear.study.dial import dial
 from thermogear.study.drawing import drawn_points
 from thermogear.study.measured_flanks import measured_flanks
-from thermogear.study.motion import Motion, follow, follow_gears
+from thermogear.study.motion import Motion, follow, follow_gears, still_values
 from thermogear.study.shafts.sketch import sketch
 
 if TYPE_CHECKING:
@@ -255,13 +254,8 @@ def _motion(
         "pinion_torque": (("operating",), first["pinion_torque"].values),
     }
     if found is None:
-        jammed = np.full(shape, STATUS.index("jammed"), np.int8)
-        lost = {
-            "status": (dims, jammed),
-            "label": (dims, np.full(shape, "jammed")),
-            "label_reason": (dims, np.full(shape, "no clearance is left to move in")),
-        }
-        data = _unsettled(label(lost, coordinates), cycles)
+        lost = {n: (dims, v.reshape(shape)) for n, v in still_values(points.status).items()}
+        data = label(lost, coordinates)
         return data.assign_coords({"bundle": list(cycles), axis: first[axis].values})
     mesh_frequency = case.pair.pinion.teeth * first["pinion_speed"].values / (2.0 * np.pi)
     motion = found.motion
@@ -273,28 +267,7 @@ def _motion(
     for name, values in found.values.items():
         variables[name] = (dims + _last_axis(name), values.reshape(*shape, *values.shape[1:]))
     data = label(variables, coordinates, _motion_attributes(motion, case))
-    data = _unsettled(data, cycles)
     return data.assign_coords({"bundle": list(cycles), axis: first[axis].values})
-
-
-def _unsettled(motion: xr.Dataset, cycles: Mapping[str, xr.Dataset]) -> xr.Dataset:
-    """``motion`` with the points named whose temperatures did not settle: they do not move."""
-    status = np.stack([cycle["status"].values for cycle in cycles.values()])
-    lost = status == STATUS.index("not_converged")
-    if not lost.any():
-        return motion
-    words = {
-        "label": "not converged",
-        "label_reason": "heat balance or loaded contact did not settle: nothing to move in",
-    }
-    texts = {
-        name: (motion[name].dims, np.where(lost, text, motion[name].values))
-        for name, text in words.items()
-    }
-    flags = np.where(lost, status, motion["status"].values).astype(np.int8)
-    return motion.assign(texts).assign(
-        status=(motion["status"].dims, flags, motion["status"].attrs)
-    )
 
 
 def _last_axis(name: str) -> tuple[str, ...]:

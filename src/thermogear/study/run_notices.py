@@ -152,7 +152,7 @@ def _computed(case: GearCase, groups: Mapping[str, xr.Dataset]) -> Iterator[Noti
             yield Notice(
                 "important",
                 f"{bundle}: {lost} of {settled.size} operating points have no steady "
-                "temperature; their status is not_converged and they have no motion."
+                "temperature; their status is heat_not_settled and they have no motion."
                 + reasons(lost_by.get(str(bundle), {}).values()),
             )
         if not settled.any():

@@ -444,9 +444,13 @@ def run_up_plan(
 
 
 def _held(case: GearCase, state: ThermalState) -> ThermalState:
-    """The state all through a run: as hot as the case is at its first operating point."""
+    """The state all through a run: as hot as the case is at its first operating point.
+
+    InputError where its heat did not settle.
+    """
     if state == UNDEFORMED or state.temperature is not None:
         return state
+    state.require_settled(case, case.models[0])
     hot = state.operating(case, case.models[0]).temperatures.pinion_addendum
     return ThermalState.of(float(np.ravel(np.asarray(hot, dtype=float))[0]))
 

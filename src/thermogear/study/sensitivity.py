@@ -273,7 +273,7 @@ def evaluate(
     }
     samples = sampled(held, columns, count)
     both = [points_of(samples.excited(found)) for found in (cold, hot)]
-    moving = np.flatnonzero(~(both[0].jammed | both[1].jammed))
+    moving = np.flatnonzero(~(both[0].still | both[1].still))
     values["frequency_ratio"][moving] = (both[1].mesh_frequency / both[1].rate)[moving]
     for start in range(0, moving.size, LANES):
         _vibrate(both, moving[start : start + LANES], values)

@@ -15,7 +15,15 @@ from numpy.typing import NDArray
 from thermogear.base.errors import ValidityWarning
 from thermogear.base.progress import Progress, silent
 from thermogear.base.units import RPM, ZERO_CELSIUS
-from thermogear.base.vocabulary import REGIMES, STATUS, dressed, label, labelled
+from thermogear.base.vocabulary import (
+    HEAT_NOT_SETTLED,
+    REGIMES,
+    STATUS,
+    dressed,
+    is_known,
+    label,
+    labelled,
+)
 from thermogear.case.case import GearCase
 from thermogear.case.thesis_cases import of_the_thesis
 from thermogear.heat.film import regime_shares
@@ -41,7 +49,6 @@ PATH_POSITIONS = 81
 MESH_POSITIONS = 64
 BLOCK = 60
 """Operating points that are solved together: progress and memory, not the result."""
-LOST = STATUS.index("not_converged")
 GRID = ("pinion_speed", "pinion_torque")
 
 
@@ -202,8 +209,8 @@ def _gathered(case: GearCase, settled: HeatBalance, cycle: xr.Dataset) -> xr.Dat
     for name in ("friction_coefficient", "flash_temperature"):
         variables[f"{name.partition('_')[0]}_along"] = labelled(name, (by, cycle[name].values))
     merged = data.assign(variables)
-    status = np.where(settled.settled, cycle["status"].values, LOST)
-    lost = np.asarray(status == LOST)
+    status = np.where(settled.settled, cycle["status"].values, HEAT_NOT_SETTLED)
+    lost = ~is_known(status)
     merged["status"] = labelled("status", (along, status))
     low, high = operating.lubricant.temperature_range
     oil = np.asarray(operating.oil_temperature)
@@ -245,7 +252,7 @@ def _notices(
     case: GearCase, grid: xr.Dataset, seconds: float, why: Sequence[str]
 ) -> Iterator[Notice]:
     status = grid["status"].values
-    settled = status != LOST
+    settled = is_known(status)
     count = status.size
     told = f"{count} points have" if count > 1 else "1 point has"
     if not settled.all():

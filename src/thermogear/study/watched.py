@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from thermogear.base.parameters import PARAMETERS, Parameter
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.case.case import GearCase
+from thermogear.case.thermal_state import HOT
 from thermogear.case.thesis_cases import of_the_thesis
 from thermogear.heat.lubrication import kinematic_viscosity
 from thermogear.mesh.operating import Operating
@@ -166,7 +167,9 @@ def outputs_of(case: GearCase) -> tuple[Output, ...]:
 
 def state_of(case: GearCase) -> Operating:
     """The hot state at the middle speed and the first torque."""
-    return case.operating.point(len(case.speeds) // 2 * len(case.torques))
+    place = len(case.speeds) // 2 * len(case.torques)
+    HOT.require_settled(case, case.models[0], place)
+    return case.operating.point(place)
 
 
 def first(values: object) -> float:

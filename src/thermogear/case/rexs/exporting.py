@@ -30,6 +30,7 @@ from thermogear.case.rexs.model import (
     numbers,
 )
 from thermogear.case.rexs.values import values
+from thermogear.case.thermal_state import HOT
 from thermogear.gears.deviations import Relief
 from thermogear.gears.geometry import Gear
 from thermogear.heat.lubrication import kinematic_viscosity
@@ -228,6 +229,8 @@ class _Maker:
         """
         case, model = self.case, self.case.models[0]
         try:
+            for place in range(case.stated.speed.size):
+                HOT.require_settled(case, model, place)
             operating = case.operating_of(model)
             cycle = case.cycle(operating, model)
         except ThermogearError as error:

@@ -14,6 +14,7 @@ from thermogear.base.plan import Alive
 from thermogear.base.progress import asking
 from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.case.dials import dials
+from thermogear.case.thermal_state import HOT
 from thermogear.front.app.given import Given
 from thermogear.front.app.wire import PARTS, Export, Post, Show
 
@@ -120,6 +121,8 @@ def temperatures(case: GearCase) -> list[list[str]]:
         for name in names
     ]
     rows.append(("oil", at.oil_temperature))
+    if not HOT.settled(case, case.models[0]):
+        return [[words, "not known"] for words, _ in rows]
     return [
         [words, f"{float(np.ravel(value)[0]) - ZERO_CELSIUS:.1f} °C".replace("-", "−")]
         for words, value in rows

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from thermogear.base.errors import ThermogearError
 from thermogear.base.plan import Alive, slices
 from thermogear.base.units import RPM, ZERO_CELSIUS
+from thermogear.base.vocabulary import STILL
 from thermogear.case.case import GearCase
 from thermogear.front.app.given import Given
 from thermogear.front.app.wire import Show
@@ -123,7 +124,7 @@ def mesh(look: Look) -> Iterator[Part]:
 def gap(look: Look) -> Iterator[Part]:
     data = live.gap(look.case, look.alive)
     if data is None:
-        yield Part(name="gap", lines=["the heat of the operating point did not settle"])
+        yield Part(name="gap", lines=[STILL["heat_not_settled"]])
         return
     yield Part(name="gap", picture=plot.gap(data))
 

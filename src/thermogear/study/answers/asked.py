@@ -17,7 +17,7 @@ from thermogear.base.display import worded
 from thermogear.base.limits import LIMITS, NO_LIMIT
 from thermogear.base.progress import Progress
 from thermogear.base.units import RPM, ZERO_CELSIUS
-from thermogear.base.vocabulary import STATUS
+from thermogear.base.vocabulary import HEAT_NOT_SETTLED, STATUS, STILL, is_known
 from thermogear.case.case import GearCase
 from thermogear.case.duty import chosen_point, point_duty
 from thermogear.case.points import excitations, points_of
@@ -98,13 +98,12 @@ class Asked:
 
     def unsettled(self, point: int) -> str:
         """Why nothing hot is known of a point; empty where it is."""
-        if STATUS[int(self.hot["status"][point])] != "not_converged":
+        status = int(self.hot["status"][point])
+        if is_known(status):
             return ""
-        balance = self.case.balance(self.model) if self.case.computed else None
-        if balance is None or balance.settled[point]:
-            return "the loaded contact did not settle"
-        why = balance.lost.get(point)
-        return "the heat balance did not settle" + (f": {why}" if why else "")
+        words = STILL[STATUS[status]]
+        why = self.case.balance(self.model).lost.get(point) if status == HEAT_NOT_SETTLED else ""
+        return words + f": {why}" * bool(why)
 
     def still(self, point: int) -> str:
         """Why the hot pair does not move at a point; empty where it does."""
@@ -207,7 +206,7 @@ class Asked:
         """
         points = points_of(excitations(self.case, self._part(self.points)))
         slow = points.mesh_frequency < SLOWEST * points.rate
-        status = np.where(slow, STATUS.index("jammed"), points.status).astype(np.int8)
+        status = np.where(slow, STATUS.index("not_converged"), points.status).astype(np.int8)
         points = replace(points, status=status)
         start = np.stack([points.half_backlash / points.length, np.zeros(len(self.points))], axis=1)
         start[:, 0] += points.flat.force[:, 0].real

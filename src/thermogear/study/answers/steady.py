@@ -13,6 +13,7 @@ from thermogear.base.errors import InputError, ThermogearError
 from thermogear.base.limits import FINE, LIMITS, LOOK, OPEN
 from thermogear.base.materials import NEVER, NO_BATH, Material
 from thermogear.base.units import ZERO_CELSIUS
+from thermogear.base.vocabulary import STILL
 from thermogear.case.case import GearCase
 from thermogear.heat.transient import HOTTEST
 from thermogear.mesh.scuffing_rating import Scuffing, flash_rating, integral_rating
@@ -308,7 +309,7 @@ def unrated(case: GearCase, torque: float, oil: float) -> str:
         return f"the rating is for steel on steel, not {other}"
     if torque <= 0.0:
         return "there is no load"
-    return "" if np.isfinite(oil) else "the heat balance did not settle"
+    return "" if np.isfinite(oil) else STILL["heat_not_settled"]
 
 
 def _rated(name: str, make: Callable[[], tuple[str, float, dict[str, Any]]], at: str) -> Answer:

@@ -16,7 +16,7 @@ from thermogear.analysis.family import Models
 from thermogear.analysis.settle import CHAOTIC, PERIODIC, UNDECIDED, Settled
 from thermogear.base.errors import InputError, ThermogearError, nearest
 from thermogear.base.plan import Arrays, Coordinate, Variable
-from thermogear.base.vocabulary import STATUS
+from thermogear.base.vocabulary import STATUS, still
 from thermogear.case.allowed import LANE
 from thermogear.case.case import GearCase
 from thermogear.case.family import GearFamily
@@ -37,7 +37,7 @@ KEPT = 80
 more than a chunk of a map has."""
 WATCHED = 32
 """Mesh periods at most of a settled motion that its forces are read from."""
-LOST = STATUS.index("not_converged")
+IMPOSSIBLE = STATUS.index("impossible")
 LOST_FLAGS = ("drive_flank", "back_flank")
 """The first flags of what loses contact; the bearings follow, one by one."""
 MOVING = (UNDECIDED, PERIODIC, CHAOTIC)
@@ -225,12 +225,7 @@ class TrainFamily:
         found = one.train(())
         if found is None:
             rest = one.at_rest(())[0]
-            raise InputError(
-                "operating",
-                f"{STATUS[rest.status].replace('_', ' ')} ({rest.state.words})",
-                why="no clearance is left to move in, or the mesh did not settle",
-                fix="lower the temperature or raise the backlash",
-            )
+            raise still(rest.status, rest.state.words)
         return found.model
 
     @property
@@ -249,7 +244,7 @@ class TrainFamily:
                 model, status[place] = self._model(tuple(row.tolist()))
             except ThermogearError as error:
                 refused.append(error)
-                model, status[place] = None, LOST
+                model, status[place] = None, IMPOSSIBLE
             found.append(model)
         if refused and len(refused) == len(rows):
             raise refused[0]

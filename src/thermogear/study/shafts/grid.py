@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
-from thermogear.base.vocabulary import STATUS
+from thermogear.base.vocabulary import STATUS, STILL
 from thermogear.dynamics.between import between
 from thermogear.dynamics.geared import GearedModel
 from thermogear.study.shafts.family import TrainFamily
@@ -74,7 +74,7 @@ class TrainGrid:
             raise InputError(
                 "parameter",
                 f"{words} (SI): {STATUS[rest.status].replace('_', ' ')}",
-                why="no clearance is left to move in, or the mesh did not settle",
+                why=STILL[STATUS[rest.status]],
                 fix="choose a smaller range",
             )
         self._kept[corner] = train.model

@@ -14,7 +14,7 @@ from thermogear.analysis.torus import Torus
 from thermogear.analysis.walk import Motion, Search
 from thermogear.base.errors import ConvergenceError
 from thermogear.base.progress import Progress, silent
-from thermogear.base.vocabulary import STATUS, label
+from thermogear.base.vocabulary import STATUS, STILL, label
 from thermogear.case.case import GearCase
 from thermogear.dynamics.ladder import Engine
 from thermogear.results.result import Notice
@@ -348,8 +348,7 @@ def _name(one: Moved) -> str:
 
 def _reason(one: Moved) -> str:
     if one.motion is None:
-        jammed = one.state.status == STATUS.index("jammed")
-        return "no clearance is left to move in" if jammed else "the mesh did not settle"
+        return STILL[STATUS[one.state.status]]
     if one.train is not None and 1 < one.train.model.cycle <= LONGEST:
         cycle = one.train.model.cycle
         return f"{one.motion.reason}, one period being {cycle} mesh periods: all shafts in place"

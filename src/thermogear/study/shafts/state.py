@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.errors import GeometryError, InputError, ValidityWarning
 from thermogear.base.progress import Progress, silent
-from thermogear.base.vocabulary import STATUS
+from thermogear.base.vocabulary import HEAT_NOT_SETTLED, STATUS, still
 from thermogear.case.case import GearCase
 from thermogear.case.shaft_plan import TrainPlan
 from thermogear.case.thermal_state import HOT, UNDEFORMED, ThermalState
@@ -85,12 +85,7 @@ class TrainState:
     def rest(self) -> Equilibrium:
         """The equilibrium; InputError where there is none."""
         if self.equilibrium is None:
-            raise InputError(
-                "operating",
-                f"{self.state.words}: no mesh",
-                why="the heat balance or the loaded contact of this operating point did not settle",
-                fix="choose another operating point, or give temperatures",
-            )
+            raise still(self.status, self.state.words)
         return self.equilibrium
 
     @property
@@ -161,7 +156,7 @@ def settled(
         row = []
         for count, place in enumerate(places):
             progress("shafts", number * len(places) + count, whole)
-            known = balance is None or bool(np.ravel(balance.settled)[place])
+            known = state.settled(case, chosen, place)
             row.append(_settled(case, chosen, state, at, place, rings[place], known))
         found.append(row)
     progress("shafts", whole, whole)
@@ -197,7 +192,7 @@ def _settled(
         if abs(growths[-1] - before) <= CLOSED or len(growths) == MOST_ROUNDS:
             break
         mesh = meshing(case, model, moved_apart(case.pair, growths[-1]), at)
-    status = mesh.status if known and rest is not None else NOT_CONVERGED
+    status = mesh.status if known else HEAT_NOT_SETTLED
     if rest is not None and status == OK and rest.back_force > 0.0:
         status = JAMMED
     return TrainState(

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.progress import Progress, silent
 from thermogear.base.units import RPM
-from thermogear.base.vocabulary import label
+from thermogear.base.vocabulary import STATUS, STILL, label
 from thermogear.case.case import GearCase
 from thermogear.results.result import Notice, Result
 from thermogear.shafts.train import SHAFTS
@@ -244,8 +244,8 @@ def notices(case: GearCase, found: Sequence[Sequence[TrainState]]) -> Iterator[N
             if one.equilibrium is None:
                 yield Notice(
                     "important",
-                    f"{one.state.words}, {one.speed / RPM:.6g} rpm, {one.torque:.6g} N m: heat "
-                    "balance or loaded contact did not settle; no numbers.",
+                    f"{one.state.words}, {one.speed / RPM:.6g} rpm, {one.torque:.6g} N m: "
+                    f"{STILL[STATUS[one.status]]}; no numbers.",
                 )
             elif one.status == JAMMED:
                 yield Notice(

@@ -99,7 +99,9 @@ class WaterfallPlan:
     block: int = BLOCK
     threads: int | None = field(default=None, compare=False)
     kind: str = KIND
-    _trains: dict[int, MovingTrain | None] = field(repr=False, compare=False, default_factory=dict)
+    _trains: dict[int, tuple[MovingTrain | None, int]] = field(
+        repr=False, compare=False, default_factory=dict
+    )
 
     @property
     def orders(self) -> Floats:
@@ -144,20 +146,19 @@ class WaterfallPlan:
         }
 
     def train(self, state: int) -> MovingTrain | None:
-        """The train in one state of heat, at the operating point; None where it is jammed."""
+        """The train in one state of heat, at the operating point; None where nothing moves."""
+        return self._made(state)[0]
+
+    def _made(self, state: int) -> tuple[MovingTrain | None, int]:
+        """The train and its status."""
         with _MAKING:
             if state not in self._trains:
                 ((one,),) = settled(self.case, [self.place], states=[self.states[state]])
-                self._trains[state] = (
-                    moving(
-                        self.case,
-                        one,
-                        coordinates=self.size or None,
-                        friction=rubbing(self.case, one),
-                    )
-                    if one.status == 0
-                    else None
-                )
+                made = None
+                if one.status == 0:
+                    rub = rubbing(self.case, one)
+                    made = moving(self.case, one, coordinates=self.size or None, friction=rub)
+                self._trains[state] = made, one.status
             return self._trains[state]
 
     def __getstate__(self) -> dict[str, Any]:
@@ -228,9 +229,9 @@ class WaterfallPlan:
         every = np.array(self.speeds)
         mine = np.arange(every.size)[ranges_of(self, key)["pinion_speed"]]
         found = empty_arrays(self, key)
-        train = self.train(key[0])
+        train, status = self._made(key[0])
         if train is None:
-            found["status"][...] = STATUS.index("jammed")
+            found["status"][...] = status
             return found
         order = np.arange(mine.size) if up else np.arange(mine.size)[::-1]
         state, turn, at = train.start, 0.0, float("nan")
@@ -350,7 +351,7 @@ class WaterfallPlan:
         return int(there is not None and _held_apart(there, states, int(row["part"])))
 
     def _critical(self, state: int) -> list[dict[str, Any]]:
-        """Critical speeds in one state of heat; none where the train is jammed."""
+        """Critical speeds in one state of heat; none where nothing moves."""
         one = self.train(state)
         found = () if one is None else critical_speeds(self.case, one.state, max(self.speeds))
         return [asdict(speed) for speed in found]

@@ -41,7 +41,8 @@ def _two_ways(data: xr.Dataset) -> str:
     """Where the motions up and down differ in kind, and where they jump."""
     name, codes = _codes(data)
     if (codes > UNDECIDED).all():
-        return "No value has a motion: all are jammed or diverge"
+        words = [CLASSES[code][0] for code in np.unique(codes)]
+        return f"No value has a motion: {', '.join(words)}"
     known = (codes != UNDECIDED).all(axis=0)
     apart = ways_apart(data)
     values = shown(name, data[name])

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.display import exactly, number, span
 from thermogear.base.units import RPM
-from thermogear.base.vocabulary import STATUS
+from thermogear.base.vocabulary import is_known
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -54,7 +54,7 @@ def held(data: xr.Dataset) -> str:
 
 def thermal_map(data: xr.Dataset, safe: float) -> str:
     """Of the map of everything hot, or of its line over one axis."""
-    settled = data["status"].values != STATUS.index("not_converged")
+    settled = is_known(data["status"].values)
     beyond = settled & (data["within_oil_range"].values == 0)
     words = []
     if len(running(data)) == 1:
@@ -72,7 +72,7 @@ def thermal_map(data: xr.Dataset, safe: float) -> str:
 def one_point(data: xr.Dataset) -> str:
     """What a map of one point would show."""
     here = data.isel(pinion_speed=0, pinion_torque=0)
-    if int(here["status"]) == STATUS.index("not_converged"):
+    if not is_known(int(here["status"])):
         return ""
     shares = zip(here["regime_name"].values, here["regime_share"].values, strict=True)
     film = ", ".join(f"{name} on {100 * float(part):.0f} %" for name, part in shares if part)

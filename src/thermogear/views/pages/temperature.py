@@ -10,7 +10,7 @@ import numpy as np
 
 from thermogear.base.display import exactly, number, reach
 from thermogear.base.units import RPM, ZERO_CELSIUS
-from thermogear.base.vocabulary import STATUS
+from thermogear.base.vocabulary import STATUS, is_known
 from thermogear.results.result import Result
 from thermogear.views.page import Page, Shown, Table
 from thermogear.views.pages import survey_captions as words
@@ -97,7 +97,7 @@ def _corner_table(data: xr.Dataset) -> Table:
     for i, j in _chosen(data):
         here = data.isel(pinion_speed=i, pinion_torque=j)
         node = here["node_temperature"]
-        settled = int(here["status"]) != STATUS.index("not_converged")
+        settled = is_known(int(here["status"]))
         rows.append(
             [
                 *_point_name(data, i, j),

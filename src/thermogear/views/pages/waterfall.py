@@ -10,6 +10,7 @@ import numpy as np
 
 from thermogear.base.display import number
 from thermogear.base.units import RPM
+from thermogear.base.vocabulary import STATUS, STILL
 from thermogear.results.result import Result
 from thermogear.views.page import Page, Shown, Table
 from thermogear.views.pages.survey import survey
@@ -48,7 +49,8 @@ def summary(data: xr.Dataset) -> str:
     speeds = data["pinion_speed"].values / RPM
     rms = data["mesh_force_rms"].values
     if not np.isfinite(rms).any():
-        return "No state of heat moves: the train is jammed."
+        why = [STILL[STATUS[code]] for code in np.unique(data["status"].values)]
+        return f"No state of heat moves: {'; '.join(why)}."
     place = np.unravel_index(int(np.nanargmax(rms)), rms.shape)
     state = plots.states_of(data)[place[0]]
     way = ("up", "down")[place[1]]

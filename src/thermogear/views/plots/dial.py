@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.display import CELSIUS, number
-from thermogear.base.vocabulary import STATUS
+from thermogear.base.vocabulary import STATUS, STILL, is_known
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.curves import axis_of
 from thermogear.views.plots.motion import BEYOND, SPEED, label_of, moving, orbit_of
@@ -36,8 +36,8 @@ def told(data: xr.Dataset, place: int) -> str:
     """What is found at one temperature, in words."""
     one = data.isel(gear_temperature=place)
     state = STATUS[int(one["status"])]
-    if state == "not_converged":
-        return "heat or loaded contact did not settle"
+    if not is_known(int(one["status"])):
+        return STILL[state]
     stiffness = f"mean stiffness {number(1e-8 * float(one['mean_stiffness']))}·10⁸ N/m"
     left = f"half backlash {number(1e6 * float(one['half_backlash']))} µm"
     if state == "jammed":

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.display import CELSIUS, number
 from thermogear.base.units import RPM
-from thermogear.base.vocabulary import STATUS
+from thermogear.base.vocabulary import STATUS, STILL, is_known
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.curves import axis_of
 from thermogear.views.plots.motion import HALF_ORDERS, HIGHEST_ORDER
@@ -192,8 +192,8 @@ def told_mesh(data: xr.Dataset) -> list[str]:
     for place, state in enumerate(names_of(data, "state")):
         one = data.isel(state=place)
         status = STATUS[int(one["status"])]
-        if status == "not_converged":
-            found.append(f"{state}: heat or loaded contact did not settle")
+        if not is_known(int(one["status"])):
+            found.append(f"{state}: {STILL[status]}")
             continue
         stiff = f"mean stiffness {number(1e-8 * float(one['mean_stiffness']), 4)}·10⁸ N/m"
         left = 1e6 * float(one["half_backlash"])

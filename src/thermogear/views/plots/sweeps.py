@@ -34,6 +34,9 @@ CLASSES = (
     ("undecided", "#999999"),
     ("diverged", "#22303c"),
     ("jammed", "#ffffff"),
+    ("not converged", "#e4e4e4"),
+    ("heat not settled", "#f6dcd2"),
+    ("impossible", "#d9e2ea"),
 )
 KINDS = ("fold", "period doubling", "grazing", "period halving", "pitchfork", "torus")
 DRAWN = ("fold", "period doubling", "pitchfork", "torus")
@@ -50,7 +53,7 @@ def classes_of(data: xr.Dataset) -> NDArray[np.int64]:
     found[periodic & (period > 8)] = 7
     found[label == 2] = 8
     found[label == 3] = 10
-    found[label == 4] = 11
+    found[label > 3] = label[label > 3] + 7
     return found
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.display import CELSIUS
 from thermogear.base.units import RPM, ZERO_CELSIUS
-from thermogear.base.vocabulary import STATUS
+from thermogear.base.vocabulary import is_known
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import INK, OKABE_ITO, WIDE, scale
 
@@ -30,7 +30,7 @@ def thermal_map(data: xr.Dataset) -> Picture:
     Points without a steady state are white; where the oil leaves its viscosity line the map is
     hatched. Where only one of speed and torque runs there are six lines over it instead.
     """
-    settled = data["status"].values != STATUS.index("not_converged")
+    settled = is_known(data["status"].values)
 
     def kept(values: Floats) -> Floats:
         return np.where(settled, values, np.nan)
