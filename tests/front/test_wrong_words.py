@@ -102,10 +102,6 @@ def _here(tmp_path, monkeypatch):
         ("thesis -o out --values 9", "--values: got 9; no case is named"),
         ("thesis -o out --set a=1", "--set: got ('a=1',); no case is named"),
         (
-            "thesis rig -o out --record no.csv",
-            "--record: got 'no.csv'; allowed FILE or FILE=RPM, a file that there is",
-        ),
-        (
             "thesis rig -o out --record file=fast",
             "--record: got 'file=fast'; allowed FILE=RPM, a number of rpm",
         ),

@@ -290,9 +290,9 @@ def of_warm_up() -> dict[str, Picture]:
 
 def of_claims() -> dict[str, Picture]:
     diagram = made("direction start damping_ratio section", "section_x").assign(
-        damping_ratio=rising("damping_ratio")
+        damping_ratio=rising("damping_ratio"),
+        lyapunov=rising("direction", "start", "damping_ratio"),
     ).assign_attrs(parameter="damping_ratio")  # fmt: skip
-    flips = made("row heat flip", "value").assign_coords(row=["zeta", "omega"], heat=["none"])
     given = made("thermal speed torque", "flash_mixed", "flash_dry").assign(
         speed=rising("speed"), torque=rising("torque"), thermal=["given", "balance"]
     )
@@ -310,7 +310,8 @@ def of_claims() -> dict[str, Picture]:
         output_words=("output", ["growth", "flash"]), input_words=("input", ["a", "b", "c"])
     )
     return {
-        "thesis-diagram": claims.diagram({"zeta/none": diagram}, flips, "zeta"),
+        "thesis-diagram": sweeps.over_each_other([diagram], ["without heat"]),
+        "overlay": sweeps.overlay_picture(diagram.expand_dims(state=2), ["undeformed", "hot"], ()),
         "over-grid": claims.over_grid(given, "flash", "flash temperature [K]"),
         "warming": claims.warming(multiplier),
         "experiment": claims.experiment(entry),

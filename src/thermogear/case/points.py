@@ -182,14 +182,14 @@ def largest_fluctuation(points: Points) -> Floats:
     turns = np.outer(np.arange(1, waves.shape[1] + 1), np.arange(count) / count)
     least = (waves @ np.exp(2j * np.pi * turns)).real.min(axis=1)
     mean = points.flat.stiffness[:, 0].real
-    return np.divide(mean, -least, out=np.full(mean.size, np.inf), where=least < 0.0)
+    return np.asarray(np.divide(mean, -least, out=np.full(mean.size, np.inf), where=least < 0.0))
 
 
 def on_numbers(points: Points, numbers: dict[str, Floats]) -> Points:
     """``points`` with numbers of the equation in place of the gears' own, the force as it is."""
     if FLUCTUATION in numbers:
         factor, most = numbers[FLUCTUATION], largest_fluctuation(points)
-        beyond = (factor >= most) & ~points.jammed
+        beyond = (factor >= most) & ~points.still
         if beyond.any():
             raise InputError(
                 FLUCTUATION,

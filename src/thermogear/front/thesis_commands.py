@@ -106,14 +106,11 @@ def _redone(path: str, output: str, as_json: bool, options: dict[str, Any]) -> N
 
 def _record(text: str) -> tuple[Path, float | None]:
     """File and speed [rad/s] of ``FILE[=RPM]``."""
-    name, sign, value = text.rpartition("=") if not Path(text).is_file() else (text, "", "")
-    if not Path(name).is_file():
-        raise InputError("--record", repr(text), allowed="FILE or FILE=RPM, a file that there is")
+    name, sign, rpm = text.rpartition("=")
     try:
-        speed = float(value) * RPM if sign else None
+        return Path(name if sign else text), float(rpm) * RPM if sign else None
     except ValueError:
         raise InputError("--record", repr(text), allowed="FILE=RPM, a number of rpm") from None
-    return Path(name), speed
 
 
 @click.command()

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -38,8 +39,6 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
-KIND = "thesis-pair"
-PREFIX = "diagrams/"
 TEMPERATURES = tuple(ZERO_CELSIUS + t for t in (100.0, 120.0, 140.0, 160.0))
 """Gear temperatures [K] of section 4.1 of the thesis."""
 DAMPING = (0.02, 0.18)
@@ -51,7 +50,6 @@ stiffness: the second and third superharmonic resonance, the main one, and the t
 PARTS = (0.1, 0.9)
 """Fluctuations of the mesh stiffness, as parts of the one at which it would reach zero: the
 thesis's amplitudes 0.1 to 0.9, which reach zero at 1."""
-ALL_PLAY = "bearings.all.play"
 PLAYS = np.array([0.0, 20e-6, 40e-6, 60e-6])
 """Play of all bearings [m]: none, and that of new to worn ball bearings of 30 to 50 mm bore."""
 FOLLOWED = 12
@@ -89,14 +87,14 @@ def thesis_pair(
     try:
         for name, axis in _axes(alone, point, values).items():
             both = _overlaid(alone, name, axis, progress)
-            groups[PREFIX + name] = both.data
+            groups[f"diagrams/{name}"] = both.data
             matches[name] = both.rows("matches")
         if case.train is not None:
             groups["play"] = _played(alone, progress)
     except KeyboardInterrupt:
         cut = True
     told = tuple(friction_notices(alone, groups))
-    return replace(ran, kind=KIND, groups=groups, notices=told).with_(
+    return replace(ran, kind="thesis-pair", groups=groups, notices=told).with_(
         interrupted=cut, left_out=left_out, matches=matches
     )
 
@@ -106,7 +104,7 @@ def _alone(case: GearCase, operating: int | None, bundle: str) -> tuple[GearCase
     at = case.stated
     every = GearFamily(case, ("pinion_speed", "pinion_torque"), bundle, UNDEFORMED)
     points = every(np.stack([at.speed, at.torque], axis=1))
-    far = np.where(points.jammed, np.inf, np.abs(points.mesh_frequency / points.rate - 1.0))
+    far = np.where(points.still, np.inf, np.abs(points.mesh_frequency / points.rate - 1.0))
     place = int(np.argmin(far)) if operating is None else operating - 1
     if not 0 <= place < far.size:
         raise InputError("--operating", operating, allowed=f"1..{far.size}")
@@ -142,7 +140,7 @@ def _axes(case: GearCase, point: Points, count: int) -> dict[str, Floats]:
 
     A stiffness that does not fluctuate has no axis of its fluctuation.
     """
-    if point.jammed.any():
+    if point.still.any():
         return {}
     critical = float(np.copysign(point.rate[0], case.speeds[0])) / case.pair.pinion.teeth
     most = float(largest_fluctuation(point)[0])
@@ -160,8 +158,8 @@ def _axes(case: GearCase, point: Points, count: int) -> dict[str, Floats]:
 
 def _played(case: GearCase, progress: Progress) -> xr.Dataset:
     """The drive train hot over the play of all its bearings, up and down."""
-    plan = case_diagram(case, ALL_PLAY, PLAYS, branch_period=0, train=Train())
-    return gather(plan, progress=lambda done, total: progress("bearing play", done, total))
+    plan = case_diagram(case, "bearings.all.play", PLAYS, branch_period=0, train=Train())
+    return gather(plan, progress=partial(progress, "bearing play"))
 
 
 def _beside(
@@ -184,15 +182,9 @@ def _overlaid(case: GearCase, name: str, values: Floats, progress: Progress) -> 
     """The diagrams over one parameter, undeformed and hot, with their bifurcations matched."""
     states = (UNDEFORMED, HOT)
     plans = [case_diagram(case, name, values, state=state) for state in states]
-    words = PARAMETERS[name].words
     found = [
-        gather(
-            plan,
-            progress=lambda done, total, at=state.words: progress(f"{words}, {at}", done, total),
-        )
+        gather(plan, progress=partial(progress, f"{PARAMETERS[name].words}, {state.words}"))
         for plan, state in zip(plans, states, strict=True)
     ]
-    return overlaid(
-        case.title, [state.words for state in states], plans, found, most=FOLLOWED,
-        progress=progress,
-    )  # fmt: skip
+    words = [state.words for state in states]
+    return overlaid(case.title, words, plans, found, most=FOLLOWED, progress=progress)

@@ -106,23 +106,15 @@ TEXTS = (
 
 
 def _claims(findings: list[Finding]) -> xr.Dataset:
-    columns: dict[str, list[str]] = {name: [] for name in TEXTS}
-    for claim, finding in zip(CLAIMS, findings, strict=False):
-        row = (
-            claim.number,
-            claim.place,
-            claim.kind,
-            claim.words,
-            finding.thesis,
-            finding.consistent,
-            finding.verdict.value,
-            finding.argument,
-            " ".join(claim.code),
-            claim.picture,
+    rows = [
+        (
+            claim.number, claim.place, claim.kind, claim.words, finding.thesis, finding.consistent,
+            finding.verdict.value, finding.argument, " ".join(claim.code), claim.picture,
         )
-        for name, text in zip(TEXTS, row, strict=True):
-            columns[name].append(text)
-    return label({name: (("claim",), texts) for name, texts in columns.items()})
+        for claim, finding in zip(CLAIMS, findings, strict=False)
+    ]  # fmt: skip
+    columns = zip(TEXTS, zip(*rows, strict=True), strict=True)
+    return label({name: (("claim",), list(column)) for name, column in columns})
 
 
 def _sentences() -> dict[str, int]:

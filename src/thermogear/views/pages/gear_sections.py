@@ -260,21 +260,6 @@ def row(results: Result, pictures: Pictures) -> Section | None:
         data, (swing,), lambda: temperature.over_temperature(data, swing),
     )  # fmt: skip
     blocks: list[Block] = [Text(captions.row_intro(data, ", ".join(words)))]
-    line = "half_order_amplitude"
-    if all(n in data for n in (line, swing)) and temperature.worth_drawing(data, line):
-        pictures.add(
-            "row-half", "The line at half the mesh frequency",
-            "A line that grows from nothing is a period doubling.",
-            data, (line,), lambda: temperature.over_temperature(data, line),
-        )  # fmt: skip
-    elif line in data:
-        blocks.append(
-            Text(
-                "No motion of this row has a line at half the mesh frequency: whatever stands "
-                "there is rounding.",
-                "note",
-            )
-        )
     drawn = pictures.take()
     table = tables.motion_proofs(data, "gear_temperature", words)
     return Section("temperature", "Gear temperature", [*blocks, *drawn, table])

@@ -31,12 +31,14 @@ from thermogear.views.pages.background import background
 from thermogear.views.pages.record import comparison_table, implied_table
 from thermogear.views.pages.sensitivity import sensitivity_section
 from thermogear.views.plots import claims as plots
+from thermogear.views.plots.sweeps import over_each_other
 from thermogear.views.typesetting import html_symbol, prose
 
 if TYPE_CHECKING:
     import xarray as xr
 
 PREFIX = "diagrams/"
+DIAGRAMS = {"zeta": "damping", "omega": "frequency", "epsilon": "stiffness"}
 SECTIONS = {
     2: "Thermal deformation of the tooth",
     3: "Dynamic model",
@@ -284,23 +286,20 @@ def _simulation(results: Result, pictures: Pictures) -> list[Block]:
             "of steel leads away from it.",
             warming, ("multiplier",), lambda: plots.warming(warming),
         )  # fmt: skip
-    diagrams = {
-        name.removeprefix(PREFIX): data
-        for name, data in results.groups.items()
-        if name.startswith(PREFIX)
-    }
+    for row, words in DIAGRAMS.items():
+        heats = [heat for heat in plots.HEATS if f"{PREFIX}{row}/{heat}" in results.groups]
+        each = [results.groups[f"{PREFIX}{row}/{heat}"] for heat in heats]
+        for data in each[:1]:
+            pictures.add(
+                f"diagram-{row}", f"Bifurcation diagram over {words}",
+                "Sections of the settled motion, swept up and down: without heat, with the heat of "
+                "the thesis, with the consistent one. The largest Lyapunov exponent below.",
+                data, (),
+                lambda e=each, n=heats: over_each_other(e, [plots.HEATS[h][0] for h in n]),  # type: ignore[misc]
+                wide=True,
+            )  # fmt: skip
     if flips is None:
         return found + pictures.take()
-    rows = (("zeta", "damping"), ("omega", "frequency"), ("epsilon", "stiffness"))
-    for row, words in rows if diagrams else ():
-        pictures.add(
-            f"diagram-{row}", f"Bifurcation diagram over {words}",
-            "Sections of the settled motion, swept up and down; dashed lines are located period "
-            "doublings. Without heat, with the heat of the thesis, with the consistent one.",
-            flips, ("value",),
-            lambda r=row: plots.diagram(diagrams, flips, r),  # type: ignore[misc]
-            wide=True,
-        )  # fmt: skip
     return [*found, *pictures.take(), _flip_table(flips)]
 
 
@@ -350,17 +349,13 @@ def _tests(results: Result, pictures: Pictures) -> list[Block]:
 
 # --- figures as the terminal and JSON want them -----------------------------------------------
 
-TEXTS = (
-    "number", "place", "kind", "words", "as_in_the_thesis", "consistent", "verdict", "argument",
-    "code", "picture",
-)  # fmt: skip
-
 
 def _numbers(result: Result) -> dict[str, Any]:
     """Counts, verdicts and the ranking of the inputs, JSON-ready."""
     claims = result.groups["claims"]
     rows = [
-        {name: str(claims[name].values[k]) for name in TEXTS} for k in range(claims.sizes["claim"])
+        {str(name): str(column.values[k]) for name, column in claims.data_vars.items()}
+        for k in range(claims.sizes["claim"])
     ]
     found = {
         "thermogear": result.text("thermogear"),

@@ -26,17 +26,16 @@ from thermogear.views.plots import laws
 from thermogear.views.plots.lost_contact import forces_picture
 from thermogear.views.plots.motion import label_of, moving
 from thermogear.views.plots.parameters import shown
-from thermogear.views.plots.sweeps import CLASSES, classes_of
+from thermogear.views.plots.sweeps import CLASSES, classes_of, overlay_picture, state_of
 
 if TYPE_CHECKING:
     import xarray as xr
 
 KINDS = ("thesis-pair",)
-JAMMED, LOST = STATUS.index("jammed"), STATUS.index("not_converged")
+JAMMED = STATUS.index("jammed")
 SWING, HALF = "peak_to_peak_displacement", "half_order_amplitude"
 ROUNDING = 1e-9
 """A line at half the mesh frequency below this part of the swing is rounding."""
-UNSETTLED = "the heat balance does not settle, so nothing is known of it"
 FRICTION = {"friction", "flash-mixed", "flash-dry"}
 """The pictures of mixed beside dry friction."""
 Told = tuple[str, list[Block]]
@@ -123,9 +122,10 @@ def _warming(result: Result, pictures: Pictures) -> Told:
         told[-1] += f", {ends}" * lines
         section = gear_sections.row(result, pictures)
         blocks = [one for one in section.blocks if one.kind != "text"] if section else []
-    for status, words in ((JAMMED, _no_gap(points)), (LOST, UNSETTLED)):
-        where = [_at(one) for one in points if int(one["status"]) == status]
-        told += [f"at {', '.join(where)} {words}"] * bool(where)
+    still = [one for one in points if int(one["status"]) != 0]
+    for word in dict.fromkeys(map(label_of, still)):
+        some = [one for one in still if label_of(one) == word]
+        told.append(f"at {', '.join(map(_at, some))} {word}{_gap(some) * (word == 'jammed')}")
     left = result.rows("left_out")
     for why in dict.fromkeys(str(one["why"]) for one in left):
         where = [celsius(one["gear_temperature_K"]) for one in left if one["why"] == why]
@@ -137,23 +137,23 @@ def _at(one: xr.Dataset) -> str:
     return celsius(float(one["gear_temperature"]))
 
 
-def _no_gap(points: list[xr.Dataset]) -> str:
-    gaps = [1e6 * float(one["half_backlash"]) for one in points if int(one["status"]) == JAMMED]
-    jam = float(points[-1]["jam_temperature"]) if "jam_temperature" in points[-1] else np.nan
-    at = f"; the pair jams at {celsius(jam)}" if np.isfinite(jam) else ""
-    return f"no gap is left, half backlash {span(gaps)} µm{at}"
+def _gap(points: list[xr.Dataset]) -> str:
+    """The half backlash of jammed points, and where it is used up."""
+    gaps = span([1e6 * float(one["half_backlash"]) for one in points])
+    jam = float(points[-1]["jam_temperature"])
+    return f", half backlash {gaps} µm" + f", used up at {celsius(jam)}" * (jam == jam)
 
 
 def _diagram(name: str, result: Result, pictures: Pictures) -> Told:
     """The diagrams over one parameter, undeformed and hot, in one picture and one table."""
     data = result.group(f"diagrams/{name}")
     if data is None:
-        gap = _micro(result.groups["mesh"].isel(bundle=0, operating=0, state=0), "half_backlash")
-        still = f"undeformed no gap is left, half backlash {gap} µm"
-        return f"Not computed: {'stopped before it' if result.interrupted else still}.", []
+        cold = result.groups["motion"].isel(bundle=0, operating=0, state=0)
+        why = "stopped before it" if result.interrupted else f"undeformed it is {label_of(cold)}"
+        return f"Not computed: {why}.", []
     states = json.loads(str(data.attrs["state_names"]))
     rows = result.table("matches")[name]
-    here = [overlay.state_of(data, place) for place in range(len(states))]
+    here = [state_of(data, place) for place in range(len(states))]
     ends = [exactly(float(v), 4) for v in shown(name, data[name][[0, -1]])]
     motions = [_shares(one) for one in here]
     told = [f"{state} {words}" for state, words in zip(states, motions, strict=True)]
@@ -168,7 +168,7 @@ def _diagram(name: str, result: Result, pictures: Pictures) -> Told:
     if any((one["status"].values == 0).any() for one in here):
         pictures.add(
             f"diagram-{name}", "Undeformed and hot", overlay.CAPTION, data, (),
-            lambda: overlay.overlay_picture(data, states, rows), wide=True,
+            lambda: overlay_picture(data, states, rows), wide=True,
         )  # fmt: skip
     blocks, kept = pictures.take(), [row for row in rows if row["partner"] != "not followed"]
     if kept:
@@ -180,12 +180,9 @@ def _diagram(name: str, result: Result, pictures: Pictures) -> Told:
 
 def _shares(one: xr.Dataset) -> str:
     """Which motions one state settles on, by their shares of the values."""
-    status = one["status"].values
-    code = classes_of(one)[status == 0]
-    parts = {CLASSES[n][0]: np.sum(code == n) for n in np.unique(code)}
-    parts |= {"no gap left": np.sum(status == JAMMED), "heat not settled": np.sum(status == LOST)}
-    told = [f"{words} at {number(100.0 * n / status.size)} %" for words, n in parts.items() if n]
-    return ", ".join(told)
+    code = classes_of(one)
+    parts = (f"{CLASSES[n][0]} at {number(100.0 * np.mean(code == n))} %" for n in np.unique(code))
+    return ", ".join(parts)
 
 
 def _friction(result: Result, pictures: Pictures) -> Told:
@@ -194,8 +191,9 @@ def _friction(result: Result, pictures: Pictures) -> Told:
     mean = [number(float(np.mean(here[f"friction_coefficient_{n}"].values))) for n in names]
     flash = [number(float(np.max(here[f"flash_temperature_{n}"].values))) for n in names]
     if "–" in (*mean, *flash):
-        lost = int(_hot(result.groups["mesh"])["status"]) == LOST
-        why = UNSETTLED if lost else "Benedict and Kelley's law has no value for these flanks"
+        hot = int(_hot(result.groups["mesh"])["status"])
+        why = "Benedict and Kelley's law has no value for these flanks"
+        why = STATUS[hot].replace("_", " ") if hot > JAMMED else why
         return f"Mixed lubrication cannot be put beside dry friction hot: {why}.", []
     section = gear_sections.friction(result, pictures)
     galleries = [one for one in section.blocks if isinstance(one, Gallery)] if section else []
@@ -228,7 +226,7 @@ def _outlook(result: Result, pictures: Pictures) -> Told:
             "full film.",
             path, (), lambda: laws.film(path),
         )  # fmt: skip
-    film = captions.regimes(path) or f"The film is not known: {UNSETTLED}."
+    film = captions.regimes(path) or "The film is not known: the heat does not settle."
     play = result.group("play")
     words = "The play of bearings is not varied: the case has no [[shafts]] and [[bearings]]."
     if play is not None:

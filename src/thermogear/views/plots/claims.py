@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.views.picture import Axis, Panel, Picture
@@ -26,51 +24,12 @@ from thermogear.views.style import (
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 
-AXES = {
-    "zeta": "damping ratio ζ [–]",
-    "omega": "excitation frequency $ω_{h}$ [–]",
-    "epsilon": "stiffness amplitude ε [–]",
-}
 HEATS = {
     "none": ("without heat", COLD),
     "thesis": ("heat as in the thesis", HOT),
     "consistent": ("heat by E(T)", MIXED),
 }
-_CELLS = 700.0
-
-
-def diagram(diagrams: Mapping[str, xr.Dataset], flips: xr.Dataset, row: str) -> Picture:
-    """Sections over one parameter, a panel for each kind of heat, located flips as lines."""
-    panels = []
-    for heat, (words, colour) in HEATS.items():
-        if f"{row}/{heat}" not in diagrams:
-            continue
-        data = diagrams[f"{row}/{heat}"]
-        parameter = str(data.attrs["parameter"])
-        low, high = float(data[parameter].min()), float(data[parameter].max())
-        x = Axis(AXES[row], low=low, high=high, most=5, inner=True, grid=False)
-        panel = Panel(x, Axis(grid=False), words)
-        panel.points(*_points(data, parameter), marker="dot", size=0.9, colour=colour, pixels=True)
-        for value in flips["value"].sel(row=row, heat=heat).values:
-            if low <= value <= high:
-                panel.line(x=float(value), colour=QUIET, width=0.7, dash=(4, 3), order=0.5)
-        panels.append(panel)
-    panels[0].y.words = "X on the section [half backlashes]"
-    return Picture([panels], size=(WIDE, 3.5), share_y="row", between=0.3, resolution=200.0)
-
-
-def _points(data: xr.Dataset, parameter: str) -> tuple[Floats, Floats]:
-    """Points of both directions that a reader can tell apart."""
-    y = data["section_x"].transpose(..., parameter, "section").values
-    x = np.broadcast_to(data[parameter].values[:, None], y.shape)
-    flat = np.stack([x.ravel(), y.ravel()])
-    flat = flat[:, np.isfinite(flat).all(axis=0)]
-    span = float(np.ptp(flat[1])) or 1.0
-    cells = np.stack([flat[0], np.round(flat[1] / span * _CELLS)])
-    _, first = np.unique(cells, axis=1, return_index=True)
-    return flat[0, first], flat[1, first]
 
 
 def over_grid(data: xr.Dataset, name: str, unit: str, scale: float = 1.0) -> Picture:

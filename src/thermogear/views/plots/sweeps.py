@@ -12,7 +12,7 @@ from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import ASSUMED, STATUS, UNDEFORMED
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.parameters import axis_words, parameter_of, shown
-from thermogear.views.style import COLD, FAINT, HOT, INK, OKABE_ITO, QUIET, WIDE, scale
+from thermogear.views.style import COLD, FAINT, HOT, INK, MIXED, OKABE_ITO, QUIET, WIDE, scale
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -114,17 +114,25 @@ def _above_exponent(top: Panel, low: Panel) -> Picture:
 
 
 def overlay_picture(data: xr.Dataset, states: Sequence[str], matches: Rows) -> Picture:
-    """Two orbit diagrams over each other, a colour for each state, up and down alike.
-
-    A thin line leads from a bifurcation of one to the same one of the other.
-    """
-    name = _parameter(data)
-    p = shown(name, data[name])
-    top = Panel(Axis(), Axis("X at phase 0 [–]"))
-    low = Panel(_along(data, name), Axis("exponent λ₁ [–]"))
+    """The diagrams of all ``states`` over each other; see :func:`over_each_other`."""
     each = [state_of(data, place) for place in range(len(states))]
-    colours = (COLD, HOT) if states[0] == UNDEFORMED else (HOT, COLD)
-    for here, words, colour in zip(each, states, colours, strict=True):
+    return over_each_other(each, states, matches)
+
+
+def over_each_other(
+    each: Sequence[xr.Dataset], states: Sequence[str], matches: Rows = ()
+) -> Picture:
+    """Orbit diagrams over each other, a colour for each state, up and down alike.
+
+    A thin line leads from a bifurcation of the first to the same one of the second.
+    """
+    name = _parameter(each[0])
+    values = each[0][name]
+    p = shown(name, values)
+    top = Panel(Axis(), Axis("X at phase 0 [–]"))
+    low = Panel(_along(each[0], name), Axis("exponent λ₁ [–]"))
+    colours = (HOT, COLD) if states[-1] == UNDEFORMED else (COLD, HOT, MIXED)
+    for here, words, colour in zip(each, states, colours, strict=False):
         x = here["section_x"].values
         top.points(
             np.broadcast_to(p[:, None], x.shape).ravel(), x.ravel(), colour=colour, marker="dot",
@@ -138,7 +146,7 @@ def overlay_picture(data: xr.Dataset, states: Sequence[str], matches: Rows) -> P
         if match["kind"] in DRAWN and match["drawn"] and match["partner"] == "matched":
             ends = [match["one"], match["other"]]
             up = [_height(here, value) for here, value in zip(each, ends, strict=True)]
-            at = parameter_of(name, data[name]).show(np.array(ends))
+            at = parameter_of(name, values).show(np.array(ends))
             top.curve(at, up, colour=OKABE_ITO[3], width=0.8, order=4)
     return _above_exponent(top, low)
 

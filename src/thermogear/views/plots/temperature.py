@@ -20,11 +20,6 @@ MOST_COLUMNS = 6
 HIGHEST_ORDER = 4.0
 """Spectra are drawn up to this order of the mesh frequency."""
 
-FIGURES = {
-    "peak_to_peak_displacement": "displacement, peak to peak [µm]",
-    "half_order_amplitude": "half-order amplitude |x| [µm]",
-}
-
 
 def views(row: xr.Dataset, *, bundle: int, operating: int) -> Picture:
     """Time history, phase plane, Poincare section and spectrum: a column for each temperature."""
@@ -86,8 +81,8 @@ def _still(one: xr.Dataset) -> str:
 
 
 def over_temperature(row: xr.Dataset, name: str) -> Picture:
-    """One figure of the motion over the gears' temperature: speeds by colour, bundles by line."""
-    panel = Panel(axis_of("gear_temperature"), Axis(FIGURES[name]))
+    """The swing of the motion over the gears' temperature: speeds by colour, bundles by line."""
+    panel = Panel(axis_of("gear_temperature"), Axis("displacement, peak to peak [µm]"))
     x = CELSIUS(row["gear_temperature"].values)
     draw_by_both(panel, row, name, x, marker="circle", size=4)
     low, high = panel.extent("y")
@@ -95,11 +90,3 @@ def over_temperature(row: xr.Dataset, name: str) -> Picture:
     if not panel.marks:
         panel.text(0.5, 0.5, "no motion at any temperature", at="panel", size=9.0, colour=QUIET)
     return Picture([[panel]], legend=2)
-
-
-def worth_drawing(row: xr.Dataset, name: str) -> bool:
-    """Whether ``name`` rises above rounding anywhere, against the whole swing."""
-    values = row[name].values
-    swing = row["peak_to_peak_displacement"].values
-    finite = np.isfinite(values) & np.isfinite(swing)
-    return bool(np.any(values[finite] > 1e-4 * swing[finite]))
