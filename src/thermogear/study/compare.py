@@ -5,15 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError, nearest
+from thermogear.base.toml import held, overridden, pairs, tables
 from thermogear.case.base import Case
 from thermogear.case.case import gear_case, load_case
-from thermogear.measured.comparison import Comparison, compared, table_of
+from thermogear.measured.comparison import Comparison, compared, joined, table_of
 from thermogear.measured.published import (
     PUBLISHED,
     LineTable,
@@ -32,16 +33,18 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Floats = NDArray[np.float64]
+Simulated: TypeAlias = str | Path | Case | Result | Mapping[str, LineTable]
+Measured: TypeAlias = str | Path | LineTable | Printed | Measurement | Record
 
 _MOST_RUNS = 10_000
 
 
 def compare(
-    simulated: str | Path | Case | Result | Mapping[str, LineTable],
-    measured: str | Path | LineTable | Printed | Measurement | Record | None = None,
+    simulated: Simulated,
+    measured: Measured | Sequence[Measured] | None = None,
     *,
     teeth: int | None = None,
-    speed: float | None = None,
+    speed: float | Sequence[float | None] | None = None,
     at: Sequence[str] = (),
     u_data: float | None = None,
     u_num: float | None = None,
@@ -51,11 +54,13 @@ def compare(
 ) -> Comparison:
     """Simulated lines against measured ones: errors, u_val, verdicts, what the lines imply.
 
-    ``simulated``: a case or its file (simulated here), stored results, or tables by model name.
+    ``simulated``: a case or its file, simulated here at the speeds that were measured; stored
+    results, or tables by model name.
     ``measured``: a table (``LineTable``, a CSV of lines, or the name of a published one as
-    "thesis-5.2"), or a record, its file or its ``Measurement`` (then ``speed`` [rad/s] is the
-    nominal speed of the pinion). ``simulated`` may be "thesis-5.2" alone: the thesis's own table
-    recomputed.
+    "thesis-5.2"), or a record, its file or its ``Measurement``; or several of these, in one table
+    with one verdict on heat. ``speed`` [rad/s]: the pinion's in a record, one for all or one for
+    each; left out, as its mesh line and the ``teeth`` imply, those of the case where none are
+    given. ``simulated`` may be "thesis-5.2" alone: the thesis's own table recomputed.
     ``u_data`` relative standard uncertainty of the measurement where the data do not state it,
     ``u_num`` of the simulation (for a case: found by halving the step unless given);
     ``tolerances``: relative standard uncertainty per field of the case, as
@@ -86,19 +91,70 @@ def compare(
             published = PUBLISHED[simulated]
             return compared(published.models, published, u_data=u_data, u_num=u_num or 0.0)
         raise InputError("measured", "nothing", fix="a record, a table or " + ", ".join(PUBLISHED))
+    known = teeth or own_teeth(simulated)
+    how: dict[str, Any] = {
+        "at": at, "u_data": u_data, "u_num": u_num, "tolerances": tolerances, "samples": samples,
+        "seed": seed,
+    }  # fmt: skip
+    several: list[Any] = list(measured) if isinstance(measured, (list, tuple)) else [measured]
+    speeds = [speed] if speed is None or isinstance(speed, float | int) else list(speed)
+    if len(speeds) not in (1, len(several)) or not several:
+        raise InputError(
+            "speed",
+            f"{len(speeds)} speeds of {len(several)} records",
+            allowed="one, or one of each",
+        )
+    speeds = speeds * (len(several) // len(speeds))
+    found = [
+        _one(simulated, one, teeth=known, speed=turns, **how)
+        for one, turns in zip(several, speeds, strict=True)
+    ]
+    return joined(found) if len(found) > 1 else found[0]
+
+
+def own_teeth(simulated: Simulated) -> int | None:
+    """The pinion's teeth, where a case or the case of stored results says them."""
+    if isinstance(simulated, Case):
+        return gear_case(simulated).pair.pinion.teeth
+    if isinstance(simulated, str | Path) and computes(simulated):
+        return gear_case(load_case(simulated)).pair.pinion.teeth
+    if isinstance(simulated, str | Path) and str(simulated) not in PUBLISHED:
+        simulated = _stored(simulated)
+    if not isinstance(simulated, Result) or not simulated.text("case"):
+        return None
+    changes = pairs({str(path): str(text) for path, text in simulated.values("overrides")})
+    data = overridden(tables("case", simulated.text("case")), changes)
+    return int(held(data, "gears.pinion.teeth")[1])
+
+
+def _one(
+    simulated: Simulated,
+    measured: Measured,
+    *,
+    teeth: int | None,
+    speed: float | None,
+    at: Sequence[str],
+    **how: Any,
+) -> Comparison:
+    """Simulated lines against those of one record or table."""
     if at:
-        return _at_places(
-            simulated, measured, at, teeth=teeth, speed=speed, u_data=u_data, u_num=u_num,
-            tolerances=tolerances, samples=samples, seed=seed,
-        )  # fmt: skip
+        return _at_places(simulated, measured, at, teeth=teeth, speed=speed, **how)
     measured = _reduced(measured, teeth, speed)
     printed = _printed(measured, teeth, speed)
     worn = measured.damage if isinstance(measured, Measurement) else ()
     damage = [Notice(*one) for one in worn]
+    u_data, u_num = how["u_data"], how["u_num"]
     if isinstance(simulated, str) and simulated in PUBLISHED:
         models = PUBLISHED[simulated].models
         return compared(models, printed, u_data=u_data, u_num=u_num or 0.0, said=damage)
-    found = _simulated(simulated, tolerances or {}, samples, seed, u_num)
+    if computes(simulated):
+        case: Any = simulated
+        found = case_lines(
+            case, how["tolerances"] or {}, samples=how["samples"], seed=how["seed"], u_num=u_num,
+            speeds=[line.speed for line in printed.measured.lines],
+        )  # fmt: skip
+    else:
+        found = CaseLines(_lines_of(simulated), u_num or 0.0, None, ())
     return compared(
         found.tables,
         printed,
@@ -110,8 +166,8 @@ def compare(
 
 
 def _at_places(
-    simulated: str | Path | Case | Result | Mapping[str, LineTable],
-    measured: str | Path | LineTable | Printed | Measurement | Record,
+    simulated: Simulated,
+    measured: Measured,
     at: Sequence[str],
     *,
     teeth: int | None,
@@ -133,8 +189,7 @@ def _at_places(
     if isinstance(measured, (str, Path)) and not table and not is_table(measured):
         measured = read_record(measured)
     if isinstance(measured, Record):
-        own = gear_case(load_case(case) if isinstance(case, str | Path) else case)
-        measured = measure(measured, teeth=teeth or own.pair.pinion.teeth, speed=speed)
+        measured = measure(measured, teeth=teeth, speed=speed)
     if not isinstance(measured, Measurement):
         raise InputError(
             "--at", ", ".join(at), why="a table of lines has no channels", fix="name a record"
@@ -143,7 +198,7 @@ def _at_places(
 
 
 def _reduced(
-    measured: str | Path | LineTable | Printed | Measurement | Record,
+    measured: Measured,
     teeth: int | None,
     speed: float | None,
 ) -> LineTable | Printed | Measurement | str | Path:
@@ -182,42 +237,34 @@ def computes(simulated: object) -> bool:
     return not isinstance(simulated, (Mapping, Result))
 
 
-def _simulated(
-    simulated: str | Path | Case | Result | Mapping[str, LineTable],
-    tolerances: Mapping[str, float],
-    samples: int,
-    seed: int,
-    u_num: float | None,
-) -> CaseLines:
-    if isinstance(simulated, Mapping) and all(
-        isinstance(table, LineTable) for table in simulated.values()
-    ):
-        tables = {name: t for name, t in simulated.items() if isinstance(t, LineTable)}
-    elif isinstance(simulated, Result):
-        tables = tree_lines(simulated)
-    elif computes(simulated):
-        return case_lines(simulated, tolerances, samples=samples, seed=seed, u_num=u_num)  # type: ignore[arg-type]
-    else:
-        path = Path(simulated)  # type: ignore[arg-type]
-        stored = path / "results.nc" if path.is_dir() else path
-        if not stored.is_file():
-            raise InputError(
-                "simulated",
-                str(simulated),
-                why="there are no results",
-                fix="make them by `thermogear run`, or name a case",
-            )
-        tables = tree_lines(Result.read(stored))
-    return CaseLines(tables, u_num or 0.0, {}, ())
+def _lines_of(simulated: Simulated) -> dict[str, LineTable]:
+    """Lines that are not computed here: tables as they are, or those of stored results."""
+    if isinstance(simulated, Mapping):
+        return {name: t for name, t in simulated.items() if isinstance(t, LineTable)}
+    return tree_lines(simulated if isinstance(simulated, Result) else _stored(simulated))
+
+
+def _stored(simulated: str | Path) -> Result:
+    """The results in a directory, or a file."""
+    path = Path(simulated)
+    stored = path / "results.nc" if path.is_dir() else path
+    if not stored.is_file():
+        raise InputError(
+            "simulated",
+            str(simulated),
+            why="there are no results",
+            fix="make them by `thermogear run`, or name a case",
+        )
+    return Result.read(stored)
 
 
 @dataclass(frozen=True)
 class CaseLines:
-    """Tables by model, relative u_num, u_input by speed [rad/s], notices."""
+    """Tables by model, relative u_num, u_input by speed [rad/s] (None: not computed), notices."""
 
     tables: Mapping[str, LineTable]
     u_num: float
-    u_input: Mapping[float, float]
+    u_input: Mapping[float, float] | None
     notices: tuple[Notice, ...]
 
 
@@ -276,9 +323,11 @@ def case_lines(
     samples: int,
     seed: int,
     u_num: float | None,
+    speeds: Sequence[float],
 ) -> CaseLines:
-    """The case simulated, its step doubled for u_num, and sampled within its tolerances."""
-    runs = CaseRuns.of(case)
+    """The case simulated at ``speeds`` [rad/s] of the pinion, its step doubled for u_num, and
+    sampled within its tolerances."""
+    runs = CaseRuns.of(case).at_speeds(speeds)
     notices: list[Notice] = []
     base = _tables(runs, {})
     if u_num is None:

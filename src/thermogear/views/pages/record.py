@@ -276,9 +276,13 @@ def _comparison(results: Result) -> Section | None:
     models = [str(name) for name in data["model"].values]
     placed = [str(one) for one in data["where"].values] if "where" in data.coords else []
     placed = placed if any(placed) else []
+    records = [str(one) for one in data["record"].values] if "record" in data.coords else []
+    records = records if any(records) else []
     head: list[Cell] = ["speed [rpm]", "quantity", "verdict", "measured", *models]
     if placed:
         head.insert(1, "channel: place, axis; line")
+    if records:
+        head.insert(0, "record")
     head += [f"error {name} [%]" for name in models]
     head += [html_symbol(f"{u} [%]") for u in ("u_num", "u_input", "u_D", "u_val")]
     rows: list[list[str | Markup]] = []
@@ -287,6 +291,7 @@ def _comparison(results: Result) -> Section | None:
         words, factor = _SHOWN_AS[str(one["quantity"].values)]
         rows.append(
             [
+                *records[place : place + 1],
                 number(float(one["pinion_speed"]) / RPM, 4),
                 *placed[place : place + 1],
                 words,
@@ -300,9 +305,20 @@ def _comparison(results: Result) -> Section | None:
                 *(f"{100 * float(one[u]):.2f}" for u in ("u_num", "u_input", "u_data", "u_val")),
             ]
         )
+    names = 3 + bool(placed) + bool(records)
     blocks: list[Block] = [
-        Table("Error: (simulated − measured)/measured.", head, rows, names=3 + bool(placed))
+        Table("Error: (simulated − measured)/measured.", head, rows, names=names)
     ]
+    heat = results.table("figures").get("heat", ())
+    if heat:
+        told: list[list[str | Markup]] = [
+            [one["bundle"] or "–", one["verdict"], f"{one['nearer']} of {one['rows']}",
+             *(f"{100 * one[name]:+.2f}".replace("-", "−") for name in ("gain", "u_val"))]
+            for one in heat
+        ]  # fmt: skip
+        columns = ["bundle", "nearer", "with heat nearer in", "mean gain [%]", "mean u_val [%]"]
+        caption = "Heat: |E without heat| − |E with heat|, over all records."
+        blocks.insert(0, Table(caption, columns, told, names=2))
     implied = results.group("implied")
     if implied is not None:
         lines: list[list[str | Markup]] = [
