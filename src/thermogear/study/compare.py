@@ -241,7 +241,8 @@ def _lines_of(simulated: Simulated) -> dict[str, LineTable]:
     """Lines that are not computed here: tables as they are, or those of stored results."""
     if isinstance(simulated, Mapping):
         return {name: t for name, t in simulated.items() if isinstance(t, LineTable)}
-    return tree_lines(simulated if isinstance(simulated, Result) else _stored(simulated))
+    stored: Any = simulated
+    return tree_lines(stored if isinstance(stored, Result) else _stored(stored))
 
 
 def _stored(simulated: str | Path) -> Result:

@@ -305,9 +305,9 @@ def _comparison(results: Result) -> Section | None:
                 *(f"{100 * float(one[u]):.2f}" for u in ("u_num", "u_input", "u_data", "u_val")),
             ]
         )
-    names = 3 + bool(placed) + bool(records)
+    first = 3 + bool(placed) + bool(records)
     blocks: list[Block] = [
-        Table("Error: (simulated − measured)/measured.", head, rows, names=names)
+        Table("Error: (simulated − measured)/measured.", head, rows, names=first)
     ]
     heat = results.table("figures").get("heat", ())
     if heat:
