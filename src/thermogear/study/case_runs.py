@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 
 from thermogear.base.errors import InputError
-from thermogear.base.toml import entries_of, held, overridden, pairs
+from thermogear.base.toml import entries_of, held, literal, overridden, pairs
+from thermogear.base.units import RPM
 from thermogear.case.allowed import gear_parameter
 from thermogear.case.base import Case
 from thermogear.case.case import GearCase, gear_case, load_case
@@ -41,6 +42,11 @@ class CaseRuns:
     def case(self, changes: Mapping[str, str]) -> GearCase:
         """The case with these overrides."""
         return gear_case(load_case(self.text, {**self.kept, **changes}))
+
+    def at_speeds(self, speeds: Sequence[float]) -> CaseRuns:
+        """The case at these speeds of the pinion [rad/s], each once, in place of its own."""
+        told = dict.fromkeys(f"{speed / RPM!r} rpm" for speed in map(float, speeds))
+        return replace(self, kept={**self.kept, "operating.speed": literal(list(told))})
 
     def changes(self, factors: Mapping[str, float]) -> dict[str, str]:
         """The overrides that multiply every named field by its factor."""

@@ -77,12 +77,15 @@ def thesis_pair(
     """
     alone, point = _alone(case, operating, bundle)
     kept, left_out = _possible(alone, temperatures)
-    beside = _beside(case, records, progress) if records else {}
+    beside = Result.of("comparison", "", {})
+    if records:
+        progress("records", 0, 1)
+        beside = result_of(compare(case, [*records], speed=[*records.values()]))
     ran = run(
         replace(alone, pictures=("motion", "temperature"), gear_temperatures=kept),
         progress=progress,
     )
-    groups, cut = {**ran.groups, **beside}, False
+    groups, cut = {**ran.groups, **beside.groups}, False
     matches: dict[str, list[dict[str, Any]]] = {}
     try:
         for name, axis in _axes(alone, point, values).items():
@@ -95,7 +98,7 @@ def thesis_pair(
         cut = True
     told = tuple(friction_notices(alone, groups))
     return replace(ran, kind="thesis-pair", groups=groups, notices=told).with_(
-        interrupted=cut, left_out=left_out, matches=matches
+        interrupted=cut, left_out=left_out, matches=matches, conclusion=beside.text("conclusion")
     )
 
 
@@ -160,22 +163,6 @@ def _played(case: GearCase, progress: Progress) -> xr.Dataset:
     """The drive train hot over the play of all its bearings, up and down."""
     plan = case_diagram(case, "bearings.all.play", PLAYS, branch_period=0, train=Train())
     return gather(plan, progress=partial(progress, "bearing play"))
-
-
-def _beside(
-    case: GearCase, records: Mapping[Path, float | None], progress: Progress
-) -> dict[str, xr.Dataset]:
-    """Every record against the case, in one table: the group of its name."""
-    import xarray as xr
-
-    tables = []
-    for number, (path, speed) in enumerate(records.items()):
-        progress("records", number, len(records))
-        found = compare(case, path, teeth=case.pair.pinion.teeth, speed=speed)
-        table = result_of(found).groups["comparison"]
-        tables.append(table.assign_coords(record=("row", [path.name] * table.sizes["row"])))
-    progress("records", len(records), len(records))
-    return {"comparison": xr.concat(tables, "row", combine_attrs="override")}
 
 
 def _overlaid(case: GearCase, name: str, values: Floats, progress: Progress) -> Result:

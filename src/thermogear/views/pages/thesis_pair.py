@@ -210,10 +210,7 @@ def _records(result: Result, pictures: Pictures) -> Told:
     data = result.group("comparison")
     if data is None:
         return "No record was given; each --record FILE is put beside this pair, cold and hot.", []
-    swings = data.isel(row=np.flatnonzero(data["quantity"].values == "displacement"))
-    verdicts = [str(one).partition(";")[0] for one in swings["verdict"].values]
-    counts = ", ".join(f"{name} {verdicts.count(name)} times" for name in dict.fromkeys(verdicts))
-    return f"Of {len(verdicts)} displacements: {counts}.", [comparison_table(data)]
+    return result.text("conclusion"), [comparison_table(data)]
 
 
 def _outlook(result: Result, pictures: Pictures) -> Told:
