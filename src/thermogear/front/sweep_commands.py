@@ -17,7 +17,8 @@ import click
 from thermogear.base.errors import InputError
 from thermogear.base.units import RPM
 from thermogear.front import delivery
-from thermogear.front.numbers import grid
+from thermogear.front.motion_commands import is_train
+from thermogear.front.numbers import grid, start
 
 if TYPE_CHECKING:
     from thermogear.analysis.diagram import DiagramPlan
@@ -79,20 +80,11 @@ def _train_of(
     from thermogear.study.diagrams import Train
 
     asked = {n: options.pop(n) for n in ("operating", "coordinates")}
-    rigid, has = options.pop("rigid"), getattr(case, "train", None) is not None
-    if rigid and not has:
-        raise InputError(
-            "--rigid", "without shafts", why="CASE has no [[shafts]]", fix="leave it out"
-        )
-    if has and not rigid:
-        number = 1 if asked["operating"] is None else asked["operating"]
-        seen = "" if plane in (None, "teeth") else plane or " "
-        return Train(operating=number - 1, coordinates=asked["coordinates"], seen=seen)
-    for name, value in (*asked.items(), ("plane", plane)):
-        if value is not None:
-            why = "--rigid leaves the shafts out" if rigid else "CASE has no [[shafts]]"
-            raise InputError(f"--{name}", value, why=why, fix="leave it out")
-    return None
+    if not is_train(case, options.pop("rigid"), {**asked, "plane": plane}):
+        return None
+    number = 1 if asked["operating"] is None else asked["operating"]
+    seen = "" if plane in (None, "teeth") else plane or " "
+    return Train(operating=number - 1, coordinates=asked["coordinates"], seen=seen)
 
 
 def _over(words: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
@@ -136,7 +128,7 @@ def bifurcation(
         raise InputError("over", f"{len(over)} parameters", allowed="one for a diagram")
     name, values = parse_axis(read, over[0])
     delivery.heat_once([name], options["state"])
-    begin = tuple(_pair_of(text) for text in starts)
+    begin = tuple(map(start, starts))
     train = _train_of(read, options)
     changes = parse_numbers(but)
 
@@ -380,14 +372,6 @@ def _split(text: str) -> tuple[str, str]:
     if not sign:
         raise InputError("change", repr(text), allowed="NAME=VALUE")
     return name, value
-
-
-def _pair_of(text: str) -> tuple[float, float]:
-    try:
-        x, v = (float(part) for part in text.split(","))
-    except ValueError:
-        raise InputError("start", repr(text), allowed="X,V") from None
-    return x, v
 
 
 # --- running ------------------------------------------------------------------------------
