@@ -272,15 +272,12 @@ _SHOWN_AS = {
 def comparison_table(data: xr.Dataset) -> Table:
     """Measured and simulated values with the errors of every model and their uncertainties."""
     models = [str(name) for name in data["model"].values]
-    placed = [str(one) for one in data["where"].values] if "where" in data.coords else []
-    placed = placed if any(placed) else []
-    records = [str(one) for one in data["record"].values] if "record" in data.coords else []
-    records = records if any(records) else []
-    head: list[Cell] = ["speed [rpm]", "quantity", "verdict", "measured", *models]
-    if placed:
-        head.insert(1, "channel: place, axis; line")
-    if records:
-        head.insert(0, "record")
+    beside = {
+        words: [str(one) for one in data[name].values]
+        for words, name in (("record", "record"), ("channel: place, axis; line", "where"))
+        if name in data.coords and any(data[name].values)
+    }
+    head: list[Cell] = [*beside, "speed [rpm]", "quantity", "verdict", "measured", *models]
     printed, blank = "printed" in data.coords, [""] * len(models)
     head += [f"error {name} [%]{', printed | recomputed' * printed}" for name in models]
     head += [html_symbol(f"{u} [%]") for u in ("u_num", "u_input", "u_D", "u_val")]
@@ -290,9 +287,8 @@ def comparison_table(data: xr.Dataset) -> Table:
         words, factor = _SHOWN_AS[str(one["quantity"].values)]
         rows.append(
             [
-                *records[place : place + 1],
+                *(texts[place] for texts in beside.values()),
                 number(float(one["pinion_speed"]) / RPM, 4),
-                *placed[place : place + 1],
                 words,
                 str(one["verdict"].values) or "–",
                 number(float(one["measured_value"]) * factor, 5),
@@ -312,7 +308,7 @@ def comparison_table(data: xr.Dataset) -> Table:
     wrong = " Marked: a printed error that its entries cannot give, however they were rounded."
     return Table(
         f"Error: (simulated − measured)/measured.{wrong * bool(marked)}", head, rows,
-        names=3 + bool(placed) + bool(records), marked=frozenset(marked),
+        names=3 + len(beside), marked=frozenset(marked),
     )  # fmt: skip
 
 
@@ -346,9 +342,10 @@ def _comparison(results: Result) -> Section | None:
              *(f"{100 * one[name]:+.2f}".replace("-", "−") for name in ("gain", "u_val"))]
             for one in heat
         ]  # fmt: skip
-        columns = ["bundle", "nearer", "with heat nearer in", "mean gain [%]", "mean u_val [%]"]
-        caption = "Heat: |E without heat| − |E with heat|, over all records."
-        blocks.insert(0, Table(caption, columns, told, names=2))
+        heads = ["bundle", "nearer", "with heat nearer in", "mean gain [%]", "mean u_val [%]"]
+        blocks.insert(
+            0, Table("Gain: |E without heat| − |E with heat|, over all.", heads, told, names=2)
+        )
     implied = results.group("implied")
     blocks += [implied_table(implied)] if implied is not None else []
     return Section("comparison", "Comparison", blocks, folded=False)
