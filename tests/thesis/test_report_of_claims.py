@@ -172,7 +172,7 @@ def test_page_opens_with_the_conclusions_those_that_hold_first() -> None:
     )
     assert [str(row[2]) for row in table.rows] == [f"reason {name}" for name in links]
     code = [block.words for block in first.blocks if isinstance(block, Code)]
-    assert "thermogear thesis mine.toml -o mine" in code[0]
+    assert code[0].split()[-4:] == ["thesis", "mine.toml", "-o", "mine"]
     assert outlook.name == "outlook"
     (left,) = [block for block in outlook.blocks if isinstance(block, Table)]
     assert len(left.rows) == 4
