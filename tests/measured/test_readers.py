@@ -148,9 +148,7 @@ def test_a_missing_extra_is_one_line_that_names_it(
 def test_a_missing_mdf_reader_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "asammdf", None)
     (tmp_path / "a.mf4").write_bytes(b"MDF     4.10")
-    with pytest.raises(
-        InputError, match=r"needs asammdf; in the checkout of thermogear"
-    ):
+    with pytest.raises(InputError, match=r"needs asammdf; in the checkout of thermogear"):
         read_record(tmp_path / "a.mf4")
 
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import ASSUMED, FASTER_RULE
 from thermogear.results.result import Result
+from thermogear.views.pages.findings import ways_apart
 from thermogear.views.pages.lost_words import lost_line, lost_rows
 from thermogear.views.plots.lost_contact import has_lost
 from thermogear.views.plots.parameters import shown
@@ -59,7 +60,7 @@ def bifurcation_rows(data: xr.Dataset, name: str) -> list[dict[str, Any]]:
         row: dict[str, Any] = {
             "kind": str(kinds[i]),
             "period": int(data["bifurcation_period"].values[i]),
-            "value": float(shown(name, data["bifurcation_value"].values[i])),
+            "value": float(shown(name, data["bifurcation_value"][i])),
         }
         if "bifurcation_state" in data:
             row["gears_degC"] = _degrees(data, int(data["bifurcation_state"].values[i]))
@@ -76,6 +77,7 @@ def _diagram(result: Result) -> dict[str, Any]:
     return {
         **_labels(result),
         "parameter": parameter,
+        "ways_apart": shown(parameter, result.data[parameter])[ways_apart(result.data)].tolist(),
         "bifurcations": bifurcation_rows(result.data, parameter),
     }
 
@@ -105,7 +107,7 @@ def jump_rows(data: xr.Dataset) -> list[dict[str, Any]]:
     """The jumps of a run-up, in the units shown."""
 
     def rpm(name: str, place: int) -> float:
-        return float(shown("pinion_speed", data[name].values[place]))
+        return float(shown("pinion_speed", data[name][place]))
 
     return [
         {

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermogear.base.display import number
+from thermogear.base.display import exactly, number
 from thermogear.base.vocabulary import ASSUMED, FASTER_RULE
 from thermogear.results.result import Result
 from thermogear.views.page import LEAD, Block, Page, Pictures, Section, Table, Text
-from thermogear.views.pages.findings import finding
+from thermogear.views.pages.findings import finding, ways_apart
 from thermogear.views.pages.lost_words import lost_words
 from thermogear.views.pages.sweep_numbers import bifurcation_rows, jump_rows, lines, numbers
 from thermogear.views.picture import Picture
@@ -22,6 +22,7 @@ from thermogear.views.plots.lost_contact import (
     has_lost,
     lost_contact_picture,
     map_picture,
+    things,
 )
 from thermogear.views.plots.parameters import page_words, shown
 
@@ -171,7 +172,7 @@ def _diagram_caption(data: xr.Dataset) -> str:
 def _sweep_caption(data: xr.Dataset) -> str:
     words = "Every point from the case's own start."
     rest = [str(name) for name in data["label"].dims[2:]]
-    at = [f"{page_words(name)} {number(float(shown(name, data[name].values[0])))}" for name in rest]
+    at = [f"{page_words(n, data[n])} {number(float(shown(n, data[n][0])))}" for n in rest]
     return f"{words} Drawn at {', '.join(at)}." if at else words
 
 
@@ -184,7 +185,7 @@ def _run_up_caption(data: xr.Dataset) -> str:
 
 
 def _points(data: xr.Dataset, result: Result) -> Section:
-    blocks: list[Block] = []
+    blocks: list[Block] = [lost_table(data)] if result.kind == "diagram" and has_lost(data) else []
     parameter = str(data.attrs.get("parameter", "pinion_speed"))
     if data.sizes.get("bifurcation"):
         rows = [
@@ -253,6 +254,30 @@ def _returns(row: Mapping[str, Any]) -> str:
     if np.isfinite(row["return_rpm"]):
         return number(row["return_rpm"], 8)
     return "not in range" if row["into_period"] else "from chaos"
+
+
+def lost_table(data: xr.Dataset) -> Table:
+    """Of every value the motion, what loses contact and the greatest force, up and down."""
+    name = str(data.attrs["parameter"])
+    free, force = data["drive_free_share"].values, data["greatest_mesh_force"].values
+    kinds, apart = sweeps.classes_of(data), ways_apart(data)
+    rows = []
+    for place, at in enumerate(shown(name, data[name])):
+        here = [what for what, flags in things(data).items() if flags[..., place].any()]
+        told = (
+            [sweeps.CLASSES[int(one)][0] for one in kinds[..., place].ravel()],
+            [number(100.0 * one) for one in free[..., place].ravel()],
+            [number(one, 4) for one in force[..., place].ravel()],
+        )
+        motions, shares, forces = (" / ".join(dict.fromkeys(one)) for one in told)
+        rows.append([
+            exactly(float(at)), motions,
+            "two motions: one of them jumps" if apart[place] else "one motion",
+            "; ".join(here) or "nothing", shares, forces,
+        ])  # fmt: skip
+    head = [page_words(name, data[name]), "motion", "up and down", "what loses contact",
+            "drive flank apart [% of the time]", "greatest force of the teeth [N]"]  # fmt: skip
+    return Table("Contact over the parameter; up / down where they differ.", head, rows)
 
 
 def _settings(data: xr.Dataset) -> Section:
