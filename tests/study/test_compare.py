@@ -288,7 +288,9 @@ def test_a_case_runs_at_the_speed_of_every_record_with_its_own_teeth(
     monkeypatch.setattr(study, "_tables", moved)
     case = load_example("rig", {"operating.speed": '"1500 rpm"'})
     records = [made_record("low", 1000.5, 10.0), made_record("high", 2001.0, 20.0)]
-    found = compare(case, records, speed=given, u_num=0.0, tolerances={"operating.torque": 0.01}, samples=2)
+    found = compare(
+        case, records, speed=given, u_num=0.0, tolerances={"operating.torque": 0.01}, samples=2
+    )
     known = [1000.5, 2001.0] if given is None else [one / RPM for one in given]
     assert sorted(set(np.round(ran, 2))) == pytest.approx(sorted(set(known)), abs=0.02)
     assert [round(row.speed / RPM, 1) for row in found.rows[1::2]] == pytest.approx(known, abs=0.1)
