@@ -276,14 +276,17 @@ def test_a_case_runs_at_the_speed_of_every_record_with_its_own_teeth(
     ran: list[float] = []
 
     def moved(runs: CaseRuns, changes: dict[str, str]) -> dict[str, LineTable]:
-        (speed,) = runs.case(changes).speeds
-        ran.append(speed / RPM)
+        case = runs.case(changes)
+        ran.extend(speed / RPM for speed in case.speeds)
         # the torque of the case decides: its tolerance is an uncertainty of the inputs
-        size = 1e-1 * runs.case(changes).torques[0]
+        size = 1e-7 * case.torques[0]
         return {
-            name: one_line(name, rpm=speed / RPM, hertz=25 * speed / RPM / 60, micrometres=k * size)
+            name: LineTable(name, tuple(
+                SpeedLine(speed=n, frequency=25 * n / 2 / np.pi, displacement=k * size)
+                for n in case.speeds
+            ))
             for name, k in (("b undeformed", 0.5), ("b hot", 0.9))
-        }
+        }  # fmt: skip
 
     monkeypatch.setattr(study, "_tables", moved)
     case = load_example("rig", {"operating.speed": '"1500 rpm"'})

@@ -87,47 +87,6 @@ class Comparison:
         return min(rows, key=lambda row: abs(row.speed - speed))
 
 
-def joined(several: Sequence[Comparison]) -> Comparison:
-    """The comparisons of several records as one table; models that one of them lacks are left out.
-
-    Raises InputError where no model has a motion in all.
-    """
-    names = [name for name in several[0].models if all(name in one.models for one in several)]
-    if not names:
-        why = "no model has a motion at the speeds of all"
-        fix = "compare each alone"
-        raise InputError("measured", f"{len(several)} records", why=why, fix=fix)
-    rows: list[Row] = []
-    notices: list[Notice] = []
-    for one in several:
-        kept = [one.models.index(name) for name in names]
-        gone = [name for name in one.models if name not in names]
-        if gone:
-            why = f"{', '.join(gone)}: left out, no motion at the speed of another record"
-            notices.append(Notice("warning", why))
-        for row in one.rows:
-            fewer = replace(
-                row, simulated=tuple(row.simulated[k] for k in kept), record=one.measured
-            )
-            if gone and row.quantity != "frequency":
-                fewer = replace(fewer, verdict=verdict(fewer, names))
-            rows.append(fewer)
-        # what is said of every record is said once
-        alike = [all(text in other.notices for other in several) for text in one.notices]
-        notices += [
-            text if same else Notice(text.level, f"{one.measured}: {text.text}")
-            for text, same in zip(one.notices, alike, strict=True)
-        ]
-    return Comparison(
-        f"{len(several)} records",
-        tuple(names),
-        tuple(rows),
-        tuple(item for one in several for item in one.implied),
-        tuple(dict.fromkeys(notices)),
-        "; ".join(f"{one.measured}: {one.agreement}" for one in several if one.agreement),
-    )
-
-
 def table_of(found: Measurement, speed: float | None = None) -> LineTable:
     """The mesh line of a measurement (its clearest channel) as a table."""
     lines = [line for line in found.lines if line.name == "mesh x 1"]
@@ -205,9 +164,8 @@ def compared(
         u_d, why = _data_uncertainty(line, table, highest, u_data)
         if why and why not in [text for _, text in notices]:
             notices.append(Notice("important", why))
-        entered = next(
-            (u for s, u in (u_input or {}).items() if abs(s - line.speed) < 0.05 * s), 0.0
-        )
+        of_inputs = u_input or {line.speed: 0.0}
+        entered = of_inputs[min(of_inputs, key=lambda speed: abs(speed - line.speed))]
         swing, turns = (
             Row(
                 speed=line.speed,
@@ -215,6 +173,7 @@ def compared(
                 measured=getattr(line, quantity),
                 simulated=tuple(getattr(one, quantity) for one in simulated),
                 printed=_printed(printed, names, quantity, number),
+                record=line.record,
             )
             for quantity in ("displacement", "frequency")
         )

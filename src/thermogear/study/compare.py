@@ -11,10 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError, nearest
-from thermogear.base.toml import held, overridden, pairs, tables
 from thermogear.case.base import Case
 from thermogear.case.case import gear_case, load_case
-from thermogear.measured.comparison import Comparison, compared, joined, table_of
+from thermogear.measured.comparison import Comparison, compared, table_of
 from thermogear.measured.published import (
     PUBLISHED,
     LineTable,
@@ -22,6 +21,7 @@ from thermogear.measured.published import (
     SpeedLine,
     is_table,
     read_lines,
+    together,
 )
 from thermogear.measured.readers import read_record
 from thermogear.measured.record import Record
@@ -71,9 +71,65 @@ def compare(
 
     Raises InputError when no speed is common to both sides, or an uncertainty is impossible.
     """
+    _require(simulated, u_data, tolerances or {}, samples)
+    if measured is None:
+        if isinstance(simulated, str) and simulated in PUBLISHED:
+            published = PUBLISHED[simulated]
+            return compared(published.models, published, u_data=u_data, u_num=u_num or 0.0)
+        raise InputError("measured", "nothing", fix="a record, a table or " + ", ".join(PUBLISHED))
+    several: list[Any] = list(measured) if isinstance(measured, (list, tuple)) else [measured]
+    speeds: list[Any] = list(speed) if isinstance(speed, (list, tuple)) else [speed] * len(several)
+    if len(speeds) != len(several):
+        told = f"{len(speeds)} speeds of {len(several)} records"
+        raise InputError("speed", told, allowed="one, or one of each")
+    known = teeth or own_teeth(simulated)
+    read = [_read(one, known, turns) for one, turns in zip(several, speeds, strict=True)]
+    case: Any = simulated
+    if at:
+        from thermogear.study.compare_sensors import compare_sensors  # drive trains are not light
+
+        if not computes(simulated):
+            why = "stored results and tables do not say how a bearing moves"
+            raise InputError("--at", ", ".join(at), why=why, fix="name the case")
+        if len(read) > 1 or not isinstance(read[0], Measurement):
+            why = "several records" if len(read) > 1 else "a table of lines has no channels"
+            raise InputError("--at", ", ".join(at), why=why, fix="name a record")
+        return compare_sensors(
+            case, read[0], at, u_data=u_data, u_num=u_num, tolerances=tolerances, samples=samples,
+            seed=seed,
+        )  # fmt: skip
+    damage = [Notice(*told) for one in read if isinstance(one, Measurement) for told in one.damage]
+    printed = [
+        Printed(table_of(one, turns), {}) if isinstance(one, Measurement) else one
+        for one, turns in zip(read, speeds, strict=True)
+    ]
+    against = (
+        printed[0] if len(printed) == 1 else Printed(together([p.measured for p in printed]), {})
+    )
+    if computes(simulated):
+        turning = [line.speed for line in against.measured.lines]
+        lines = case_lines(
+            case, tolerances or {}, samples=samples, seed=seed, u_num=u_num, speeds=turning
+        )
+    else:
+        lines = CaseLines(_lines_of(simulated), u_num or 0.0, None, ())
+    return compared(
+        lines.tables,
+        against,
+        u_data=u_data,
+        u_num=lines.u_num,
+        u_input=lines.u_input,
+        said=(*damage, *lines.notices),
+    )
+
+
+def _require(
+    simulated: Simulated, u_data: float | None, tolerances: Mapping[str, float], samples: int
+) -> None:
+    """Refuse impossible uncertainties, before anything is read."""
     if u_data is not None and not 0.0 <= u_data <= 10.0:
         raise InputError("u_data", f"{100 * u_data:g} %", allowed="0..1000 %")
-    for name, sigma in (tolerances or {}).items():
+    for name, sigma in tolerances.items():
         if not 0.0 <= sigma <= 1.0:
             raise InputError(f"tolerance of {name}", f"{100 * sigma:g} %", allowed="0..100 %")
     if tolerances and not computes(simulated):
@@ -86,145 +142,33 @@ def compare(
     if tolerances and not 2 <= samples <= _MOST_RUNS:
         why = "one run has no scatter" if samples < 2 else None
         raise InputError("samples", samples, allowed=f"2..{_MOST_RUNS}", why=why)
-    if measured is None:
-        if isinstance(simulated, str) and simulated in PUBLISHED:
-            published = PUBLISHED[simulated]
-            return compared(published.models, published, u_data=u_data, u_num=u_num or 0.0)
-        raise InputError("measured", "nothing", fix="a record, a table or " + ", ".join(PUBLISHED))
-    known = teeth or own_teeth(simulated)
-    how: dict[str, Any] = {
-        "at": at, "u_data": u_data, "u_num": u_num, "tolerances": tolerances, "samples": samples,
-        "seed": seed,
-    }  # fmt: skip
-    several: list[Any] = list(measured) if isinstance(measured, (list, tuple)) else [measured]
-    speeds = [speed] if speed is None or isinstance(speed, float | int) else list(speed)
-    if len(speeds) not in (1, len(several)) or not several:
-        raise InputError(
-            "speed",
-            f"{len(speeds)} speeds of {len(several)} records",
-            allowed="one, or one of each",
-        )
-    speeds = speeds * (len(several) // len(speeds))
-    found = [
-        _one(simulated, one, teeth=known, speed=turns, **how)
-        for one, turns in zip(several, speeds, strict=True)
-    ]
-    return joined(found) if len(found) > 1 else found[0]
 
 
 def own_teeth(simulated: Simulated) -> int | None:
     """The pinion's teeth, where a case or the case of stored results says them."""
-    if isinstance(simulated, Case):
-        return gear_case(simulated).pair.pinion.teeth
-    if isinstance(simulated, str | Path) and computes(simulated):
-        return gear_case(load_case(simulated)).pair.pinion.teeth
-    if isinstance(simulated, str | Path) and str(simulated) not in PUBLISHED:
-        simulated = _stored(simulated)
-    if not isinstance(simulated, Result) or not simulated.text("case"):
-        return None
-    changes = pairs({str(path): str(text) for path, text in simulated.values("overrides")})
-    data = overridden(tables("case", simulated.text("case")), changes)
-    return int(held(data, "gears.pinion.teeth")[1])
-
-
-def _one(
-    simulated: Simulated,
-    measured: Measured,
-    *,
-    teeth: int | None,
-    speed: float | None,
-    at: Sequence[str],
-    **how: Any,
-) -> Comparison:
-    """Simulated lines against those of one record or table."""
-    if at:
-        return _at_places(simulated, measured, at, teeth=teeth, speed=speed, **how)
-    measured = _reduced(measured, teeth, speed)
-    printed = _printed(measured, teeth, speed)
-    worn = measured.damage if isinstance(measured, Measurement) else ()
-    damage = [Notice(*one) for one in worn]
-    u_data, u_num = how["u_data"], how["u_num"]
-    if isinstance(simulated, str) and simulated in PUBLISHED:
-        models = PUBLISHED[simulated].models
-        return compared(models, printed, u_data=u_data, u_num=u_num or 0.0, said=damage)
-    if computes(simulated):
-        case: Any = simulated
-        found = case_lines(
-            case, how["tolerances"] or {}, samples=how["samples"], seed=how["seed"], u_num=u_num,
-            speeds=[line.speed for line in printed.measured.lines],
-        )  # fmt: skip
-    else:
-        found = CaseLines(_lines_of(simulated), u_num or 0.0, None, ())
-    return compared(
-        found.tables,
-        printed,
-        u_data=u_data,
-        u_num=found.u_num,
-        u_input=found.u_input,
-        said=(*damage, *found.notices),
-    )
-
-
-def _at_places(
-    simulated: Simulated,
-    measured: Measured,
-    at: Sequence[str],
-    *,
-    teeth: int | None,
-    speed: float | None,
-    **how: Any,
-) -> Comparison:
-    """The drive train of a case against the accelerometers of a record."""
-    from thermogear.study.compare_sensors import compare_sensors  # drive trains are not light
-
-    if not computes(simulated):
-        raise InputError(
-            "--at",
-            ", ".join(at),
-            why="stored results and tables do not say how a bearing moves",
-            fix="name the case",
-        )
     case: Any = simulated
-    table = isinstance(measured, str) and measured in PUBLISHED
-    if isinstance(measured, (str, Path)) and not table and not is_table(measured):
-        measured = read_record(measured)
-    if isinstance(measured, Record):
-        measured = measure(measured, teeth=teeth, speed=speed)
-    if not isinstance(measured, Measurement):
-        raise InputError(
-            "--at", ", ".join(at), why="a table of lines has no channels", fix="name a record"
-        )
-    return compare_sensors(case, measured, at, **how)
+    if not computes(simulated):
+        named = isinstance(simulated, str | Path) and str(simulated) not in PUBLISHED
+        stored = _stored(str(simulated)) if named else simulated
+        if not isinstance(stored, Result) or not stored.text("case"):
+            return None
+        changes = {str(path): str(text) for path, text in stored.values("overrides")}
+        case = load_case(stored.text("case"), changes)
+    return gear_case(load_case(case) if isinstance(case, str | Path) else case).pair.pinion.teeth
 
 
-def _reduced(
-    measured: Measured,
-    teeth: int | None,
-    speed: float | None,
-) -> LineTable | Printed | Measurement | str | Path:
-    """A record or its file reduced to lines; a table, its file or its name stays."""
-    if isinstance(measured, (str, Path)) and measured not in PUBLISHED:
+def _read(measured: Measured, teeth: int | None, speed: float | None) -> Printed | Measurement:
+    """A record or its file reduced to lines; a table by its name, its file, or itself."""
+    if isinstance(measured, (str, Path)):
         path = Path(measured)
+        if str(measured) in PUBLISHED:
+            return Printed(PUBLISHED[str(measured)].measured, {})
         if not path.is_file():
             raise InputError("measured", str(measured), fix=nearest(str(measured), PUBLISHED))
-        measured = path if is_table(path) else read_record(path)
-    return measure(measured, teeth=teeth, speed=speed) if isinstance(measured, Record) else measured
-
-
-def _printed(
-    measured: str | Path | LineTable | Printed | Measurement,
-    teeth: int | None,
-    speed: float | None,
-) -> Printed:
-    if isinstance(measured, Printed):
-        return measured
-    if isinstance(measured, LineTable):
-        return Printed(measured, {})
-    if isinstance(measured, str) and measured in PUBLISHED:
-        return Printed(PUBLISHED[measured].measured, {})
-    if isinstance(measured, (str, Path)):
-        return Printed(read_lines(Path(measured), teeth), {})
-    return Printed(table_of(measured, speed), {})
+        measured = read_lines(path, teeth) if is_table(path) else read_record(path)
+    if isinstance(measured, Record):
+        return measure(measured, teeth=teeth, speed=speed)
+    return Printed(measured, {}) if isinstance(measured, LineTable) else measured
 
 
 def computes(simulated: object) -> bool:
@@ -237,10 +181,12 @@ def computes(simulated: object) -> bool:
     return not isinstance(simulated, (Mapping, Result))
 
 
-def _lines_of(simulated: Simulated) -> dict[str, LineTable]:
+def _lines_of(simulated: Simulated) -> Mapping[str, LineTable]:
     """Lines that are not computed here: tables as they are, or those of stored results."""
+    if isinstance(simulated, str) and simulated in PUBLISHED:
+        return PUBLISHED[simulated].models
     if isinstance(simulated, Mapping):
-        return {name: t for name, t in simulated.items() if isinstance(t, LineTable)}
+        return {name: one for name, one in simulated.items() if isinstance(one, LineTable)}
     stored: Any = simulated
     return tree_lines(stored if isinstance(stored, Result) else _stored(stored))
 
