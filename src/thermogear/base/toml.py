@@ -8,6 +8,7 @@ import math
 import re
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
+from operator import itemgetter
 from typing import Any
 
 from thermogear.base.errors import InputError, nearest, short
@@ -71,14 +72,13 @@ def overridden(data: dict[str, Any], changes: tuple[tuple[str, str], ...]) -> di
     for path, text in changes:
         if not settable(path):
             raise InputError("--set", short(path), allowed="a dotted path: gears.pinion.teeth")
-        places = entries_of(made, path)
         if not text.strip():
-            if not any(_holds(data, place) for place in entries_of(data, path)):
-                _require_held(data, path)
+            _require_held(data, path)
+        for place in entries_of(made, path):
+            keys = place.split(".")
             # an earlier change may have left out more
-            places = [place for place in places if _holds(made, place)]
-        for place in places:
-            made = _put(made, place.split("."), 0, text)
+            if text.strip() or held(made, place)[0] == len(keys):
+                made = _put(made, keys, 0, text)
     return made
 
 
@@ -119,15 +119,10 @@ def _put(inside: Any, keys: list[str], depth: int, text: str) -> Any:
 def _entry(entries: list[Any], keys: list[str], depth: int) -> int:
     """The number of an entry that a key means."""
     key, count = keys[depth], len(entries)
-    if not (key.isdecimal() and len(key) < 9 and int(key) < count):
-        above = ".".join(keys[:depth])
-        raise InputError(
-            ".".join(keys),
-            f"entry {key} of {above}",
-            allowed=f"0..{count - 1}, or all" if count else None,
-            why=None if count else "the list is empty",
-        )
-    return int(key)
+    if key.isdecimal() and len(key) < 9 and int(key) < count:
+        return int(key)
+    allowed = f"0..{count - 1}, or all" if count else "none: the list is empty"
+    raise InputError(".".join(keys), f"entry {key} of {'.'.join(keys[:depth])}", allowed=allowed)
 
 
 def at_the_ends(data: dict[str, Any], *, moved: bool = False) -> dict[str, Any]:
@@ -167,7 +162,7 @@ def settable(path: str) -> bool:
 def _require_held(data: Mapping[str, Any], path: str) -> None:
     """Refuse to leave out what the file does not hold."""
     parts = path.split(".")
-    depth, inside = held(data, path)
+    depth, inside = max((held(data, one) for one in entries_of(data, path)), key=itemgetter(0))
     if depth < len(parts):
         known = inside if isinstance(inside, Mapping) else ()
         above = f"[{'.'.join(parts[:depth])}] of " if depth else ""
@@ -197,10 +192,6 @@ def held(data: Mapping[str, Any], path: str) -> tuple[int, Any]:
         else:
             return depth, inside
     return len(parts), inside
-
-
-def _holds(data: Mapping[str, Any], path: str) -> bool:
-    return held(data, path)[0] == len(path.split("."))
 
 
 def told(path: str, text: str) -> str:

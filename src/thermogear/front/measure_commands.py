@@ -201,7 +201,7 @@ def compare(
     from thermogear.measured.published import PUBLISHED, is_table
     from thermogear.measured.several import files_of
     from thermogear.study.compare import compare as study
-    from thermogear.study.compare import computes, own_teeth
+    from thermogear.study.compare import computes, own_teeth, speeds_of
 
     _require_gear(options["teeth"], *speed)
     read: Any = case
@@ -228,12 +228,7 @@ def compare(
             option = "--channel" if name == "channels" else f"--{name.replace('_', '-')}"
             told = value[0] if name == "speed" else value
             raise InputError(option, told, why="there is no record to read", fix="leave it out")
-    if len(speed) > 1 and len(speed) != len(named):
-        allowed = f"one, or one of each of the {len(named)} records"
-        raise InputError("--speed", f"{len(speed)} speeds", allowed=allowed)
-    speeds: list[float | None] = [*speed]
-    if len(speed) < 2:
-        speeds = [next(iter(speed), None)] * len(named)
+    speeds = speeds_of([*speed] if len(speed) > 1 else next(iter(speed), None), len(named))
     tolerated = dict(_tolerance(text) for text in tolerances)
 
     def make(report: Progress) -> Result:

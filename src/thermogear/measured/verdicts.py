@@ -114,14 +114,12 @@ def verdict(row: Row, names: Sequence[str]) -> str:
 
 def heat_of(rows: Sequence[Row], models: Sequence[str]) -> tuple[Heat, ...]:
     """The verdict on heat of every bundle that ``models`` name without heat and with it."""
-    found = []
-    for cold, name in enumerate(models):
-        for without, with_heat in HEAT.items():
-            bundle = name.removesuffix(without).strip()
-            hot = f"{bundle} {with_heat}".strip()
-            if name.endswith(without) and hot in models:
-                found.append(_heat(rows, bundle, cold, models.index(hot)))
-    return tuple(found)
+    return tuple(
+        _heat(rows, before.strip(), models.index(before + cold), models.index(before + hot))
+        for cold, hot in HEAT.items()
+        for before in (name.removesuffix(cold) for name in models if name.endswith(cold))
+        if before + hot in models
+    )
 
 
 def _heat(rows: Sequence[Row], bundle: str, cold: int, hot: int) -> Heat:

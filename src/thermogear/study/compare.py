@@ -78,10 +78,7 @@ def compare(
             return compared(published.models, published, u_data=u_data, u_num=u_num or 0.0)
         raise InputError("measured", "nothing", fix="a record, a table or " + ", ".join(PUBLISHED))
     several: list[Any] = list(measured) if isinstance(measured, (list, tuple)) else [measured]
-    speeds: list[Any] = list(speed) if isinstance(speed, (list, tuple)) else [speed] * len(several)
-    if len(speeds) != len(several):
-        told = f"{len(speeds)} speeds of {len(several)} records"
-        raise InputError("speed", told, allowed="one, or one of each")
+    speeds = speeds_of(speed, len(several))
     known = teeth or own_teeth(simulated)
     read = [_read(one, known, turns) for one, turns in zip(several, speeds, strict=True)]
     case: Any = simulated
@@ -121,6 +118,15 @@ def compare(
         u_input=lines.u_input,
         said=(*damage, *lines.notices),
     )
+
+
+def speeds_of(speed: float | Sequence[float | None] | None, count: int) -> list[float | None]:
+    """The speed of each of ``count`` records: one for all, or one of each."""
+    speeds = list(speed) if isinstance(speed, Sequence) else [speed] * count
+    if len(speeds) != count:
+        told = f"{len(speeds)} speeds of {count} records"
+        raise InputError("speed", told, allowed="one, or one of each")
+    return speeds
 
 
 def _require(

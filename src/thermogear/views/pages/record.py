@@ -274,15 +274,12 @@ def _comparison(results: Result) -> Section | None:
     if data is None:
         return None
     models = [str(name) for name in data["model"].values]
-    placed = [str(one) for one in data["where"].values] if "where" in data.coords else []
-    placed = placed if any(placed) else []
-    records = [str(one) for one in data["record"].values] if "record" in data.coords else []
-    records = records if any(records) else []
-    head: list[Cell] = ["speed [rpm]", "quantity", "verdict", "measured", *models]
-    if placed:
-        head.insert(1, "channel: place, axis; line")
-    if records:
-        head.insert(0, "record")
+    beside = {
+        words: [str(one) for one in data[name].values]
+        for words, name in (("record", "record"), ("channel: place, axis; line", "where"))
+        if name in data.coords and any(data[name].values)
+    }
+    head: list[Cell] = [*beside, "speed [rpm]", "quantity", "verdict", "measured", *models]
     head += [f"error {name} [%]" for name in models]
     head += [html_symbol(f"{u} [%]") for u in ("u_num", "u_input", "u_D", "u_val")]
     rows: list[list[str | Markup]] = []
@@ -291,9 +288,8 @@ def _comparison(results: Result) -> Section | None:
         words, factor = _SHOWN_AS[str(one["quantity"].values)]
         rows.append(
             [
-                *records[place : place + 1],
+                *(texts[place] for texts in beside.values()),
                 number(float(one["pinion_speed"]) / RPM, 4),
-                *placed[place : place + 1],
                 words,
                 str(one["verdict"].values) or "–",
                 number(float(one["measured_value"]) * factor, 5),
@@ -305,10 +301,8 @@ def _comparison(results: Result) -> Section | None:
                 *(f"{100 * float(one[u]):.2f}" for u in ("u_num", "u_input", "u_data", "u_val")),
             ]
         )
-    first = 3 + bool(placed) + bool(records)
-    blocks: list[Block] = [
-        Table("Error: (simulated − measured)/measured.", head, rows, names=first)
-    ]
+    caption = "Error: (simulated − measured)/measured."
+    blocks: list[Block] = [Table(caption, head, rows, names=3 + len(beside))]
     heat = results.table("figures").get("heat", ())
     if heat:
         told: list[list[str | Markup]] = [

@@ -7,16 +7,14 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermogear.base.display import exactly, number
-from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import ASSUMED, FASTER_RULE
 from thermogear.results.result import Result
 from thermogear.views.page import LEAD, Block, Page, Pictures, Section, Table, Text
 from thermogear.views.pages.findings import finding, ways_apart
 from thermogear.views.pages.lost_words import lost_words
-from thermogear.views.pages.sweep_numbers import JUMPS_AT, lines, numbers
+from thermogear.views.pages.sweep_numbers import lines, numbers
 from thermogear.views.picture import Picture
 from thermogear.views.plots import sweeps
 from thermogear.views.plots.lost_contact import (
@@ -189,41 +187,33 @@ def _run_up_caption(data: xr.Dataset) -> str:
 def _points(data: xr.Dataset, result: Result) -> Section:
     blocks: list[Block] = [_lost_table(data)] if result.kind == "diagram" and has_lost(data) else []
     parameter = str(data.attrs.get("parameter", "pinion_speed"))
-    if data.sizes.get("bifurcation"):
+    told = numbers(result)
+    if told.get("bifurcations"):
+        found = told["bifurcations"]
+        heat = [name for name in ("gears_degC",) if name in found[0]]
         rows = [
-            (
-                sweeps.KINDS[int(kind)],
-                str(int(period)),
-                number(float(value), 8),
-                "" if state is None else number(float(state) - ZERO_CELSIUS, 4),
-            )
-            for kind, period, value, state in _bifurcations(data)
-        ]
-        head = ["kind", "period", page_words(parameter, data["bifurcation_value"]), "gears [°C]"]
-        if not any(row[3] for row in rows):
-            head, rows = head[:3], [row[:3] for row in rows]  # type: ignore[misc]
+            [one["kind"], str(one["period"]), number(one["value"], 8),
+             *(number(one[name], 4) for name in heat)]
+            for one in found
+        ]  # fmt: skip
+        head: list[Any] = ["kind", "period", page_words(parameter, data["bifurcation_value"])]
+        head += ["gears [°C]"] * len(heat)
         blocks.append(Table("Located bifurcations", head, rows))
         kinds = {row[0] for row in rows}
         blocks.append(Text(" ".join(w for kind, w in EXPLAINED.items() if kind in kinds)))
-    if data.sizes.get("jump"):
-        jumps = []
-        for i in range(data.sizes["jump"]):
-            fold = float(data["jump_fold"].values[i])
-            jumps.append(
-                (
-                    "up" if int(data["jump_direction"].values[i]) > 0 else "down",
-                    number(
-                        float(data["gear_temperature"].values[int(data["jump_state"].values[i])])
-                        - ZERO_CELSIUS,
-                        4,
-                    ),
-                    number(float(shown("pinion_speed", fold)), 8),
-                    JUMPS_AT[int(data["jump_kind"].values[i])],
-                    _returns(data, i),
-                    number(1e6 * float(data["jump_before"].values[i])),
-                    number(1e6 * float(data["jump_after"].values[i])),
-                )
+    if told.get("jumps"):
+        jumps = [
+            (
+                one["direction"],
+                number(one["gears_degC"], 4),
+                number(one["fold_rpm"], 8),
+                one["at"],
+                _returns(one),
+                number(one["before_um"]),
+                number(one["after_um"]),
             )
+            for one in told["jumps"]
+        ]
         head = ["run", "gears [°C]", "jumps at [rpm]", "which is a", "run back jumps at [rpm]",
                 "p-p before [µm]", "p-p after [µm]"]  # fmt: skip
         blocks.append(Table("Jumps", head, jumps))
@@ -238,21 +228,21 @@ def _points(data: xr.Dataset, result: Result) -> Section:
                 else "No jump: up and down the motion runs on at every speed."
             )
         )
-    if data.sizes.get("attractor_number"):
-        rows_ = []
-        for i in range(data.sizes["attractor_number"]):
-            period = int(data["attractor_period"].values[i])
-            rows_.append(
-                (
-                    f"period {period}" if period else "chaotic, estimate",
-                    number(float(data["attractor_x"].values[i, 0]), 9),
-                    number(float(data["attractor_v"].values[i, 0]), 9),
-                    number(float(data["attractor_multiplier"].values[i]), 6),
-                    str(int(data["count"].values[i])),
-                    number(100.0 * float(data["fraction"].values[i]), 5),
-                    number(float(data["border_distance"].values[i]), 3),
-                )
+    if told.get("attractors"):
+        rows_ = [
+            (
+                f"period {one['period']}" if one["period"] else "chaotic, estimate",
+                number(one["x"], 9),
+                number(one["v"], 9),
+                number(float(multiplier), 6),
+                str(one["count"]),
+                number(100.0 * one["fraction"], 5),
+                number(one["border_distance"], 3),
             )
+            for one, multiplier in zip(
+                told["attractors"], data["attractor_multiplier"].values, strict=True
+            )
+        ]
         head = ["attractor", "x", "x′", "multiplier", "starts", "share [%]", "to the border [b]"]
         blocks.append(Table("Attractors", head, rows_))
         entropy = data.attrs
@@ -270,23 +260,17 @@ def _points(data: xr.Dataset, result: Result) -> Section:
 def _lost_table(data: xr.Dataset) -> Table:
     """Of every value the motion, what loses contact and the greatest force, up and down."""
     name = str(data.attrs["parameter"])
-    code, apart = sweeps.classes_of(data), ways_apart(data)
-    lost = things(data)
+    free, force = data["drive_free_share"].values, data["greatest_mesh_force"].values
+    kinds, apart = sweeps.classes_of(data), ways_apart(data)
     rows = []
-    values: tuple[tuple[NDArray[Any], Callable[[Any], str]], ...] = (
-        (code, lambda one: sweeps.CLASSES[int(one)][0]),
-        (data["drive_free_share"].values, lambda one: number(100.0 * one)),
-        (data["greatest_mesh_force"].values, lambda one: number(one, 4)),
-    )
     for place, at in enumerate(shown(name, data[name])):
-        here = [what for what, flags in lost.items() if flags[..., place].any()]
-        free = [what for what in here if what.startswith("bearing ")]
-        if len(free) == data.sizes["bearing"] > 1:
-            here = [*(what for what in here if what not in free), "every bearing is free at times"]
-        motions, shares, forces = (
-            " / ".join(dict.fromkeys(words(one) for one in every[..., place].ravel()))
-            for every, words in values
+        here = [what for what, flags in things(data).items() if flags[..., place].any()]
+        told = (
+            [sweeps.CLASSES[int(one)][0] for one in kinds[..., place].ravel()],
+            [number(100.0 * one) for one in free[..., place].ravel()],
+            [number(one, 4) for one in force[..., place].ravel()],
         )
+        motions, shares, forces = (" / ".join(dict.fromkeys(one)) for one in told)
         ways = "two motions: one of them jumps" if apart[place] else "one motion"
         lose = "; ".join(here) or "nothing"
         rows.append([exactly(float(at)), motions, ways, lose, shares, forces])
@@ -295,32 +279,11 @@ def _lost_table(data: xr.Dataset) -> Table:
     return Table("Contact over the parameter; up / down where they differ.", head, rows)
 
 
-def _returns(data: xr.Dataset, i: int) -> str:
+def _returns(jump: dict[str, Any]) -> str:
     """Where a run back jumps again, in words where it does not."""
-    back = float(data["jump_return"].values[i])
-    if np.isfinite(back):
-        return number(float(shown("pinion_speed", back)), 8)
-    return "not in range" if int(data["jump_into"].values[i]) else "from chaos"
-
-
-def _bifurcations(data: xr.Dataset) -> list[tuple[int, int, float, float | None]]:
-    found: list[tuple[int, int, float, float | None]] = []
-    parameter = str(data.attrs.get("parameter", "pinion_speed"))
-    values = shown(parameter, data["bifurcation_value"])
-    for i in range(data.sizes["bifurcation"]):
-        state = None
-        if "bifurcation_state" in data:
-            place = int(data["bifurcation_state"].values[i])
-            state = float(data["gear_temperature"].values[place])
-        found.append(
-            (
-                int(data["bifurcation_kind"].values[i]),
-                int(data["bifurcation_period"].values[i]),
-                float(values[i]),
-                state,
-            )
-        )
-    return found
+    if np.isfinite(jump["return_rpm"]):
+        return number(jump["return_rpm"], 8)
+    return "not in range" if jump["into_period"] else "from chaos"
 
 
 def _settings(data: xr.Dataset) -> Section:
