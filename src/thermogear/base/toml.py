@@ -102,8 +102,7 @@ def _put(inside: Any, keys: list[str], depth: int, text: str) -> Any:
     if isinstance(inside, str) and above in NAMED:
         inside = {NAMED[above]: inside}
     if not isinstance(inside, dict | list):
-        why = f"{above} is a value, not a table"
-        raise InputError(".".join(keys), "an unknown path", why=why)
+        raise InputError(".".join(keys), "an unknown path", why=f"{above} is a value, not a table")
     made: Any = inside.copy()
     key: Any = _entry(inside, keys, depth) if isinstance(inside, list) else keys[depth]
     if depth + 1 < len(keys):

@@ -226,18 +226,18 @@ def compare(
         given = value if name != "method" else value != "frequency"
         if given and all(tables) and not (name == "teeth" and tables):
             option = "--channel" if name == "channels" else f"--{name.replace('_', '-')}"
-            told = value[0] if name == "speed" else value
-            raise InputError(option, told, why="there is no record to read", fix="leave it out")
-    speeds = speeds_of([*speed] if len(speed) > 1 else next(iter(speed), None), len(named))
+            raise InputError(
+                option, value[0] if name == "speed" else value, why="there is no record to read",
+                fix="leave it out",
+            )  # fmt: skip
     tolerated = dict(_tolerance(text) for text in tolerances)
+    speeds = speeds_of([*speed] if len(speed) > 1 else next(iter(speed), None), len(named))
 
     def make(report: Progress) -> Result:
         teeth = options["teeth"] or (own_teeth(read) if named else None)
         against: list[Any] = []
         for file, table, rpm in zip(named, tables, speeds, strict=True):
-            known = {**options, "teeth": teeth, "speed": rpm}
-            if at and rpm is None:
-                known["speed"] = _one_speed(read)
+            known = {**options, "teeth": teeth, "speed": rpm or (_one_speed(read) if at else None)}
             read_by = measured_by if len(named) == 1 else measured_among
             against.append(file if table else read_by(file, known))
         compared = study(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -109,15 +108,9 @@ def compare(
             case, tolerances or {}, samples=samples, seed=seed, u_num=u_num, speeds=turning
         )
     else:
-        lines = CaseLines(_lines_of(simulated), u_num or 0.0, None, ())
-    return compared(
-        lines.tables,
-        against,
-        u_data=u_data,
-        u_num=lines.u_num,
-        u_input=lines.u_input,
-        said=(*damage, *lines.notices),
-    )
+        lines = {"models": _lines_of(simulated), "u_num": u_num or 0.0}
+    said = (*damage, *lines.pop("notices", ()))
+    return compared(printed=against, u_data=u_data, said=said, **lines)
 
 
 def speeds_of(speed: float | Sequence[float | None] | None, count: int) -> list[float | None]:
@@ -146,8 +139,10 @@ def _require(
             fix="name the case instead of its results",
         )
     if tolerances and not 2 <= samples <= _MOST_RUNS:
-        why = "one run has no scatter" if samples < 2 else None
-        raise InputError("samples", samples, allowed=f"2..{_MOST_RUNS}", why=why)
+        raise InputError(
+            "samples", samples, allowed=f"2..{_MOST_RUNS}",
+            why="one run has no scatter" if samples < 2 else None,
+        )  # fmt: skip
 
 
 def own_teeth(simulated: Simulated) -> int | None:
@@ -211,16 +206,6 @@ def _stored(simulated: str | Path) -> Result:
     return Result.read(stored)
 
 
-@dataclass(frozen=True)
-class CaseLines:
-    """Tables by model, relative u_num, u_input by speed [rad/s] (None: not computed), notices."""
-
-    tables: Mapping[str, LineTable]
-    u_num: float
-    u_input: Mapping[float, float] | None
-    notices: tuple[Notice, ...]
-
-
 def tree_lines(result: Result) -> dict[str, LineTable]:
     """The mesh line of the transmission error, one table per bundle and state ("thesis hot").
 
@@ -245,14 +230,16 @@ def _motion_lines(motion: xr.Dataset) -> dict[str, LineTable]:
         for state in motion["state"].values:
             here = {"bundle": bundle, "state": state}
             amplitude = motion.get("dte_line", motion["line_amplitude"]).isel(order=first).sel(here)
-            lines: dict[float, SpeedLine] = {}
-            columns = (speeds, frequency.values, amplitude.values)
-            for speed, f, x in zip(*(map(float, one) for one in columns), strict=True):
-                if np.isfinite(x) and x > 0:
-                    lines.setdefault(speed, SpeedLine(speed=speed, frequency=f, displacement=x))
+            columns = (one[::-1].tolist() for one in (speeds, frequency.values, amplitude.values))
+            # of several torques at one speed the first stands for it
+            lines = {
+                speed: SpeedLine(speed=speed, frequency=f, displacement=x)
+                for speed, f, x in zip(*columns, strict=True)
+                if np.isfinite(x) and x > 0
+            }
             if lines:
                 name = f"{bundle} {state}"
-                found[name] = LineTable(name, tuple(lines.values()), None, "simulation")
+                found[name] = LineTable(name, tuple(lines.values())[::-1], None, "simulation")
     if not found:
         raise InputError(
             "simulated",
@@ -277,9 +264,9 @@ def case_lines(
     seed: int,
     u_num: float | None,
     speeds: Sequence[float],
-) -> CaseLines:
+) -> dict[str, Any]:
     """The case simulated at ``speeds`` [rad/s] of the pinion, its step doubled for u_num, and
-    sampled within its tolerances."""
+    sampled within its tolerances: its models, u_num, u_input by speed, and notices."""
     runs = CaseRuns.of(case).at_speeds(speeds)
     notices: list[Notice] = []
     base = _tables(runs, {})
@@ -304,21 +291,18 @@ def case_lines(
         # the greatest and not a deviation: so no drawing reverses what another decides
         most = float(np.hypot(spread, max(map(abs, drawn), default=0.0)))
         u_input[key[1]] = max(u_input.get(key[1], 0.0), most)
-    return CaseLines(base, u_num, u_input, (*notices, *runs.told(tolerances)))
+    notices += runs.told(tolerances)
+    return {"models": base, "u_num": u_num, "u_input": u_input, "notices": notices}
 
 
 def _relative(
     base: Mapping[str, LineTable], other: Mapping[str, LineTable]
 ) -> dict[tuple[str, float], float]:
     """Ratio of the displacements less 1, by model and speed."""
-    twins = {
-        (name, line.speed): (line, other[name].near(line.speed))
+    return {
+        (name, line.speed): twin.displacement / line.displacement - 1.0
         for name in base
         if name in other
         for line in base[name].lines
-    }
-    return {
-        key: twin.displacement / line.displacement - 1.0
-        for key, (line, twin) in twins.items()
-        if twin is not None
+        if (twin := other[name].near(line.speed)) is not None
     }

@@ -301,8 +301,9 @@ def _comparison(results: Result) -> Section | None:
                 *(f"{100 * float(one[u]):.2f}" for u in ("u_num", "u_input", "u_data", "u_val")),
             ]
         )
-    caption = "Error: (simulated − measured)/measured."
-    blocks: list[Block] = [Table(caption, head, rows, names=3 + len(beside))]
+    blocks: list[Block] = [
+        Table("Error: (simulated − measured)/measured.", head, rows, names=3 + len(beside))
+    ]
     heat = results.table("figures").get("heat", ())
     if heat:
         told: list[list[str | Markup]] = [
@@ -310,9 +311,10 @@ def _comparison(results: Result) -> Section | None:
              *(f"{100 * one[name]:+.2f}".replace("-", "−") for name in ("gain", "u_val"))]
             for one in heat
         ]  # fmt: skip
-        columns = ["bundle", "nearer", "with heat nearer in", "mean gain [%]", "mean u_val [%]"]
-        caption = "Heat: |E without heat| − |E with heat|, over all records."
-        blocks.insert(0, Table(caption, columns, told, names=2))
+        heads = ["bundle", "nearer", "with heat nearer in", "mean gain [%]", "mean u_val [%]"]
+        blocks.insert(
+            0, Table("Gain: |E without heat| − |E with heat|, over all.", heads, told, names=2)
+        )
     implied = results.group("implied")
     if implied is not None:
         lines: list[list[str | Markup]] = [

@@ -271,9 +271,11 @@ def _lost_table(data: xr.Dataset) -> Table:
             [number(one, 4) for one in force[..., place].ravel()],
         )
         motions, shares, forces = (" / ".join(dict.fromkeys(one)) for one in told)
-        ways = "two motions: one of them jumps" if apart[place] else "one motion"
-        lose = "; ".join(here) or "nothing"
-        rows.append([exactly(float(at)), motions, ways, lose, shares, forces])
+        rows.append([
+            exactly(float(at)), motions,
+            "two motions: one of them jumps" if apart[place] else "one motion",
+            "; ".join(here) or "nothing", shares, forces,
+        ])  # fmt: skip
     head = [page_words(name, data[name]), "motion", "up and down", "what loses contact",
             "drive flank apart [% of the time]", "greatest force of the teeth [N]"]  # fmt: skip
     return Table("Contact over the parameter; up / down where they differ.", head, rows)

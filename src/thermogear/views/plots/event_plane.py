@@ -20,8 +20,9 @@ if TYPE_CHECKING:
 def plane_picture(curves: Sequence[xr.Dataset]) -> Picture:
     """Every curve over both parameters: solid where a stable motion meets it, else dotted."""
     first, second = str(curves[0].attrs["first"]), str(curves[0].attrs["second"])
-    one = curves[0]
-    panel = Panel(Axis(axis_words(first, one["first"])), Axis(axis_words(second, one["second"])))
+    panel = Panel(
+        Axis(axis_words(first, curves[0]["first"])), Axis(axis_words(second, curves[0]["second"]))
+    )
     for data in curves:
         kind = str(data.attrs["kind"])
         marker, colour = MARKS[kind]

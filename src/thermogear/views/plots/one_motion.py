@@ -123,16 +123,12 @@ def lyapunov_picture(data: xr.Dataset) -> Picture:
     return Picture([[panel]], legend=2)
 
 
-def _along(branches: Sequence[xr.Dataset], parameter: str) -> Axis:
-    return Axis(axis_words(parameter, branches[0]["value"]))
-
-
 def branch_picture(branches: Sequence[xr.Dataset], title: str = "") -> Picture:
     """Displacement at phase 0 along the parameter: stable solid, unstable dotted."""
     parameter = str(branches[0].attrs["parameter"])
     train = "mesh_force" in branches[0]
     words = "greatest mesh force [N]" if train else "displacement X at phase 0 [–]"
-    panel = Panel(_along(branches, parameter), Axis(words), plain(title))
+    panel = Panel(Axis(axis_words(parameter, branches[0]["value"])), Axis(words), plain(title))
     rows = ("mesh_force", "event_mesh_force") if train else ("section_x", "event_x")
     for data in branches:
         period = int(data.attrs["period"])
@@ -146,7 +142,10 @@ def branch_picture(branches: Sequence[xr.Dataset], title: str = "") -> Picture:
 
 def _sizes(branches: Sequence[xr.Dataset], parameter: str) -> Panel:
     """The largest multiplier of every orbit, stable below 1."""
-    panel = Panel(_along(branches, parameter), Axis("largest Floquet multiplier, modulus [–]"))
+    panel = Panel(
+        Axis(axis_words(parameter, branches[0]["value"])),
+        Axis("largest Floquet multiplier, modulus [–]"),
+    )
     panel.line(y=1.0, colour=QUIET, width=1.0, dash=DASHED)
     for data in branches:
         period = int(data.attrs["period"])
@@ -220,7 +219,7 @@ def cascade_picture(branches: Sequence[xr.Dataset]) -> Picture:
     for row in rows:
         own = [b for b in branches if str(b.attrs["row"]) == row]
         parameter = str(own[0].attrs["parameter"])
-        panel = Panel(_along(own, parameter))
+        panel = Panel(Axis(axis_words(parameter, own[0]["value"])))
         for data in own:
             place = heats.index(str(data.attrs["heat"]))
             colour = COLD if place == 0 else OKABE_ITO[place % len(OKABE_ITO)]
