@@ -18,12 +18,12 @@ class KernelCacheWarning(UserWarning):
     """Stored machine code could not be read; it is compiled and stored anew."""
 
 
-class RebuiltFile(IndexDataCacheFile):  # type: ignore[misc]
+class RebuiltFile(IndexDataCacheFile):
     """Index and data of one kernel; what cannot be read counts as not stored, and is said."""
 
     def _load_index(self) -> dict[Any, str]:
         try:
-            index: dict[Any, str] = super()._load_index()
+            index: dict[Any, str] = super()._load_index()  # type: ignore[no-untyped-call]
         except Exception as error:  # a pickle of anything may raise anything
             self._say(error)
             return {}
@@ -31,7 +31,7 @@ class RebuiltFile(IndexDataCacheFile):  # type: ignore[misc]
 
     def _load_data(self, name: str) -> Any:
         try:
-            return super()._load_data(name)
+            return super()._load_data(name)  # type: ignore[no-untyped-call]
         except FileNotFoundError:
             raise
         except Exception as error:

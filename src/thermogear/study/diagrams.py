@@ -26,7 +26,7 @@ from thermogear.case.base import Case
 from thermogear.case.case import gear_case
 from thermogear.case.family import GearFamily, NumberFamily, Tabulated, family, moving
 from thermogear.case.thermal_state import HOT, StateLike, ThermalState
-from thermogear.results.beside import back_side_notice
+from thermogear.results.beside import from_data
 from thermogear.results.result import Result
 from thermogear.results.work import Estimate, estimate
 from thermogear.study.shafts.family import TabulatedTrains, TrainFamily
@@ -254,6 +254,6 @@ def overlaid(
     notices = [
         f"{state}: {told}"
         for state, data_ in zip(words, found, strict=True)
-        for told in back_side_notice(data_)
+        for told in from_data(data_)
     ]
     return Result.of("overlay", title, {"states": data}, notices, matches=rows, states=words)

@@ -305,7 +305,7 @@ class _Run:
         self.leaps, self.early = [], 0
         first = not np.isfinite(self.at)
         before = self.state if self.period > 0 else None
-        if self.table is None or first or point.jammed[0]:
+        if self.table is None or first or point.still[0]:
             self.period = 0
         else:
             self._walk(self.table, speed)

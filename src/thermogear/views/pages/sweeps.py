@@ -195,7 +195,7 @@ def _points(data: xr.Dataset, result: Result) -> Section:
             )
             for row in bifurcation_rows(data, parameter)
         ]  # fmt: skip
-        head = ["kind", "period", page_words(parameter), "gears [°C]"]
+        head = ["kind", "period", page_words(parameter, data["bifurcation_value"]), "gears [°C]"]
         if not any(row[3] for row in rows):
             head, rows = head[:3], [row[:3] for row in rows]  # type: ignore[misc]
         blocks.append(Table("Located bifurcations", head, rows))
