@@ -145,7 +145,9 @@ def friction_notices(case: GearCase, groups: Mapping[str, xr.Dataset]) -> Iterat
     path = groups["path"]
     for place, model in enumerate(case.models):
         here = path.isel(bundle=place)
-        share = float((here["friction_outside_range"].isel(state=-1).values == 1).mean())
+        hot = here.isel(state=-1)
+        known = np.isfinite(hot["friction_coefficient"].values)
+        share = float((known & (hot["friction_outside_range"].values == 1)).mean())
         if share > 0.0:
             yield Notice(
                 "important",

@@ -10,7 +10,7 @@ import numpy as np
 from markupsafe import Markup
 
 from thermogear.base.display import celsius, display, exactly, number, percent, span
-from thermogear.base.vocabulary import DIMENSIONLESS, QUANTITIES, STATUS
+from thermogear.base.vocabulary import DIMENSIONLESS, QUANTITIES, STATUS, is_known
 from thermogear.views.page import Cell, Table
 from thermogear.views.plots.rows import of_row, row_names, value_parts
 from thermogear.views.typesetting import html_symbol, jam_at, label_text, operating_names, prose
@@ -86,7 +86,10 @@ def key_results(mesh: xr.Dataset, path: xr.Dataset | None, motion: xr.Dataset | 
                 str(bundle), name,
                 f"{_gap(cold)} → {_gap(hot)}",
                 *(
-                    jam_at(float(hot.get(name, np.nan)), without_heat=is_jammed(cold))
+                    jam_at(
+                        float(hot.get(name, np.nan)), without_heat=is_jammed(cold),
+                        known=bool(is_known(int(hot["status"]))),
+                    )
                     for name in ("jam_temperature", "proportional_jam_temperature")
                 ),
                 f"{number(k[0] * 1e-8)} → {number(k[1] * 1e-8)}", percent(k[1] / k[0] - 1.0),

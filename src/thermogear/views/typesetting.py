@@ -72,11 +72,13 @@ def axis_label(name: str, words: str | None = None, unit: str | None = None) -> 
     return " ".join(part for part in parts if part)
 
 
-def jam_at(kelvin: float, *, without_heat: bool = False) -> str:
+def jam_at(kelvin: float, *, without_heat: bool = False, known: bool = True) -> str:
     """A jam temperature; far beyond what gears bear it is only said to lie there.
 
-    ``without_heat``: the undeformed pair is jammed already.
+    ``without_heat``: the undeformed pair is jammed already. ``known``: heat and contact settled.
     """
+    if not known:
+        return "–"
     if without_heat:
         return "without heat"
     if not math.isfinite(kelvin):

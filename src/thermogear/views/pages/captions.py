@@ -331,6 +331,8 @@ def stiffness(mesh: xr.Dataset, bundle: int) -> str:
     ratio = float(mesh.attrs.get("contact_ratio", np.nan))
     if 1.0 < ratio < 2.0:
         words += "High where two pairs carry, low where one does. "
+    if not np.isfinite(change):
+        return words
     return f"{words}Hot against undeformed the mean changes by {change:+.1f} %.".replace("-", "−")
 
 

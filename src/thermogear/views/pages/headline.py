@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from thermogear.base.display import celsius, display, number, percent, span
-from thermogear.base.vocabulary import told_labels, told_operating
+from thermogear.base.vocabulary import STATUS, STILL, is_known, told_labels, told_operating
 from thermogear.results.result import Result
 from thermogear.views.page import Tile
 from thermogear.views.style import names_of
@@ -62,6 +62,10 @@ def _bundle(mesh: xr.Dataset, place: int) -> str:
     name = names_of(mesh, "bundle")[place]
     here = mesh.isel(bundle=place)
     cold, hot = here.isel(state=0), here.isel(state=-1)
+    status = hot["status"].values
+    if not is_known(status).any():
+        why = "; ".join(STILL[STATUS[code]] for code in np.unique(status))
+        return f"In the {name} bundle nothing hot is known: {why}."
     change = hot["mean_stiffness"].values / cold["mean_stiffness"].values - 1.0
     stiffness = f"the mean mesh stiffness changes by {_percents(change)}"
     jammed = int((hot["status"] == JAMMED).sum())
@@ -144,8 +148,10 @@ def tiles(results: Result) -> list[Tile]:
     change = hot["mean_stiffness"].values / cold["mean_stiffness"].values - 1.0
     bare = cold["status"].values == JAMMED
     jam = [
-        jam_at(float(t), without_heat=bool(stuck))
-        for t, stuck in zip(hot["jam_temperature"].values, bare, strict=True)
+        jam_at(float(t), without_heat=bool(stuck), known=bool(ok))
+        for t, stuck, ok in zip(
+            hot["jam_temperature"].values, bare, is_known(hot["status"].values), strict=True
+        )
     ]
     found = [
         Tile(

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from thermogear.base.display import Display, display, in_words, number, percent
-from thermogear.base.vocabulary import STATUS
+from thermogear.base.vocabulary import STATUS, is_known
 from thermogear.results.result import Result
 from thermogear.views.csv_files import table_text
 from thermogear.views.page import (
@@ -190,7 +190,8 @@ def _cell(one: xr.Dataset, name: str) -> Cell:
     if name in HOT_ALONE:
         value = float(states[-1][name])
         if name in JAMS:
-            return jam_at(value, without_heat=is_jammed(states[0]))
+            known = bool(is_known(int(states[-1]["status"])))
+            return jam_at(value, without_heat=is_jammed(states[0]), known=known)
         if name == "thermal_stiffness_ratio":
             return percent(value)
         return number(float(_display(one, name)(value)))
