@@ -178,7 +178,7 @@ trial-stamps: $(STAMP)  ## rates of rounded and jittering time stamps: do their 
 trial-swings: $(STAMP)  ## records whose speed, phase or load oscillates: do intervals hold? ten minutes; SWINGS=20 for a few; docs/trial_swings.md
 	@OPENBLAS_NUM_THREADS=1 $(BIN)/python checks/trial_swings.py $(SWINGS)
 
-trial-shafts: $(STAMP)  ## few turns of a shaft, an unknown shaft, lost samples: do intervals hold? ten minutes; SHAFTS=20 for a few; docs/trial_shafts.md
+trial-shafts: $(STAMP)  ## few turns of a shaft, an unknown shaft: do intervals hold? five minutes; SHAFTS=20 for a few; docs/trial_shafts.md
 	@OPENBLAS_NUM_THREADS=1 $(BIN)/python checks/trial_shafts.py $(SHAFTS)
 
 trial-teeth: $(STAMP)  ## 200 held-back records with known teeth or none, ten minutes; TEETH=20 for a few; docs/trial_teeth.md
