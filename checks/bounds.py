@@ -64,7 +64,7 @@ def tried(name: str, resolution: str, python: str = "") -> Tried:
     venv = PLACE / name
     run(UV, "venv", "-q", "--clear", *(["--python", python] if python else []), venv)
     package = f"{ROOT}[{','.join(EXTRAS)}]"
-    for words in (["--resolution", resolution, package], TOOLS):
+    for words in (["--resolution", resolution, "-e", package], TOOLS):
         code, output = run(UV, "pip", "install", "-q", *words, venv=venv)
         if code:
             return Tried(name, {}, output.strip().splitlines()[0], "not begun", [])
