@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import datetime
 import tomllib
 from typing import Any
@@ -99,3 +100,55 @@ def test_what_the_file_does_not_hold_is_refused(path: str, words: str) -> None:
 def test_what_only_an_override_put_in_is_not_in_the_file() -> None:
     with pytest.raises(InputError, match="nothing to leave out"):
         overridden({"a": {}}, (("a.b", "1"), ("a.b", "")))
+
+
+LISTS = {"bearings": [{"play": "9 um"}, {}], "speed": ["1 rpm", "2 rpm"], "a": [{"b": [{"c": 1}]}]}
+
+
+@pytest.mark.parametrize(
+    ("path", "text", "made"),
+    [
+        ("bearings.1.play", "12 um", {"bearings": [{"play": "9 um"}, {"play": "12 um"}]}),
+        ("bearings[0].play", "12 um", {"bearings": [{"play": "12 um"}, {}]}),
+        ("bearings.all.play", "12 um", {"bearings": [{"play": "12 um"}] * 2}),
+        ("bearings.all.play", "", {"bearings": [{}, {}]}),
+        ("bearings.0", "", {"bearings": [{}]}),
+        ("speed.1", "3 rpm", {"speed": ["1 rpm", "3 rpm"]}),
+        ("a.0.b.all.c", "5", {"a": [{"b": [{"c": 5}]}]}),
+    ],
+)
+def test_a_key_of_a_list_is_the_number_of_an_entry(
+    path: str, text: str, made: dict[str, Any]
+) -> None:
+    given = copy.deepcopy(LISTS)
+    assert overridden(given, toml.pairs({path: text})) == LISTS | made
+    assert given == LISTS
+
+
+@pytest.mark.parametrize(
+    ("path", "said"),
+    [
+        ("bearings.2.play", "bearings.2.play: got entry 2 of bearings; allowed 0..1, or all"),
+        ("bearings.x.play", "bearings.x.play: got entry x of bearings; allowed 0..1, or all"),
+        ("speed.1.x", "speed.1.x: got an unknown path; speed.1 is a value, not a table"),
+    ],
+)
+def test_an_entry_that_is_none_is_one_line(path: str, said: str) -> None:
+    with pytest.raises(InputError) as error:
+        overridden(LISTS, ((path, "12 um"),))
+    assert str(error.value) == said
+
+
+def test_a_bearing_that_its_shaft_names_has_a_number_too() -> None:
+    """In the order of the shafts, the left end first; the shaft then names it no longer."""
+    shafts = [{"gear": "pinion", "bearings": "6205"}, {"gear": "wheel", "bearings": ["1", "2"]}]
+    found = overridden({"shafts": shafts}, (("bearings.3.play", "12 um"),))
+    ends = [
+        {"shaft": shaft, "end": end, "type": name}
+        for shaft, end, name in (
+            ("pinion", "left", "6205"), ("pinion", "right", "6205"),
+            ("wheel", "left", "1"), ("wheel", "right", "2"),
+        )
+    ]  # fmt: skip
+    assert found["shafts"] == [{"gear": "pinion"}, {"gear": "wheel"}]
+    assert found["bearings"] == [*ends[:3], ends[3] | {"play": "12 um"}]

@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 
 from thermogear.base.errors import InputError
+from thermogear.case.axes import parse_axis
 from thermogear.case.case import GearCase, gear_case, load_case
 from thermogear.case.new import NewCase
 from thermogear.case.shaft_plan import TrainPlan
 from thermogear.shafts.assembly import assemble
 from thermogear.shafts.bearings.laws import ElementLaw, LinearLaw, RingLaw
+from thermogear.thesis.rig_trains import ASSUMED
 
 PAIR = """
 [gears]
@@ -147,6 +149,61 @@ def test_clearances_follow_temperatures_and_fits() -> None:
     uniform = found.half_plays(cold + 40.0, reference=293.15)
     # the interference keeps the ring wide, so that only the free part scales
     assert uniform == pytest.approx(even, abs=0.02e-6)
+
+
+@pytest.mark.parametrize("of", ["bearings.all.play", "bearings[2].play"])
+def test_the_play_of_a_bearing_is_set_and_varied(of: str) -> None:
+    """Mounting and heat take the same from every play: half the play rises by half of it."""
+    case = read()
+    name, plays = parse_axis(case, f"{of}=0 um:50 um:6")
+    assert plays == pytest.approx(1e-6 * np.arange(0.0, 60.0, 10.0))
+    cold = np.full((4, 4), 293.15)
+    plans = [case.with_values({name: play}).train for play in plays]
+    assert all(one is not None for one in plans)
+    halves = np.array([one.half_plays(cold, reference=293.15) for one in plans if one is not None])
+    moved = [True] * 4 if "all" in of else [False, False, True, False]
+    assert halves - halves[0] == pytest.approx(np.outer(0.5 * plays, moved), abs=1e-15)
+    same = load_case(PAIR + SHAFTS, [f"{of}=50 um"])
+    assert gear_case(same).train == plans[-1]
+
+
+def test_the_train_of_the_rig_lies_within_what_is_assumed_of_it() -> None:
+    """Gears, oil and heat are the rig's; of the train every size is within its stated range."""
+    case, rig = gear_case(load_case("rig-train")), gear_case(load_case("rig"))
+    own, known = case.data, rig.data
+    for table, names in {"gears": ("module", "pressure_angle"), "oil": ("name",)}.items():
+        assert [own[table][name] for name in names] == [known[table][name] for name in names]
+    assert [case.pair.pinion.teeth, case.pair.wheel.teeth] == [25, 75]
+    assert case.cold_backlash.half == pytest.approx(rig.cold_backlash.half, rel=1e-12)
+    assert case.pair.face_width == pytest.approx(rig.pair.face_width, rel=1e-12)
+    train = case.train
+    assert train is not None
+    assert train.motor is not None
+    assert train.load is not None
+    assert train.casing is not None
+    left = [one for one in train.bearings if one.name.endswith("left")]
+    right = [one for one in train.bearings if one.name.endswith("right")]
+    seats = [one.seat for one in train.bearings if one.seat is not None]
+    assert len(seats) == 4
+    casing = train.casing
+    found = {
+        "torque": case.torques,
+        "play": [1e6 * one.play for one in train.bearings],
+        "span": [1e3 * (b.position - a.position) for a, b in zip(left, right, strict=True)],
+        "bearing_damping": [one.damping for one in train.bearings],
+        "seat_stiffness": [1e-6 * k for one in seats for k in one.stiffness],
+        "seat_mass": [one.mass for one in seats],
+        "seat_loss": [1e6 * one.damping / one.stiffness[0] for one in seats],
+        "motor_inertia": [train.motor.inertia],
+        "brake_inertia": [train.load.inertia],
+        "coupling": [train.motor.stiffness, train.load.stiffness],
+        "housing_mass": [casing.mass],
+        "mount_stiffness": [1e-6 * casing.stiffness[0]],
+    }
+    ranges = {one.name: (one.low, one.high) for one in ASSUMED}
+    for name, values in found.items():
+        low, high = ranges[name]
+        assert all(low <= float(value or 0.0) <= high for value in values), name
 
 
 def test_temperatures_of_rings_come_from_given_computed_or_bodies() -> None:
@@ -318,7 +375,13 @@ def test_defaults_of_all_bearings_are_told_once() -> None:
 
 
 @pytest.mark.parametrize(
-    ("teeth", "module", "torque"), [((20, 40), "3 mm", "80 N m"), ((31, 44), "1.5 mm", "9 N m")]
+    ("teeth", "module", "torque"),
+    [
+        ((20, 40), "3 mm", "80 N m"),
+        ((31, 44), "1.5 mm", "9 N m"),
+        ((25, 75), "5 mm", "100 N m"),
+        ((60, 120), "4 mm", "1800 N m"),
+    ],
 )
 def test_new_writes_shafts_that_work(teeth: tuple[int, int], module: str, torque: str) -> None:
     made = NewCase(
@@ -332,6 +395,12 @@ def test_new_writes_shafts_that_work(teeth: tuple[int, int], module: str, torque
     found = gear_case(load_case(made)).train
     assert found is not None
     assert len(found.bearings) == 4
+    moments = [float(torque.split()[0]) * z / teeth[0] for z in teeth for _ in range(2)]
+    for one, moment in zip(found.bearings, moments, strict=True):
+        assert one.rolling is not None
+        stress = 16.0 * moment / (math.pi * one.rolling.bore**3)
+        assert stress <= 20e6
+        assert one.rolling.bore <= 0.1
 
 
 def test_new_says_where_its_bearings_end() -> None:

@@ -8,14 +8,19 @@ import pytest
 import xarray as xr
 from click.testing import CliRunner
 
+from own_trains import TRAIN
+from thermogear.base.display import number
 from thermogear.base.errors import InputError
 from thermogear.case.examples import example_text
 from thermogear.front.sweep_commands import COMMANDS
 from thermogear.results.result import open_results
 from thermogear.results.store import RESULT
 from thermogear.study import diagrams
+from thermogear.study.notices import finished
 from thermogear.views.write import page_of
 
+FEW = "[train]\nelements = 4\n[grid]\nmesh_positions = 32\nharmonics = 6\n[transmission_error]\n"
+FEW += 'harmonics = [{ order = 1, amplitude = "3 um", phase = "0 deg" }]\n'
 GRID = ("--over", "zeta=0.1:0.2:3", "--over", "w=1:2:3")
 BY_NAME = {command.name: command for command in COMMANDS}
 
@@ -63,6 +68,23 @@ def test_bifurcation_with_and_without_heat_in_one_table(cases, tmp_path):
     assert page.count("<figure") == 1
     table = [line for line in page_of(open_results(tmp_path / "d")).lines() if "doubling" in line]
     assert re.split(r" {2,}", table[0])[1:3] == ["1", "0.170043027"]
+
+
+def test_play_of_a_train_is_swept_in_one_command(tmp_path):
+    """Every play with its motion both ways, what loses contact, and the greatest force."""
+    words = [tmp_path / "train.toml", "--state", "undeformed", "--coordinates", 15, "--threads", 1]
+    words += ["--over", "bearings.all.play=5 um:25 um:2", "--branch-period", 0, "--json"]
+    (tmp_path / "train.toml").write_text(FEW + TRAIN, encoding="utf-8")
+    found = call("bifurcation", *words, "-o", tmp_path / "play")
+    assert found["labels"] == {"period-1": 4}
+    assert (found["lost_contact"], found["ways_apart"]) == ([], [])
+    data = open_results(tmp_path / "play").data
+    assert data["bearings.all.play"].values == pytest.approx([5e-6, 25e-6])
+    table = page_of(finished(data, "play")).sections[1].blocks[0]
+    assert str(table.head[0]) == "bearings.all.play [µm]"
+    greatest = data["greatest_mesh_force"].values[0, 0]
+    shown = [["5", "0", number(greatest[0], 4)], ["25", "0", number(greatest[1], 4)]]
+    assert [[row[k] for k in (0, 4, 5)] for row in table.rows] == shown
 
 
 def test_map_resumes_and_refuses_other_words(cases, tmp_path):

@@ -324,14 +324,18 @@ def test_an_aluminium_housing_loosens_the_outer_ring() -> None:
 
 
 def test_classes_rise_and_cover() -> None:
-    for kind, bores in (("ball", (12, 20, 25, 35, 45, 60, 75)), ("roller", (25, 35, 45, 60, 75))):
+    for kind, bores in (
+        ("ball", (12, 20, 25, 35, 45, 60, 75, 95)),
+        ("roller", (25, 35, 45, 60, 75, 95)),
+    ):
         for bore in bores:
             rows = np.array([class_clearance(kind, 1e-3 * bore, name) for name in CLASSES])
             assert np.all(np.diff(rows, axis=0) > 0.0)
             assert np.all(rows[:, 1] > rows[:, 0])
     assert class_clearance("ball", 30e-3, "CN") == pytest.approx((5e-6, 20e-6))
     assert class_clearance("ball", 30.1e-3, "CN") == pytest.approx((6e-6, 20e-6))
-    for bad in ((8e-3, "CN"), (90e-3, "CN"), (25e-3, "CX")):
+    assert class_clearance("ball", 100e-3, "C3") == pytest.approx((30e-6, 58e-6))
+    for bad in ((8e-3, "CN"), (101e-3, "CN"), (25e-3, "CX")):
         with pytest.raises(InputError, match="clearance_class"):
             class_clearance("ball", *bad)
 

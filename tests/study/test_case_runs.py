@@ -13,5 +13,5 @@ def test_overrides_scale_values_with_their_units() -> None:
     }
     assert overrides_of(text, {}, "zeta", 1.5) == {"dynamics.damping_ratio": str(0.1 * 1.5)}
     assert overrides_of(text, {}, "transmission_error.amplitude", 2.0) == {
-        "transmission_error.harmonics": '[{ order = 1, amplitude = "8.0 um" }]'
+        "transmission_error.harmonics.0.amplitude": "8.0 um"
     }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,7 @@ from said import numbers
 from thermogear.base.errors import InputError
 from thermogear.case.case import load_example
 from thermogear.measured.chain import Chain
-from thermogear.measured.comparison import figures, verdict
+from thermogear.measured.comparison import figures, result_of
 from thermogear.measured.published import (
     RPM,
     LineTable,
@@ -22,9 +23,11 @@ from thermogear.measured.published import (
 )
 from thermogear.measured.record import Channel, Record
 from thermogear.measured.reduction import measure
+from thermogear.measured.verdicts import LACKING, Row, heat_of, verdict
 from thermogear.study import compare as study
 from thermogear.study.case_runs import DRAWINGS, CaseRuns, scaled
 from thermogear.study.compare import compare
+from thermogear.views.write import page_of
 
 
 def test_the_thesis_table_recomputed(compared: Compared) -> None:
@@ -80,7 +83,13 @@ def test_its_conclusion_is_not_resolvable_by_u_val() -> None:
     assert {row.verdict for row in rows} == {"not resolvable"}
     for row in rows:
         assert abs(row.errors[1]) - abs(row.errors[0]) < row.u_val
-    assert numbers(found.conclusion) == [3.0, 3.0]
+    (heat,) = found.heat
+    assert (heat.verdict, heat.nearer, heat.rows) == ("undecided", 3, 3)
+    gains = [abs(row.errors[1]) - abs(row.errors[0]) for row in rows]
+    assert heat.gain == pytest.approx(np.mean(gains), rel=1e-12)
+    assert heat.u_val == pytest.approx(np.mean([row.u_val for row in rows]), rel=1e-12)
+    told = [3.0, 3.0, round(100 * heat.gain, 2), round(100 * heat.u_val, 2), 3.0, 3.0]
+    assert numbers(found.conclusion) == told
 
 
 def test_with_a_good_measurement_the_same_figures_would_be_resolvable() -> None:
@@ -92,10 +101,46 @@ def test_with_a_good_measurement_the_same_figures_would_be_resolvable() -> None:
 
 def test_the_verdict_turns_exactly_at_u_val() -> None:
     names = ("A", "B")
-    assert verdict([-0.10, 0.13], names, 0.0299) == "A better"
-    assert verdict([-0.10, 0.13], names, 0.0301) == "not resolvable"
-    assert verdict([0.2, -0.1], names, 0.05) == "B better"
-    assert verdict([0.04], ("A",), 0.05) == "within u_val"
+    assert verdict(row_of(-0.10, 0.13, u_data=0.0299), names) == "A better"
+    assert verdict(row_of(-0.10, 0.13, u_data=0.0301), names) == "not resolvable"
+    assert verdict(row_of(0.2, -0.1, u_data=0.05), names) == "B better"
+    assert verdict(row_of(0.04, u_data=0.05), ("A",)) == "within u_val"
+
+
+@pytest.mark.parametrize(("u_data", "u_input", "lacking"), [
+    (0.0, 0.1, "u_data"), (0.1, 0.0, "u_input"), (0.1, 0.1, None),
+])  # fmt: skip
+def test_nothing_is_better_where_an_uncertainty_is_stated_as_zero(
+    u_data: float, u_input: float, lacking: str | None
+) -> None:
+    names = ("undeformed", "hot")
+    row = replace(row_of(0.9, 0.1, u_data=u_data), u_input=u_input, computed=True)
+    (heat,) = heat_of([row], names)
+    if lacking is None:
+        assert (verdict(row, names), heat.verdict, heat.rows) == ("hot better", "with heat", 1)
+    else:
+        assert verdict(row, names) == heat.verdict == LACKING[lacking]
+        assert (heat.rows, heat.gain, heat.u_val) == (0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("shift", [-0.2, -0.05, 0.0, 0.05, 0.2])
+def test_the_verdict_on_heat_turns_at_the_mean_uncertainty(shift: float) -> None:
+    """Both errors exchanged, the verdict is the other one; rows far off say nothing."""
+    names = ("b undeformed", "b hot")
+    rows = [row_of(0.3 + shift + d, 0.3, u_data=0.1 + d) for d in (-0.02, 0.0, 0.02)]
+    rows.append(row_of(5.0, 4.0, u_data=0.1))
+    (heat,) = heat_of(rows, names)
+    (other,) = heat_of([replace(r, simulated=r.simulated[::-1]) for r in rows], names)
+    assert (heat.rows, heat.gain, heat.u_val) == pytest.approx((3, shift, 0.1))
+    assert other.gain == pytest.approx(-heat.gain, abs=1e-15)
+    turned = {"with heat": "without heat", "without heat": "with heat"}
+    assert other.verdict == turned.get(heat.verdict, "undecided")
+    assert (heat.verdict == "undecided") == (abs(shift) <= 0.1)
+
+
+def row_of(*errors: float, u_data: float) -> Row:
+    simulated = tuple(1.0 + error for error in errors)
+    return Row(speed=1.0, quantity="displacement", measured=1.0, simulated=simulated, u_data=u_data)
 
 
 def one_line(name: str, *, rpm: float, hertz: float, micrometres: float = 10.0) -> LineTable:
@@ -211,6 +256,64 @@ def test_a_motion_goes_through_the_records_own_chain() -> None:
         assert line.frequency == pytest.approx(mesh, rel=1e-7)
         assert line.displacement == pytest.approx(10e-6, rel=2e-4)
         assert found.lines[1].displacement == pytest.approx(2e-6, rel=1e-3)
+
+
+def made_record(name: str, rpm: float, micrometres: float) -> Record:
+    """A shaft of 25 teeth at ``rpm``, its mesh line and its own."""
+    rate, mesh = 12_800.0, 25 * rpm / 60.0
+    turn = 2.0 * np.pi * mesh * np.arange(1 << 13) / rate
+    swing = micrometres * (np.cos(turn + 0.4) + 0.5 * np.cos(turn / 25.0))
+    noise = np.random.default_rng(3).normal(0.0, 0.5, turn.size)
+    readings = -((2.0 * np.pi * mesh) ** 2) * 1e-6 * swing + noise
+    return Record((Channel("a", readings, "m/s^2"),), name, rate, "made")
+
+
+@pytest.mark.parametrize("given", [None, (1010.0 * RPM, 2020.0 * RPM)])
+def test_a_case_runs_at_the_speed_of_every_record_with_its_own_teeth(
+    given: tuple[float, float] | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Records at 1000.5 and 2001 rpm, of a case at 1500 rpm: one table, one verdict on heat."""
+    ran: list[float] = []
+
+    def moved(runs: CaseRuns, changes: dict[str, str]) -> dict[str, LineTable]:
+        case = runs.case(changes)
+        ran.extend(speed / RPM for speed in case.speeds)
+        # the torque of the case decides: its tolerance is an uncertainty of the inputs
+        size = 1e-7 * case.torques[0]
+        return {
+            name: LineTable(name, tuple(
+                SpeedLine(speed=n, frequency=25 * n / 2 / np.pi, displacement=k * size)
+                for n in case.speeds
+            ))
+            for name, k in (("b undeformed", 0.5), ("b hot", 0.9))
+        }  # fmt: skip
+
+    monkeypatch.setattr(study, "_tables", moved)
+    case = load_example("rig", {"operating.speed": '"1500 rpm"'})
+    records = [made_record("low", 1000.5, 10.0), made_record("high", 2001.0, 20.0)]
+    found = compare(
+        case, records, speed=given, u_num=0.0, tolerances={"operating.torque": 0.01}, samples=2
+    )
+    known = [1000.5, 2001.0] if given is None else [one / RPM for one in given]
+    assert sorted(set(np.round(ran, 2))) == pytest.approx(sorted(set(known)), abs=0.02)
+    assert [round(row.speed / RPM, 1) for row in found.rows[1::2]] == pytest.approx(known, abs=0.1)
+    assert [row.record.split(",")[0] for row in found.rows] == ["low", "low", "high", "high"]
+    assert "no tooth number" not in " ".join(row.verdict for row in found.rows)
+    (heat,) = found.heat
+    assert (heat.bundle, heat.rows, heat.verdict) == ("b", 2, "with heat")
+    assert heat.gain == pytest.approx(np.mean([0.5 - 0.1, 0.75 - 0.55]), abs=2e-3)
+    page = page_of(result_of(found))
+    (section,) = [one for one in page.sections if one.name == "comparison"]
+    told = dict(zip(map(str, section.blocks[0].head), section.blocks[0].rows[0], strict=True))
+    assert (told["bundle"], told["nearer"], told["with heat nearer in"]) == (
+        "b", "with heat", "2 of 2",
+    )  # fmt: skip
+    assert section.blocks[1].head[0] == "record"
+
+
+def test_speeds_are_one_for_all_or_one_of_each() -> None:
+    with pytest.raises(InputError, match=r"^speed: got 2 speeds of 3 records; allowed one, or one"):
+        compare("thesis-5.2", ["thesis-5.2"] * 3, speed=(100.0, 200.0))
 
 
 def test_a_toleranced_value_keeps_its_unit() -> None:

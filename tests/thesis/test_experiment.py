@@ -10,7 +10,6 @@ import pytest
 from click.testing import CliRunner
 
 from conftest import Compared
-from thermogear.base.errors import InputError
 from thermogear.case.case import gear_case, load_case
 from thermogear.front.thesis_commands import thesis
 from thermogear.thesis import experiment, experiment_answer
@@ -110,11 +109,10 @@ def test_the_rule_counts_one_channel_near_at_all_speeds_and_growing(rows: list[S
 
 
 def test_too_few_trains_are_refused(tmp_path: Path) -> None:
-    for words in (["--experiment", "7"], ["--experiment", "8", "--redraw"]):
-        done = CliRunner().invoke(thesis, ["-o", str(tmp_path / "new"), *words])
-        assert isinstance(done.exception, InputError)
-        assert str(done.exception).startswith("--experiment: got ")
-        assert not (tmp_path / "new").exists()
+    done = CliRunner().invoke(thesis, ["-o", str(tmp_path / "new"), "--experiment", "7"])
+    assert done.exit_code == 2
+    assert "--experiment" in done.output
+    assert not (tmp_path / "new").exists()
 
 
 def _told(hits: int, lost: int = 0) -> str:

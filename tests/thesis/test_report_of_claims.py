@@ -16,6 +16,9 @@ from thermogear.base.progress import Progress
 from thermogear.dynamics.models import TorsionalModel
 from thermogear.dynamics.return_map import return_map
 from thermogear.front.cli import main
+from thermogear.measured.comparison import result_of
+from thermogear.results.result import Result
+from thermogear.study.compare import compare
 from thermogear.thesis import (
     base_sets,
     chain,
@@ -25,9 +28,12 @@ from thermogear.thesis import (
     section4,
     section5,
 )
-from thermogear.thesis.claim import Verdict, rising, verdict_of
+from thermogear.thesis.claim import Finding, Verdict, rising, verdict_of
 from thermogear.thesis.evidence import Evidence, Size
 from thermogear.thesis.report import CLAIMS, build
+from thermogear.views.page import Code, Table
+from thermogear.views.pages.record import comparison_table
+from thermogear.views.pages.thesis import page as page_of_claims
 from thermogear.views.write import save_results, write_report
 
 SMALL = Size(speeds=3, torques=2, diagram=41, flips=2, samples=8)
@@ -142,6 +148,43 @@ def test_words_for_trends() -> None:
     assert verdict_of(True) is Verdict.REPRODUCED
     assert verdict_of(True, assumption=True) is Verdict.ASSUMED
     assert verdict_of(False, assumption=True) is Verdict.CONTRADICTED
+
+
+def test_page_opens_with_the_conclusions_those_that_hold_first() -> None:
+    """Each of section 6 once, in the order of the verdicts, and at the end what it leaves open."""
+    verdicts = list(Verdict)
+    findings = [
+        Finding("thesis", "consistent", verdicts[(7 * place) % 4], f"reason {claim.number}")
+        for place, claim in enumerate(CLAIMS)
+    ]
+    result = Result.of(
+        "thesis", "The thesis", {"claims": report._claims(findings)}, seconds=1.0,
+        counts=report.counts(findings), claims_in_all=len(CLAIMS), sentences={},
+    )  # fmt: skip
+    first, *_, outlook = [one for one in page_of_claims(result).sections if one.name != "version"]
+    (table,) = [block for block in first.blocks if isinstance(block, Table)]
+    assert not first.folded
+    conclusions = {c.number: f for c, f in zip(CLAIMS, findings, strict=True) if c.section == 6}
+    links = [re.findall(r'href="#claim-([\d.]+)"', str(row[1]))[0] for row in table.rows]
+    assert sorted(links) == sorted(conclusions)
+    assert [verdicts.index(conclusions[name].verdict) for name in links] == sorted(
+        verdicts.index(conclusions[name].verdict) for name in links
+    )
+    assert [str(row[2]) for row in table.rows] == [f"reason {name}" for name in links]
+    code = [block.words for block in first.blocks if isinstance(block, Code)]
+    assert code[0].split()[-4:] == ["thesis", "mine.toml", "-o", "mine"]
+    assert outlook.name == "outlook"
+    (left,) = [block for block in outlook.blocks if isinstance(block, Table)]
+    assert len(left.rows) == 4
+
+
+def test_only_a_printed_error_that_no_rounding_gives_is_marked() -> None:
+    """41 um stands for 40.5 to 41.5 um and covers 15.4 %; 18.5 % is outside 21.27 to 21.73 %."""
+    data = result_of(compare("thesis-5.2")).groups["comparison"]
+    table = comparison_table(data)
+    (place,) = table.marked
+    assert data["quantity"].values[place] == "displacement"
+    assert data["printed"].values[place].tolist() == ["17.6", "18.5"]
 
 
 @pytest.mark.usefixtures("drawn_once")

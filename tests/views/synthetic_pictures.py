@@ -42,7 +42,7 @@ SIZES = {
     "event": 1, "load": 3, "speed": 4, "part": 2, "operating": 2, "law": 2, "path_position": 9,
     "regime_name": 3, "temperature": 2, "mesh_phase": 8, "pair": 2, "temperature_difference": 3,
     "pair_kind": 2, "speeds": 4, "torques": 3, "node": 2, "time": 12, "piece": 2, "sensor": 2,
-    "channel": 1, "thermal": 2, "torque": 2, "row": 2, "heat": 1, "flip": 2, "entry": 2,
+    "channel": 1, "thermal": 2, "torque": 2, "row": 2, "heat": 1, "flip": 2,
     "output": 2, "input": 3, "gear_temperature": 6, "gears.pinion.face_width": 3, "bearing": 2,
     "pinion_position": 12, "wheel_position": 12, "mode": 5, "stiffness_level": 3, "line": 3,
     "source": 3, "response_speed": 12, "map_column": 5, "slice": 3, "step": 6, "record": 4,
@@ -290,9 +290,9 @@ def of_warm_up() -> dict[str, Picture]:
 
 def of_claims() -> dict[str, Picture]:
     diagram = made("direction start damping_ratio section", "section_x").assign(
-        damping_ratio=rising("damping_ratio")
+        damping_ratio=rising("damping_ratio"),
+        lyapunov=rising("direction", "start", "damping_ratio"),
     ).assign_attrs(parameter="damping_ratio")  # fmt: skip
-    flips = made("row heat flip", "value").assign_coords(row=["zeta", "omega"], heat=["none"])
     given = made("thermal speed torque", "flash_mixed", "flash_dry").assign(
         speed=rising("speed"), torque=rising("torque"), thermal=["given", "balance"]
     )
@@ -300,16 +300,18 @@ def of_claims() -> dict[str, Picture]:
         temperature=rising("temperature", low=300.0, high=400.0), row=["thesis", "consistent"],
         flip=("row", np.array([350.0, np.nan])),
     )  # fmt: skip
-    entry = made("entry", "speed", "u_val", "with_error", "without_error").assign(
-        quantity=("entry", ["displacement", "frequency"]),
-        with_printed=("entry", ["1.0", "2.0"]), without_printed=("entry", ["1.0", "2.0"]),
+    entry = made("row", "u_val", "pinion_speed").assign(
+        quantity=("row", ["displacement", "frequency"]), model=["with heat", "without heat"],
+        comparison_error=(("row", "model"), np.full((2, 2), 0.2)),
+        printed=(("row", "model"), np.full((2, 2), "1.0")),
     )  # fmt: skip
     total = made("output input", "total", total_conf=rising("output", "input", low=0, high=0.1))
     total = total.assign(
         output_words=("output", ["growth", "flash"]), input_words=("input", ["a", "b", "c"])
     )
     return {
-        "thesis-diagram": claims.diagram({"zeta/none": diagram}, flips, "zeta"),
+        "thesis-diagram": sweeps.over_each_other([diagram], ["without heat"]),
+        "overlay": sweeps.overlay_picture(diagram.expand_dims(state=2), ["undeformed", "hot"], ()),
         "over-grid": claims.over_grid(given, "flash", "flash temperature [K]"),
         "warming": claims.warming(multiplier),
         "experiment": claims.experiment(entry),

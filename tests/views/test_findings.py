@@ -10,6 +10,7 @@ from thermogear.base.vocabulary import ASSUMED
 from thermogear.views.pages.findings import SAME, finding
 from thermogear.views.picture import Field, Hatch
 from thermogear.views.plots.lost_contact import map_picture
+from thermogear.views.plots.parameters import parameter_of, shown
 
 RPM = 2.0 * np.pi / 60.0
 
@@ -120,3 +121,21 @@ def test_a_range_without_any_motion_is_said_to_have_none() -> None:
     data = two_ways([])
     data["label"][:] = 4
     assert finding(data).startswith("No value has a motion")
+
+
+@pytest.mark.parametrize(
+    ("name", "unit", "value", "told"),
+    [
+        ("bearings.0.play", "m", 12e-6, (12.0, "µm")),
+        ("temperatures.pinion_bore_below_addendum", "K", 20.0, (20.0, "K")),
+        ("temperatures.housing", "K", 293.15, (20.0, "°C")),
+        ("train.modal_ratio", "1", 0.01, (0.01, "")),
+        ("rpm", "rad/s", 100.0 * RPM, (100.0, "rpm")),
+    ],
+)
+def test_a_dotted_field_is_shown_by_the_unit_it_is_stored_in(
+    name: str, unit: str, value: float, told: tuple[float, str]
+) -> None:
+    stored = xr.DataArray([value], attrs={"units": unit})
+    assert shown(name, stored) == pytest.approx([told[0]])
+    assert parameter_of(name, stored).shown == told[1]

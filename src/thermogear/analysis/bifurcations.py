@@ -440,7 +440,8 @@ def birth_of(curve: Curve, a: Point, kind: str) -> Bifurcation | None:
         point = there(value)
         return np.nan if point is None else point.flip
 
-    found = root_scalar(flip, method="secant", x0=start, x1=start + 1e-4 * curve.span, xtol=1e-13)
+    near = max(1e-13, 4.0 * float(np.spacing(abs(start))))
+    found = root_scalar(flip, method="secant", x0=start, x1=start + 1e-4 * curve.span, xtol=near)
     if not found.converged or not abs(found.root - start) < LONGEST_STEP * curve.span:
         return None
     point = there(float(found.root))

@@ -51,7 +51,7 @@ _BY_UNIT = {
     "m/s": Display("m/s"),
     "s": Display("ms", 1e3),
 }
-_DIFFERENCE = re.compile("flash|margin|residual|difference|below_gears")
+_DIFFERENCE = re.compile("flash|margin|residual|difference|below_(gears|addendum)")
 """Names of kelvins that are a difference, no temperature."""
 _BY_NAME = {
     "path_position": MILLIMETRE,

@@ -112,6 +112,10 @@ _ALL = (
         name="error_amplitude", words="kinematic error amplitude", unit="m", shown="µm",
         factor=1e6,
     ),
+    Parameter(
+        name="stiffness_fluctuation", words="factor on the fluctuation of the mesh stiffness",
+        aliases=("fluctuation",),
+    ),
     # gears and the equation alike
     Parameter(
         name="damping_ratio", words="damping ratio", symbol="ζ", number=True,

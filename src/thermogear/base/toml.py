@@ -8,6 +8,7 @@ import math
 import re
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
+from operator import itemgetter
 from typing import Any
 
 from thermogear.base.errors import InputError, nearest, short
@@ -41,7 +42,7 @@ def tables(name: str, text: str) -> dict[str, Any]:
 def pairs(overrides: Mapping[str, str] | Sequence[str]) -> tuple[tuple[str, str], ...]:
     """Overrides as (dotted path, text), from a mapping or from ``"a.b=c"``."""
     if isinstance(overrides, Mapping):
-        return tuple((str(key), str(value)) for key, value in overrides.items())
+        return tuple((dotted(str(key)), str(value)) for key, value in overrides.items())
     found = []
     for text in overrides:
         key, equals, value = text.partition("=")
@@ -49,50 +50,107 @@ def pairs(overrides: Mapping[str, str] | Sequence[str]) -> tuple[tuple[str, str]
             raise InputError(
                 "--set", short(text), allowed="PATH=VALUE", fix="write gears.pinion.teeth=30"
             )
-        found.append((key.strip(), value.strip()))
+        found.append((dotted(key.strip()), value.strip()))
     return tuple(found)
 
 
 def overridden(data: dict[str, Any], changes: tuple[tuple[str, str], ...]) -> dict[str, Any]:
     """``data`` with ``changes`` put in; tables on the way are new, made where missing.
 
-    An empty text leaves out what ``data`` holds at its path, a field or a table; InputError where
-    ``data`` holds nothing there. ``data`` itself stays as it is.
+    A key of a list is the number of an entry, from 0, or "all" for every one. An empty text leaves
+    out what ``data`` holds at its path, a field or a table; InputError where ``data`` holds nothing
+    there, and where a list has no such entry. ``data`` itself stays as it is.
 
     >>> overridden({"oil": {"name": "M220"}}, (("oil.name", ""), ("grid.harmonics", "12")))
     {'oil': {}, 'grid': {'harmonics': 12}}
+    >>> overridden({"bearings": [{}, {"play": "9 um"}]}, (("bearings.1.play", "12 um"),))
+    {'bearings': [{}, {'play': '12 um'}]}
     """
+    if any(path.startswith("bearings.") for path, _ in changes):
+        data = at_the_ends(data, moved=True)
     made = dict(data)
-    fresh: set[int] = set()
     for path, text in changes:
         if not settable(path):
             raise InputError("--set", short(path), allowed="a dotted path: gears.pinion.teeth")
-        *way, last = path.split(".")
-        left_out = not text.strip()
-        if left_out:
+        if not text.strip():
             _require_held(data, path)
-            if _held(made, path)[0] < len(way) + 1:
-                continue  # an earlier change left out more
-        table: Any = made
-        for depth, key in enumerate(way):
-            above, table = table, table.get(key, {})
-            if isinstance(table, dict) and id(table) not in fresh:
-                table = dict(table)
-                fresh.add(id(table))
-            above[key] = table
-            if isinstance(table, str) and ".".join(way[: depth + 1]) in NAMED:
-                table = above[key] = {NAMED[".".join(way[: depth + 1])]: table}
-            if not isinstance(table, dict):
-                raise InputError(
-                    path,
-                    "an unknown path",
-                    why=f"{'.'.join(way[: depth + 1])} is a value, not a table",
-                )
-        if left_out:
-            table.pop(last, None)
-        else:
-            table[last] = _value(text)
+        for place in entries_of(made, path):
+            keys = place.split(".")
+            # an earlier change may have left out more
+            if text.strip() or held(made, place)[0] == len(keys):
+                made = _put(made, keys, 0, text)
     return made
+
+
+def entries_of(data: Mapping[str, Any], path: str) -> list[str]:
+    """The paths that ``path`` means: "all" is written out for every entry of its list.
+
+    >>> entries_of({"bearings": [{}, {}]}, "bearings.all.play")
+    ['bearings.0.play', 'bearings.1.play']
+    """
+    before, every, after = path.partition(".all.")
+    entries = held(data, before)[1] if every else None
+    if not isinstance(entries, list):
+        return [path]
+    numbered = (f"{before}.{number}.{after}" for number in range(len(entries)))
+    return [place for one in numbered for place in entries_of(data, one)]
+
+
+def _put(inside: Any, keys: list[str], depth: int, text: str) -> Any:
+    """A copy of the table or list at ``keys[:depth]`` with ``text`` at the end of the keys."""
+    above = ".".join(keys[:depth])
+    if isinstance(inside, str) and above in NAMED:
+        inside = {NAMED[above]: inside}
+    if not isinstance(inside, dict | list):
+        raise InputError(".".join(keys), "an unknown path", why=f"{above} is a value, not a table")
+    made: Any = inside.copy()
+    key: Any = _entry(inside, keys, depth) if isinstance(inside, list) else keys[depth]
+    if depth + 1 < len(keys):
+        below = inside.get(key, {}) if isinstance(inside, dict) else inside[key]
+        made[key] = _put(below, keys, depth + 1, text)
+    elif text.strip():
+        made[key] = _value(text)
+    else:
+        del made[key]
+    return made
+
+
+def _entry(entries: list[Any], keys: list[str], depth: int) -> int:
+    """The number of an entry that a key means."""
+    key, count = keys[depth], len(entries)
+    if key.isdecimal() and len(key) < 9 and int(key) < count:
+        return int(key)
+    allowed = f"0..{count - 1}, or all" if count else "none: the list is empty"
+    raise InputError(".".join(keys), f"entry {key} of {'.'.join(keys[:depth])}", allowed=allowed)
+
+
+def at_the_ends(data: dict[str, Any], *, moved: bool = False) -> dict[str, Any]:
+    """The tables of a file with the bearings that its shafts name at their ends among the others.
+
+    One name serves both ends; two are the left and the right one. ``moved``: the shafts name them
+    no longer.
+    """
+    shafts, bearings = data.get("shafts"), data.get("bearings", [])
+    if not isinstance(shafts, list) or not isinstance(bearings, list):
+        return data
+    more, kept = [], []
+    for one in shafts:
+        named = one.get("bearings") if isinstance(one, dict) else None
+        types: Any = [named] if isinstance(named, str) else named
+        known = isinstance(one, dict) and one.get("gear") in ("pinion", "wheel")
+        fits = isinstance(types, list) and 1 <= len(types) <= 2
+        if not known or not fits or not all(isinstance(t, str) for t in types):
+            kept.append(one)  # the shaft itself says what is wrong
+        else:
+            ends = zip(("left", "right"), (types[0], types[-1]), strict=True)
+            more += [{"shaft": one["gear"], "end": end, "type": t} for end, t in ends]
+            kept.append({k: v for k, v in one.items() if not (moved and k == "bearings")})
+    return {**data, "shafts": kept, "bearings": [*bearings, *more]} if more else data
+
+
+def dotted(path: str) -> str:
+    """A path as messages write it, ``bearings[0].play``, with dots alone."""
+    return re.sub(r"\[(\w+)\]", r".\1", path)
 
 
 def settable(path: str) -> bool:
@@ -103,7 +161,7 @@ def settable(path: str) -> bool:
 def _require_held(data: Mapping[str, Any], path: str) -> None:
     """Refuse to leave out what the file does not hold."""
     parts = path.split(".")
-    depth, inside = _held(data, path)
+    depth, inside = max((held(data, one) for one in entries_of(data, path)), key=itemgetter(0))
     if depth < len(parts):
         known = inside if isinstance(inside, Mapping) else ()
         above = f"[{'.'.join(parts[:depth])}] of " if depth else ""
@@ -115,17 +173,24 @@ def _require_held(data: Mapping[str, Any], path: str) -> None:
         )
 
 
-def _held(data: Mapping[str, Any], path: str) -> tuple[int, Any]:
-    """How many keys of ``path`` lead somewhere in ``data``, and what is there."""
-    held: Any = data
+def held(data: Mapping[str, Any], path: str) -> tuple[int, Any]:
+    """How many keys of ``path`` lead somewhere in ``data``, and what is there.
+
+    >>> held({"shafts": [{"gear": "pinion"}]}, "shafts.0.gear")
+    (3, 'pinion')
+    """
+    inside: Any = data
     parts = path.split(".")
     for depth, key in enumerate(parts):
-        if isinstance(held, str) and (name := NAMED.get(".".join(parts[:depth]))):
-            held = {name: held}
-        if not isinstance(held, Mapping) or key not in held:
-            return depth, held
-        held = held[key]
-    return len(parts), held
+        if isinstance(inside, str) and (name := NAMED.get(".".join(parts[:depth]))):
+            inside = {name: inside}
+        if isinstance(inside, list) and key != "all":
+            inside = inside[_entry(inside, parts, depth)]
+        elif isinstance(inside, Mapping) and key in inside:
+            inside = inside[key]
+        else:
+            return depth, inside
+    return len(parts), inside
 
 
 def told(path: str, text: str) -> str:

@@ -19,6 +19,7 @@ from thermogear.base.parameters import (
     long_name,
     named,
 )
+from thermogear.base.toml import dotted
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.case.dimensionless_schema import DimensionlessFile
 from thermogear.case.fields import BODY, Count, Measure, Number, Reader, Several
@@ -26,7 +27,9 @@ from thermogear.case.refusals import reader_at, table_at
 from thermogear.case.schema import GearFile
 from thermogear.case.units import KINDS
 
-LANE = ("frequency", "half_backlash")
+FLUCTUATION = "stiffness_fluctuation"
+"""The factor on every harmonic of the mesh stiffness but its mean; 1 leaves a pair as it is."""
+LANE = ("frequency", "half_backlash", FLUCTUATION)
 """Numbers of the equation that can be put in place of a gear pair's own, all else as it is."""
 
 
@@ -35,6 +38,7 @@ def gear_parameter(name: str, option: str = "parameter") -> Parameter:
 
     Raises :class:`InputError` where there is no such field, or none that holds numbers.
     """
+    name = dotted(name)
     if "." not in name:
         try:
             return named(name, (*GEARS, *LANE), option)
@@ -58,6 +62,8 @@ def gear_reader(parameter: str) -> Reader:
     Raises :class:`InputError` where there is no such field, or none that holds numbers.
     """
     one = PARAMETERS.get(long_name(parameter))
+    if one is not None and one.name == FLUCTUATION:
+        return Number(low=0.0, example="1")
     if one is not None and not one.fields:
         return dimensionless_reader(one.name)
     return _reader(GearFile, parameter if one is None else one.fields[0])

@@ -19,6 +19,7 @@ from thermogear.base import materials
 from thermogear.base.errors import InputError, ValidityWarning, nearest, short
 from thermogear.base.excitation import Periodic
 from thermogear.base.materials import MATERIALS, Lubricant, Material
+from thermogear.base.toml import held
 from thermogear.base.units import ROUNDED, ZERO_CELSIUS
 from thermogear.case.backlash import Backlash, from_tolerances, from_value, recommended
 from thermogear.case.fields import BODY
@@ -130,10 +131,8 @@ def unknown_names(data: Mapping[str, Any]) -> list[InputError]:
     known = {**MATERIALS, **(own if isinstance(own, dict) else {})}
     found = []
     for path in ("gears.pinion.material", "gears.wheel.material", "housing.material", "oil.name"):
-        entry: Any = data
-        for part in path.split("."):
-            entry = entry.get(part) if isinstance(entry, dict) else None
-        if not isinstance(entry, str):
+        depth, entry = held(data, path)
+        if depth < len(path.split(".")) or not isinstance(entry, str):
             continue
         try:
             if path != "oil.name":

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from thermogear.base.errors import InputError, nearest
-from thermogear.base.toml import literal
+from thermogear.base.toml import held, literal
 from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import STILL
 from thermogear.case.case import GearCase
@@ -219,10 +219,7 @@ def _warm(celsius: float) -> tuple[float, float]:
 
 def _given(case: GearCase, field: str) -> bool:
     """Whether the file itself says a field."""
-    table: Any = case.data
-    for part in field.split("."):
-        table = table.get(part) if isinstance(table, dict) else None
-    return table is not None
+    return held(case.data, field)[0] == len(field.split("."))
 
 
 def _first(case: GearCase) -> float:

@@ -8,6 +8,7 @@ from thermogear.base.errors import InputError, nearest
 
 EXAMPLES = {
     "rig": "gears of a rig, 25:75, from friction to vibration, every value with its reason",
+    "rig-train": "the rig's pair on shafts in ball bearings, with motor and brake: bearing play",
     "fzg-a": "FZG type A, stage 12: scuffing, film, flash temperature of long sliding",
     "fzg-c": "FZG type C, 200 N m: losses, film, the heat balance of a known test",
     "nasa-spur": "28:28 at 10 000 rpm: high speed, thin and hot oil film",

@@ -464,7 +464,8 @@ class Tabulated:
         mesh = mix(a.mesh_frequency, beyond)
         frequency = mesh / rate
         ranks = np.arange(error.shape[1])
-        push = error * (ranks * frequency[:, None]) ** 2 / length[:, None]
+        with np.errstate(invalid="ignore"):  # a point without a gap has no lengths
+            push = error * (ranks * frequency[:, None]) ** 2 / length[:, None]
         push[:, 0] = force / (stiffness * length)
         status = np.maximum(a.status, b.status)
         flat = Lanes(

@@ -106,25 +106,21 @@ class NewCase:
         for gear, body in (("pinion", pair.pinion), ("wheel", pair.wheel)):
             moment = torque * body.teeth / pair.pinion.teeth
             least = (16.0 * moment / (math.pi * SHEAR)) ** (1.0 / 3.0)
-            fitting = [one for name, one in CATALOGUE.items() if name.startswith("62")]
-            fitting = [one for one in fitting if one.bore >= least]
-            if fitting and min(one.bore for one in fitting) > 2.0 * body.root_radius:
-                raise InputError(
-                    "--shafts",
-                    f"a bearing of {1e3 * min(one.bore for one in fitting):.0f} mm for "
-                    f"{moment:.4g} N m on the {gear}'s shaft",
-                    allowed=f"<= {2e3 * body.root_radius:.4g} mm, the root circle of the {gear}",
-                    fix="leave --shafts out and describe [[shafts]] and [[bearings]] yourself",
-                )
-            if not fitting:
-                largest = max(one.bore for one in CATALOGUE.values())
-                raise InputError(
-                    "--shafts",
-                    f"a shaft of {1e3 * least:.0f} mm for {moment:.4g} N m",
-                    allowed=f"up to {1e3 * largest:.0f} mm, the largest ready bearing",
-                    fix="leave --shafts out and describe [[shafts]] and [[bearings]] yourself",
-                )
-            one = min(fitting, key=lambda b: b.bore)
+            series = [one for name, one in CATALOGUE.items() if name.startswith("62")]
+            bores = sorted(one.bore for one in series)
+            bore = next((size for size in bores if size >= least), least)
+            for most, what in (
+                (2.0 * body.root_radius, f"root circle of the {gear}"),
+                (bores[-1], "largest ready bearing"),
+            ):
+                if bore > most:
+                    raise InputError(
+                        "--shafts",
+                        f"a shaft of {1e3 * bore:.0f} mm for {moment:.4g} N m",
+                        allowed=f"up to {1e3 * most:.4g} mm, the {what}",
+                        fix="leave --shafts out and describe [[shafts]] and [[bearings]] yourself",
+                    )
+            one = next(one for one in series if one.bore == bore)
             length = 5.0 * math.ceil(1e3 * (body.face_width + 2.0 * (one.width + BESIDE)) / 5.0)
             found += [
                 "",

@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.errors import InputError
 from thermogear.base.excitation import Excitations, Periodic
 from thermogear.base.vocabulary import STATUS
+from thermogear.case.allowed import FLUCTUATION
 from thermogear.case.case import GearCase
 from thermogear.dynamics.models import DeadZoneModel, TorsionalModel
 from thermogear.dynamics.tables import Lanes
@@ -170,8 +172,34 @@ def points_of(found: Excitations) -> Points:
     )
 
 
+def largest_fluctuation(points: Points) -> Floats:
+    """The factor on the fluctuation of the mesh stiffness at which it would reach zero, (point,).
+
+    k = k_m (1 + s w(t)) with the pair's own w: s = -1/min w; infinite without fluctuation.
+    """
+    waves = points.flat.stiffness[:, 1:]
+    count = 8 * (waves.shape[1] + 1)
+    turns = np.outer(np.arange(1, waves.shape[1] + 1), np.arange(count) / count)
+    least = (waves @ np.exp(2j * np.pi * turns)).real.min(axis=1)
+    mean = points.flat.stiffness[:, 0].real
+    return np.asarray(np.divide(mean, -least, out=np.full(mean.size, np.inf), where=least < 0.0))
+
+
 def on_numbers(points: Points, numbers: dict[str, Floats]) -> Points:
     """``points`` with numbers of the equation in place of the gears' own, the force as it is."""
+    if FLUCTUATION in numbers:
+        factor, most = numbers[FLUCTUATION], largest_fluctuation(points)
+        beyond = (factor >= most) & ~points.still
+        if beyond.any():
+            raise InputError(
+                FLUCTUATION,
+                f"{float(factor[beyond].max()):g}",
+                allowed=f"below {float(most[beyond].min()):.4g}",
+                why="the mesh stiffness would reach zero",
+            )
+        stiffness = points.flat.stiffness.copy()
+        stiffness[:, 1:] *= factor[:, None]
+        points = replace(points, flat=replace(points.flat, stiffness=stiffness))
     flat, mesh, hot = points.flat, points.mesh_frequency, points.half_backlash
     if "frequency" in numbers:
         flat = replace(flat, period=2.0 * np.pi / numbers["frequency"])

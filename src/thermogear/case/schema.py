@@ -14,6 +14,7 @@ from pydantic.json_schema import models_json_schema
 
 from thermogear.base import bounds
 from thermogear.base.errors import InputError
+from thermogear.base.toml import at_the_ends
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.case.backlash_schema import BacklashTable
 from thermogear.case.dimensionless_schema import DimensionlessFile, SimulationTable
@@ -48,7 +49,6 @@ from thermogear.case.shaft_schema import (
     MotorTable,
     ShaftTable,
     TrainTable,
-    at_the_ends,
     require_few,
 )
 from thermogear.case.table import Below, Body, Length, Table, one_of

@@ -363,27 +363,6 @@ class TrainTable(Table):
     )
 
 
-def at_the_ends(data: dict[str, Any]) -> dict[str, Any]:
-    """The tables of a file with the bearings that its shafts name at their ends among the others.
-
-    One name serves both ends; two are the left and the right one.
-    """
-    shafts, bearings = data.get("shafts"), data.get("bearings", [])
-    if not isinstance(shafts, list) or not isinstance(bearings, list):
-        return data
-    more = []
-    for one in shafts:
-        named = one.get("bearings") if isinstance(one, dict) else None
-        types = [named] if isinstance(named, str) else named
-        known = isinstance(one, dict) and one.get("gear") in ("pinion", "wheel")
-        if not known or not isinstance(types, list) or not 1 <= len(types) <= 2:
-            continue  # the shaft itself says what is wrong
-        if all(isinstance(t, str) for t in types):
-            ends = zip(("left", "right"), (types[0], types[-1]), strict=True)
-            more += [{"shaft": one["gear"], "end": end, "type": t} for end, t in ends]
-    return {**data, "bearings": [*bearings, *more]} if more else data
-
-
 def require_few(raw: object, field: str, most: int) -> None:
     """Refuse a list that is too long, before anything in it is read."""
     if isinstance(raw, list) and len(raw) > most:

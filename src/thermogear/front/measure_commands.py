@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,15 +12,15 @@ from thermogear.base.errors import InputError
 from thermogear.base.progress import Progress
 from thermogear.base.units import RPM
 from thermogear.front import delivery
-from thermogear.front.measuring import measured_by, measured_files
+from thermogear.front.measuring import measured_among, measured_by, measured_files
 from thermogear.front.numbers import number
 
 if TYPE_CHECKING:
     from thermogear.results.result import Result
 
 
-def supplies(command: Any) -> Any:
-    """The options that supply what a file does not state."""
+def supplies(command: Any, *, speeds: bool = False) -> Any:
+    """The options that supply what a file does not state; ``speeds``: --speed may be repeated."""
     for option in (
         number("--rate", "Samples per second.", "> 0 samples/s", "25600", metavar="HZ"),
         click.option(
@@ -28,7 +29,12 @@ def supplies(command: Any) -> Any:
         number("--scale", "Units at full scale, for integer samples.", "a number of units", "50"),
         number("--teeth", "Teeth of the pinion.", "a whole number 1..2000", "25", whole=True),
         number(
-            "--speed", "Nominal speed of the pinion.", "> 0 .. 500000 rpm", "1500", metavar="RPM"
+            "--speed",
+            "Nominal speed of the pinion" + " (one of each record)" * speeds + ".",
+            "> 0 .. 500000 rpm",
+            "1500",
+            metavar="RPM",
+            multiple=speeds,
         ),
         click.option(
             "--channel",
@@ -87,16 +93,15 @@ def supplies(command: Any) -> Any:
     return command
 
 
-def _require_gear(options: dict[str, Any]) -> None:
-    """Refuse teeth and a speed that no gear has, before anything is read."""
+def _require_gear(teeth: int | None, *speeds: float | None) -> None:
+    """Refuse teeth and speeds that no gear has, before anything is read."""
+    from thermogear.base.bounds import SPEED
     from thermogear.measured.reduction import require_teeth
 
-    speed = options["speed"]
-    from thermogear.base.bounds import SPEED
-
-    if speed is not None and not 0.0 < speed * RPM <= SPEED.most:
-        raise InputError("--speed", f"{speed:g} rpm", allowed=f"> 0 .. {SPEED.high:g} rpm")
-    require_teeth(options["teeth"])
+    for speed in speeds:
+        if speed is not None and not 0.0 < speed * RPM <= SPEED.most:
+            raise InputError("--speed", f"{speed:g} rpm", allowed=f"> 0 .. {SPEED.high:g} rpm")
+    require_teeth(teeth)
 
 
 @click.command()
@@ -127,7 +132,7 @@ def measure(
     Of several files, or of those in a directory, what changed against a baseline beyond its
     uncertainty, and trends; with --join they are one record.
     """
-    _require_gear(options)
+    _require_gear(options["teeth"], options["speed"])
     one = len(files) == 1 and not Path(files[0]).is_dir()
     if one and baseline is not None:
         raise InputError("--baseline", baseline, why="there is one record", fix="name several")
@@ -148,8 +153,8 @@ def measure(
 
 @click.command()
 @click.argument("case", metavar="CASE")
-@click.argument("measured", metavar="[FILE|TABLE]", required=False)
-@supplies
+@click.argument("measured", metavar="[FILE|DIR|TABLE]...", nargs=-1)
+@partial(supplies, speeds=True)
 @click.option(
     "--tolerance",
     "tolerances",
@@ -171,7 +176,7 @@ def measure(
 @delivery.output("Also write comparison.nc and comparison.html.", required=False)
 def compare(
     case: str,
-    measured: str | None,
+    measured: tuple[str, ...],
     tolerances: tuple[str, ...],
     samples: int | None,
     at: tuple[str, ...],
@@ -179,9 +184,14 @@ def compare(
     overrides: tuple[str, ...],
     as_json: bool,
     output: str | None,
+    speed: tuple[float, ...],
     **options: Any,
 ) -> None:
-    """Compare CASE (a case, a directory of results, or thesis-5.2) with a record or a table.
+    """Compare CASE (a case, a directory of results, or thesis-5.2) with records or tables.
+
+    Several records, at one speed each, make one table with one verdict on heat for each bundle. A
+    case is computed at the speed of the record: --speed (one for all, or one of each in their
+    order), else what its mesh line and the teeth of the case imply.
 
     A case with shafts and --at: mesh lines of accelerometers on bearings or housing are compared
     with the drive train's at the same place, along the same axis. Places: bearing:NAME, housing,
@@ -189,12 +199,13 @@ def compare(
     """
     from thermogear.measured.comparison import result_of
     from thermogear.measured.published import PUBLISHED, is_table
+    from thermogear.measured.several import files_of
     from thermogear.study.compare import compare as study
-    from thermogear.study.compare import computes
+    from thermogear.study.compare import computes, own_teeth, speeds_of
 
-    _require_gear(options)
+    _require_gear(options["teeth"], *speed)
     read: Any = case
-    if computes(case) and measured is not None:
+    if computes(case) and measured:
         read = delivery.load(case, overrides)
     elif overrides:
         raise InputError(
@@ -205,57 +216,49 @@ def compare(
         )
     if samples is not None and not tolerances:
         raise InputError("--samples", samples, why="beside no --tolerance", fix="leave it out")
-    table = measured in PUBLISHED or (measured is not None and is_table(measured))
-    record = measured is not None and not table
-    if at and not record:
+    found = ([name] if name in PUBLISHED else files_of([name]) for name in measured)
+    named = [str(file) for several in found for file in several]
+    tables = [one in PUBLISHED or is_table(one) for one in named]
+    if at and (not named or any(tables)):
         raise InputError("--at", at[0], why="there is no record to read", fix="name a record")
-    for name, value in options.items():
+    for name, value in {**options, "speed": speed}.items():
         # a table of lines may count in shaft turns: its teeth are asked for
         given = value if name != "method" else value != "frequency"
-        if given and not record and not (name == "teeth" and table):
+        if given and all(tables) and not (name == "teeth" and tables):
             option = "--channel" if name == "channels" else f"--{name.replace('_', '-')}"
-            raise InputError(option, value, why="there is no record to read", fix="leave it out")
-    speed = options["speed"]
+            raise InputError(
+                option, value[0] if name == "speed" else value, why="there is no record to read",
+                fix="leave it out",
+            )  # fmt: skip
     tolerated = dict(_tolerance(text) for text in tolerances)
+    speeds = speeds_of([*speed] if len(speed) > 1 else next(iter(speed), None), len(named))
 
     def make(report: Progress) -> Result:
-        against: Any = measured
-        if measured is not None and record:
-            known = dict(options)
-            if at:
-                known = _expected(read, known)
-            against = measured_by(measured, known)
-        found = study(
+        teeth = options["teeth"] or (own_teeth(read) if named else None)
+        against: list[Any] = []
+        for file, table, rpm in zip(named, tables, speeds, strict=True):
+            known = {**options, "teeth": teeth, "speed": rpm or (_one_speed(read) if at else None)}
+            read_by = measured_by if len(named) == 1 else measured_among
+            against.append(file if table else read_by(file, known))
+        compared = study(
             read,
-            against,
-            teeth=options["teeth"],
-            speed=None if speed is None else speed * RPM,
+            against or None,
+            teeth=teeth,
+            speed=[None if rpm is None else rpm * RPM for rpm in speeds] or None,
             at=at,
             u_data=None if u_data is None else u_data / 100.0,
             tolerances=tolerated,
             samples=12 if samples is None else samples,
         )
-        return result_of(found)
+        return result_of(compared)
 
     delivery.deliver(make, output, as_json=as_json)
 
 
-def _expected(case: Any, options: dict[str, Any]) -> dict[str, Any]:
-    """``options`` with teeth and speed of the case, by which the record's mesh line is found.
-
-    What is given stays; a speed is known where the case has one alone.
-    """
-    from thermogear.case.case import gear_case
-
-    if isinstance(case, str):
-        return options  # results
-    read = gear_case(case)
-    speeds = set(read.stated.speed.tolist())
-    own = {
-        "teeth": read.pair.pinion.teeth,
-        "speed": speeds.pop() / RPM if len(speeds) == 1 else None,
-    }
-    return {**options, **{name: v for name, v in own.items() if options[name] is None}}
+def _one_speed(case: Any) -> float | None:
+    """The speed [rpm] of a case that has one alone, by which a record's mesh line is found."""
+    speeds: set[float] = set() if isinstance(case, str) else set(case.stated.speed.tolist())
+    return speeds.pop() / RPM if len(speeds) == 1 else None
 
 
 def _tolerance(text: str) -> tuple[str, float]:

@@ -38,13 +38,14 @@ def measured_by(file: str, options: dict[str, Any]) -> Measurement:
     return _reduced(record, other, options)
 
 
-def measured_among(file: Path, options: dict[str, Any]) -> Measurement:
+def measured_among(file: str | Path, options: dict[str, Any]) -> Measurement:
     """One of several records: of its channels those that ``--channel`` names here.
 
     ``FILE::CHANNEL`` is said of that file alone; a file of which nothing is named is refused.
     """
     wanted = options["channels"]
-    here = [own for place, own in map(_parted, wanted) if place in ("", file.name, str(file))]
+    known = ("", Path(file).name, str(file))
+    here = [own for place, own in map(_parted, wanted) if place in known]
     if wanted and not here:
         raise InputError("--channel", wanted[0], why="it names no channel of this file")
     return measured_by(str(file), {**options, "channels": tuple(here)})

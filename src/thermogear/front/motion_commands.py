@@ -15,6 +15,7 @@ from thermogear.base.errors import InputError
 from thermogear.base.parameters import NUMBERS, PARAMETERS, Parameter
 from thermogear.base.progress import Progress
 from thermogear.front import delivery
+from thermogear.front.numbers import start
 
 if TYPE_CHECKING:
     from thermogear.case.one_point import OnePoint
@@ -66,16 +67,8 @@ def _point_options(command: _Command) -> _Command:
     return command
 
 
-def _start(text: str | None) -> tuple[float, float] | None:
-    if text is None:
-        return None
-    try:
-        x, v = (float(part) for part in text.split(","))
-    except ValueError:
-        raise InputError("--start", repr(text), allowed="two numbers X,V", fix="0,0") from None
-    if not abs(x) < 1e6 or not abs(v) < 1e6:
-        raise InputError("--start", text, allowed="finite numbers below 1e6")
-    return x, v
+def _start(options: dict[str, Any]) -> tuple[float, float] | None:
+    return None if options["start"] is None else start(options["start"])
 
 
 def _numbers(options: dict[str, Any]) -> dict[str, float]:
@@ -104,7 +97,7 @@ def _point(options: dict[str, Any], case: Any) -> OnePoint:
     from thermogear.case.one_point import of_case, of_numbers
     from thermogear.case.thermal_state import HOT, ThermalState
 
-    start, numbers = _start(options["start"]), _numbers(options)
+    start, numbers = _start(options), _numbers(options)
     if case is None:
         _unused(options, (*OF_ROWS, *OF_GEARS), "no case is named")
         return of_numbers(numbers, start)
@@ -256,7 +249,7 @@ def continue_(
     from thermogear.study.branches import branch_results, cascade_results
 
     case = _case(options)
-    train = _is_train(case, rigid, {"coordinates": coordinates, "values": values})
+    train = is_train(case, rigid, {"coordinates": coordinates, "values": values})
     if cascade is not None:
         own = {"period": period, "direct": direct, "switch": switch, "and": second} | options
         _unused(own, ("period", "direct", "switch", "and", *OF_GEARS), "beside --cascade")
@@ -266,7 +259,7 @@ def continue_(
 
         def make_cascade(report: Progress) -> Result:
             return cascade_results(
-                sweeps, cascade, title=title, hot=hot, start=_start(options["start"]),
+                sweeps, cascade, title=title, hot=hot, start=_start(options),
                 progress=report,
             )  # fmt: skip
 
@@ -289,7 +282,7 @@ def continue_(
 
             trains = Trains.of(case, point, operating=options["operating"], coordinates=coordinates)
             return train_branch_results(
-                trains, name, end, begin=first, start=_start(options["start"]), period=period,
+                trains, name, end, begin=first, start=_start(options), period=period,
                 transient=not direct, switch=switch, count=VALUES if values is None else values,
                 second=plane, progress=report,
             )  # fmt: skip
@@ -301,7 +294,7 @@ def continue_(
     delivery.deliver(make, options["output"], as_json=options["as_json"])
 
 
-def _is_train(case: Any, rigid: bool, asked: dict[str, Any]) -> bool:
+def is_train(case: Any, rigid: bool, asked: dict[str, Any]) -> bool:
     """Whether the case's drive train moves; options of one are refused without it."""
     has = getattr(case, "train", None) is not None
     if rigid and not has:

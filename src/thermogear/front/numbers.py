@@ -34,3 +34,28 @@ def number(
 ) -> Callable[[Any], Any]:
     """A click option that takes a :class:`Number`; ``words`` of its help."""
     return click.option(option, type=Number(allowed, example, whole=whole), help=words, **more)
+
+
+def grid(option: str, text: str) -> Any:
+    """The numbers of ``FROM:TO:COUNT``, evenly apart."""
+    import numpy as np
+
+    try:
+        low, high, count = text.split(":")
+        values = np.linspace(float(low), float(high), int(count))
+    except ValueError:
+        raise InputError(option, repr(text), allowed="FROM:TO:COUNT") from None
+    if values.size < 1:
+        raise InputError(option, repr(text), allowed="a count >= 1")
+    return values
+
+
+def start(text: str) -> tuple[float, float]:
+    """The two numbers of ``X,V``, a start in half backlashes."""
+    try:
+        x, v = (float(part) for part in text.split(","))
+    except ValueError:
+        raise InputError("--start", repr(text), allowed="two numbers X,V", fix="0,0") from None
+    if not abs(x) < 1e6 or not abs(v) < 1e6:
+        raise InputError("--start", text, allowed="finite numbers below 1e6")
+    return x, v

@@ -17,6 +17,8 @@ import click
 from thermogear.base.errors import InputError
 from thermogear.base.units import RPM
 from thermogear.front import delivery
+from thermogear.front.motion_commands import is_train
+from thermogear.front.numbers import grid, start
 
 if TYPE_CHECKING:
     from thermogear.base.plan import Plan
@@ -77,20 +79,11 @@ def _train_of(
     from thermogear.study.diagrams import Train
 
     asked = {n: options.pop(n) for n in ("operating", "coordinates")}
-    rigid, has = options.pop("rigid"), getattr(case, "train", None) is not None
-    if rigid and not has:
-        raise InputError(
-            "--rigid", "without shafts", why="CASE has no [[shafts]]", fix="leave it out"
-        )
-    if has and not rigid:
-        number = 1 if asked["operating"] is None else asked["operating"]
-        seen = "" if plane in (None, "teeth") else plane or " "
-        return Train(operating=number - 1, coordinates=asked["coordinates"], seen=seen)
-    for name, value in (*asked.items(), ("plane", plane)):
-        if value is not None:
-            why = "--rigid leaves the shafts out" if rigid else "CASE has no [[shafts]]"
-            raise InputError(f"--{name}", value, why=why, fix="leave it out")
-    return None
+    if not is_train(case, options.pop("rigid"), {**asked, "plane": plane}):
+        return None
+    number = 1 if asked["operating"] is None else asked["operating"]
+    seen = "" if plane in (None, "teeth") else plane or " "
+    return Train(operating=number - 1, coordinates=asked["coordinates"], seen=seen)
 
 
 def _over(words: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
@@ -134,7 +127,7 @@ def bifurcation(
         raise InputError("over", f"{len(over)} parameters", allowed="one for a diagram")
     name, values = parse_axis(read, over[0])
     delivery.heat_once([name], options["state"])
-    begin = tuple(_pair_of(text) for text in starts)
+    begin = tuple(map(start, starts))
     train = _train_of(read, options)
     changes = parse_numbers(but)
 
@@ -246,7 +239,7 @@ def basins(
     train = _train_of(read, options, plane)
     usual = "-2:2:401" if train is None else "-2:2:25"
     plan = case_basins(
-        read, x=_grid("x", x or usual), v=_grid("v", v or usual), bundle=bundle, state=state,
+        read, x=grid("x", x or usual), v=grid("v", v or usual), bundle=bundle, state=state,
         changes=parse_numbers(but), train=train,
     )  # fmt: skip
     _carry(plan, Path(output), read.title, as_json, options)
@@ -276,7 +269,7 @@ def runup(
     from thermogear.study.run_up import run_up_plan
 
     read = delivery.load_gears(case, options["overrides"])
-    speeds = _grid("rpm", rpm) * RPM
+    speeds = grid("rpm", rpm) * RPM
     bundle, state = _choice(read, options)
     if hot and options["state"] is not None:
         raise InputError("--state", options["state"], why="beside --hot", fix="leave one out")
@@ -336,7 +329,7 @@ def waterfall(
     from thermogear.study.shafts.waterfall import waterfall_plan
 
     read = delivery.load_gears(case, options["overrides"])
-    speeds = _grid("rpm", rpm) * RPM
+    speeds = grid("rpm", rpm) * RPM
     bundle, state = _choice(read, options)
     named = read
     if bundle:
@@ -378,27 +371,6 @@ def _split(text: str) -> tuple[str, str]:
     if not sign:
         raise InputError("change", repr(text), allowed="NAME=VALUE")
     return name, value
-
-
-def _pair_of(text: str) -> tuple[float, float]:
-    try:
-        x, v = (float(part) for part in text.split(","))
-    except ValueError:
-        raise InputError("start", repr(text), allowed="X,V") from None
-    return x, v
-
-
-def _grid(name: str, text: str) -> Any:
-    import numpy as np
-
-    try:
-        low, high, count = text.split(":")
-        values = np.linspace(float(low), float(high), int(count))
-    except ValueError:
-        raise InputError(name, repr(text), allowed="FROM:TO:COUNT") from None
-    if values.size < 1:
-        raise InputError(name, repr(text), allowed="a count >= 1")
-    return values
 
 
 # --- running ------------------------------------------------------------------------------

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -16,35 +16,60 @@ if TYPE_CHECKING:
     from thermogear.results.result import Result
 
 
-MOST_TRAINS = 10_000
+OPTIONS = {"records": "record", "overrides": "set"}
+"""Options of many values by their parameters."""
 
 
 @click.command()
+@click.argument("case", metavar="[CASE]", required=False)
 @delivery.output("Directory of the report; made if new.")
-@click.option("--redraw", is_flag=True, help="Draw the page anew from what DIR holds already.")
 @click.option(
     "--experiment",
-    type=int,
+    type=click.IntRange(8, 10_000),
     metavar="N",
     help="Sample N drive trains of the test rig anew, seconds each; left out, the 256 that come "
     "with the package.",
 )
+@click.option(
+    "--operating", type=int, metavar="N",
+    help="Operating point of CASE, from 1 [the one nearest to resonance].",
+)  # fmt: skip
+@click.option("--bundle", metavar="NAME", help="Bundle of CASE [the first].")
+@click.option(
+    "--temperatures", metavar="FROM:TO:COUNT", help="Gear temperatures in degC [100:160:4]."
+)
+@click.option(
+    "--values", type=click.IntRange(2, 10_000), metavar="N", help="Values of each diagram [61]."
+)
+@click.option(
+    "--record", "records", multiple=True, metavar="FILE[=RPM]",
+    help="A record to put beside CASE, with its pinion speed where the file does not say it. May "
+    "be repeated.",
+)  # fmt: skip
+@delivery.overrides
 @delivery.as_json
-def thesis(output: str, redraw: bool, experiment: int | None, as_json: bool) -> None:
-    """Judge every claim of the thesis and write the report to DIR.
+def thesis(
+    case: str | None,
+    output: str,
+    experiment: int | None,
+    as_json: bool,
+    **options: Any,
+) -> None:
+    """Judge every claim of the thesis, or redo the thesis for CASE, and write the report to DIR.
 
-    Sections 2 to 6: what is said, what is computed as in the thesis and consistently, a verdict,
-    its argument and the code behind it. Ctrl+C keeps the claims judged so far.
+    Without CASE sections 2 to 6: what is said, what is computed as in the thesis and consistently,
+    a verdict, its argument and the code behind it. With CASE the thesis's steps for one operating
+    point of it: gear temperatures, damping, speed and stiffness fluctuation, friction, records,
+    outlook. Ctrl+C keeps what is finished.
     """
-    if experiment is not None and not 8 <= experiment <= MOST_TRAINS:
-        raise InputError("--experiment", experiment, allowed=f"8..{MOST_TRAINS} drive trains")
-    if redraw:
+    if case is not None:
         if experiment is not None:
-            raise InputError("--experiment", experiment, why="beside --redraw", fix="leave it out")
-        from thermogear.views.write import write_report
-
-        click.echo(write_report(Path(output)))
+            raise InputError("--experiment", experiment, why="beside CASE", fix="leave one out")
+        _redone(case, output, as_json, options)
         return
+    for name, value in options.items():
+        if value:
+            raise InputError(f"--{OPTIONS.get(name, name)}", value, why="no case is named")
     from thermogear.study.sensitivity import require_salib
 
     require_salib()
@@ -59,6 +84,33 @@ def thesis(output: str, redraw: bool, experiment: int | None, as_json: bool) -> 
         )
 
     delivery.deliver(make, output, as_json=as_json, kept="the claims judged so far stay")
+
+
+def _redone(path: str, output: str, as_json: bool, options: dict[str, Any]) -> None:
+    """The thesis's steps for the pair of a case file."""
+    from thermogear.case.allowed import kelvin
+    from thermogear.front.numbers import grid
+    from thermogear.study.thesis_pair import thesis_pair
+
+    names = ("operating", "bundle", "values")
+    given = {name: options[name] for name in names if options[name] is not None}
+    if options["temperatures"] is not None:
+        degrees = grid("--temperatures", options["temperatures"]).tolist()
+        given["temperatures"] = [kelvin("--temperatures", value) for value in degrees]
+    given["records"] = dict(_record(text) for text in options["records"])
+    read = delivery.load_gears(path, options["overrides"])
+    delivery.deliver(
+        lambda report: thesis_pair(read, progress=report, **given), output, as_json=as_json
+    )
+
+
+def _record(text: str) -> tuple[Path, float | None]:
+    """File and speed [rad/s] of ``FILE[=RPM]``."""
+    name, sign, rpm = text.rpartition("=")
+    try:
+        return Path(name if sign else text), float(rpm) * RPM if sign else None
+    except ValueError:
+        raise InputError("--record", repr(text), allowed="FILE=RPM, a number of rpm") from None
 
 
 @click.command()

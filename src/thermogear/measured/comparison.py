@@ -1,7 +1,6 @@
 """Measured lines against simulated ones: errors, uncertainties, verdicts, what the lines imply.
 
-The verdict follows the validation uncertainty of ASME V&V 20: u_val^2 = u_num^2 + u_input^2 +
-u_D^2, and one model is better than another only where their errors differ by more than u_val.
+Verdicts follow ASME V&V 20 (:mod:`thermogear.measured.verdicts`).
 """
 
 from __future__ import annotations
@@ -25,44 +24,14 @@ from thermogear.measured.published import (
     unstated_processing,
 )
 from thermogear.measured.reduction import Measurement
+from thermogear.measured.verdicts import Heat, Row, heat_of, verdict
 from thermogear.results.result import Notice, Result, now
 
 _IMPLAUSIBLE_G = 50.0
 _DEEPEST_SUBHARMONIC = 16
 _ROUNDING = 1e-4
 """Relative: how far printed frequencies and speeds are off by their own digits."""
-FAR = 1.0
-"""Relative error beyond which no model is called better than another."""
 UNCERTAINTIES = ("u_num", "u_input", "u_data", "u_val")
-
-
-@dataclass(frozen=True, kw_only=True)
-class Row:
-    """One quantity at one speed; uncertainties relative to ``measured`` (standard, k = 1).
-
-    ``where`` an accelerometer sits and which of its lines it is, empty for the teeth's motion.
-    """
-
-    speed: float
-    quantity: str
-    measured: float
-    simulated: tuple[float, ...]
-    u_num: float = 0.0
-    u_input: float = 0.0
-    u_data: float = 0.0
-    verdict: str = ""
-    printed: tuple[str, ...] = ()
-    where: str = ""
-
-    @property
-    def errors(self) -> tuple[float, ...]:
-        """(simulated - measured)/measured of every model."""
-        return tuple(one / self.measured - 1.0 for one in self.simulated)
-
-    @property
-    def u_val(self) -> float:
-        """Validation uncertainty, the root of the sum of squares."""
-        return float(np.sqrt(self.u_num**2 + self.u_input**2 + self.u_data**2))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -102,7 +71,13 @@ class Comparison:
         said = f"of {len(verdicts)} {kind}s: " + ", ".join(
             f"{verdict} {count} times" for verdict, count in counts.items()
         )
-        return f"{said}; {self.agreement}" if self.agreement else said
+        heat = ". ".join(one.words for one in self.heat)
+        return "; ".join(one for one in (heat, said, self.agreement) if one)
+
+    @property
+    def heat(self) -> tuple[Heat, ...]:
+        """Of every bundle that is computed without heat and with it, whether heat is nearer."""
+        return heat_of(self.rows, self.models)
 
     def row(self, speed: float, quantity: str) -> Row:
         """The row of a quantity at the speed [rad/s] nearest to ``speed``."""
@@ -110,21 +85,6 @@ class Comparison:
         if not rows:
             raise InputError("quantity", repr(quantity), allowed="frequency or displacement")
         return min(rows, key=lambda row: abs(row.speed - speed))
-
-
-def verdict(errors: Sequence[float], names: Sequence[str], u_val: float) -> str:
-    """ "A better", "B better" or "not resolvable": |E_A| - |E_B| against u_val.
-
-    Models that are all more than 100 % away describe something else: none is preferred.
-    """
-    if len(errors) < 2:
-        return "within u_val" if abs(errors[0]) <= u_val else "outside u_val"
-    order = np.argsort(np.abs(errors), kind="stable")
-    best, second = int(order[0]), int(order[1])
-    if abs(errors[best]) > FAR:
-        return "no preference: all are more than 100 % away"
-    gap = abs(errors[second]) - abs(errors[best])
-    return f"{names[best]} better" if gap > u_val else "not resolvable"
 
 
 def table_of(found: Measurement, speed: float | None = None) -> LineTable:
@@ -204,9 +164,8 @@ def compared(
         u_d, why = _data_uncertainty(line, table, highest, u_data)
         if why and why not in [text for _, text in notices]:
             notices.append(Notice("important", why))
-        entered = next(
-            (u for s, u in (u_input or {}).items() if abs(s - line.speed) < 0.05 * s), 0.0
-        )
+        of_inputs = u_input or {line.speed: 0.0}
+        entered = of_inputs[min(of_inputs, key=lambda speed: abs(speed - line.speed))]
         swing, turns = (
             Row(
                 speed=line.speed,
@@ -214,19 +173,23 @@ def compared(
                 measured=getattr(line, quantity),
                 simulated=tuple(getattr(one, quantity) for one in simulated),
                 printed=_printed(printed, names, quantity, number),
+                record=line.record,
             )
             for quantity in ("displacement", "frequency")
         )
         # both are known relative to what is simulated
         ratio = max(swing.simulated) / swing.measured
-        swing = replace(swing, u_num=ratio * u_num, u_input=ratio * entered, u_data=u_d)
+        swing = replace(
+            swing, u_num=ratio * u_num, u_input=ratio * entered, u_data=u_d,
+            computed=u_input is not None,
+        )  # fmt: skip
         rows += [
             replace(
                 turns,
                 u_data=(table.bin_width or 0.0) / np.sqrt(12.0) / line.frequency,
                 verdict=_frequency_verdict(simulated, line, table, names),
             ),
-            replace(swing, verdict=verdict(swing.errors, names, swing.u_val)),
+            replace(swing, verdict=verdict(swing, names)),
         ]
     if not rows:
         raise InputError(
@@ -298,24 +261,27 @@ def _printed(printed: Printed, names: Sequence[str], quantity: str, number: int)
     return found if any(found) else ()
 
 
+def _misprinted(row: Row) -> dict[int, tuple[float, float]]:
+    """Place of a model whose printed error its entries cannot give -> the errors [%] they can."""
+    found = {}
+    for place, (simulated, text) in enumerate(zip(row.simulated, row.printed, strict=False)):
+        low, high = rounded_error(simulated=simulated, measured=row.measured, quantity=row.quantity)
+        if text and not allowed(text, low=low, high=high):
+            found[place] = low, high
+    return found
+
+
 def _misprints(rows: Sequence[Row], names: Sequence[str]) -> list[Notice]:
-    notices = []
-    for row in rows:
-        for name, simulated, text in zip(names, row.simulated, row.printed or (), strict=False):
-            if not text:
-                continue
-            low, high = rounded_error(
-                simulated=simulated, measured=row.measured, quantity=row.quantity
-            )
-            if not allowed(text, low=low, high=high):
-                notices.append(
-                    Notice(
-                        "important",
-                        f"{row.speed / RPM:.0f} rpm, {row.quantity}, {name}: printed {text} %, "
-                        f"recomputed {100.0 * abs(simulated / row.measured - 1.0):.2f} %, "
-                        f"{low:.2f} to {high:.2f} % as the entries are rounded",
-                    )
-                )
+    notices = [
+        Notice(
+            "important",
+            f"{row.speed / RPM:.0f} rpm, {row.quantity}, {names[place]}: printed "
+            f"{row.printed[place]} %, recomputed {100.0 * abs(row.errors[place]):.2f} %, "
+            f"{low:.2f} to {high:.2f} % as the entries are rounded",
+        )
+        for row in rows
+        for place, (low, high) in _misprinted(row).items()
+    ]
     wrong = [row for row in rows if row.verdict.startswith("impossible")]
     if wrong:
         notices.append(
@@ -388,8 +354,14 @@ def result_of(found: Comparison) -> Result:
         model=list(found.models),
         quantity=("row", column(rows, "quantity")),
         where=("row", column(rows, "where")),
+        record=("row", column(rows, "record")),
         verdict=("row", column(rows, "verdict")),
     )
+    if any(row.printed for row in rows):
+        table = table.assign_coords(
+            printed=(("row", "model"), [row.printed or [""] * len(found.models) for row in rows]),
+            misprinted=("row", [int(bool(_misprinted(row))) for row in rows]),
+        )
     said = label(
         {
             "pinion_speed": (("speed",), column(implied, "speed")),
@@ -425,12 +397,14 @@ def figures(found: Comparison) -> dict[str, Any]:
         "verdict",
         "printed",
         "where",
+        "record",
     )
     rows = [{name: getattr(row, name) for name in told} for row in found.rows]
     return {
         "measured": found.measured,
         "models": list(found.models),
         "conclusion": found.conclusion,
+        "heat": [vars(one) for one in found.heat],
         "rows": rows,
         "implied": [vars(item) for item in found.implied],
         "notices": [list(pair) for pair in found.notices],

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +21,8 @@ from thermogear.signals.windows import Window
 @dataclass(frozen=True, kw_only=True)
 class SpeedLine:
     """The main line at one speed: ``speed`` [rad/s] of the pinion (nominal), ``frequency`` [Hz],
-    ``displacement`` [m] peak; ``uncertainty`` relative standard uncertainty, None: not stated.
+    ``displacement`` [m] peak; ``uncertainty`` relative standard uncertainty, None: not stated;
+    ``record`` that it is of, among several.
 
     >>> line = SpeedLine(speed=100.0, frequency=400.0, displacement=3e-6)
     >>> line.displacement
@@ -32,6 +33,7 @@ class SpeedLine:
     frequency: float
     displacement: float
     uncertainty: float | None = None
+    record: str = ""
 
     def __post_init__(self) -> None:
         values = {
@@ -72,6 +74,18 @@ class LineTable:
         """The line of the nearest speed, None when none lies within 5 %."""
         best = min(self.lines, key=lambda line: abs(line.speed - speed))
         return best if abs(best.speed - speed) <= 0.05 * speed else None
+
+
+def together(tables: Sequence[LineTable]) -> LineTable:
+    """The lines of several tables as one; of their spectra the widest bin counts."""
+    return LineTable(
+        f"{len(tables)} records",
+        tuple(replace(line, record=one.name) for one in tables for line in one.lines),
+        tables[0].teeth,
+        ", ".join(one.source for one in tables),
+        max((one.bin_width for one in tables if one.bin_width), default=None),
+        all(one.processing_stated for one in tables),
+    )
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-FILES = {"gear": RESULTS, "dimensionless": RESULTS, "thesis": RESULTS, "sensitivity": RESULTS}
+FILES = dict.fromkeys(("gear", "dimensionless", "thesis", "thesis-pair", "sensitivity"), RESULTS)
 """The file of a kind; of every other kind it is ``KIND.nc``."""
 OF_POINTS = ("mesh", "motion")
 """Groups of a run that say something of each operating point, as one table."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -13,12 +13,15 @@ from typing import Any
 import numpy as np
 
 from thermogear.base.errors import InputError
-from thermogear.base.toml import literal, overridden, pairs
+from thermogear.base.toml import entries_of, held, literal, overridden, pairs
+from thermogear.base.units import RPM
 from thermogear.case.allowed import gear_parameter
 from thermogear.case.base import Case
 from thermogear.case.case import GearCase, gear_case, load_case
 from thermogear.results.result import Notice
 
+AMPLITUDE = "transmission_error.amplitude"
+"""What is no field of the case: the amplitudes of all harmonics."""
 DRAWINGS = 8
 """Drawings of flanks of a class, seeds 1 to 8, that say how far another pair of gears may be."""
 
@@ -39,6 +42,11 @@ class CaseRuns:
     def case(self, changes: Mapping[str, str]) -> GearCase:
         """The case with these overrides."""
         return gear_case(load_case(self.text, {**self.kept, **changes}))
+
+    def at_speeds(self, speeds: Sequence[float]) -> CaseRuns:
+        """The case at these speeds of the pinion [rad/s], each once, in place of its own."""
+        told = dict.fromkeys(f"{speed / RPM!r} rpm" for speed in map(float, speeds))
+        return replace(self, kept={**self.kept, "operating.speed": literal(list(told))})
 
     def changes(self, factors: Mapping[str, float]) -> dict[str, str]:
         """The overrides that multiply every named field by its factor."""
@@ -86,18 +94,16 @@ class CaseRuns:
             )
 
 
-def _stated(text: str, changes: Mapping[str, str], name: str) -> str:
+def _stated(data: Mapping[str, Any], name: str) -> str:
     """A field as the case states it, as text."""
-    value: Any = overridden(tomllib.loads(text), pairs(changes))
-    for part in name.split("."):
-        if not isinstance(value, dict) or part not in value:
-            raise InputError(
-                "tolerances",
-                repr(name),
-                why="the case states no such field",
-                fix=f"state {name} in the case, or leave its tolerance out",
-            )
-        value = value[part]
+    depth, value = held(data, name)
+    if depth < len(name.split(".")):
+        raise InputError(
+            "tolerances",
+            repr(name),
+            why="the case states no such field",
+            fix=f"state {name} in the case, or leave its tolerance out",
+        )
     if not isinstance(value, (str, int, float)) or isinstance(value, bool):
         raise InputError(
             "tolerances",
@@ -123,16 +129,13 @@ def overrides_of(text: str, changes: Mapping[str, str], name: str, factor: float
     ``name``: a gear parameter by any of its names, or a dotted field;
     "transmission_error.amplitude" means the amplitudes of all its harmonics.
     """
-    if name != "transmission_error.amplitude":
-        fields = gear_parameter(name, "tolerances").fields
-        return {one: scaled(_stated(text, changes, one), factor) for one in fields}
-    field = "transmission_error.harmonics"
-    table = overridden(tomllib.loads(text), pairs(changes)).get("transmission_error", {})
-    rows = table.get("harmonics", [])
-    if not rows:
+    data = overridden(tomllib.loads(text), pairs(changes))
+    if name == AMPLITUDE and not data.get("transmission_error", {}).get("harmonics"):
         raise InputError("parameters", repr(name), why="the case states no transmission error")
-    parts = []
-    for row in rows:
-        grown = {**row, "amplitude": scaled(str(row["amplitude"]), factor)}
-        parts.append(grown)
-    return {field: literal(parts)}
+    meant = "transmission_error.harmonics.all.amplitude" if name == AMPLITUDE else name
+    places = [
+        place
+        for field in gear_parameter(meant, "tolerances").fields
+        for place in entries_of(data, field)
+    ]
+    return {place: scaled(_stated(data, place), factor) for place in places}

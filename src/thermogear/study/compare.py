@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +20,7 @@ from thermogear.measured.published import (
     SpeedLine,
     is_table,
     read_lines,
+    together,
 )
 from thermogear.measured.readers import read_record
 from thermogear.measured.record import Record
@@ -32,16 +32,18 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Floats = NDArray[np.float64]
+Simulated: TypeAlias = str | Path | Case | Result | Mapping[str, LineTable]
+Measured: TypeAlias = str | Path | LineTable | Printed | Measurement | Record
 
 _MOST_RUNS = 10_000
 
 
 def compare(
-    simulated: str | Path | Case | Result | Mapping[str, LineTable],
-    measured: str | Path | LineTable | Printed | Measurement | Record | None = None,
+    simulated: Simulated,
+    measured: Measured | Sequence[Measured] | None = None,
     *,
     teeth: int | None = None,
-    speed: float | None = None,
+    speed: float | Sequence[float | None] | None = None,
     at: Sequence[str] = (),
     u_data: float | None = None,
     u_num: float | None = None,
@@ -51,11 +53,13 @@ def compare(
 ) -> Comparison:
     """Simulated lines against measured ones: errors, u_val, verdicts, what the lines imply.
 
-    ``simulated``: a case or its file (simulated here), stored results, or tables by model name.
+    ``simulated``: a case or its file, simulated here at the speeds that were measured; stored
+    results, or tables by model name.
     ``measured``: a table (``LineTable``, a CSV of lines, or the name of a published one as
-    "thesis-5.2"), or a record, its file or its ``Measurement`` (then ``speed`` [rad/s] is the
-    nominal speed of the pinion). ``simulated`` may be "thesis-5.2" alone: the thesis's own table
-    recomputed.
+    "thesis-5.2"), or a record, its file or its ``Measurement``; or several of these, in one table
+    with one verdict on heat. ``speed`` [rad/s]: the pinion's in a record, one for all or one for
+    each; left out, as its mesh line and the ``teeth`` imply, those of the case where none are
+    given. ``simulated`` may be "thesis-5.2" alone: the thesis's own table recomputed.
     ``u_data`` relative standard uncertainty of the measurement where the data do not state it,
     ``u_num`` of the simulation (for a case: found by halving the step unless given);
     ``tolerances``: relative standard uncertainty per field of the case, as
@@ -66,9 +70,65 @@ def compare(
 
     Raises InputError when no speed is common to both sides, or an uncertainty is impossible.
     """
+    _require(simulated, u_data, tolerances or {}, samples)
+    if measured is None:
+        if isinstance(simulated, str) and simulated in PUBLISHED:
+            published = PUBLISHED[simulated]
+            return compared(published.models, published, u_data=u_data, u_num=u_num or 0.0)
+        raise InputError("measured", "nothing", fix="a record, a table or " + ", ".join(PUBLISHED))
+    several: list[Any] = list(measured) if isinstance(measured, (list, tuple)) else [measured]
+    speeds = speeds_of(speed, len(several))
+    known = teeth or own_teeth(simulated)
+    read = [_read(one, known, turns) for one, turns in zip(several, speeds, strict=True)]
+    case: Any = simulated
+    if at:
+        from thermogear.study.compare_sensors import compare_sensors  # drive trains are not light
+
+        if not computes(simulated):
+            why = "stored results and tables do not say how a bearing moves"
+            raise InputError("--at", ", ".join(at), why=why, fix="name the case")
+        if len(read) > 1 or not isinstance(read[0], Measurement):
+            why = "several records" if len(read) > 1 else "a table of lines has no channels"
+            raise InputError("--at", ", ".join(at), why=why, fix="name a record")
+        return compare_sensors(
+            case, read[0], at, u_data=u_data, u_num=u_num, tolerances=tolerances, samples=samples,
+            seed=seed,
+        )  # fmt: skip
+    damage = [Notice(*told) for one in read if isinstance(one, Measurement) for told in one.damage]
+    printed = [
+        Printed(table_of(one, turns), {}) if isinstance(one, Measurement) else one
+        for one, turns in zip(read, speeds, strict=True)
+    ]
+    against = (
+        printed[0] if len(printed) == 1 else Printed(together([p.measured for p in printed]), {})
+    )
+    if computes(simulated):
+        turning = [line.speed for line in against.measured.lines]
+        lines = case_lines(
+            case, tolerances or {}, samples=samples, seed=seed, u_num=u_num, speeds=turning
+        )
+    else:
+        lines = {"models": _lines_of(simulated), "u_num": u_num or 0.0}
+    said = (*damage, *lines.pop("notices", ()))
+    return compared(printed=against, u_data=u_data, said=said, **lines)
+
+
+def speeds_of(speed: float | Sequence[float | None] | None, count: int) -> list[float | None]:
+    """The speed of each of ``count`` records: one for all, or one of each."""
+    speeds = list(speed) if isinstance(speed, Sequence) else [speed] * count
+    if len(speeds) != count:
+        told = f"{len(speeds)} speeds of {count} records"
+        raise InputError("speed", told, allowed="one, or one of each")
+    return speeds
+
+
+def _require(
+    simulated: Simulated, u_data: float | None, tolerances: Mapping[str, float], samples: int
+) -> None:
+    """Refuse impossible uncertainties, before anything is read."""
     if u_data is not None and not 0.0 <= u_data <= 10.0:
         raise InputError("u_data", f"{100 * u_data:g} %", allowed="0..1000 %")
-    for name, sigma in (tolerances or {}).items():
+    for name, sigma in tolerances.items():
         if not 0.0 <= sigma <= 1.0:
             raise InputError(f"tolerance of {name}", f"{100 * sigma:g} %", allowed="0..100 %")
     if tolerances and not computes(simulated):
@@ -79,97 +139,37 @@ def compare(
             fix="name the case instead of its results",
         )
     if tolerances and not 2 <= samples <= _MOST_RUNS:
-        why = "one run has no scatter" if samples < 2 else None
-        raise InputError("samples", samples, allowed=f"2..{_MOST_RUNS}", why=why)
-    if measured is None:
-        if isinstance(simulated, str) and simulated in PUBLISHED:
-            published = PUBLISHED[simulated]
-            return compared(published.models, published, u_data=u_data, u_num=u_num or 0.0)
-        raise InputError("measured", "nothing", fix="a record, a table or " + ", ".join(PUBLISHED))
-    if at:
-        return _at_places(
-            simulated, measured, at, teeth=teeth, speed=speed, u_data=u_data, u_num=u_num,
-            tolerances=tolerances, samples=samples, seed=seed,
+        raise InputError(
+            "samples", samples, allowed=f"2..{_MOST_RUNS}",
+            why="one run has no scatter" if samples < 2 else None,
         )  # fmt: skip
-    measured = _reduced(measured, teeth, speed)
-    printed = _printed(measured, teeth, speed)
-    worn = measured.damage if isinstance(measured, Measurement) else ()
-    damage = [Notice(*one) for one in worn]
-    if isinstance(simulated, str) and simulated in PUBLISHED:
-        models = PUBLISHED[simulated].models
-        return compared(models, printed, u_data=u_data, u_num=u_num or 0.0, said=damage)
-    found = _simulated(simulated, tolerances or {}, samples, seed, u_num)
-    return compared(
-        found.tables,
-        printed,
-        u_data=u_data,
-        u_num=found.u_num,
-        u_input=found.u_input,
-        said=(*damage, *found.notices),
-    )
 
 
-def _at_places(
-    simulated: str | Path | Case | Result | Mapping[str, LineTable],
-    measured: str | Path | LineTable | Printed | Measurement | Record,
-    at: Sequence[str],
-    *,
-    teeth: int | None,
-    speed: float | None,
-    **how: Any,
-) -> Comparison:
-    """The drive train of a case against the accelerometers of a record."""
-    from thermogear.study.compare_sensors import compare_sensors  # drive trains are not light
-
-    if not computes(simulated):
-        raise InputError(
-            "--at",
-            ", ".join(at),
-            why="stored results and tables do not say how a bearing moves",
-            fix="name the case",
-        )
+def own_teeth(simulated: Simulated) -> int | None:
+    """The pinion's teeth, where a case or the case of stored results says them."""
     case: Any = simulated
-    table = isinstance(measured, str) and measured in PUBLISHED
-    if isinstance(measured, (str, Path)) and not table and not is_table(measured):
-        measured = read_record(measured)
-    if isinstance(measured, Record):
-        own = gear_case(load_case(case) if isinstance(case, str | Path) else case)
-        measured = measure(measured, teeth=teeth or own.pair.pinion.teeth, speed=speed)
-    if not isinstance(measured, Measurement):
-        raise InputError(
-            "--at", ", ".join(at), why="a table of lines has no channels", fix="name a record"
-        )
-    return compare_sensors(case, measured, at, **how)
+    if not computes(simulated):
+        named = isinstance(simulated, str | Path) and str(simulated) not in PUBLISHED
+        stored = _stored(str(simulated)) if named else simulated
+        if not isinstance(stored, Result) or not stored.text("case"):
+            return None
+        changes = {str(path): str(text) for path, text in stored.values("overrides")}
+        case = load_case(stored.text("case"), changes)
+    return gear_case(load_case(case) if isinstance(case, str | Path) else case).pair.pinion.teeth
 
 
-def _reduced(
-    measured: str | Path | LineTable | Printed | Measurement | Record,
-    teeth: int | None,
-    speed: float | None,
-) -> LineTable | Printed | Measurement | str | Path:
-    """A record or its file reduced to lines; a table, its file or its name stays."""
-    if isinstance(measured, (str, Path)) and measured not in PUBLISHED:
+def _read(measured: Measured, teeth: int | None, speed: float | None) -> Printed | Measurement:
+    """A record or its file reduced to lines; a table by its name, its file, or itself."""
+    if isinstance(measured, (str, Path)):
         path = Path(measured)
+        if str(measured) in PUBLISHED:
+            return Printed(PUBLISHED[str(measured)].measured, {})
         if not path.is_file():
             raise InputError("measured", str(measured), fix=nearest(str(measured), PUBLISHED))
-        measured = path if is_table(path) else read_record(path)
-    return measure(measured, teeth=teeth, speed=speed) if isinstance(measured, Record) else measured
-
-
-def _printed(
-    measured: str | Path | LineTable | Printed | Measurement,
-    teeth: int | None,
-    speed: float | None,
-) -> Printed:
-    if isinstance(measured, Printed):
-        return measured
-    if isinstance(measured, LineTable):
-        return Printed(measured, {})
-    if isinstance(measured, str) and measured in PUBLISHED:
-        return Printed(PUBLISHED[measured].measured, {})
-    if isinstance(measured, (str, Path)):
-        return Printed(read_lines(Path(measured), teeth), {})
-    return Printed(table_of(measured, speed), {})
+        measured = read_lines(path, teeth) if is_table(path) else read_record(path)
+    if isinstance(measured, Record):
+        return measure(measured, teeth=teeth, speed=speed)
+    return Printed(measured, {}) if isinstance(measured, LineTable) else measured
 
 
 def computes(simulated: object) -> bool:
@@ -182,43 +182,28 @@ def computes(simulated: object) -> bool:
     return not isinstance(simulated, (Mapping, Result))
 
 
-def _simulated(
-    simulated: str | Path | Case | Result | Mapping[str, LineTable],
-    tolerances: Mapping[str, float],
-    samples: int,
-    seed: int,
-    u_num: float | None,
-) -> CaseLines:
-    if isinstance(simulated, Mapping) and all(
-        isinstance(table, LineTable) for table in simulated.values()
-    ):
-        tables = {name: t for name, t in simulated.items() if isinstance(t, LineTable)}
-    elif isinstance(simulated, Result):
-        tables = tree_lines(simulated)
-    elif computes(simulated):
-        return case_lines(simulated, tolerances, samples=samples, seed=seed, u_num=u_num)  # type: ignore[arg-type]
-    else:
-        path = Path(simulated)  # type: ignore[arg-type]
-        stored = path / "results.nc" if path.is_dir() else path
-        if not stored.is_file():
-            raise InputError(
-                "simulated",
-                str(simulated),
-                why="there are no results",
-                fix="make them by `thermogear run`, or name a case",
-            )
-        tables = tree_lines(Result.read(stored))
-    return CaseLines(tables, u_num or 0.0, {}, ())
+def _lines_of(simulated: Simulated) -> Mapping[str, LineTable]:
+    """Lines that are not computed here: tables as they are, or those of stored results."""
+    if isinstance(simulated, str) and simulated in PUBLISHED:
+        return PUBLISHED[simulated].models
+    if isinstance(simulated, Mapping):
+        return {name: one for name, one in simulated.items() if isinstance(one, LineTable)}
+    stored: Any = simulated
+    return tree_lines(stored if isinstance(stored, Result) else _stored(stored))
 
 
-@dataclass(frozen=True)
-class CaseLines:
-    """Tables by model, relative u_num, u_input by speed [rad/s], notices."""
-
-    tables: Mapping[str, LineTable]
-    u_num: float
-    u_input: Mapping[float, float]
-    notices: tuple[Notice, ...]
+def _stored(simulated: str | Path) -> Result:
+    """The results in a directory, or a file."""
+    path = Path(simulated)
+    stored = path / "results.nc" if path.is_dir() else path
+    if not stored.is_file():
+        raise InputError(
+            "simulated",
+            str(simulated),
+            why="there are no results",
+            fix="make them by `thermogear run`, or name a case",
+        )
+    return Result.read(stored)
 
 
 def tree_lines(result: Result) -> dict[str, LineTable]:
@@ -245,14 +230,16 @@ def _motion_lines(motion: xr.Dataset) -> dict[str, LineTable]:
         for state in motion["state"].values:
             here = {"bundle": bundle, "state": state}
             amplitude = motion.get("dte_line", motion["line_amplitude"]).isel(order=first).sel(here)
-            lines: dict[float, SpeedLine] = {}
-            columns = (speeds, frequency.values, amplitude.values)
-            for speed, f, x in zip(*(map(float, one) for one in columns), strict=True):
-                if np.isfinite(x) and x > 0:
-                    lines.setdefault(speed, SpeedLine(speed=speed, frequency=f, displacement=x))
+            columns = (one[::-1].tolist() for one in (speeds, frequency.values, amplitude.values))
+            # of several torques at one speed the first stands for it
+            lines = {
+                speed: SpeedLine(speed=speed, frequency=f, displacement=x)
+                for speed, f, x in zip(*columns, strict=True)
+                if np.isfinite(x) and x > 0
+            }
             if lines:
                 name = f"{bundle} {state}"
-                found[name] = LineTable(name, tuple(lines.values()), None, "simulation")
+                found[name] = LineTable(name, tuple(lines.values())[::-1], None, "simulation")
     if not found:
         raise InputError(
             "simulated",
@@ -276,9 +263,11 @@ def case_lines(
     samples: int,
     seed: int,
     u_num: float | None,
-) -> CaseLines:
-    """The case simulated, its step doubled for u_num, and sampled within its tolerances."""
-    runs = CaseRuns.of(case)
+    speeds: Sequence[float],
+) -> dict[str, Any]:
+    """The case simulated at ``speeds`` [rad/s] of the pinion, its step doubled for u_num, and
+    sampled within its tolerances: its models, u_num, u_input by speed, and notices."""
+    runs = CaseRuns.of(case).at_speeds(speeds)
     notices: list[Notice] = []
     base = _tables(runs, {})
     if u_num is None:
@@ -302,21 +291,18 @@ def case_lines(
         # the greatest and not a deviation: so no drawing reverses what another decides
         most = float(np.hypot(spread, max(map(abs, drawn), default=0.0)))
         u_input[key[1]] = max(u_input.get(key[1], 0.0), most)
-    return CaseLines(base, u_num, u_input, (*notices, *runs.told(tolerances)))
+    notices += runs.told(tolerances)
+    return {"models": base, "u_num": u_num, "u_input": u_input, "notices": notices}
 
 
 def _relative(
     base: Mapping[str, LineTable], other: Mapping[str, LineTable]
 ) -> dict[tuple[str, float], float]:
     """Ratio of the displacements less 1, by model and speed."""
-    twins = {
-        (name, line.speed): (line, other[name].near(line.speed))
+    return {
+        (name, line.speed): twin.displacement / line.displacement - 1.0
         for name in base
         if name in other
         for line in base[name].lines
-    }
-    return {
-        key: twin.displacement / line.displacement - 1.0
-        for key, (line, twin) in twins.items()
-        if twin is not None
+        if (twin := other[name].near(line.speed)) is not None
     }

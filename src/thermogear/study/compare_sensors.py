@@ -14,9 +14,10 @@ from thermogear.base.units import RPM, STANDARD_GRAVITY
 from thermogear.case.base import Case
 from thermogear.case.case import GearCase
 from thermogear.case.thermal_state import ThermalState
-from thermogear.measured.comparison import Comparison, Implied, Row, verdict
+from thermogear.measured.comparison import Comparison, Implied
 from thermogear.measured.lines import MeasuredLine
 from thermogear.measured.reduction import Measurement
+from thermogear.measured.verdicts import Row, verdict
 from thermogear.results.result import Notice
 from thermogear.shafts.reduction import interface_of
 from thermogear.study.case_runs import CaseRuns
@@ -115,6 +116,7 @@ def compare_sensors(
             u_num=float(numeric[number]),
             u_input=float(entered[number]),
             u_data=row.found.uncertainty if u_data is None else u_data,
+            computed=True,
         )
         made.append(replace(one, verdict=_verdict(one, names)))
     counts = [
@@ -272,7 +274,7 @@ def _verdict(row: Row, names: Sequence[str]) -> str:
         if abs(error) <= AGREES * row.u_val
     ]
     said = f"{' and '.join(agree) or 'none'} within {AGREES:g} u_val"
-    return said if len(names) < 2 else f"{verdict(row.errors, names, row.u_val)}; {said}"
+    return said if len(names) < 2 else f"{verdict(row, names)}; {said}"
 
 
 def _implied(

@@ -108,13 +108,11 @@ def diagrams(base: Rows, values: int = 241) -> dict[str, xr.Dataset]:
 def flips(base: Rows, most: int = 4) -> xr.Dataset:
     """Located period doublings of every row and kind of heat, along the document's direction.
 
-    Over (row, heat, flip): ``value`` of the parameter (nan: none), ``before``: period of the orbit
-    that flips. A row that begins past its first flip is entered from outside; ``entered`` is
-    where. ``note`` says why no more flips came.
+    Over (row, heat, flip): ``value`` of the parameter (nan: none). A row that begins past its first
+    flip is entered from outside. ``note`` says why no more flips came.
     """
     shape = (len(SWEPT), len(HEATS), most)
-    value, before = np.full(shape, np.nan), np.zeros(shape, np.int32)
-    entered = np.full(shape[:2], np.nan)
+    value = np.full(shape, np.nan)
     note, lost = np.full(shape[:2], "", dtype=object), np.zeros(shape[:2], np.int8)
     for r, (name, parameter) in enumerate(SWEPT.items()):
         first, last = base.ends[name]
@@ -123,12 +121,10 @@ def flips(base: Rows, most: int = 4) -> xr.Dataset:
             if begun is None or begun.orbit is None:
                 note[r, h] = "no period-1 orbit to start from"
                 continue
-            entered[r, h] = start
             model = base.model(heat, **{parameter: start})
             orbit = periodic_orbit(model, 1, begun.orbit.state)
             found = cascade(orbit, parameter, last, flips=most)
-            for k, flip in enumerate(found.flips):
-                value[r, h, k], before[r, h, k] = flip.value, flip.orbit.period
+            value[r, h, : len(found.flips)] = [flip.value for flip in found.flips]
             lost[r, h] = bool(found.lost)
             if len(found.flips) < most:
                 note[r, h] = found.lost or found.branches[-1].ended
@@ -136,8 +132,6 @@ def flips(base: Rows, most: int = 4) -> xr.Dataset:
     return label(
         {
             "value": (dims, value, "1", "parameter at the period doubling"),
-            "before": (dims, before, "1", "period that doubles"),
-            "entered": (dims[:2], entered, "", "where the branch was entered"),
             "note": (dims[:2], note.astype(str)),
             "lost": (dims[:2], lost, "1", "the branch behind the last flip was not found"),
         },

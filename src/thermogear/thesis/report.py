@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from thermogear.base.progress import Progress, silent
-from thermogear.base.units import RPM
 from thermogear.base.vocabulary import label
+from thermogear.measured.comparison import result_of
 from thermogear.results.result import Result, now
 from thermogear.study.sensitivity import plain_words
 from thermogear.thesis import section6
@@ -61,7 +61,8 @@ def build(size: Size | None = None, progress: Progress = silent) -> Result:
     for name in filter(evidence.finished, ("grid", "flips", "warming")):
         groups[name] = getattr(evidence, name)
     if evidence.finished("comparison"):
-        groups["experiment"] = _experiment(evidence)
+        beside = result_of(evidence.comparison).groups
+        groups |= {"experiment": beside["comparison"], "implied": beside["implied"]}
     if evidence.finished("rig_trains"):
         groups["rig_trains"] = evidence.rig_trains
     if evidence.finished("sensitivity"):
@@ -105,23 +106,15 @@ TEXTS = (
 
 
 def _claims(findings: list[Finding]) -> xr.Dataset:
-    columns: dict[str, list[str]] = {name: [] for name in TEXTS}
-    for claim, finding in zip(CLAIMS, findings, strict=False):
-        row = (
-            claim.number,
-            claim.place,
-            claim.kind,
-            claim.words,
-            finding.thesis,
-            finding.consistent,
-            finding.verdict.value,
-            finding.argument,
-            " ".join(claim.code),
-            claim.picture,
+    rows = [
+        (
+            claim.number, claim.place, claim.kind, claim.words, finding.thesis, finding.consistent,
+            finding.verdict.value, finding.argument, " ".join(claim.code), claim.picture,
         )
-        for name, text in zip(TEXTS, row, strict=True):
-            columns[name].append(text)
-    return label({name: (("claim",), texts) for name, texts in columns.items()})
+        for claim, finding in zip(CLAIMS, findings, strict=False)
+    ]  # fmt: skip
+    columns = zip(TEXTS, zip(*rows, strict=True), strict=True)
+    return label({name: (("claim",), list(column)) for name, column in columns})
 
 
 def _sentences() -> dict[str, int]:
@@ -133,35 +126,3 @@ def _plain(data: xr.Dataset) -> xr.Dataset:
     """A diagram without what its picture does not need."""
     kept = data[["label", "period", "lyapunov", "section_x"]]
     return kept.assign_attrs({k: v for k, v in data.attrs.items() if isinstance(v, str | int)})
-
-
-def _experiment(evidence: Evidence) -> xr.Dataset:
-    """The printed table beside what its entries give: errors, implied g and rpm."""
-    found = evidence.comparison
-    columns: dict[str, list[Any]] = {}
-    implied = {item.speed: item for item in found.implied}
-    for row in found.rows:
-        scale = 1.0 if row.quantity == "frequency" else 1e6
-        item = implied[row.speed]
-        shaft = float("nan") if item.shaft_speed is None else item.shaft_speed / RPM
-        line: dict[str, Any] = {
-            "speed": row.speed,
-            "quantity": row.quantity,
-            "measured": row.measured * scale,
-            "u_val": 100.0 * row.u_val,
-            "implied_g": item.acceleration_g,
-            "implied_rpm": shaft,
-            "verdict": row.verdict,
-        }
-        for name, value, error, printed in zip(
-            ("with", "without"), row.simulated, row.errors, row.printed, strict=True
-        ):
-            line |= {
-                f"{name}_value": value * scale,
-                f"{name}_error": 100.0 * abs(error),
-                f"{name}_printed": printed,
-            }
-        for name, entry in line.items():
-            columns.setdefault(name, []).append(entry)
-    # as printed, in units of the table's own
-    return label({name: (("entry",), values, "") for name, values in columns.items()})

@@ -74,11 +74,6 @@ def _of(
     )
 
 
-def _choice(name: str, words: str, choices: tuple[str, ...], why: str) -> Assumed:
-    last = float(len(choices) - 1)
-    return Assumed(name=name, words=words, unit="", low=0.0, high=last, why=why, choices=choices)
-
-
 AS_BEFORE = "as in the sensitivity study of the pair"
 ASSUMED: tuple[Assumed, ...] = (
     _of("face_width", "face width", (15.0, 40.0), "mm", AS_BEFORE),
@@ -93,10 +88,11 @@ ASSUMED: tuple[Assumed, ...] = (
         AS_BEFORE),
     _of("housing_below", "housing and outer rings colder than the shafts by", (0.0, 20.0), "K",
         "5 to 10 K between the rings are usual, 15 to 20 K in fast bearings (makers)"),
-    _choice("pinion_bearing", "bearings of the pinion's shaft",
-            ("6206", "6306", "6208", "6308"), "deep groove balls on 30 and 40 mm, for this power"),
-    _choice("wheel_bearing", "bearings of the wheel's shaft", ("6208", "6308"),
-            "three times the torque: 40 mm"),
+    Assumed(name="pinion_bearing", words="bearings of the pinion's shaft", unit="", low=0.0,
+            high=3.0, why="deep groove balls on 30 and 40 mm, for this power",
+            choices=("6206", "6306", "6208", "6308")),
+    Assumed(name="wheel_bearing", words="bearings of the wheel's shaft", unit="", low=0.0,
+            high=1.0, why="three times the torque: 40 mm", choices=("6208", "6308")),
     _of("thickness", "shaft between the bearings over the bearing's bore", (1.1, 1.5), "",
         "a shoulder for the bearing, and no thicker than the gear's bore"),
     _of("span", "distance of a shaft's bearings", (100.0, 250.0), "mm",

@@ -186,10 +186,6 @@ def _multiplier_grows(e: Evidence) -> Finding:
     )
 
 
-def _omega_periodic(e: Evidence) -> Finding:
-    return _end(e, "omega", 0, ("period-1", "period-2"))
-
-
 def _omega_complex(e: Evidence) -> Finding:
     names = motions.sequence(e.diagrams["omega/none"], falling=False)
     return Finding(
@@ -376,7 +372,8 @@ _ROWS = (
      "diagram-zeta"),
     ("4.2.4", _P, "table entry", "ω_h from 1.1: quasi-periodic.",
      lambda e: _torus_end(e, "omega", -1), (LABEL, RUN), "diagram-omega"),
-    ("4.2.5", _P, "table entry", "ω_h to 1.3: periodic and more stable.", _omega_periodic,
+    ("4.2.5", _P, "table entry", "ω_h to 1.3: periodic and more stable.",
+     lambda e: _end(e, "omega", 0, ("period-1", "period-2")),
      (LABEL, RUN), "diagram-omega"),
     ("4.2.6", _P, "table entry", "Between, the bifurcations are complex.", _omega_complex,
      (DIAGRAM,), "diagram-omega"),

@@ -6,7 +6,6 @@ import numpy as np
 
 from thermogear.base.units import RPM
 from thermogear.base.vocabulary import UNDEFORMED
-from thermogear.measured.comparison import Row
 from thermogear.measured.published import (
     THESIS_5_2,
     SpeedLine,
@@ -14,6 +13,7 @@ from thermogear.measured.published import (
     rounded_error,
     unstated_processing,
 )
+from thermogear.measured.verdicts import Row
 from thermogear.signals.integration import trapezoid_factor
 from thermogear.thesis.claim import Claim, Finding, Verdict, listed, verdict_of
 from thermogear.thesis.evidence import Evidence

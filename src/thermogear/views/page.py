@@ -266,7 +266,7 @@ class Page:
             names = {one.name for one in leading}
             sections = [
                 Section(LEAD, "In pictures", galleries(leading), folded=False),
-                *(one for one in (_less(part, names) for part in sections) if one.blocks),
+                *(one for one in (without(part, names) for part in sections) if one.blocks),
             ]
         if sections and all(one.folded for one in sections):
             sections[0] = replace(sections[0], folded=False)
@@ -286,8 +286,8 @@ class Page:
                     yield from block.pictures
 
 
-def _less(section: Section, names: Collection[str]) -> Section:
-    """It without the pictures of these names."""
+def without(section: Section, names: Collection[str]) -> Section:
+    """The section without the pictures of these ``names``."""
     blocks: list[Block] = []
     for block in section.blocks:
         if isinstance(block, Gallery):

@@ -18,8 +18,8 @@ from thermogear.shafts.bearings.geometry import RollingBearing
 Floats = NDArray[np.float64]
 CLASSES = ("C2", "CN", "C3", "C4")
 _BORES = {
-    "ball": (10, 18, 24, 30, 40, 50, 65, 80),
-    "roller": (0, 30, 40, 50, 65, 80),
+    "ball": (10, 18, 24, 30, 40, 50, 65, 80, 100),
+    "roller": (0, 30, 40, 50, 65, 80, 100),
 }
 _PLAY = {
     "ball": (
@@ -30,6 +30,7 @@ _PLAY = {
         ((1, 11), (6, 23), (18, 36), (30, 51)),
         ((1, 15), (8, 28), (23, 43), (38, 61)),
         ((1, 15), (10, 30), (25, 51), (46, 71)),
+        ((1, 18), (12, 36), (30, 58), (53, 84)),
     ),
     "roller": (
         ((0, 25), (20, 45), (35, 60), (50, 75)),
@@ -37,6 +38,7 @@ _PLAY = {
         ((5, 35), (30, 60), (50, 80), (70, 100)),
         ((10, 40), (40, 70), (60, 90), (80, 110)),
         ((10, 45), (40, 75), (65, 100), (90, 125)),
+        ((15, 50), (50, 85), (75, 110), (105, 140)),
     ),
 }
 
@@ -44,8 +46,8 @@ _PLAY = {
 def class_clearance(kind: str, bore: float, name: str) -> tuple[float, float]:
     """Least and greatest play G_r [m] of a clearance class, as delivered.
 
-    ``kind`` "ball" (deep groove) or "roller" (cylindrical), ``bore`` [m] over 10 mm and up to 80
-    mm, ``name`` C2, CN, C3 or C4. Source: ISO 5753-1 by makers' tables.
+    ``kind`` "ball" (deep groove) or "roller" (cylindrical), ``bore`` [m] over 10 mm and up to
+    100 mm, ``name`` C2, CN, C3 or C4. Source: ISO 5753-1 by makers' tables.
 
     >>> [round(1e6 * g) for g in class_clearance("ball", 25e-3, "CN")]
     [5, 20]

@@ -314,12 +314,14 @@ def row_intro(row: xr.Dataset, temperatures: str) -> str:
     return f"{words}; {how}." if how else f"{words}."
 
 
-def row_grid(*, columns: int, most: int, rows: int) -> str:
-    """Of the orbits over a row of temperatures."""
+def row_views(*, columns: int, most: int) -> str:
+    """Of the four views of the motion over a row of temperatures."""
     words = "Columns: gear temperature"
     words += f", {most} of {columns}" if columns > most else ""
-    words += "; rows: operating points." if rows > 1 else "."
-    return f"{words} The dot is the Poincaré section; a single dot is a motion of one mesh period."
+    return (
+        f"{words}. From above: time history, phase plane, Poincaré section and spectrum. A single "
+        "dot of the section is a motion of one mesh period."
+    )
 
 
 def stiffness(mesh: xr.Dataset, bundle: int) -> str:

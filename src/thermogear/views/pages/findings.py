@@ -9,9 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.display import exactly, number, stretches
-from thermogear.base.parameters import PARAMETERS, long_name
 from thermogear.base.vocabulary import ASSUMED
-from thermogear.views.plots.parameters import shown
+from thermogear.views.plots.parameters import parameter_of, shown
 from thermogear.views.plots.sweeps import CLASSES, classes_of
 
 if TYPE_CHECKING:
@@ -40,19 +39,14 @@ def finding(data: xr.Dataset) -> str:
 
 def _two_ways(data: xr.Dataset) -> str:
     """Where the motions up and down differ in kind, and where they jump."""
-    axes = data["label"].dims
-    name = str(data.attrs.get("parameter", "pinion_speed"))
-    codes = np.moveaxis(classes_of(data), axes.index("direction"), 0)
-    rest = [str(n) for n in axes if n != "direction"]
-    other = tuple(i for i, n in enumerate(rest) if n != name)
+    name, codes = _codes(data)
     if (codes > UNDECIDED).all():
         words = [CLASSES[code][0] for code in np.unique(codes)]
         return f"No value has a motion: {', '.join(words)}"
     known = (codes != UNDECIDED).all(axis=0)
-    apart = np.asarray(((codes[0] != codes[1]) | _swings_apart(data, codes)) & known)
-    apart = np.asarray(apart.any(axis=other))
-    values = shown(name, data[name].values)
-    unit = _unit(name)
+    apart = ways_apart(data)
+    values = shown(name, data[name])
+    unit = _unit(data, name)
     parts = []
     if apart.any():
         parts.append(f"Up and down end on different motions at {stretches(values, apart)}{unit}")
@@ -63,6 +57,22 @@ def _two_ways(data: xr.Dataset) -> str:
         up, down = int((turns > 0).sum()), int((turns < 0).sum())
         parts.append(f"{up} jumps up and {down} down" if up + down else "nothing jumps")
     return "; ".join(parts)
+
+
+def _codes(data: xr.Dataset) -> tuple[str, NDArray[np.int64]]:
+    """The parameter, and the kinds of motion with both ways first."""
+    name = str(data.attrs.get("parameter", "pinion_speed"))
+    return name, np.moveaxis(classes_of(data), data["label"].dims.index("direction"), 0)
+
+
+def ways_apart(data: xr.Dataset) -> NDArray[np.bool_]:
+    """Where, along the parameter, up and down end on different motions: between is a jump."""
+    name, codes = _codes(data)
+    rest = [str(n) for n in data["label"].dims if n != "direction"]
+    other = tuple(i for i, n in enumerate(rest) if n != name)
+    known = (codes != UNDECIDED).all(axis=0)
+    apart = ((codes[0] != codes[1]) | _swings_apart(data, codes)) & known
+    return np.asarray(apart.any(axis=other))
 
 
 def _swings_apart(data: xr.Dataset, codes: NDArray[np.int64]) -> NDArray[np.bool_]:
@@ -118,7 +128,7 @@ def _greatest(data: xr.Dataset) -> str:
         return "; no point has a dynamic factor"
     place = np.unravel_index(int(np.nanargmax(values)), values.shape)
     at = [
-        f"{exactly(float(shown(str(n), data[n].values[i])))}{_unit(str(n))}"
+        f"{exactly(float(shown(str(n), data[n][i])))}{_unit(data, str(n))}"
         for n, i in zip(data["dynamic_factor"].dims, place, strict=True)
     ]
     return f"; the greatest dynamic factor is {number(float(values[place]))}, at {', '.join(at)}"
@@ -132,6 +142,5 @@ def _undecided(data: xr.Dataset) -> str:
     return f"; {count} of {codes.size} points are undecided" if count else ""
 
 
-def _unit(name: str) -> str:
-    one = PARAMETERS.get(long_name(name))
-    return f" {one.shown}" if one is not None and one.shown else ""
+def _unit(data: xr.Dataset, name: str) -> str:
+    return f" {parameter_of(name, data[name]).shown}".rstrip()

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 MOST_SPEEDS = 3
-"""Rows of a grid over temperature."""
+"""Operating points whose motion is drawn over temperature."""
 
 
 def with_gap(data: xr.Dataset, mesh: xr.Dataset | None) -> xr.Dataset:
@@ -240,14 +240,19 @@ def row(results: Result, pictures: Pictures) -> Section | None:
         return None
     words = [celsius(float(t)) for t in data["gear_temperature"].values]
     speeds = chosen(data.sizes["operating"], most=MOST_SPEEDS)
-    needs = ("displacement", "velocity", "section_displacement", "time", "label", "half_backlash")
-    grid = captions.row_grid(columns=len(words), most=temperature.MOST_COLUMNS, rows=len(speeds))
+    needs = (
+        "displacement", "velocity", "section_displacement", "line_amplitude", "time", "label",
+        "half_backlash",
+    )  # fmt: skip
+    names = operating_names(data)
     for b, bundle in enumerate(names_of(data, "bundle")):
-        pictures.add(
-            f"row-{b}", f"Phase plane and section over gear temperature, {bundle}",
-            grid, data, needs,
-            lambda b=b: temperature.grid(data, b, speeds), wide=True,  # type: ignore[misc]
-        )  # fmt: skip
+        for o in speeds:
+            pictures.add(
+                f"row-{b}-{o}", f"Motion over gear temperature, {bundle}, {names[o]}",
+                captions.row_views(columns=len(words), most=temperature.MOST_COLUMNS), data, needs,
+                lambda b=b, o=o: temperature.views(data, bundle=b, operating=o),  # type: ignore[misc]
+                wide=True,
+            )  # fmt: skip
     swing = "peak_to_peak_displacement"
     pictures.add(
         "row-swing", "Swing of the motion over temperature",
@@ -255,21 +260,6 @@ def row(results: Result, pictures: Pictures) -> Section | None:
         data, (swing,), lambda: temperature.over_temperature(data, swing),
     )  # fmt: skip
     blocks: list[Block] = [Text(captions.row_intro(data, ", ".join(words)))]
-    line = "half_order_amplitude"
-    if all(n in data for n in (line, swing)) and temperature.worth_drawing(data, line):
-        pictures.add(
-            "row-half", "The line at half the mesh frequency",
-            "A line that grows from nothing is a period doubling.",
-            data, (line,), lambda: temperature.over_temperature(data, line),
-        )  # fmt: skip
-    elif line in data:
-        blocks.append(
-            Text(
-                "No motion of this row has a line at half the mesh frequency: whatever stands "
-                "there is rounding.",
-                "note",
-            )
-        )
     drawn = pictures.take()
     table = tables.motion_proofs(data, "gear_temperature", words)
     return Section("temperature", "Gear temperature", [*blocks, *drawn, table])

@@ -8,10 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.display import exactly, stretches
-from thermogear.base.parameters import PARAMETERS, long_name
 from thermogear.base.vocabulary import ASSUMED
 from thermogear.views.plots.lost_contact import has_lost, lost_of, things
-from thermogear.views.plots.parameters import each_state, shown
+from thermogear.views.plots.parameters import each_state, parameter_of, shown
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -72,17 +71,17 @@ def where(data: xr.Dataset, flags: Flags) -> str:
     here = np.asarray(flags.any(axis=rest))
     if here.all():
         return "everywhere"
-    units = [_unit(name) for name in axes]
+    units = [parameter_of(name, data[name]).shown for name in axes]
     alike = len(set(units)) < len(units)
     if here.ndim == 1:
-        values = shown(axes[0], data[axes[0]].values)
+        values = shown(axes[0], data[axes[0]])
         return _named(
             axes[0], units[0], f"at {stretches(values, here)} {units[0]}".rstrip(), alike=False
         )
     inside = [np.flatnonzero(here.any(axis=1 - axis)) for axis in (0, 1)]
     box = here[inside[0][0] : inside[0][-1] + 1, inside[1][0] : inside[1][-1] + 1]
     words = [
-        _named(name, unit, _range(shown(name, data[name].values), on, unit), alike=alike)
+        _named(name, unit, _range(shown(name, data[name]), on, unit), alike=alike)
         for name, unit, on in zip(axes, units, inside, strict=True)
     ]
     found = ", ".join(one for one in words if one)
@@ -92,17 +91,11 @@ def where(data: xr.Dataset, flags: Flags) -> str:
     return f"at {exactly(share, 2)} % of the points{f', {found}' * bool(found)}"
 
 
-def _unit(name: str) -> str:
-    one = PARAMETERS.get(long_name(name))
-    return "" if one is None else one.shown
-
-
 def _named(name: str, unit: str, words: str, *, alike: bool) -> str:
     """A range behind the parameter's name where its unit does not tell which one it is."""
     if not words or (unit and not alike):
         return words
-    one = PARAMETERS.get(long_name(name))
-    return f"{name.replace('_', ' ') if one is None else one.words} {words}"
+    return f"{parameter_of(name).words} {words}"
 
 
 def _range(values: NDArray[np.float64], on: NDArray[np.int64], unit: str) -> str:

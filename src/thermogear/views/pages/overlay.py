@@ -7,13 +7,13 @@ from dataclasses import replace
 from typing import Any
 
 from thermogear.base.display import number
-from thermogear.base.parameters import PARAMETERS, long_name
+from thermogear.base.parameters import Parameter
 from thermogear.results.result import Result
 from thermogear.views.csv_files import table_text
 from thermogear.views.page import LEAD, Page, Pictures, Section, Table, notice_lines
 from thermogear.views.pages.findings import finding
 from thermogear.views.pages.sweep_numbers import numbers
-from thermogear.views.plots.parameters import shown
+from thermogear.views.plots.parameters import parameter_of
 from thermogear.views.plots.sweeps import overlay_picture, state_of
 
 KINDS = ("overlay",)
@@ -38,7 +38,7 @@ def page(result: Result) -> Page:
         "orbits", "Both orbit diagrams", CAPTION, data, (),
         lambda: overlay_picture(data, states, result.rows("matches")), wide=True,
     )  # fmt: skip
-    head, rows = _table(result, lambda value: number(value, 9))
+    head, rows = table_of(result)
     sections = [Section(LEAD, "In pictures", pictures.take(), folded=False)]
     if rows:
         sections.append(Section("matches", "Bifurcations", [Table(FOLLOWED, head, rows)]))
@@ -47,10 +47,12 @@ def page(result: Result) -> Page:
         result, " ".join((*parts, _headline(result))), sections,
         numbers=lambda: _numbers(result),
         lines=lambda: [
-            *parts, _headline(result), *_aligned(_table(result, "{:.9g}".format)),
+            *parts, _headline(result), *_aligned(table_of(result, "{:.9g}".format)),
             *notice_lines(result),
         ],
-        tables=lambda: {"overlay_bifurcations.csv": table_text(*_table(result, "{:.15g}".format))},
+        tables=lambda: {
+            "overlay_bifurcations.csv": table_text(*table_of(result, "{:.15g}".format))
+        },
     )  # fmt: skip
 
 
@@ -77,20 +79,26 @@ def _numbers(result: Result) -> dict[str, Any]:
     }  # fmt: skip
 
 
+def _parameter(result: Result) -> Parameter:
+    name = str(result.data.attrs["parameter"])
+    return parameter_of(name, result.data[name])
+
+
 def _moved(result: Result) -> list[dict[str, Any]]:
     """The matches with their values as shown, and how far each moved."""
-    name, rows = str(result.data.attrs["parameter"]), []
+    parameter, rows = _parameter(result), []
     for row in result.rows("matches"):
-        at = {k: None if row[k] is None else float(shown(name, row[k])) for k in PLACES}
+        at = {k: None if row[k] is None else float(parameter.show(row[k])) for k in PLACES}
         moved = None if at["one"] is None or at["other"] is None else at["other"] - at["one"]
         rows.append({**row, **at, "moved": moved})
     return rows
 
 
-def _table(result: Result, digits: Callable[[float], str]) -> tuple[list[str], list[list[str]]]:
+def table_of(
+    result: Result, digits: Callable[[float], str] = lambda value: number(value, 9)
+) -> tuple[list[str], list[list[str]]]:
     """Head and rows of the bifurcations, and in words what became of each on the way."""
-    name = long_name(str(result.data.attrs["parameter"]))
-    unit = PARAMETERS[name].shown if name in PARAMETERS else ""
+    unit = _parameter(result).shown
     tail = f" [{unit}]" * bool(unit)
     at = [f"{words}{tail}" for words in (*result.values("states"), "moved by")]
     head = ["kind", "period", *at, "on the way"]

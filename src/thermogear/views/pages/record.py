@@ -269,17 +269,17 @@ _SHOWN_AS = {
 }
 
 
-def _comparison(results: Result) -> Section | None:
-    data = results.group("comparison")
-    if data is None:
-        return None
+def comparison_table(data: xr.Dataset) -> Table:
+    """Measured and simulated values with the errors of every model and their uncertainties."""
     models = [str(name) for name in data["model"].values]
-    placed = [str(one) for one in data["where"].values] if "where" in data.coords else []
-    placed = placed if any(placed) else []
-    head: list[Cell] = ["speed [rpm]", "quantity", "verdict", "measured", *models]
-    if placed:
-        head.insert(1, "channel: place, axis; line")
-    head += [f"error {name} [%]" for name in models]
+    beside = {
+        words: [str(one) for one in data[name].values]
+        for words, name in (("record", "record"), ("channel: place, axis; line", "where"))
+        if name in data.coords and any(data[name].values)
+    }
+    head: list[Cell] = [*beside, "speed [rpm]", "quantity", "verdict", "measured", *models]
+    printed, blank = "printed" in data.coords, [""] * len(models)
+    head += [f"error {name} [%]{', printed | recomputed' * printed}" for name in models]
     head += [html_symbol(f"{u} [%]") for u in ("u_num", "u_input", "u_D", "u_val")]
     rows: list[list[str | Markup]] = []
     for place in range(data.sizes["row"]):
@@ -287,42 +287,67 @@ def _comparison(results: Result) -> Section | None:
         words, factor = _SHOWN_AS[str(one["quantity"].values)]
         rows.append(
             [
+                *(texts[place] for texts in beside.values()),
                 number(float(one["pinion_speed"]) / RPM, 4),
-                *placed[place : place + 1],
                 words,
                 str(one["verdict"].values) or "–",
                 number(float(one["measured_value"]) * factor, 5),
                 *(number(float(v) * factor, 5) for v in one["simulated_value"].values),
                 *(
-                    f"{100 * float(v):+.2f}".replace("-", "−")
-                    for v in one["comparison_error"].values
+                    f"{text} | {100 * v:+.2f}".removeprefix(" | ").replace("-", "−")
+                    for v, text in zip(
+                        one["comparison_error"].values.tolist(),
+                        one["printed"].values if printed else blank,
+                        strict=True,
+                    )
                 ),
                 *(f"{100 * float(one[u]):.2f}" for u in ("u_num", "u_input", "u_data", "u_val")),
             ]
         )
-    blocks: list[Block] = [
-        Table("Error: (simulated − measured)/measured.", head, rows, names=3 + bool(placed))
+    marked = np.flatnonzero(data["misprinted"].values).tolist() if printed else []
+    wrong = " Marked: a printed error that its entries cannot give, however they were rounded."
+    return Table(
+        f"Error: (simulated − measured)/measured.{wrong * bool(marked)}", head, rows,
+        names=3 + len(beside), marked=frozenset(marked),
+    )  # fmt: skip
+
+
+def implied_table(implied: xr.Dataset) -> Table:
+    """Acceleration, speed and distance from the mesh line that measured lines imply."""
+    lines: list[list[str | Markup]] = [
+        [
+            number(float(implied["pinion_speed"].values[i]) / RPM, 4),
+            f"{float(implied['implied_acceleration'].values[i]) / STANDARD_GRAVITY:.1f}",
+            _maybe(float(implied["implied_shaft_speed"].values[i]) / RPM, 1),
+            _maybe(float(implied["mesh_line_offset"].values[i]), 2),
+            _maybe(float(implied["line_bin_offset"].values[i]), 2),
+        ]
+        for i in range(implied.sizes["speed"])
     ]
+    names = [
+        "speed [rpm]", "implied a [g]", "implied speed [rpm]", "off mesh [Hz]", "off mesh [bins]",
+    ]  # fmt: skip
+    return Table("What the measured lines imply.", names, lines, names=0)
+
+
+def _comparison(results: Result) -> Section | None:
+    data = results.group("comparison")
+    if data is None:
+        return None
+    blocks: list[Block] = [comparison_table(data)]
+    heat = results.table("figures").get("heat", ())
+    if heat:
+        told: list[list[str | Markup]] = [
+            [one["bundle"] or "–", one["verdict"], f"{one['nearer']} of {one['rows']}",
+             *(f"{100 * one[name]:+.2f}".replace("-", "−") for name in ("gain", "u_val"))]
+            for one in heat
+        ]  # fmt: skip
+        heads = ["bundle", "nearer", "with heat nearer in", "mean gain [%]", "mean u_val [%]"]
+        blocks.insert(
+            0, Table("Gain: |E without heat| − |E with heat|, over all.", heads, told, names=2)
+        )
     implied = results.group("implied")
-    if implied is not None:
-        lines: list[list[str | Markup]] = [
-            [
-                number(float(implied["pinion_speed"].values[i]) / RPM, 4),
-                f"{float(implied['implied_acceleration'].values[i]) / STANDARD_GRAVITY:.1f}",
-                _maybe(float(implied["implied_shaft_speed"].values[i]) / RPM, 1),
-                _maybe(float(implied["mesh_line_offset"].values[i]), 2),
-                _maybe(float(implied["line_bin_offset"].values[i]), 2),
-            ]
-            for i in range(implied.sizes["speed"])
-        ]
-        names = [
-            "speed [rpm]",
-            "implied a [g]",
-            "implied speed [rpm]",
-            "off mesh [Hz]",
-            "off mesh [bins]",
-        ]
-        blocks.append(Table("What the measured lines imply.", names, lines, names=0))
+    blocks += [implied_table(implied)] if implied is not None else []
     return Section("comparison", "Comparison", blocks, folded=False)
 
 

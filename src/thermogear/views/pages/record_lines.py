@@ -149,8 +149,9 @@ def comparison(result: Result) -> list[str]:
                 found["models"], row["simulated"], row["errors"], strict=True
             )
         )
+        named = f"{row['record']}: " if row.get("record") else ""
         told.append(
-            f"{row['speed'] / RPM:.0f} rpm, {row.get('where') or row['quantity']}: measured "
+            f"{named}{row['speed'] / RPM:.0f} rpm, {row.get('where') or row['quantity']}: measured "
             f"{row['measured'] * factor:.5g} {unit}; {models}; u_val {100 * row['u_val']:.2f} % "
             f"(num {100 * row['u_num']:.2f}, input {100 * row['u_input']:.2f}, data "
             f"{100 * row['u_data']:.2f}); {row['verdict']}"

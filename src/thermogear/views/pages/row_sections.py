@@ -58,8 +58,9 @@ def _rows(data: xr.Dataset, pictures: Pictures, prefix: str) -> list[Block]:
     for place, row in enumerate(rows.row_names(data)):
         pictures.add(
             f"{prefix}-{place}", f"Row {row}",
-            "Above: orbit and Poincaré section over the gap in which no teeth touch. Below: "
-            f"spectrum, bin width {number(width)} of the mesh frequency, half orders dotted.",
+            "From above: time history; orbit and Poincaré section over the gap in which no teeth "
+            f"touch; spectrum, bin width {number(width)} of the mesh frequency, half orders "
+            "dotted.",
             data, needs, lambda r=row: rows.panels(data, r), wide=True,  # type: ignore[misc]
         )  # fmt: skip
         blocks += [*pictures.take(), tables.row_table(data, row)]

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import ASSUMED, FASTER_RULE
 from thermogear.results.result import Result
+from thermogear.views.pages.findings import ways_apart
 from thermogear.views.pages.lost_words import lost_line, lost_rows
 from thermogear.views.plots.lost_contact import has_lost
 from thermogear.views.plots.parameters import shown
@@ -49,8 +50,7 @@ def _labels(result: Result) -> dict[str, Any]:
     return found
 
 
-def bifurcation_rows(data: xr.Dataset, name: str) -> list[dict[str, Any]]:
-    """Kind, period, value as shown and state of heat of the located bifurcations."""
+def _bifurcations(data: xr.Dataset, name: str) -> list[dict[str, Any]]:
     if "bifurcation_kind" not in data:
         return []
     kinds = words_of(data["bifurcation_kind"])
@@ -59,7 +59,7 @@ def bifurcation_rows(data: xr.Dataset, name: str) -> list[dict[str, Any]]:
         row: dict[str, Any] = {
             "kind": str(kinds[i]),
             "period": int(data["bifurcation_period"].values[i]),
-            "value": float(shown(name, data["bifurcation_value"].values[i])),
+            "value": float(shown(name, data["bifurcation_value"][i])),
         }
         if "bifurcation_state" in data:
             row["gears_degC"] = _degrees(data, int(data["bifurcation_state"].values[i]))
@@ -76,7 +76,8 @@ def _diagram(result: Result) -> dict[str, Any]:
     return {
         **_labels(result),
         "parameter": parameter,
-        "bifurcations": bifurcation_rows(result.data, parameter),
+        "ways_apart": shown(parameter, result.data[parameter])[ways_apart(result.data)].tolist(),
+        "bifurcations": _bifurcations(result.data, parameter),
     }
 
 
@@ -101,13 +102,13 @@ def _basins(result: Result) -> dict[str, Any]:
     return {"points": points, "attractors": rows, **figures, "rule": FASTER_RULE}
 
 
-def jump_rows(data: xr.Dataset) -> list[dict[str, Any]]:
-    """The jumps of a run-up, in the units shown."""
+def _run_up(result: Result) -> dict[str, Any]:
+    data = result.data
 
     def rpm(name: str, place: int) -> float:
-        return float(shown("pinion_speed", data[name].values[place]))
+        return float(shown("pinion_speed", data[name][place]))
 
-    return [
+    jumps = [
         {
             "gears_degC": _degrees(data, int(data["jump_state"].values[i])),
             "direction": "up" if int(data["jump_direction"].values[i]) > 0 else "down",
@@ -122,14 +123,10 @@ def jump_rows(data: xr.Dataset) -> list[dict[str, Any]]:
         }
         for i in range(data.sizes["jump"])
     ]
-
-
-def _run_up(result: Result) -> dict[str, Any]:
-    data = result.data
     return {
         **_labels(result),
-        "jumps": jump_rows(data),
-        "bifurcations": bifurcation_rows(data, "pinion_speed"),
+        "jumps": jumps,
+        "bifurcations": _bifurcations(data, "pinion_speed"),
     }
 
 

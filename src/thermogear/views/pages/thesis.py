@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -11,19 +11,34 @@ import numpy as np
 from markupsafe import Markup
 
 from thermogear.base.display import celsius
-from thermogear.base.units import RPM
 from thermogear.results.result import Result
-from thermogear.views.page import Block, Cell, Gallery, Page, Pictures, Section, Table, Text, Tile
-from thermogear.views.pages import gear_sections, rig_trains, row_sections
+from thermogear.views.page import (
+    LEAD,
+    Block,
+    Cell,
+    Code,
+    Gallery,
+    Page,
+    Pictures,
+    Section,
+    Table,
+    Text,
+    Tile,
+    without,
+)
+from thermogear.views.pages import captions, gear_sections, rig_trains, row_sections
 from thermogear.views.pages.background import background
+from thermogear.views.pages.record import comparison_table, implied_table
 from thermogear.views.pages.sensitivity import sensitivity_section
 from thermogear.views.plots import claims as plots
+from thermogear.views.plots.sweeps import over_each_other
 from thermogear.views.typesetting import html_symbol, prose
 
 if TYPE_CHECKING:
     import xarray as xr
 
 PREFIX = "diagrams/"
+DIAGRAMS = {"zeta": "damping", "omega": "frequency", "epsilon": "stiffness"}
 SECTIONS = {
     2: "Thermal deformation of the tooth",
     3: "Dynamic model",
@@ -31,6 +46,10 @@ SECTIONS = {
     5: "Tests",
     6: "Conclusions",
 }
+CONCLUSIONS = 6
+OPENING = "warming"
+"""The picture that the page opens with."""
+NOT_HERE = "Stopped before it was computed."
 MARKED = ("contradicted",)
 BASE_SETS = ("base_sets/table-4.2", "base_sets/section-4.1")
 
@@ -39,9 +58,11 @@ KINDS = ("thesis",)
 
 
 def page(result: Result) -> Page:
-    """Verdicts, then every section of the document with its claims and pictures."""
+    """What holds and what does not, verdicts, then every section with its claims and pictures."""
     pictures = Pictures()
     sections = _thesis_sections(result, pictures)
+    opening = _opening(result, sections)
+    sections = [opening, *(without(one, {OPENING}) for one in sections), _outlook(result)]
     if "sensitivity" in result.groups:
         sections.append(sensitivity_section(result, pictures))
     return Page(
@@ -69,6 +90,66 @@ def _summary(results: Result) -> str:
         f"{sentences.get('all', 0)} sentences claim something; the others are headings, background "
         f"and outlook. Computed in {float(results.text('seconds')):.0f} s."
     )
+
+
+def _opening(results: Result, sections: Sequence[Section]) -> Section:
+    """The conclusions, those that hold first, one picture, and the same for the reader's gears."""
+    claims, verdicts = results.groups["claims"], list(results.table("counts"))
+    rows: list[list[Cell]] = [
+        [
+            Markup("<b>{}</b>").format(str(one["verdict"].item())),
+            Markup('{} <a href="#claim-{}">{}</a>').format(
+                prose(str(one["words"].item())), name, name
+            ),
+            prose(str(one["argument"].item())),
+        ]
+        for place, name in enumerate(_names(claims))
+        for one in (claims.isel(claim=place),)
+        if _section(name) == CONCLUSIONS
+    ]
+    rows.sort(key=lambda row: verdicts.index(Markup(row[0]).striptags()))
+    blocks: list[Block] = []
+    if rows:
+        head = ["verdict", "conclusion of the document", "why"]
+        blocks.append(Table("Its conclusions, one by one.", head, rows, names=3, wordy=True))
+    galleries = [b for one in sections for b in one.blocks if isinstance(b, Gallery)]
+    shown = [one for gallery in galleries for one in gallery.pictures if one.name == OPENING]
+    blocks += [Gallery(shown)] * bool(shown)
+    blocks += [
+        Text("Redo this for your gears: every step of the document for one pair."),
+        Code("thermogear new -o mine.toml\nthermogear thesis mine.toml -o mine"),
+    ]
+    return Section(LEAD, "What holds, what does not, and why", blocks, folded=False)
+
+
+def _outlook(results: Result) -> Section:
+    """What the document leaves to later work: what is computed of it, here and for any pair."""
+    path, trains = results.group("path"), results.group("rig_trains")
+    film = "" if path is None else captions.regimes(path.isel(bundle=-1, state=-1))
+    rows: list[list[Cell]] = [
+        [
+            "other regimes of lubrication", film or NOT_HERE,
+            "thermogear friction CASE",
+        ],
+        [
+            "shafts that bend, bearings with clearance",
+            NOT_HERE if trains is None else str(trains.attrs["sentence"]),
+            "thermogear run CASE, with [[shafts]] and [[bearings]]",
+        ],
+        [
+            "temperatures measured better",
+            "The rig's temperatures are given. Readings in the case are corrected, and the heat "
+            "balance is held to them.",
+            "thermogear temperature CASE, with [gearbox.readings]",
+        ],
+        [
+            "design, and diagnosis of faults",
+            "An appraisal, not judged here.",
+            "thermogear answers CASE; thermogear measure FILE",
+        ],
+    ]  # fmt: skip
+    head = ["left to later work", "of the rig", "for any gears"]
+    return Section("outlook", "Outlook", [Table("", head, rows, names=3, wordy=True)])
 
 
 def _tiles(results: Result) -> list[Tile]:
@@ -205,23 +286,20 @@ def _simulation(results: Result, pictures: Pictures) -> list[Block]:
             "of steel leads away from it.",
             warming, ("multiplier",), lambda: plots.warming(warming),
         )  # fmt: skip
-    diagrams = {
-        name.removeprefix(PREFIX): data
-        for name, data in results.groups.items()
-        if name.startswith(PREFIX)
-    }
+    for row, words in DIAGRAMS.items():
+        heats = [heat for heat in plots.HEATS if f"{PREFIX}{row}/{heat}" in results.groups]
+        each = [results.groups[f"{PREFIX}{row}/{heat}"] for heat in heats]
+        for data in each[:1]:
+            pictures.add(
+                f"diagram-{row}", f"Bifurcation diagram over {words}",
+                "Sections of the settled motion, swept up and down: without heat, with the heat of "
+                "the thesis, with the consistent one. The largest Lyapunov exponent below.",
+                data, (),
+                lambda e=each, n=heats: over_each_other(e, [plots.HEATS[h][0] for h in n]),  # type: ignore[misc]
+                wide=True,
+            )  # fmt: skip
     if flips is None:
         return found + pictures.take()
-    rows = (("zeta", "damping"), ("omega", "frequency"), ("epsilon", "stiffness"))
-    for row, words in rows if diagrams else ():
-        pictures.add(
-            f"diagram-{row}", f"Bifurcation diagram over {words}",
-            "Sections of the settled motion, swept up and down; dashed lines are located period "
-            "doublings. Without heat, with the heat of the thesis, with the consistent one.",
-            flips, ("value",),
-            lambda r=row: plots.diagram(diagrams, flips, r),  # type: ignore[misc]
-            wide=True,
-        )  # fmt: skip
     return [*found, *pictures.take(), _flip_table(flips)]
 
 
@@ -263,58 +341,21 @@ def _tests(results: Result, pictures: Pictures) -> list[Block]:
         "processing leaves open: a smaller difference of two bars tells nothing.",
         data, ("u_val",), lambda: plots.experiment(data),
     )  # fmt: skip
-    found: list[Block] = [_experiment_table(data), *pictures.take()]
+    found: list[Block] = [comparison_table(data)]
+    found += [implied_table(results.groups["implied"]), *pictures.take()]
     found += rig_trains.blocks(results, pictures)
     return found + _blocks(gear_sections.vibration(results, pictures))
 
 
-def _experiment_table(data: xr.Dataset) -> Table:
-    rows: list[list[Cell]] = []
-    marked: set[int] = set()
-    for k in range(data.sizes["entry"]):
-        one = data.isel(entry=k)
-        wrong = [
-            f"{float(one[f'{n}_error']):.{len(str(one[f'{n}_printed'].item()).partition('.')[2])}f}"
-            != str(one[f"{n}_printed"].item())
-            for n in ("with", "without")
-        ]
-        if any(wrong):
-            marked.add(k)
-        unit = "Hz" if one["quantity"].item() == "frequency" else "µm"
-        rows.append([
-            f"{float(one['speed']) / RPM:.0f} rpm",
-            f"{one['quantity'].item()} [{unit}]",
-            str(one["verdict"].item()).partition(":")[0],
-            *(f"{float(one[f'{n}_value']):g}" for n in ("with", "without")),
-            f"{float(one['measured']):g}",
-            *(f"{one[f'{n}_printed'].item()} | {float(one[f'{n}_error']):.2f}"
-              for n in ("with", "without")),
-            f"{float(one['u_val']):.1f}",
-            f"{float(one['implied_rpm']):.1f}",
-            f"{float(one['implied_g']):.1f}",
-        ])  # fmt: skip
-    head: list[Cell] = [
-        "speed", "quantity", "what can be told", "with heat", "without heat", "measured",
-        "error with heat [%], printed | recomputed", "error without heat [%], printed | recomputed",
-        "u_val [%]", "implied speed [rpm]", "implied [g]",
-    ]  # fmt: skip
-    caption = "The table of section 5.2 recomputed; rows with a misprinted error are marked."
-    return Table(caption, head, rows, names=3, marked=frozenset(marked))
-
-
 # --- figures as the terminal and JSON want them -----------------------------------------------
-
-TEXTS = (
-    "number", "place", "kind", "words", "as_in_the_thesis", "consistent", "verdict", "argument",
-    "code", "picture",
-)  # fmt: skip
 
 
 def _numbers(result: Result) -> dict[str, Any]:
     """Counts, verdicts and the ranking of the inputs, JSON-ready."""
     claims = result.groups["claims"]
     rows = [
-        {name: str(claims[name].values[k]) for name in TEXTS} for k in range(claims.sizes["claim"])
+        {str(name): str(column.values[k]) for name, column in claims.data_vars.items()}
+        for k in range(claims.sizes["claim"])
     ]
     found = {
         "thermogear": result.text("thermogear"),

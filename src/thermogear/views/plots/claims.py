@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.views.picture import Axis, Panel, Picture
@@ -26,51 +24,12 @@ from thermogear.views.style import (
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 
-AXES = {
-    "zeta": "damping ratio $ζ$ [–]",
-    "omega": "excitation frequency $ω_{h}$ [–]",
-    "epsilon": "stiffness amplitude $ε$ [–]",
-}
 HEATS = {
     "none": ("without heat", COLD),
     "thesis": ("heat as in the thesis", HOT),
     "consistent": ("heat by E(T)", MIXED),
 }
-_CELLS = 700.0
-
-
-def diagram(diagrams: Mapping[str, xr.Dataset], flips: xr.Dataset, row: str) -> Picture:
-    """Sections over one parameter, a panel for each kind of heat, located flips as lines."""
-    panels = []
-    for heat, (words, colour) in HEATS.items():
-        if f"{row}/{heat}" not in diagrams:
-            continue
-        data = diagrams[f"{row}/{heat}"]
-        parameter = str(data.attrs["parameter"])
-        low, high = float(data[parameter].min()), float(data[parameter].max())
-        x = Axis(AXES[row], low=low, high=high, most=5, inner=True, grid=False)
-        panel = Panel(x, Axis(grid=False), words)
-        panel.points(*_points(data, parameter), marker="dot", size=0.9, colour=colour, pixels=True)
-        for value in flips["value"].sel(row=row, heat=heat).values:
-            if low <= value <= high:
-                panel.line(x=float(value), colour=QUIET, width=0.7, dash=(4, 3), order=0.5)
-        panels.append(panel)
-    panels[0].y.words = "X on the section [half backlashes]"
-    return Picture([panels], size=(WIDE, 3.5), share_y="row", between=0.3, resolution=200.0)
-
-
-def _points(data: xr.Dataset, parameter: str) -> tuple[Floats, Floats]:
-    """Points of both directions that a reader can tell apart."""
-    y = data["section_x"].transpose(..., parameter, "section").values
-    x = np.broadcast_to(data[parameter].values[:, None], y.shape)
-    flat = np.stack([x.ravel(), y.ravel()])
-    flat = flat[:, np.isfinite(flat).all(axis=0)]
-    span = float(np.ptp(flat[1])) or 1.0
-    cells = np.stack([flat[0], np.round(flat[1] / span * _CELLS)])
-    _, first = np.unique(cells, axis=1, return_index=True)
-    return flat[0, first], flat[1, first]
 
 
 def over_grid(data: xr.Dataset, name: str, unit: str, scale: float = 1.0) -> Picture:
@@ -98,9 +57,7 @@ def over_grid(data: xr.Dataset, name: str, unit: str, scale: float = 1.0) -> Pic
 
 def warming(data: xr.Dataset) -> Picture:
     """The largest Floquet multiplier over temperature, and where it reaches the border."""
-    panel = Panel(
-        Axis("gear temperature $T$ [°C]"), Axis("largest Floquet multiplier, modulus [–]")
-    )
+    panel = Panel(Axis("gear temperature T [°C]"), Axis("largest Floquet multiplier, modulus [–]"))
     celsius = data["temperature"].values - ZERO_CELSIUS
     for row, colour in (("thesis", HOT), ("consistent", MIXED)):
         modulus = data["multiplier"].sel(row=row).values
@@ -122,21 +79,22 @@ def warming(data: xr.Dataset) -> Picture:
 
 def experiment(data: xr.Dataset) -> Picture:
     """Errors of the displacement, printed and recomputed, beside the validation uncertainty."""
-    here = data.isel(entry=np.flatnonzero(data["quantity"].values == "displacement"))
-    rpm = here["speed"].values / RPM
+    here = data.isel(row=np.flatnonzero(data["quantity"].values == "displacement"))
+    rpm = here["pinion_speed"].values / RPM
     place = np.arange(rpm.size)
     panel = Panel(
         Axis("pinion speed [rpm]", ticks=place, names=[f"{v:.0f}" for v in rpm]),
         Axis("error of the displacement [%]"),
     )
-    words = "validation uncertainty u_val"
-    panel.bars(place, here["u_val"].values, width=0.86, colour=FAINT, label=words, order=0.6)
-    for shift, name, colour in ((-0.2, "with", HOT), (0.2, "without", COLD)):
+    words, uncertain = "validation uncertainty u_val", 100.0 * here["u_val"].values
+    panel.bars(place, uncertain, width=0.86, colour=FAINT, label=words, order=0.6)
+    for column, (shift, colour) in enumerate(((-0.2, HOT), (0.2, COLD))):
+        one = here.isel(model=column)
         panel.bars(
-            place + shift, here[f"{name}_error"].values, width=0.36, colour=colour,
-            label=f"{name} heat, recomputed",
+            place + shift, 100.0 * np.abs(one["comparison_error"].values), width=0.36,
+            colour=colour, label=f"{one['model'].item()}, recomputed",
         )  # fmt: skip
-        printed = [float(v) for v in here[f"{name}_printed"].values]
+        printed = [float(v) for v in one["printed"].values]
         panel.points(
             place + shift, printed, marker="level", size=14, colour=INK, label="as printed"
         )

@@ -20,12 +20,14 @@ if TYPE_CHECKING:
 def plane_picture(curves: Sequence[xr.Dataset]) -> Picture:
     """Every curve over both parameters: solid where a stable motion meets it, else dotted."""
     first, second = str(curves[0].attrs["first"]), str(curves[0].attrs["second"])
-    panel = Panel(Axis(axis_words(first)), Axis(axis_words(second)))
+    panel = Panel(
+        Axis(axis_words(first, curves[0]["first"])), Axis(axis_words(second, curves[0]["second"]))
+    )
     for data in curves:
         kind = str(data.attrs["kind"])
         marker, colour = MARKS[kind]
         label = f"{kind}, period {int(data.attrs['period'])}"
-        x, y = shown(first, data["first"].values), shown(second, data["second"].values)
+        x, y = shown(first, data["first"]), shown(second, data["second"])
         met = data["stable"].values.astype(bool)
         cuts = [0, *(np.flatnonzero(np.diff(met.astype(int))) + 1).tolist(), met.size]
         for low, high in pairwise(cuts):

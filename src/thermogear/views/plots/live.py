@@ -233,8 +233,8 @@ def measured_orders(
 def regimes(data: xr.Dataset, known: NDArray[np.bool_]) -> Picture:
     """A map over two parameters as far as it is ``known``; white is not there yet."""
     one, two = (str(name) for name in data["label"].dims[:2])
-    borders = edges(by_unit(one, data[one].values)), edges(by_unit(two, data[two].values))
-    x, y = (Axis(axis_words(name, str(data[name].attrs.get("units", "1")))) for name in (one, two))
+    borders = edges(by_unit(one, data[one])), edges(by_unit(two, data[two]))
+    x, y = (Axis(axis_words(name, data[name])) for name in (one, two))
     panel = Panel(x, y)
     names, colours = zip(*CLASSES, strict=True)
     values = np.where(known, classes_of(data), np.nan)

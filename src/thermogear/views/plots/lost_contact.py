@@ -88,10 +88,7 @@ def lost_contact_picture(data: xr.Dataset) -> Picture:
 
 
 def _panel(data: xr.Dataset, words: str) -> Panel:
-    along, up = (
-        Axis(axis_words(str(name), str(data[name].attrs.get("units", "1"))))
-        for name in data["label"].dims[-2:]
-    )
+    along, up = (Axis(axis_words(str(name), data[name])) for name in data["label"].dims[-2:])
     return Panel(along, up, words)
 
 
@@ -102,7 +99,7 @@ def _put(
     names, colours = zip(*looks, *BLANK, strict=True)
     whole = np.where(lost_of(data) < 0, len(looks), codes)
     whole = np.where(data["label"].values == JAMMED, len(looks) + 1, whole)
-    borders = edges(shown(one, data[one].values)), edges(shown(two, data[two].values))
+    borders = edges(shown(one, data[one])), edges(shown(two, data[two]))
     panel.field(*borders, whole.T, colours=colours, classes=names)
     hatch_assumed(panel, data)
     return panel
@@ -138,9 +135,9 @@ def _bearings(data: xr.Dataset, state: str, sets: list[int]) -> Panel:
 def forces_picture(data: xr.Dataset) -> Picture:
     """Greatest force on teeth and bearings over a parameter, up and down; what lifts off below."""
     name = str(data.attrs["parameter"])
-    p = shown(name, data[name].values)
+    p = shown(name, data[name])
     dot = "circle" if p.size == 1 else ""
-    along = Axis(axis_words(name, str(data[name].attrs.get("units", "1"))))
+    along = Axis(axis_words(name, data[name]))
     force = Panel(Axis(), Axis("greatest force [N]", low=0.0))
     free = Panel(along, Axis("time without contact [%]", low=0.0))
     ways = (("up", ()), ("down", (3.0, 2.0)))

@@ -128,7 +128,7 @@ def branch_picture(branches: Sequence[xr.Dataset], title: str = "") -> Picture:
     parameter = str(branches[0].attrs["parameter"])
     train = "mesh_force" in branches[0]
     words = "greatest mesh force [N]" if train else "displacement X at phase 0 [–]"
-    panel = Panel(Axis(axis_words(parameter)), Axis(words), plain(title))
+    panel = Panel(Axis(axis_words(parameter, branches[0]["value"])), Axis(words), plain(title))
     rows = ("mesh_force", "event_mesh_force") if train else ("section_x", "event_x")
     for data in branches:
         period = int(data.attrs["period"])
@@ -142,15 +142,16 @@ def branch_picture(branches: Sequence[xr.Dataset], title: str = "") -> Picture:
 
 def _sizes(branches: Sequence[xr.Dataset], parameter: str) -> Panel:
     """The largest multiplier of every orbit, stable below 1."""
-    panel = Panel(Axis(axis_words(parameter)), Axis("largest Floquet multiplier, modulus [–]"))
+    panel = Panel(
+        Axis(axis_words(parameter, branches[0]["value"])),
+        Axis("largest Floquet multiplier, modulus [–]"),
+    )
     panel.line(y=1.0, colour=QUIET, width=1.0, dash=DASHED)
     for data in branches:
         period = int(data.attrs["period"])
         colour = OKABE_ITO[min(int(np.log2(period)), len(OKABE_ITO) - 1)]
         size = np.hypot(data["multiplier_real"].values, data["multiplier_imag"].values)
-        panel.curve(
-            shown(parameter, data["value"].values), size.max(axis=1), colour=colour, width=1.3
-        )
+        panel.curve(shown(parameter, data["value"]), size.max(axis=1), colour=colour, width=1.3)
     return panel
 
 
@@ -166,8 +167,8 @@ def draw_branch(
 
     ``rows``: what is drawn of its points, and of its bifurcations.
     """
-    value = shown(parameter, data["value"].values)
-    events = shown(parameter, data["event_value"].values)
+    value = shown(parameter, data["value"])
+    events = shown(parameter, data["event_value"])
     x, stable = data[rows[0]].values, data["stable"].values.astype(bool)
     cuts = [0, *(np.flatnonzero(np.diff(stable.astype(int))) + 1).tolist(), value.size]
     for first, last in pairwise(cuts):
@@ -203,7 +204,7 @@ def _marks(
         for data in branches:
             here = data["event_kind"].values.astype(str) == kind
             if here.any():
-                at = shown(parameter, data["event_value"].values[here])
+                at = shown(parameter, data["event_value"][here])
                 panel.points(
                     at, data[row].values[here], marker=marker, size=5.5, colour=colour,
                     edge="white", edge_width=0.6, label=kind,
@@ -218,16 +219,16 @@ def cascade_picture(branches: Sequence[xr.Dataset]) -> Picture:
     for row in rows:
         own = [b for b in branches if str(b.attrs["row"]) == row]
         parameter = str(own[0].attrs["parameter"])
-        panel = Panel(Axis(axis_words(parameter)))
+        panel = Panel(Axis(axis_words(parameter, own[0]["value"])))
         for data in own:
             place = heats.index(str(data.attrs["heat"]))
             colour = COLD if place == 0 else OKABE_ITO[place % len(OKABE_ITO)]
-            value = shown(parameter, data["value"].values)
+            value = shown(parameter, data["value"])
             label = plain(heats[place])
             panel.curve(value, data["section_x"].values, colour=colour, width=1.2, label=label)
             flips = data["event_kind"].values.astype(str) == "period doubling"
             panel.points(
-                shown(parameter, data["event_value"].values[flips]), data["event_x"].values[flips],
+                shown(parameter, data["event_value"][flips]), data["event_x"].values[flips],
                 size=4.5, colour=colour, edge="white", edge_width=0.5,
             )  # fmt: skip
         panels.append(panel)

@@ -9,33 +9,39 @@ import numpy as np
 from markupsafe import Markup
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.base.parameters import PARAMETERS, long_name
+from thermogear.base.display import display
+from thermogear.base.parameters import PARAMETERS, Parameter, long_name
 from thermogear.views.typesetting import math_symbol, prose
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
-def shown(name: str, values: ArrayLike) -> NDArray[np.float64]:
+def parameter_of(name: str, values: object = None) -> Parameter:
+    """A parameter of the table, or a dotted field shown by the unit of its stored ``values``."""
+    unit = str(getattr(values, "attrs", {}).get("units", "1"))
+    how = display(name, unit)
+    other = Parameter(
+        name=name, words=name.replace("_", " "), unit=unit, factor=how.scale, zero=how.zero,
+        shown="" if unit == "1" else how.unit,
+    )  # fmt: skip
+    return PARAMETERS.get(long_name(name), other)
+
+
+def shown(name: str, values: ArrayLike | xr.DataArray) -> NDArray[np.float64]:
     """Values of a parameter in the unit its axis shows."""
-    one, found = PARAMETERS.get(long_name(name)), np.asarray(values, dtype=float)
-    return found if one is None else np.asarray(one.show(found))
+    return np.asarray(parameter_of(name, values).show(np.asarray(values, dtype=float)))
 
 
-def axis_words(name: str, unit: str = "1") -> str:
-    """The label of a parameter's axis in a picture, with its ``unit`` as stored if it says none."""
-    words = math_symbol(_words(name))
-    return words if "[" in words else f"{words} [{'–' if unit == '1' else unit}]"
+def axis_words(name: str, values: object = None) -> str:
+    """The label of a parameter's axis in a picture; a dash where it has no unit."""
+    words = math_symbol(parameter_of(name, values).label)
+    return words if "[" in words else f"{words} [–]"
 
 
-def page_words(name: str) -> Markup:
+def page_words(name: str, values: object = None) -> Markup:
     """The heading of a parameter's column on a page."""
-    return prose(_words(name))
-
-
-def _words(name: str) -> str:
-    one = PARAMETERS.get(long_name(name))
-    return name.replace("_", " ") if one is None else one.label
+    return prose(parameter_of(name, values).label)
 
 
 def named(data: xr.Dataset, axis: str) -> list[str]:

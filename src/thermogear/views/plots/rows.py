@@ -1,4 +1,4 @@
-"""Rows of the dimensionless equation: phase plane and section, spectrum, half-order line."""
+"""Rows of the dimensionless equation: history, phase plane and section, spectrum, half order."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from thermogear.base.display import CELSIUS
 from thermogear.base.vocabulary import QUANTITIES
 from thermogear.views.picture import Axis, Panel, Picture
-from thermogear.views.plots.motion import label_of
+from thermogear.views.plots.motion import HISTORY, label_of
 from thermogear.views.plots.orbits import periods_to_draw, thinned
 from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
 from thermogear.views.style import COLD, FAINT, HOT, INK, OKABE_ITO, QUIET
@@ -60,39 +60,59 @@ def _is_temperature(data: xr.Dataset) -> bool:
 
 
 def panels(points: xr.Dataset, row: str) -> Picture:
-    """One row: above each orbit with its Poincare section, below each spectrum."""
+    """One row: time history, orbit with its Poincare section, and spectrum of every point."""
     data = of_row(points, row)
     count = data.sizes["point"]
     kept = sorted({round(i) for i in np.linspace(0, count - 1, min(count, MOST_COLUMNS))})
     width = max(4.9, (2.5 if len(kept) < 5 else 2.2) * len(kept))
     order = data["order"].values
     floor, top = floor_of(data["line_amplitude"].values, order=order, highest=HIGHEST_ORDER)
+    first: list[Panel] = []
     above, below = [], []
     for column, place in enumerate(kept):
         one = data.isel(point=place)
         speed, height = ("velocity ", "amplitude ") if column == 0 else ("", "")
+        history = Panel(
+            Axis("time [mesh periods]", most=4, small=True, margin=0.01),
+            Axis("displacement X [–]" if column == 0 else "X [–]", most=4, small=True),
+            f"{value_text(one)}\n{label_of(one)}",
+        )
         upper = Panel(
             Axis("displacement X [–]", most=4, small=True),
             Axis(f"{speed}Ẋ [–]", most=4, small=True),
-            f"{value_text(one)}\n{label_of(one)}",
         )
         lower = over_orders(
             "mesh order [–]", f"{height}|X| [–]", floor=floor, top=top, highest=HIGHEST_ORDER
         )
         lower.x.small = lower.y.small = True
         if np.isfinite(one["scaled_displacement"].values).all():
+            _history(history, one)
             _orbit(upper, one)
             amplitude = one["line_amplitude"].values
             draw_lines(lower, order=order, amplitude=amplitude, colour=INK, label="")
         else:
+            history.note(label_of(one))
             upper.note(label_of(one))
+        first.append(history)
         above.append(upper)
         below.append(lower)
     heights = [upper.extent("y") for upper in above]
     for upper in above:
         upper.y.low = 1.1 * min(low for low, _ in heights)
         upper.y.high = 1.1 * max(high for _, high in heights)
-    return Picture([above, below], size=(width, 5.1), top=0.44, left=0.8, between=0.76, above=0.62)
+    return Picture(
+        [first, above, below], size=(width, 7.4), top=0.44, left=0.8, between=0.76, above=0.62,
+        heights=(2, 3, 3),
+    )  # fmt: skip
+
+
+def _history(panel: Panel, one: xr.Dataset) -> None:
+    """X over the last mesh periods that are stored, at least two whole orbits where it has one."""
+    x, samples = one["scaled_displacement"].values, _samples_per_period(one)
+    label = str(one["label"].item())
+    shown = 2 * periods_to_draw(label, samples_per_period=samples, stored=x.size)
+    shown = min(x.size, max(HISTORY * samples + 1, shown))
+    panel.curve(np.arange(shown) / samples, x[:shown], colour=COLD, width=0.9)
 
 
 def _orbit(panel: Panel, one: xr.Dataset) -> None:

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import ASSUMED, STATUS, UNDEFORMED
 from thermogear.views.picture import Axis, Panel, Picture
-from thermogear.views.plots.parameters import axis_words, shown
-from thermogear.views.style import COLD, FAINT, HOT, INK, OKABE_ITO, QUIET, WIDE, scale
+from thermogear.views.plots.parameters import axis_words, parameter_of, shown
+from thermogear.views.style import COLD, FAINT, HOT, INK, MIXED, OKABE_ITO, QUIET, WIDE, scale
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -82,13 +82,13 @@ def _parameter(data: xr.Dataset) -> str:
 
 
 def _along(data: xr.Dataset, name: str) -> Axis:
-    return Axis(axis_words(name, str(data[name].attrs.get("units", "1"))))
+    return Axis(axis_words(name, data[name]))
 
 
 def orbit_diagram_picture(data: xr.Dataset) -> Picture:
     """Sections over the parameter, up and down, with branches and bifurcations; exponent below."""
     name = _parameter(data)
-    p = shown(name, data[name].values)
+    p = shown(name, data[name])
     top = Panel(Axis(), Axis("X at phase 0 [–]"))
     low = Panel(_along(data, name), Axis("exponent λ₁ [–]"))
     ways = ((COLD, "up", ()), (HOT, "down", (3, 2)))
@@ -114,17 +114,25 @@ def _above_exponent(top: Panel, low: Panel) -> Picture:
 
 
 def overlay_picture(data: xr.Dataset, states: Sequence[str], matches: Rows) -> Picture:
-    """Two orbit diagrams over each other, a colour for each state, up and down alike.
-
-    A thin line leads from a bifurcation of one to the same one of the other.
-    """
-    name = _parameter(data)
-    p = shown(name, data[name].values)
-    top = Panel(Axis(), Axis("X at phase 0 [–]"))
-    low = Panel(_along(data, name), Axis("exponent λ₁ [–]"))
+    """The diagrams of all ``states`` over each other; see :func:`over_each_other`."""
     each = [state_of(data, place) for place in range(len(states))]
-    colours = (COLD, HOT) if states[0] == UNDEFORMED else (HOT, COLD)
-    for here, words, colour in zip(each, states, colours, strict=True):
+    return over_each_other(each, states, matches)
+
+
+def over_each_other(
+    each: Sequence[xr.Dataset], states: Sequence[str], matches: Rows = ()
+) -> Picture:
+    """Orbit diagrams over each other, a colour for each state, up and down alike.
+
+    A thin line leads from a bifurcation of the first to the same one of the second.
+    """
+    name = _parameter(each[0])
+    values = each[0][name]
+    p = shown(name, values)
+    top = Panel(Axis(), Axis("X at phase 0 [–]"))
+    low = Panel(_along(each[0], name), Axis("exponent λ₁ [–]"))
+    colours = (HOT, COLD) if states[-1] == UNDEFORMED else (COLD, HOT, MIXED)
+    for here, words, colour in zip(each, states, colours, strict=False):
         x = here["section_x"].values
         top.points(
             np.broadcast_to(p[:, None], x.shape).ravel(), x.ravel(), colour=colour, marker="dot",
@@ -138,7 +146,8 @@ def overlay_picture(data: xr.Dataset, states: Sequence[str], matches: Rows) -> P
         if match["kind"] in DRAWN and match["drawn"] and match["partner"] == "matched":
             ends = [match["one"], match["other"]]
             up = [_height(here, value) for here, value in zip(each, ends, strict=True)]
-            top.curve(shown(name, ends), up, colour=OKABE_ITO[3], width=0.8, order=4)
+            at = parameter_of(name, values).show(np.array(ends))
+            top.curve(at, up, colour=OKABE_ITO[3], width=0.8, order=4)
     return _above_exponent(top, low)
 
 
@@ -162,7 +171,7 @@ def _branches(panel: Panel, data: xr.Dataset, name: str, colour: str = "") -> No
     """Branches with their bifurcations; those of an overlay in the ``colour`` of their state."""
     if "branch_value" not in data:
         return
-    value, x = shown(name, data["branch_value"].values), data["branch_x"].values
+    value, x = shown(name, data["branch_value"]), data["branch_x"].values
     stable = data["branch_multiplier"].values < 1.0
     looks: tuple[tuple[NDArray[np.bool_], str, tuple[float, ...], str], ...] = (
         (stable, colour or INK, (), "stable branch"),
@@ -174,7 +183,7 @@ def _branches(panel: Panel, data: xr.Dataset, name: str, colour: str = "") -> No
             panel.curve(along, x[row], colour=ink, width=0.7, dash=dash, order=3)
         if (kept & np.isfinite(value)).any():
             panel.curve([], [], colour=INK if colour else ink, width=0.9, dash=dash, label=words)
-    at = shown(name, data["bifurcation_value"].values)
+    at = shown(name, data["bifurcation_value"])
     for kind in map(KINDS.index, DRAWN):
         chosen = data["bifurcation_kind"].values == kind
         if chosen.any():
@@ -191,8 +200,7 @@ def hatch_assumed(panel: Panel, data: xr.Dataset) -> None:
     if assumed.any():
         # a hatch runs between places: each cell is given at both its borders
         across, up = (
-            np.repeat(edges(shown(str(n), data[n].values)), 2)[1:-1]
-            for n in data["label"].dims[-2:]
+            np.repeat(edges(shown(str(n), data[n])), 2)[1:-1] for n in data["label"].dims[-2:]
         )
         panel.hatch(across, up, np.repeat(np.repeat(assumed, 2, axis=0), 2, axis=1))
 
@@ -200,7 +208,7 @@ def hatch_assumed(panel: Panel, data: xr.Dataset) -> None:
 def _over_two(data: xr.Dataset) -> tuple[Panel, tuple[Floats, Floats]]:
     """An empty panel over the first two axes of a grid, and the borders of its cells."""
     one, two = (str(name) for name in data["label"].dims[:2])
-    borders = edges(shown(one, data[one].values)), edges(shown(two, data[two].values))
+    borders = edges(shown(one, data[one])), edges(shown(two, data[two]))
     return Panel(_along(data, one), _along(data, two)), borders
 
 
@@ -243,7 +251,7 @@ def _state_words(data: xr.Dataset, state: int) -> str:
 
 def run_up_picture(data: xr.Dataset) -> Picture:
     """Transmission error, mesh force and dynamic factor over speed, up and down, by state."""
-    n = shown("pinion_speed", data["pinion_speed"].values)
+    n = shown("pinion_speed", data["pinion_speed"])
     count = data.sizes["state"]
     colours = [COLD, HOT, *OKABE_ITO[2:]]
     panels = []
@@ -264,7 +272,7 @@ def run_up_picture(data: xr.Dataset) -> Picture:
                 fold = (data["bifurcation_kind"].values == 0) & (
                     data["bifurcation_state"].values == state
                 )
-                for value in shown("pinion_speed", data["bifurcation_value"].values[fold]):
+                for value in shown("pinion_speed", data["bifurcation_value"][fold]):
                     panel.line(x=float(value), colour=colour, width=0.7, opacity=0.6)
         panels.append([panel])
     panels[-1][0].x = _along(data, "pinion_speed")
@@ -274,7 +282,7 @@ def run_up_picture(data: xr.Dataset) -> Picture:
 def waterfall_picture(data: xr.Dataset) -> Picture:
     """Lines of the transmission error over speed and order, running up, one panel a state."""
     borders = (
-        edges(shown("pinion_speed", data["pinion_speed"].values)), edges(data["order"].values)
+        edges(shown("pinion_speed", data["pinion_speed"])), edges(data["order"].values)
     )  # fmt: skip
     lines = 1e6 * data["dte_line"].values[:, 0]
     known = lines[np.isfinite(lines) & (lines > 0.0)]

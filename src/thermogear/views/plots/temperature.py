@@ -1,4 +1,4 @@
-"""The motion over the gears' temperature: a grid of orbits, and single figures."""
+"""The motion over the gears' temperature: four views of each, and single figures."""
 
 from __future__ import annotations
 
@@ -6,57 +6,70 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermogear.base.display import CELSIUS, celsius
+from thermogear.base.display import CELSIUS, celsius, display
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.curves import axis_of, draw_by_both
 from thermogear.views.plots.motion import draw_loop, label_of, moving, orbit_of
+from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
 from thermogear.views.style import FAINT, INK, QUIET, WIDE, chosen, ramp
-from thermogear.views.typesetting import operating_names
 
 if TYPE_CHECKING:
     import xarray as xr
 
 MOST_COLUMNS = 6
-
-FIGURES = {
-    "peak_to_peak_displacement": "displacement, peak to peak [µm]",
-    "half_order_amplitude": "half-order amplitude |x| [µm]",
-}
+HIGHEST_ORDER = 4.0
+"""Spectra are drawn up to this order of the mesh frequency."""
 
 
-def grid(row: xr.Dataset, bundle: int, operating: list[int]) -> Picture:
-    """Phase plane with section: a column for each gear temperature, a row for each speed."""
+def views(row: xr.Dataset, *, bundle: int, operating: int) -> Picture:
+    """Time history, phase plane, Poincare section and spectrum: a column for each temperature."""
+    here = row.isel(bundle=bundle, operating=operating)
     temperatures = row["gear_temperature"].values
     columns = chosen(temperatures.size, most=MOST_COLUMNS)
-    names = operating_names(row)
-    width = max(WIDE, 2.4 * len(columns)) if len(columns) > 2 else 4.9
     colours = ramp(len(columns), "warm")
-    panels: list[list[Panel]] = []
-    for point in operating:
-        panels.append([])
-        for column, place in enumerate(columns):
-            one = row.isel(bundle=bundle, operating=point, gear_temperature=place)
-            first = f"{names[point]}\n" if column == 0 else ""
-            panel = Panel(
-                Axis("x − b′ [µm]", most=4, small=True),
-                Axis(f"{first}ẋ [mm/s]", most=4, small=True),
-                f"{celsius(float(temperatures[place]))}: {label_of(one)}",
-            )
-            if moving(one):
-                orbit = orbit_of(one)
-                draw_loop(panel, orbit, colour=colours[column], width=1.3)
-                panel.points(
-                    orbit.section_x, orbit.section_v, size=4.6, colour=INK, edge="white",
-                    edge_width=0.5,
-                )  # fmt: skip
-            else:
+    order, scale = row["order"].values, display("line_amplitude")
+    floor, top = floor_of(
+        scale(here["line_amplitude"].values), order=order, highest=HIGHEST_ORDER
+    )  # fmt: skip
+    rows: list[list[Panel]] = [[], [], [], []]
+    for column, place in enumerate(columns):
+        one = here.isel(gear_temperature=place)
+        first = column == 0
+        history = _panel("t [ms]", "x − b′ [µm]" * first)
+        history.title = f"{celsius(float(temperatures[place]))}: {label_of(one)}"
+        phase = _panel("x − b′ [µm]", "ẋ [mm/s]" * first)
+        section = _panel("x − b′ [µm], section", "ẋ [mm/s]" * first)
+        lines = over_orders(
+            "mesh order [–]", "|x| [µm]" * first, floor=floor, top=top, highest=HIGHEST_ORDER
+        )
+        lines.x.small = lines.y.small = True
+        if moving(one):
+            orbit, colour = orbit_of(one), colours[column]
+            history.curve(orbit.t, orbit.x, colour=colour, width=1.1)
+            draw_loop(phase, orbit, colour=colour, width=1.3)
+            draw_loop(section, orbit, colour=colour, width=0.7, opacity=0.3)
+            section.points(
+                orbit.section_x, orbit.section_v, size=4.6, colour=INK, edge="white",
+                edge_width=0.5,
+            )  # fmt: skip
+            draw_lines(
+                lines, order=order, amplitude=scale(one["line_amplitude"].values), colour=colour,
+                label="",
+            )  # fmt: skip
+        else:
+            for panel in (history, phase, section):
                 panel.text(0.5, 0.5, _still(one), at="panel", size=9.5)
                 panel.background = FAINT
-            panels[-1].append(panel)
+        for panels, panel in zip(rows, (history, phase, section, lines), strict=True):
+            panels.append(panel)
+    width = max(WIDE, 2.4 * len(columns)) if len(columns) > 2 else 4.9
     return Picture(
-        panels, size=(width, 2.35 * len(operating) + 0.5), share_x="row", share_y="row",
-        between=0.42, above=0.78, left=0.85,
+        rows, size=(width, 9.0), share_x="row", share_y="row", between=0.42, above=0.6, left=0.85,
     )  # fmt: skip
+
+
+def _panel(x: str, y: str) -> Panel:
+    return Panel(Axis(x, most=4, small=True), Axis(y, most=4, small=True))
 
 
 def _still(one: xr.Dataset) -> str:
@@ -68,8 +81,8 @@ def _still(one: xr.Dataset) -> str:
 
 
 def over_temperature(row: xr.Dataset, name: str) -> Picture:
-    """One figure of the motion over the gears' temperature: speeds by colour, bundles by line."""
-    panel = Panel(axis_of("gear_temperature"), Axis(FIGURES[name]))
+    """The swing of the motion over the gears' temperature: speeds by colour, bundles by line."""
+    panel = Panel(axis_of("gear_temperature"), Axis("displacement, peak to peak [µm]"))
     x = CELSIUS(row["gear_temperature"].values)
     draw_by_both(panel, row, name, x, marker="circle", size=4)
     low, high = panel.extent("y")
@@ -77,11 +90,3 @@ def over_temperature(row: xr.Dataset, name: str) -> Picture:
     if not panel.marks:
         panel.text(0.5, 0.5, "no motion at any temperature", at="panel", size=9.0, colour=QUIET)
     return Picture([[panel]], legend=2)
-
-
-def worth_drawing(row: xr.Dataset, name: str) -> bool:
-    """Whether ``name`` rises above rounding anywhere, against the whole swing."""
-    values = row[name].values
-    swing = row["peak_to_peak_displacement"].values
-    finite = np.isfinite(values) & np.isfinite(swing)
-    return bool(np.any(values[finite] > 1e-4 * swing[finite]))

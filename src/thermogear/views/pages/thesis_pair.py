@@ -1,0 +1,299 @@
+"""The page of the thesis's steps for one pair: a section each, its finding first."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from thermogear.base.display import celsius, exactly, number, span
+from thermogear.base.parameters import PARAMETERS
+from thermogear.base.units import RPM
+from thermogear.base.vocabulary import STATUS
+from thermogear.results.result import Result
+from thermogear.views.page import Block, Gallery, Page, Pictures, Section, Table, Text, notice_lines
+from thermogear.views.pages import captions, gear_sections, overlay
+from thermogear.views.pages.background import background
+from thermogear.views.pages.findings import finding
+from thermogear.views.pages.lost_words import lost_words
+from thermogear.views.pages.record import comparison_table
+from thermogear.views.pages.sweeps import LOST_DIAGRAM, lost_table
+from thermogear.views.plots import laws
+from thermogear.views.plots.lost_contact import forces_picture
+from thermogear.views.plots.motion import label_of, moving
+from thermogear.views.plots.parameters import shown
+from thermogear.views.plots.sweeps import CLASSES, classes_of, overlay_picture, state_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+KINDS = ("thesis-pair",)
+JAMMED = STATUS.index("jammed")
+SWING, HALF = "peak_to_peak_displacement", "half_order_amplitude"
+ROUNDING = 1e-9
+"""A line at half the mesh frequency below this part of the swing is rounding."""
+FRICTION = {"friction", "flash-mixed", "flash-dry"}
+"""The pictures of mixed beside dry friction."""
+Told = tuple[str, list[Block]]
+
+
+def page(result: Result) -> Page:
+    """Every step as a section that begins with what was found."""
+    found = {title: (name, make(result, Pictures())) for name, title, make in STEPS}
+    findings = {title: words for title, (_, (words, _)) in found.items()}
+    sections = [
+        Section(name, title, [Text(words), *blocks], folded=False)
+        for title, (name, (words, blocks)) in found.items()
+    ]
+    summary = _summary(result)
+    return Page(
+        replace(result, notices=()),
+        summary,
+        sections + background(result),
+        numbers=lambda: _numbers(result, findings),
+        lines=lambda: [
+            summary,
+            *(f"{title}: {words}" for title, words in findings.items()),
+            *notice_lines(result),
+        ],
+    )
+
+
+def _summary(result: Result) -> str:
+    mesh = _hot(result.groups["mesh"])
+    cut = "Stopped on request before the end: what is missing was not computed. "
+    return (
+        f"{cut if result.interrupted else ''}The steps of the thesis for this pair at "
+        f"{exactly(float(mesh['pinion_speed']) / RPM)} rpm and "
+        f"{exactly(float(mesh['pinion_torque']))} N m (ω_h = "
+        f"{number(float(mesh['frequency_ratio']))}), bundle {mesh['bundle'].item()}."
+    )
+
+
+def _hot(data: xr.Dataset) -> xr.Dataset:
+    """The one point of a group, hot."""
+    return data.isel(bundle=0, operating=0, state=-1)
+
+
+def _sentence(parts: Sequence[str]) -> str:
+    words = f"{'; '.join(parts)}."
+    return words[:1].upper() + words[1:]
+
+
+def _micro(one: xr.Dataset, name: str) -> str:
+    return number(1e6 * float(one[name]))
+
+
+def _temperatures(result: Result) -> list[xr.Dataset]:
+    """The point at every gear temperature."""
+    here = result.groups["temperature"].isel(bundle=0, operating=0)
+    return [here.isel(gear_temperature=k) for k in range(here.sizes["gear_temperature"])]
+
+
+def _warming(result: Result, pictures: Pictures) -> Told:
+    """What the motion does over the gears' temperature."""
+    points = _temperatures(result)
+    there = {_at(one): one for one in points if "displacement" in one and moving(one)}
+    told, blocks = [], []
+    if there:
+        first, *_, last = [*there.values()] * 2
+        labels = {at: label_of(one) for at, one in there.items()}
+        kinds = set(labels.values())
+        every = (f"{label} at {at}" for at, label in labels.items())
+        told = [
+            f"the motion is {kinds.pop()} at {', '.join(there)}"
+            if len(kinds) == 1
+            else f"the motion is {', '.join(every)}",
+            f"its swing goes from {_micro(first, SWING)} to {_micro(last, SWING)} µm",
+        ]
+        sizes = [float(one["multiplier_modulus"]) for one in (first, last)]
+        if np.isfinite(sizes).all():
+            told.append(
+                "its largest Floquet multiplier from "
+                f"{number(sizes[0], 4)} to {number(sizes[1], 4)} in modulus"
+            )
+        lines = any(float(one[HALF]) > ROUNDING * float(one[SWING]) for one in there.values())
+        ends = f"whose height goes from {_micro(first, HALF)} to {_micro(last, HALF)} µm"
+        told.append(f"it has {'a' if lines else 'no'} line at half the mesh frequency")
+        told[-1] += f", {ends}" * lines
+        section = gear_sections.row(result, pictures)
+        blocks = [one for one in section.blocks if one.kind != "text"] if section else []
+    still = [one for one in points if int(one["status"]) != 0]
+    for word in dict.fromkeys(map(label_of, still)):
+        some = [one for one in still if label_of(one) == word]
+        told.append(f"at {', '.join(map(_at, some))} {word}{_gap(some) * (word == 'jammed')}")
+    left = result.rows("left_out")
+    for why in dict.fromkeys(str(one["why"]) for one in left):
+        where = [celsius(one["gear_temperature_K"]) for one in left if one["why"] == why]
+        told.append(f"{', '.join(where)} left out, {why}")
+    return _sentence(told), blocks
+
+
+def _at(one: xr.Dataset) -> str:
+    return celsius(float(one["gear_temperature"]))
+
+
+def _gap(points: list[xr.Dataset]) -> str:
+    """The half backlash of jammed points, and where it is used up."""
+    gaps = span([1e6 * float(one["half_backlash"]) for one in points])
+    jam = float(points[-1]["jam_temperature"])
+    return f", half backlash {gaps} µm" + f", used up at {celsius(jam)}" * (jam == jam)
+
+
+def _diagram(name: str, result: Result, pictures: Pictures) -> Told:
+    """The diagrams over one parameter, undeformed and hot, in one picture and one table."""
+    data = result.group(f"diagrams/{name}")
+    if data is None:
+        cold = result.groups["motion"].isel(bundle=0, operating=0, state=0)
+        why = "stopped before it" if result.interrupted else f"undeformed it is {label_of(cold)}"
+        return f"Not computed: {why}.", []
+    states = json.loads(str(data.attrs["state_names"]))
+    rows = result.table("matches")[name]
+    here = [state_of(data, place) for place in range(len(states))]
+    ends = [exactly(float(v), 4) for v in shown(name, data[name][[0, -1]])]
+    motions = [_shares(one) for one in here]
+    told = [f"{state} {words}" for state, words in zip(states, motions, strict=True)]
+    told = told if len(set(motions)) > 1 else [f"{' and '.join(states)} alike {motions[0]}"]
+    counts = [f"{one.sizes.get('bifurcation', 0)} {s}" for s, one in zip(states, here, strict=True)]
+    matched = sum(row["partner"] == "matched" for row in rows)
+    told.append(
+        f"bifurcations: {', '.join(counts)}, {matched} followed from one state to the other"
+        if rows
+        else "no bifurcation was found"
+    )
+    if any((one["status"].values == 0).any() for one in here):
+        pictures.add(
+            f"diagram-{name}", "Undeformed and hot", overlay.CAPTION, data, (),
+            lambda: overlay_picture(data, states, rows), wide=True,
+        )  # fmt: skip
+    blocks, kept = pictures.take(), [row for row in rows if row["partner"] != "not followed"]
+    if kept:
+        left = f" {len(rows) - len(kept)} more were not followed." * (len(kept) < len(rows))
+        both = Result.of("overlay", "", {"states": data}, matches=kept, states=states)
+        blocks.append(Table(overlay.FOLLOWED + left, *overlay.table_of(both)))
+    return _sentence([f"from {' to '.join(ends)} {PARAMETERS[name].shown}".strip(), *told]), blocks
+
+
+def _shares(one: xr.Dataset) -> str:
+    """Which motions one state settles on, by their shares of the values."""
+    code = classes_of(one)
+    parts = (f"{CLASSES[n][0]} at {number(100.0 * np.mean(code == n))} %" for n in np.unique(code))
+    return ", ".join(parts)
+
+
+def _friction(result: Result, pictures: Pictures) -> Told:
+    here = _hot(result.groups["path"])
+    names = ("mixed", "dry")
+    mean = [number(float(np.mean(here[f"friction_coefficient_{n}"].values))) for n in names]
+    flash = [number(float(np.max(here[f"flash_temperature_{n}"].values))) for n in names]
+    if "–" in (*mean, *flash):
+        hot = int(_hot(result.groups["mesh"])["status"])
+        why = "Benedict and Kelley's law has no value for these flanks"
+        why = STATUS[hot].replace("_", " ") if hot > JAMMED else why
+        return f"Mixed lubrication cannot be put beside dry friction hot: {why}.", []
+    section = gear_sections.friction(result, pictures)
+    galleries = [one for one in section.blocks if isinstance(one, Gallery)] if section else []
+    kept = [one for some in galleries for one in some.pictures if one.name in FRICTION]
+    head = ["friction", "mean coefficient", "greatest flash temperature [K]"]
+    table = Table("Along the path of contact, hot.", head, [*zip(names, mean, flash, strict=True)])
+    return (
+        f"Hot, mixed lubrication gives a mean friction coefficient of {mean[0]} and a flash "
+        f"temperature of at most {flash[0]} K, dry friction {mean[1]} and {flash[1]} K."
+    ), [table, Gallery(kept)]
+
+
+def _records(result: Result, pictures: Pictures) -> Told:
+    data = result.group("comparison")
+    if data is None:
+        return "No record was given; each --record FILE is put beside this pair, cold and hot.", []
+    return result.text("conclusion"), [comparison_table(data)]
+
+
+def _outlook(result: Result, pictures: Pictures) -> Told:
+    """Film regime, play of bearings, sensors: what the thesis leaves to later work."""
+    path = result.groups["path"].isel(bundle=0, state=-1)
+    if np.isfinite(path["film_parameter"].values).any():
+        pictures.add(
+            "film-path", "Film parameter along the path",
+            "Least film thickness over the combined rms roughness; below 1 boundary, from 3 on a "
+            "full film.",
+            path, (), lambda: laws.film(path),
+        )  # fmt: skip
+    film = captions.regimes(path) or "The film is not known: the heat does not settle."
+    play = result.group("play")
+    words = "The play of bearings is not varied: the case has no [[shafts]] and [[bearings]]."
+    if play is not None:
+        words = f"Over the play of all bearings: {lost_words(play)} {finding(play)}"
+        pictures.add(
+            "play", "Forces over the play of all bearings", LOST_DIAGRAM, play, (),
+            lambda: forces_picture(play), wide=True,
+        )  # fmt: skip
+    sensors, table = _sensors(result)
+    blocks = [*pictures.take(), *([lost_table(play)] if play is not None else []), *table]
+    return f"{film} {words} {sensors}", blocks
+
+
+def _sensors(result: Result) -> Told:
+    balance = result.group("balance")
+    read = [] if balance is None else json.loads(str(balance.attrs["readings"]))
+    if balance is None or not read:
+        return (
+            "The case has no thermometer reading; [gearbox.readings] corrects one and holds the "
+            "heat balance to it."
+        ), []
+    off = span([one["temperature_K"] - one["indicated_K"] for one in read])
+    gap = _micro(balance.isel(bundle=0, operating=0), "half_backlash_uncertainty")
+    rows = [
+        [
+            one["node"].replace("_", " "), one["kind"], celsius(one["indicated_K"]),
+            celsius(one["temperature_K"]), number(one["uncertainty_K"]),
+        ]
+        for one in read
+    ]  # fmt: skip
+    head = ["node", "kind", "shown", "corrected", "standard uncertainty [K]"]
+    return (
+        f"Readings: {len(read)}, corrected by {off} K; what stays uncertain of them moves the half "
+        f"backlash by {gap} µm (standard uncertainty)."
+    ), [Table("Readings.", head, rows, names=2)]
+
+
+STEPS: tuple[tuple[str, str, Callable[[Result, Pictures], Told]], ...] = (
+    ("temperature", "Gear temperature", _warming),
+    ("damping", "Damping", partial(_diagram, "damping_ratio")),
+    ("speed", "Speed", partial(_diagram, "pinion_speed")),
+    ("fluctuation", "Stiffness fluctuation", partial(_diagram, "stiffness_fluctuation")),
+    ("friction", "Mixed and dry friction", _friction),
+    ("records", "Records", _records),
+    ("outlook", "Outlook", _outlook),
+)
+
+
+def _numbers(result: Result, findings: dict[str, str]) -> dict[str, Any]:
+    """Findings as sentences, and the figures behind them in SI."""
+    mesh = _hot(result.groups["mesh"])
+    kept = ("half_backlash", SWING, HALF, "multiplier_modulus")
+    return {
+        "thermogear": result.text("thermogear"),
+        "title": result.title,
+        "kind": result.kind,
+        "pinion_speed_rpm": float(mesh["pinion_speed"]) / RPM,
+        "pinion_torque_Nm": float(mesh["pinion_torque"]),
+        "frequency_ratio": float(mesh["frequency_ratio"]),
+        "findings": findings,
+        "temperature": [
+            {
+                "gear_temperature_K": float(one["gear_temperature"]),
+                "status": STATUS[int(one["status"])],
+                "label": str(one["label"].item()),
+                **{name: float(one[name]) for name in kept if name in one},
+            }
+            for one in _temperatures(result)
+        ],
+        "bifurcations": result.table("matches"),
+        "left_out": result.rows("left_out"),
+        "notices": [one._asdict() for one in result.notices],
+    }
