@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -46,13 +46,20 @@ def page(result: Result) -> Page:
     return Page(
         result, " ".join((*parts, _headline(result))), sections,
         numbers=lambda: _numbers(result),
-        lines=lambda: [*parts, _headline(result), *_aligned([head, *rows]), *notice_lines(result)],
-        tables=lambda: {"overlay_bifurcations.csv": table_text(head, rows)},
+        lines=lambda: [
+            *parts, _headline(result), *_aligned(table_of(result, "{:.9g}".format)),
+            *notice_lines(result),
+        ],
+        tables=lambda: {
+            "overlay_bifurcations.csv": table_text(*table_of(result, "{:.15g}".format))
+        },
     )  # fmt: skip
 
 
 def _headline(result: Result) -> str:
     rows = result.rows("matches")
+    if not rows:
+        return "No bifurcation is located in either state."
     matched = sum(row["partner"] == "matched" for row in rows)
     return f"{matched} of {len(rows)} bifurcations were followed from one state to the other."
 
@@ -87,7 +94,9 @@ def _moved(result: Result) -> list[dict[str, Any]]:
     return rows
 
 
-def table_of(result: Result) -> tuple[list[str], list[list[str]]]:
+def table_of(
+    result: Result, digits: Callable[[float], str] = lambda value: number(value, 9)
+) -> tuple[list[str], list[list[str]]]:
     """Head and rows of the bifurcations, and in words what became of each on the way."""
     unit = _parameter(result).shown
     tail = f" [{unit}]" * bool(unit)
@@ -96,7 +105,7 @@ def table_of(result: Result) -> tuple[list[str], list[list[str]]]:
     rows = [
         [
             row["kind"], str(row["period"]),
-            *("" if row[k] is None else number(row[k], 9) for k in ("one", "other", "moved")),
+            *("" if row[k] is None else digits(row[k]) for k in ("one", "other", "moved")),
             _became(row, unit),
         ]
         for row in _moved(result)
@@ -117,10 +126,9 @@ def _became(row: Mapping[str, Any], unit: str) -> str:
     return f"not followed beyond, {at}: {row['why']}"
 
 
-def _aligned(rows: Sequence[Sequence[str]]) -> list[str]:
-    """Rows as columns of a terminal, two spaces between them."""
+def _aligned(table: tuple[list[str], list[list[str]]]) -> list[str]:
+    """A table with rows as columns of a terminal, two spaces between them."""
+    rows = [table[0], *table[1]]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return [
-        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
-        for row in rows
-    ]
+    padded = [[cell.ljust(w) for cell, w in zip(row, widths, strict=True)] for row in rows]
+    return ["  ".join(row).rstrip() for row in padded if len(rows) > 1]

@@ -50,8 +50,7 @@ def _labels(result: Result) -> dict[str, Any]:
     return found
 
 
-def bifurcation_rows(data: xr.Dataset, name: str) -> list[dict[str, Any]]:
-    """Kind, period, value as shown and state of heat of the located bifurcations."""
+def _bifurcations(data: xr.Dataset, name: str) -> list[dict[str, Any]]:
     if "bifurcation_kind" not in data:
         return []
     kinds = words_of(data["bifurcation_kind"])
@@ -78,7 +77,7 @@ def _diagram(result: Result) -> dict[str, Any]:
         **_labels(result),
         "parameter": parameter,
         "ways_apart": shown(parameter, result.data[parameter])[ways_apart(result.data)].tolist(),
-        "bifurcations": bifurcation_rows(result.data, parameter),
+        "bifurcations": _bifurcations(result.data, parameter),
     }
 
 
@@ -86,7 +85,7 @@ def _basins(result: Result) -> dict[str, Any]:
     data = result.data
     rows = [
         {
-            "period": int(data["attractor_period"].values[i]) or None,
+            "period": int(data["attractor_period"].values[i]),
             "x": float(data["attractor_x"].values[i, 0]),
             "v": float(data["attractor_v"].values[i, 0]),
             "count": int(data["count"].values[i]),
@@ -103,13 +102,13 @@ def _basins(result: Result) -> dict[str, Any]:
     return {"points": points, "attractors": rows, **figures, "rule": FASTER_RULE}
 
 
-def jump_rows(data: xr.Dataset) -> list[dict[str, Any]]:
-    """The jumps of a run-up, in the units shown."""
+def _run_up(result: Result) -> dict[str, Any]:
+    data = result.data
 
     def rpm(name: str, place: int) -> float:
         return float(shown("pinion_speed", data[name][place]))
 
-    return [
+    jumps = [
         {
             "gears_degC": _degrees(data, int(data["jump_state"].values[i])),
             "direction": "up" if int(data["jump_direction"].values[i]) > 0 else "down",
@@ -124,14 +123,10 @@ def jump_rows(data: xr.Dataset) -> list[dict[str, Any]]:
         }
         for i in range(data.sizes["jump"])
     ]
-
-
-def _run_up(result: Result) -> dict[str, Any]:
-    data = result.data
     return {
         **_labels(result),
-        "jumps": jump_rows(data),
-        "bifurcations": bifurcation_rows(data, "pinion_speed"),
+        "jumps": jumps,
+        "bifurcations": _bifurcations(data, "pinion_speed"),
     }
 
 

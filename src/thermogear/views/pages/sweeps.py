@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +14,7 @@ from thermogear.results.result import Result
 from thermogear.views.page import LEAD, Block, Page, Pictures, Section, Table, Text
 from thermogear.views.pages.findings import finding, ways_apart
 from thermogear.views.pages.lost_words import lost_words
-from thermogear.views.pages.sweep_numbers import bifurcation_rows, jump_rows, lines, numbers
+from thermogear.views.pages.sweep_numbers import lines, numbers
 from thermogear.views.picture import Picture
 from thermogear.views.plots import sweeps
 from thermogear.views.plots.lost_contact import (
@@ -187,28 +187,33 @@ def _run_up_caption(data: xr.Dataset) -> str:
 def _points(data: xr.Dataset, result: Result) -> Section:
     blocks: list[Block] = [lost_table(data)] if result.kind == "diagram" and has_lost(data) else []
     parameter = str(data.attrs.get("parameter", "pinion_speed"))
-    if data.sizes.get("bifurcation"):
+    told = numbers(result)
+    if told.get("bifurcations"):
+        found = told["bifurcations"]
+        heat = [name for name in ("gears_degC",) if name in found[0]]
         rows = [
-            (
-                row["kind"], str(row["period"]), number(row["value"], 8),
-                number(row["gears_degC"], 4) if "gears_degC" in row else "",
-            )
-            for row in bifurcation_rows(data, parameter)
+            [one["kind"], str(one["period"]), number(one["value"], 8),
+             *(number(one[name], 4) for name in heat)]
+            for one in found
         ]  # fmt: skip
-        head = ["kind", "period", page_words(parameter, data["bifurcation_value"]), "gears [°C]"]
-        if not any(row[3] for row in rows):
-            head, rows = head[:3], [row[:3] for row in rows]  # type: ignore[misc]
+        head: list[Any] = ["kind", "period", page_words(parameter, data["bifurcation_value"])]
+        head += ["gears [°C]"] * len(heat)
         blocks.append(Table("Located bifurcations", head, rows))
         kinds = {row[0] for row in rows}
         blocks.append(Text(" ".join(w for kind, w in EXPLAINED.items() if kind in kinds)))
-    if data.sizes.get("jump"):
+    if told.get("jumps"):
         jumps = [
             (
-                row["direction"], number(row["gears_degC"], 4), number(row["fold_rpm"], 8),
-                row["at"], _returns(row), number(row["before_um"]), number(row["after_um"]),
+                one["direction"],
+                number(one["gears_degC"], 4),
+                number(one["fold_rpm"], 8),
+                one["at"],
+                _returns(one),
+                number(one["before_um"]),
+                number(one["after_um"]),
             )
-            for row in jump_rows(data)
-        ]  # fmt: skip
+            for one in told["jumps"]
+        ]
         head = ["run", "gears [°C]", "jumps at [rpm]", "which is a", "run back jumps at [rpm]",
                 "p-p before [µm]", "p-p after [µm]"]  # fmt: skip
         blocks.append(Table("Jumps", head, jumps))
@@ -223,20 +228,23 @@ def _points(data: xr.Dataset, result: Result) -> Section:
                 else "No jump: up and down the motion runs on at every speed."
             )
         )
-    if data.sizes.get("attractor_number"):
-        columns = [
-            data[f"attractor_{name}"].values for name in ("period", "x", "v", "multiplier")
-        ] + [data[name].values for name in ("count", "fraction", "border_distance")]
-        found = [
+    if told.get("attractors"):
+        rows_ = [
             (
-                f"period {int(period)}" if period else "chaotic, estimate",
-                number(float(x[0]), 9), number(float(v[0]), 9), number(float(mu), 6),
-                str(int(count)), number(100.0 * float(share), 5), number(float(border), 3),
+                f"period {one['period']}" if one["period"] else "chaotic, estimate",
+                number(one["x"], 9),
+                number(one["v"], 9),
+                number(float(multiplier), 6),
+                str(one["count"]),
+                number(100.0 * one["fraction"], 5),
+                number(one["border_distance"], 3),
             )
-            for period, x, v, mu, count, share, border in zip(*columns, strict=True)
-        ]  # fmt: skip
+            for one, multiplier in zip(
+                told["attractors"], data["attractor_multiplier"].values, strict=True
+            )
+        ]
         head = ["attractor", "x", "x′", "multiplier", "starts", "share [%]", "to the border [b]"]
-        blocks.append(Table("Attractors", head, found))
+        blocks.append(Table("Attractors", head, rows_))
         entropy = data.attrs
         blocks.append(
             Text(
@@ -247,13 +255,6 @@ def _points(data: xr.Dataset, result: Result) -> Section:
             )
         )
     return Section("points", "Located points", blocks)
-
-
-def _returns(row: Mapping[str, Any]) -> str:
-    """Where a run back jumps again, in words where it does not."""
-    if np.isfinite(row["return_rpm"]):
-        return number(row["return_rpm"], 8)
-    return "not in range" if row["into_period"] else "from chaos"
 
 
 def lost_table(data: xr.Dataset) -> Table:
@@ -278,6 +279,13 @@ def lost_table(data: xr.Dataset) -> Table:
     head = [page_words(name, data[name]), "motion", "up and down", "what loses contact",
             "drive flank apart [% of the time]", "greatest force of the teeth [N]"]  # fmt: skip
     return Table("Contact over the parameter; up / down where they differ.", head, rows)
+
+
+def _returns(jump: dict[str, Any]) -> str:
+    """Where a run back jumps again, in words where it does not."""
+    if np.isfinite(jump["return_rpm"]):
+        return number(jump["return_rpm"], 8)
+    return "not in range" if jump["into_period"] else "from chaos"
 
 
 def _settings(data: xr.Dataset) -> Section:
