@@ -14,12 +14,11 @@ from conftest import Compared
 from said import numbers
 from thermogear.base.errors import InputError
 from thermogear.measured.evidence import Evidence
-from thermogear.measured.gearing import Gearing, find_gearing
+from thermogear.measured.gearing import Gearing, find_gearing, told_of_mate
 from thermogear.measured.hypotheses import Gears, Hypothesis
 from thermogear.measured.meshes import Stated
 from thermogear.measured.record import Channel, Record
 from thermogear.measured.reduction import measure
-from thermogear.measured.turns import told_of_mate
 
 # main mesh [cycles/sample], then main and second mesh in orders of the first shaft
 TRUTH = {"h30hz0": (0.074385, 32.0, 19.2), "h30hz50": (0.074189, 32.0, 19.2)}

@@ -15,6 +15,7 @@ from thermogear.base.errors import InputError
 from thermogear.measured.evidence import Evidence, weigh
 from thermogear.measured.meshes import Stated
 from thermogear.measured.prominence import Prominence, prominence
+from thermogear.measured.record import Notice
 from thermogear.measured.sidebands import Mesh, Shaft, second_mesh, shafts_of
 from thermogear.measured.straight import sharp_peaks
 from thermogear.signals.orders import line_angle, resample_by_angle, samples_per_cycle
@@ -31,6 +32,11 @@ _STANDS = float(np.log(3.0))  # over the floor
 _BINS = 1.5  # between a line and its harmonic's place over its rank
 _LIKELY = 0.5  # weight from which a mesh line is taken for the one to read lines at
 _NARROW = 0.006  # half width of the phase filter over the mesh line
+_FEW = 4.0  # turns over the record, below which nothing tells a gear from what is slower
+_SLOWEST = 32.0  # turns of a gear over the record: four of a mate eight times as large
+
+SLOW = 12.0
+"""Turns of a gear over the record: four of a mate three times as large."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -246,3 +252,33 @@ def _angle(table: Floats, mesh: float) -> tuple[Floats, int, float, float] | Non
 def _near(count: int, frequency: float) -> slice:
     centre = int(np.rint(frequency * count))
     return slice(max(1, centre - 2), centre + 3)
+
+
+def known_teeth(gearing: Gearing, teeth: int | None) -> list[int]:
+    """Teeth of the shafts that are decided, and those given."""
+    given = [teeth] if teeth else []
+    return list(dict.fromkeys([*(shaft.teeth for shaft in gearing.shafts), *given]))
+
+
+def sides_of(gearing: Gearing, *, teeth: int | None, rank: int, mesh: float) -> tuple[float, ...]:
+    """Where the shafts' sidebands of a mesh harmonic stand, ``mesh`` in any unit."""
+    return tuple(
+        mesh * (rank + sign * n / z)
+        for z in known_teeth(gearing, teeth)
+        for n in (1, 2, 3)
+        for sign in (-1, 1)
+    )
+
+
+def told_of_mate(gearing: Gearing, *, teeth: int | None, samples: int) -> list[Notice]:
+    """What a slower mate that is not known would change: it may turn fewer than four times."""
+    known = known_teeth(gearing, teeth)
+    turns = gearing.mesh_frequency * samples / known[0] if known else np.inf
+    if len(known) != 1 or turns >= _SLOWEST:
+        return []
+    text = (
+        f"the record holds {turns:.3g} turns of the gear of {known[0]} teeth; what a mate that is "
+        f"not known, of more than {turns * known[0] / _FEW:.0f} teeth, changes of the mesh line "
+        "counts as the line's own: it turned fewer than four times"
+    )
+    return [Notice("warning" if turns < SLOW else "info", text)]

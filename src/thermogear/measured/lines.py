@@ -11,9 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 from thermogear.base.units import STANDARD_GRAVITY
 from thermogear.measured.chain import Chain, reduced
 from thermogear.measured.gate import turned_by
-from thermogear.measured.gearing import Gearing
+from thermogear.measured.gearing import Gearing, known_teeth, sides_of
 from thermogear.measured.record import Channel, Notice, Record
-from thermogear.measured.turns import MeshTurns, known_teeth, sides_of, unfollowed
+from thermogear.measured.turns import MeshTurns, unfollowed
 from thermogear.measured.units import kind_of
 from thermogear.signals.interval import APART, REACH, Reading, read_line
 from thermogear.signals.lines import LineSpectrum

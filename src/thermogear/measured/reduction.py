@@ -30,7 +30,7 @@ from thermogear.measured.gate import (
     require_samples,
     require_sampling_rate,
 )
-from thermogear.measured.gearing import Gearing
+from thermogear.measured.gearing import Gearing, told_of_mate
 from thermogear.measured.lines import (
     Doubts,
     MeasuredLine,
@@ -52,7 +52,7 @@ from thermogear.measured.stated import (
 )
 from thermogear.measured.swelling import Swelling, swelling_of
 from thermogear.measured.traps import unknown_unit
-from thermogear.measured.turns import MeshTurns, mesh_turns, told_of_mate
+from thermogear.measured.turns import MeshTurns, mesh_turns
 from thermogear.measured.units import UNITS
 from thermogear.signals.windows import Window
 

@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 from scipy import signal
 
 from thermogear.measured.chain import Turning
-from thermogear.measured.gearing import Gearing
-from thermogear.measured.record import Notice
+from thermogear.measured.gearing import SLOW, Gearing, known_teeth, sides_of
 from thermogear.signals.following import (
     Followed,
     band_power,
@@ -37,8 +36,6 @@ _STILL = 0.1  # of a line, that no steady one explains
 _FEW = 4.0  # turns of a shaft over the record
 _AS_FAR = 3.0  # times the distance of the first sidebands, up to which is looked
 _CLEAR = 3  # bins of a line's own lobe, Hann's window
-_SLOW = 12.0  # turns of a gear over the record: four of a mate three times as large
-_SLOWEST = 32.0  # the same of one eight times as large: a mate seldom is larger
 _CLEARLY = 3.0  # times the power of Q
 _UNKNOWN = (
     "the lines beside it may as well be sidebands of a shaft that is not known: the intervals hold "
@@ -59,8 +56,7 @@ class MeshTurns:
     ``unfollowed``: power beside the line that its reading lacks and that may be its own, of its
     power; ``spread``: what of ``half_width`` comes of that; ``doubt``: share of the power near the
     line that may be its own or others'; ``withheld``: why lines nearer to it and its harmonics than
-    ``near`` are; ``mate``: a gear that is not known may turn a few times and be among what changes
-    the line.
+    ``near`` are; ``mate``: whether a gear that is not known may turn a few times.
     """
 
     frequency: float
@@ -92,36 +88,6 @@ class MeshTurns:
         return self.withheld if abs(position - harmonic) < self.near else ""
 
 
-def known_teeth(gearing: Gearing, teeth: int | None) -> list[int]:
-    """Teeth of the shafts that are decided, and those given."""
-    given = [teeth] if teeth else []
-    return list(dict.fromkeys([*(shaft.teeth for shaft in gearing.shafts), *given]))
-
-
-def sides_of(gearing: Gearing, *, teeth: int | None, rank: int, mesh: float) -> tuple[float, ...]:
-    """Where the shafts' sidebands of a mesh harmonic stand, ``mesh`` in any unit."""
-    return tuple(
-        mesh * (rank + sign * n / z)
-        for z in known_teeth(gearing, teeth)
-        for n in (1, 2, 3)
-        for sign in (-1, 1)
-    )
-
-
-def told_of_mate(gearing: Gearing, *, teeth: int | None, samples: int) -> list[Notice]:
-    """What a slower mate that is not known would change: it may turn fewer than four times."""
-    known = known_teeth(gearing, teeth)
-    turns = gearing.mesh_frequency * samples / known[0] if known else np.inf
-    if len(known) != 1 or turns >= _SLOWEST:
-        return []
-    text = (
-        f"the record holds {turns:.3g} turns of the gear of {known[0]} teeth; what a mate that is "
-        f"not known, of more than {turns * known[0] / _FEW:.0f} teeth, changes of the mesh line "
-        "counts as the line's own: it turned fewer than four times"
-    )
-    return [Notice("warning" if turns < _SLOW else "info", text)]
-
-
 def mesh_turns(
     table: Floats,
     gearing: Gearing,
@@ -147,7 +113,7 @@ def mesh_turns(
         turns = _follow(values, spectrum, line.frequency, per_cycle, least=least, beside=beside)
     nearest = min((abs(one - line.frequency) for one in beside), default=np.inf)
     few = nearest < _FEW * spectrum.bin_width
-    mate = len(known_teeth(gearing, teeth)) == 1 and nearest < _SLOW * spectrum.bin_width
+    mate = len(known_teeth(gearing, teeth)) == 1 and nearest < SLOW * spectrum.bin_width
     if turns is not None:
         turns = replace(turns, mate=mate)
         if few:
