@@ -40,6 +40,13 @@ MICROMETRE = Display("µm", 1e6)
 MILLIMETRE = Display("mm", 1e3)
 KELVIN = Display("K")
 CELSIUS = Display("°C", 1.0, zero=ZERO_CELSIUS)
+NEWTON = Display("N")
+PER_MICROMETRE = Display("N/µm", 1e-6)
+HERTZ = Display("Hz", 0.5 / math.pi)
+"""Of an angular frequency."""
+SPEED = Display("rpm", 1.0 / RPM)
+HOUR = Display("h", 1.0 / 3600.0)
+PERCENT = Display("%", 100.0)
 
 _BY_UNIT = {
     "1": Display("–"),
@@ -47,7 +54,7 @@ _BY_UNIT = {
     "N/m": Display("10⁸ N/m", 1e-8),
     "Pa": Display("MPa", 1e-6),
     "K": CELSIUS,
-    "rad/s": Display("rpm", 1.0 / RPM),
+    "rad/s": SPEED,
     "m/s": Display("m/s"),
     "s": Display("ms", 1e3),
 }

@@ -100,7 +100,7 @@ def spread(data: xr.Dataset, dim: str = "bearing") -> xr.Dataset:
 
 
 def _frame(data: xr.Dataset, units: str) -> pd.DataFrame:
-    frame = _in_words(data).to_dataframe().reset_index()
+    frame = in_words(data).to_dataframe().reset_index()
     dims = [name for name in map(str, data.dims) if name in frame.columns]
     first = [*dims, *(name for name in FIRST if name in frame.columns)]
     frame = frame[[*first, *(name for name in map(str, frame.columns) if name not in first)]]
@@ -120,7 +120,7 @@ def _frame(data: xr.Dataset, units: str) -> pd.DataFrame:
     return named
 
 
-def _in_words(data: xr.Dataset) -> xr.Dataset:
+def in_words(data: xr.Dataset) -> xr.Dataset:
     """The same with the words of its flags in place of their numbers."""
     words: dict[Any, Any] = {}
     for name, variable in data.coords.items():
