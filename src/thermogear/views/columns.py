@@ -6,7 +6,7 @@ A page's table, its lines in a terminal and its numbers in JSON are made of the 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import zip_longest
 from textwrap import wrap
@@ -17,7 +17,7 @@ from markupsafe import Markup
 from thermogear.base.display import Display, display, number
 from thermogear.base.vocabulary import QUANTITIES
 from thermogear.results.tables import in_words
-from thermogear.views.page import Cell, Table
+from thermogear.views.page import Block, Cell, Table, Text
 from thermogear.views.typesetting import operating_names
 
 if TYPE_CHECKING:
@@ -71,11 +71,13 @@ class Column:
         if isinstance(value, int):
             return str(value)
         figure = math.nan if value is None else float(self.display(value))
+        if not math.isfinite(figure):
+            return "–"
         if callable(self.digits):
             return self.digits(figure)
-        if isinstance(self.digits, int) or not math.isfinite(figure):
-            return number(figure, self.digits if isinstance(self.digits, int) else 1)
-        return f"{figure:z{self.digits}}".replace("-", "−")
+        if isinstance(self.digits, int):
+            return number(figure, self.digits)
+        return format(figure, self.digits.replace(".", "z.")).replace("-", "−")
 
 
 def rows_along(data: xr.Dataset, *dims: str) -> list[dict[str, Any]]:
@@ -117,19 +119,26 @@ def typed(text: Cell) -> str:
     return words.replace("·10", "e").replace("10⁸", "1e8").translate(TYPEWRITTEN)
 
 
-def lines_of(*tables: Table) -> list[str]:
-    """Tables as lines of a terminal: words to the left, numbers to the right, heads folded."""
+def lines_of(*blocks: Block) -> list[str]:
+    """Texts and tables as lines of a terminal: words to the left, numbers to the right.
+
+    Heads are folded over their columns; what is neither is left out.
+    """
     lines: list[str] = []
-    for one in tables:
-        columns = [
-            [typed(cell) for cell in cells] for cells in zip(one.head, *one.rows, strict=True)
-        ]
-        widths = [max(map(len, [*head.split(), *cells])) for head, *cells in columns]
-        heads = [wrap(head, width) for (head, *_), width in zip(columns, widths, strict=True)]
-        body = zip(*(cells[1:] for cells in columns), strict=True)
-        lines.append(typed(one.caption))
-        for line in [*zip_longest(*heads, fillvalue=""), *body]:
-            placed = zip(line, widths, range(len(widths)), strict=True)
-            words = (c.ljust(w) if k < one.names else c.rjust(w) for c, w, k in placed)
-            lines.append(f"  {'  '.join(words)}".rstrip())
+    for block in blocks:
+        if isinstance(block, Text):
+            lines.append(typed(block.words))
+        elif isinstance(block, Table):
+            lines += [typed(block.caption), *_grid(block)]
     return lines
+
+
+def _grid(table: Table) -> Iterator[str]:
+    columns = [[*map(typed, cells)] for cells in zip(table.head, *table.rows, strict=True)]
+    widths = [max(map(len, [" ", *head.split(), *cells])) for head, *cells in columns]
+    heads = [wrap(head, width) for (head, *_), width in zip(columns, widths, strict=True)]
+    body = zip(*(cells[1:] for cells in columns), strict=True)
+    for line in [*zip_longest(*heads, fillvalue=""), *body]:
+        placed = zip(line, widths, range(len(widths)), strict=True)
+        words = (c.ljust(w) if k < table.names else c.rjust(w) for c, w, k in placed)
+        yield f"  {'  '.join(words)}".rstrip()

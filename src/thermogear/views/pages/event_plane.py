@@ -58,21 +58,3 @@ def plane_tables(summary: Summary) -> list[Block]:
         Table("Bifurcations in two parameters", head, rows, names=1),
         Table("The curves", ["curve", "points", "turns at", "ended"], ends, names=1),
     ]
-
-
-def plane_lines(s: Summary) -> list[str]:
-    """The same in a terminal."""
-    lines: list[str] = []
-    for number, curve in enumerate(s.get("curves", ()), start=1):
-        lines.append(
-            f"  curve {number}: {curve['kind']} of period {curve['period']} in {s['second']}, "
-            f"{curve['points']} points; {curve['ended']}"
-        )
-        for one in curve["asked"]:
-            met = "" if one["stable"] else "  (on an unstable orbit)"
-            lines.append(
-                f"    {s['second']} = {shown(one, 6, SECOND):<14} "
-                f"{s['parameter']} = {shown(one)}{met}"
-            )
-        lines += [f"    turns at {one}" for one in _turns(curve)]
-    return lines

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -93,8 +92,3 @@ def operating_rows(data: xr.Dataset) -> list[dict[str, float]]:
 def table_of(data: xr.DataArray) -> list[list[float]]:
     """A grid as rows of numbers."""
     return [[float(v) for v in row] for row in data.values]
-
-
-def digits(value: float) -> str:
-    """A number of a terminal's table."""
-    return f"{value:.4f}" if math.isfinite(value) else "-"
