@@ -47,6 +47,7 @@ HERTZ = Display("Hz", 0.5 / math.pi)
 """Of an angular frequency."""
 SPEED = Display("rpm", 1.0 / RPM)
 MEGAPASCAL = Display("MPa", 1e-6)
+MINUTE = Display("min", 1.0 / 60.0)
 HOUR = Display("h", 1.0 / 3600.0)
 PERCENT = Display("%", 100.0)
 

@@ -84,9 +84,9 @@ def rows_along(data: xr.Dataset, *dims: str) -> list[dict[str, Any]]:
     """A row for each place along ``dims``, the last one fastest.
 
     A row has every variable that runs along no other dimension, flags as their words, and under
-    ``operating`` the name of the operating point.
+    ``operating`` the name of the operating point where these have none.
     """
-    if "operating" in dims:
+    if "operating" in dims and "operating" not in data.variables:
         data = data.assign(operating=operating_names(data))
     sizes = {dim: data.sizes[dim] for dim in dims}
     columns = {
