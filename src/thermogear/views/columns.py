@@ -61,7 +61,7 @@ class Column:
     def title(self) -> Cell:
         """Its words with the unit."""
         unit = self.display.unit.strip("–")
-        return f"{self.head} [{unit}]" if unit else self.head
+        return self.head + f" [{unit}]" if unit else self.head
 
     def cell(self, row: Row) -> Cell:
         """What stands in it in ``row``."""
@@ -80,20 +80,27 @@ class Column:
         return format(figure, self.digits.replace(".", "z.")).replace("-", "−")
 
 
-def rows_along(data: xr.Dataset, *dims: str) -> list[dict[str, Any]]:
-    """A row for each place along ``dims``, the last one fastest.
+def stretched(data: xr.Dataset, dims: Iterable[str]) -> dict[str, list[Any]]:
+    """Every variable that runs along no other dimension than ``dims``, spread over all of them.
 
-    A row has every variable that runs along no other dimension, flags as their words, and under
-    ``operating`` the name of the operating point where these have none.
+    Its values in the order of the rows, the last dimension fastest; flags as their words.
+    """
+    sizes = {dim: data.sizes[dim] for dim in dims}
+    return {
+        str(name): variable.set_dims(sizes).values.ravel().tolist()
+        for name, variable in in_words(data).variables.items()
+        if set(variable.dims) <= set(sizes)
+    }
+
+
+def rows_along(data: xr.Dataset, *dims: str) -> list[dict[str, Any]]:
+    """A row for each place along ``dims``: the values of :func:`stretched` by their names.
+
+    Under ``operating`` stands the name of the operating point where these have none.
     """
     if "operating" in dims and "operating" not in data.variables:
         data = data.assign(operating=operating_names(data))
-    sizes = {dim: data.sizes[dim] for dim in dims}
-    columns = {
-        str(name): variable.set_dims(sizes).values.ravel().tolist()
-        for name, variable in in_words(data).variables.items()
-        if set(variable.dims) <= set(dims)
-    }
+    columns = stretched(data, dims)
     return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from markupsafe import Markup
@@ -229,30 +230,35 @@ def numbers_beside(points: xr.Dataset | None, mesh: xr.Dataset | None, name: str
     return declared("Dimensionless numbers side by side.", columns, rows)
 
 
+def _choice(row: Row, bundle: str, meanings: Mapping[str, Any]) -> Cell:
+    """What a bundle chooses, with what it means where that is known."""
+    value: str = row[bundle]
+    meant = meanings.get(row["field"], {})
+    name = value.partition("(")[0]  # a law may show its parameters
+    if name not in meant:
+        return value
+    return Markup("<b>{}</b><br/><small>{}</small>").format(value, prose(meant[name]))
+
+
 def choices(bundles: Mapping[str, Any], meanings: Mapping[str, Any]) -> Table:
     """The choices of every bundle; rows in which they differ are marked."""
-    names = list(bundles)
-    fields: dict[str, None] = {}
-    for table in bundles.values():
-        fields |= dict.fromkeys(table if isinstance(table, Mapping) else {})
-    rows: list[list[Cell]] = []
-    marked: set[int] = set()
-    for field in fields:
-        values = [str(bundles[name].get(field, "–")) for name in names]
-        if len(set(values)) > 1:
-            marked.add(len(rows))
-        known = meanings.get(field, {})
-        meant = known if isinstance(known, Mapping) else {}
-        names_of = [value.partition("(")[0] for value in values]  # a law may show its parameters
-        cells: list[Cell] = [
-            Markup("<b>{}</b><br/><small>{}</small>").format(value, prose(meant[name]))
-            if name in meant
-            else value
-            for value, name in zip(values, names_of, strict=True)
-        ]
-        rows.append([field.replace("_", " "), *cells])
-    caption = "The choices of each bundle; marked rows differ."
-    return Table(caption, ["choice", *names], rows, len(names) + 1, frozenset(marked), wordy=True)
+    fields = dict.fromkeys(field for chosen in bundles.values() for field in chosen)
+    rows = [
+        {"field": field, **{name: str(chosen.get(field, "–")) for name, chosen in bundles.items()}}
+        for field in fields
+    ]
+    columns = [
+        Column("choice", lambda row: row["field"].replace("_", " ")),
+        *(Column(name, partial(_choice, bundle=name, meanings=meanings)) for name in bundles),
+    ]
+    return declared(
+        "The choices of each bundle; marked rows differ.",
+        columns,
+        rows,
+        names=len(columns),
+        marked=lambda row: len({row[name] for name in bundles}) > 1,
+        wordy=True,
+    )
 
 
 def _maybe(value: object) -> str:

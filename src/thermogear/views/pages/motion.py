@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from thermogear.base.display import MICROMETRE, Display, number
 from thermogear.results.result import Result
 from thermogear.views.columns import Column, declared, lines_of, typed
-from thermogear.views.csv_files import quoted
+from thermogear.views.csv_files import cell_text
 from thermogear.views.page import (
     LEAD,
     Block,
@@ -107,12 +107,8 @@ def csv_tables(kind: str, groups: Groups) -> dict[str, str]:
             lines = files.setdefault(f"{file}_{axis}.csv", [",".join([*own, *heads])])
             arrays = [data[c].values.tolist() for c in columns]
             for row in zip(*arrays, strict=True):
-                lines.append(",".join(_cell(v) for v in (*own.values(), *row)))
+                lines.append(",".join(cell_text(v) for v in (*own.values(), *row)))
     return {name: "\n".join(lines) + "\n" for name, lines in files.items()}
-
-
-def _cell(value: object) -> str:
-    return f"{value:.15g}" if isinstance(value, float) else quoted(str(value))
 
 
 HEADINGS = {
@@ -303,7 +299,7 @@ def _cascade_table(cascades: list[Summary], most: int) -> Table:
     doublings = [f"{2**k} → {2 ** (k + 1)}" for k in range(most)]
     rows = [*zip(doublings, *flips, strict=True), ("branch then", *(c["ended"] for c in cascades))]
     first = cascades[0]
-    caption = f"{page_words(first['parameter'])}, {first['from']:g} to {first['to']:g}"
+    caption = page_words(first["parameter"]) + f", {first['from']:g} to {first['to']:g}"
     return Table(caption, ["period doubling", *(c["heat"] for c in cascades)], rows)
 
 
