@@ -12,7 +12,9 @@ from itertools import zip_longest
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from markupsafe import Markup
+from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.display import Display, display, number
 from thermogear.base.vocabulary import QUANTITIES
@@ -80,14 +82,14 @@ class Column:
         return format(figure, self.digits.replace(".", "z.")).replace("-", "−")
 
 
-def stretched(data: xr.Dataset, dims: Iterable[str]) -> dict[str, list[Any]]:
+def stretched(data: xr.Dataset, dims: Iterable[str]) -> dict[str, NDArray[Any]]:
     """Every variable that runs along no other dimension than ``dims``, spread over all of them.
 
     Its values in the order of the rows, the last dimension fastest; flags as their words.
     """
     sizes = {dim: data.sizes[dim] for dim in dims}
     return {
-        str(name): variable.set_dims(sizes).values.ravel().tolist()
+        str(name): variable.set_dims(sizes).values.ravel()  # type: ignore[no-untyped-call]
         for name, variable in in_words(data).variables.items()
         if set(variable.dims) <= set(sizes)
     }
@@ -100,8 +102,13 @@ def rows_along(data: xr.Dataset, *dims: str) -> list[dict[str, Any]]:
     """
     if "operating" in dims and "operating" not in data.variables:
         data = data.assign(operating=operating_names(data))
-    columns = stretched(data, dims)
-    return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+    return rows_of(stretched(data, dims))
+
+
+def rows_of(columns: Mapping[str, ArrayLike]) -> list[dict[str, Any]]:
+    """The rows of ``columns`` of one length, by their names."""
+    values = [np.asarray(column).tolist() for column in columns.values()]
+    return [dict(zip(columns, row, strict=True)) for row in zip(*values, strict=True)]
 
 
 def declared(
@@ -136,7 +143,7 @@ def lines_of(*blocks: Block) -> list[str]:
         if isinstance(block, Text):
             lines.append(typed(block.words))
         elif isinstance(block, Table):
-            lines += [typed(block.caption), *_grid(block)]
+            lines += [*[typed(block.caption)] * bool(block.caption), *_grid(block)]
     return lines
 
 

@@ -93,7 +93,10 @@ def _columns(data: xr.Dataset, dims: list[str]) -> list[Column]:
     axes = [str(name) for name, axis in data.coords.items() if axis.dims]
     units = {str(name): str(one.attrs.get("units", "")) for name, one in data.variables.items()}
     return [
-        (f"{name} [{units[name]}]" if units.get(name) else name, [*map(cell_text, values[name])])
+        (
+            f"{name} [{units[name]}]" if units.get(name) else name,
+            [*map(cell_text, values[name].tolist())],
+        )
         for name in (*numbered, *axes, *map(str, data.data_vars))
     ]
 

@@ -139,7 +139,7 @@ AGAINST_ISO = (
 def _corner_share(data: xr.Dataset, bit: int) -> xr.DataArray:
     """Share of the mesh period in which the tip corner with this flag carries load."""
     carries = (data["edge_contact"].drop_attrs() & bit) > 0
-    return carries.any(carries.dims[-1]).mean("mesh_phase")
+    return carries.any("pair").mean("mesh_phase")
 
 
 def _numbers(result: Result) -> dict[str, Any]:

@@ -18,7 +18,7 @@ def shown(point: Row, digits: int = 8, which: str = "shown") -> str:
     return f"{point[which]:.{digits}g} {point[f'{which}_unit']}".strip()
 
 
-def _turns(curve: Summary) -> list[str]:
+def _turns(curve: Row) -> list[str]:
     """Where a curve turns back, in both parameters."""
     return [f"{shown(one, 6)} at {shown(one, 6, SECOND)}" for one in curve["turns"]]
 

@@ -69,4 +69,4 @@ def table(data: xr.Dataset, gear: str) -> Table:
         f"Each trace of the {gear} over the evaluated range, and the class of ISO 1328-1:2013 that "
         "all three figures keep."
     )
-    return declared(words, COLUMNS, rows_along(data, *data["iso_class"].dims))
+    return declared(words, COLUMNS, rows_along(data, *map(str, data["iso_class"].dims)))

@@ -169,7 +169,7 @@ PATHS = (
 
 def _tables(data: xr.Dataset) -> list[Table]:
     """Flanks and bearings in motion; of bearings stored without their paths the forces alone."""
-    columns = RINGS
+    columns: tuple[Column, ...] = RINGS
     if "journal_path" in data:
         columns += PATHS
         data = data.assign(clearance=internal_clearance(data))
