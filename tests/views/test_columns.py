@@ -14,7 +14,8 @@ from markupsafe import Markup
 from thermogear.base.display import CELSIUS, MICROMETRE, PERCENT, exactly
 from thermogear.base.vocabulary import label, status_attributes
 from thermogear.results.files import json_text
-from thermogear.views.columns import Column, declared, lines_of, rows_along, rows_of, typed
+from thermogear.results.tables import rows_of
+from thermogear.views.columns import Column, declared, lines_of, rows_along, typed
 from thermogear.views.csv_files import cell_text
 from thermogear.views.page import Text
 

@@ -216,7 +216,8 @@ def _growth_numbers(found: GrowthCheck) -> dict[str, Any]:
 def _stiffness_lines(found: StiffnessCheck) -> list[str]:
     """The check as a table of the terminal, and where both are farthest apart."""
     from thermogear.base.display import PERCENT
-    from thermogear.views.columns import Column, declared, lines_of, rows_of
+    from thermogear.results.tables import rows_of
+    from thermogear.views.columns import Column, declared, lines_of
 
     columns = (
         Column("phase", "phase", ".4f"),
@@ -250,7 +251,8 @@ def _stiffness_lines(found: StiffnessCheck) -> list[str]:
 def _growth_lines(found: GrowthCheck) -> list[str]:
     """The check as a table of the terminal, and where both are farthest apart."""
     from thermogear.base.display import MICROMETRE, MILLIMETRE
-    from thermogear.views.columns import Column, declared, lines_of, rows_of
+    from thermogear.results.tables import rows_of
+    from thermogear.views.columns import Column, declared, lines_of
 
     columns = (
         Column("radius", "radius", ".4f", MILLIMETRE),

@@ -12,13 +12,11 @@ from itertools import zip_longest
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 from markupsafe import Markup
-from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.display import Display, display, number
 from thermogear.base.vocabulary import QUANTITIES
-from thermogear.results.tables import in_words
+from thermogear.results import tables
 from thermogear.views.page import Block, Cell, Table, Text
 from thermogear.views.typesetting import operating_names
 
@@ -82,33 +80,14 @@ class Column:
         return format(figure, self.digits.replace(".", "z.")).replace("-", "−")
 
 
-def stretched(data: xr.Dataset, dims: Iterable[str]) -> dict[str, NDArray[Any]]:
-    """Every variable that runs along no other dimension than ``dims``, spread over all of them.
-
-    Its values in the order of the rows, the last dimension fastest; flags as their words.
-    """
-    sizes = {dim: data.sizes[dim] for dim in dims}
-    return {
-        str(name): variable.set_dims(sizes).values.ravel()  # type: ignore[no-untyped-call]
-        for name, variable in in_words(data).variables.items()
-        if set(variable.dims) <= set(sizes)
-    }
-
-
 def rows_along(data: xr.Dataset, *dims: str) -> list[dict[str, Any]]:
-    """A row for each place along ``dims``: the values of :func:`stretched` by their names.
+    """A row for each place along ``dims``, as :func:`~thermogear.results.tables.rows_along`.
 
     Under ``operating`` stands the name of the operating point where these have none.
     """
     if "operating" in dims and "operating" not in data.variables:
         data = data.assign(operating=operating_names(data))
-    return rows_of(stretched(data, dims))
-
-
-def rows_of(columns: Mapping[str, ArrayLike]) -> list[dict[str, Any]]:
-    """The rows of ``columns`` of one length, by their names."""
-    values = [np.asarray(column).tolist() for column in columns.values()]
-    return [dict(zip(columns, row, strict=True)) for row in zip(*values, strict=True)]
+    return tables.rows_along(data, *dims)
 
 
 def declared(

@@ -10,8 +10,7 @@ import numpy as np
 
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.results.result import Result
-from thermogear.results.tables import harmless
-from thermogear.views.columns import stretched
+from thermogear.results.tables import harmless, stretched
 
 if TYPE_CHECKING:
     import xarray as xr

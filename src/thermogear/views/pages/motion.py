@@ -75,15 +75,12 @@ def page(result: Result) -> Page:
 
 
 def _picture(kind: str, groups: Groups) -> Callable[[], Picture]:
-    if kind == "orbit":
-        return partial(plots.orbit_picture, groups["orbit"])
-    if kind == "lyapunov":
-        return partial(plots.lyapunov_picture, groups["lyapunov"])
+    if kind in ("branch", "cascade"):
+        maker = plots.branch_picture if kind == "branch" else plots.cascade_picture
+        return partial(maker, _numbered(groups, "branch_"))
     if kind == "shared":
         return partial(shared_picture, groups["rest"], groups["motion"])
-    branches = _numbered(groups, "branch_")
-    maker = plots.branch_picture if kind == "branch" else plots.cascade_picture
-    return partial(maker, branches)
+    return partial(plots.orbit_picture if kind == "orbit" else plots.lyapunov_picture, groups[kind])
 
 
 def _numbered(groups: Groups, begin: str) -> list[xr.Dataset]:
