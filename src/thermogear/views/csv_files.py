@@ -90,14 +90,16 @@ def _columns(data: xr.Dataset, dims: list[str]) -> list[Column]:
     numbered = {d: np.arange(data.sizes[d]) for d in dims if d not in data.coords}
     values = stretched(data.assign(numbered), dims)
     axes = [str(name) for name, axis in data.coords.items() if axis.dims]
-    units = {str(name): str(one.attrs.get("units", "")) for name, one in data.variables.items()}
     return [
-        (
-            f"{name} [{units[name]}]" if units.get(name) else name,
-            [*map(cell_text, values[name].tolist())],
-        )
+        (head_text(data, name), [*map(cell_text, values[name].tolist())])
         for name in (*numbered, *axes, *map(str, data.data_vars))
     ]
+
+
+def head_text(data: xr.Dataset, name: str) -> str:
+    """The name of a column with the unit it is stored in, if there is one."""
+    unit = data[name].attrs.get("units", "") if name in data.variables else ""
+    return f"{name} [{unit}]" if unit else name
 
 
 def cell_text(value: object) -> str:

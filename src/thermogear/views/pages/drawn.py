@@ -85,14 +85,13 @@ def _least(state: Any) -> str:
     return number(1e3 * float(np.nanmin(state.back_gap)))
 
 
-def rows(result: Result, drawing: GearDrawing) -> list[tuple[str, str, str]]:
+def rows(result: Result, drawing: GearDrawing) -> list[tuple[str, ...]]:
     """Words, pinion's and wheel's value of what can be measured on a gear."""
     data = result.groups["drawing"]
     cold, hot = (drawing.state(name) for name in (UNDEFORMED, "hot"))
 
-    def both(words: str, values: Iterable[float]) -> tuple[str, str, str]:
-        first, second = (number(float(value), 6) for value in values)
-        return words, first, second
+    def both(words: str, values: Iterable[float]) -> tuple[str, ...]:
+        return (words, *(number(float(value), 6) for value in values))
 
     clearance = 1e3 * data["tip_clearance"].isel(operating=0).values
     return [

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from thermogear.base.display import MICROMETRE, Display, number
 from thermogear.results.result import Result
 from thermogear.views.columns import Column, declared, lines_of, typed
-from thermogear.views.csv_files import cell_text
+from thermogear.views.csv_files import cell_text, head_text
 from thermogear.views.page import (
     LEAD,
     Block,
@@ -99,12 +99,10 @@ def csv_tables(kind: str, groups: Groups) -> dict[str, str]:
             columns = [str(v) for v in data.variables if data[v].dims == (axis,)]
             if not columns or axis in ("multiplier", "coordinate"):
                 continue
-            units = [str(data[c].attrs.get("units", "")) for c in columns]
-            heads = [f"{c} [{u}]" if u else c for c, u in zip(columns, units, strict=True)]
+            heads = [head_text(data, column) for column in columns]
             lines = files.setdefault(f"{file}_{axis}.csv", [",".join([*own, *heads])])
-            arrays = [data[c].values.tolist() for c in columns]
-            for row in zip(*arrays, strict=True):
-                lines.append(",".join(cell_text(v) for v in (*own.values(), *row)))
+            rows = zip(*(data[column].values.tolist() for column in columns), strict=True)
+            lines += [",".join(map(cell_text, (*own.values(), *row))) for row in rows]
     return {name: "\n".join(lines) + "\n" for name, lines in files.items()}
 
 
