@@ -80,6 +80,10 @@ class Column:
         return format(figure, self.digits.replace(".", "z.")).replace("-", "−")
 
 
+OF_STATE = (Column("state", "state"), Column("operating point", "operating"))
+"""The state of heat and the operating point, as the first columns of a table."""
+
+
 def rows_along(data: xr.Dataset, *dims: str) -> list[dict[str, Any]]:
     """A row for each place along ``dims``, as :func:`~thermogear.results.tables.rows_along`.
 

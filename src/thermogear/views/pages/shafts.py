@@ -21,7 +21,7 @@ from thermogear.base.display import (
 )
 from thermogear.base.units import RPM
 from thermogear.results.result import Result
-from thermogear.views.columns import Column, Row, declared, rows_along
+from thermogear.views.columns import OF_STATE, Column, Row, declared, rows_along
 from thermogear.views.page import Page, Pictures, Section, Shown, Table
 from thermogear.views.pages.survey import operating_rows, survey
 from thermogear.views.plots import shafts as plots
@@ -107,8 +107,7 @@ def _clearances(rings: xr.Dataset) -> Shown:
 
 
 MESH = (
-    Column("state", "state"),
-    Column("operating point", "operating"),
+    *OF_STATE,
     Column("mesh force", "mesh_force", ".0f", NEWTON),
     Column("teeth give", "mesh_deflection", ".2f", MICROMETRE),
     Column("centres apart", "centre_distance_growth", ".2f", MICROMETRE),
@@ -117,8 +116,7 @@ MESH = (
     Column("flanks part across the face", "misalignment_across_face", ".2f", MICROMETRE),
 )
 RINGS = (
-    Column("state", "state"),
-    Column("operating point", "operating"),
+    *OF_STATE,
     Column("bearing", "bearing"),
     Column("load", "bearing_load", ".0f", NEWTON),
     Column("radial internal clearance", "clearance", ".2f", MICROMETRE),

@@ -9,7 +9,7 @@ import numpy as np
 
 from thermogear.base.display import MICROMETRE, NEWTON
 from thermogear.results.result import Result
-from thermogear.views.columns import Column, declared, lines_of, rows_along
+from thermogear.views.columns import OF_STATE, Column, declared, lines_of, rows_along
 from thermogear.views.moving import Dial
 from thermogear.views.page import Block, Pictures, Section, Table, Text
 from thermogear.views.picture import Picture
@@ -143,8 +143,7 @@ def _frame(data: xr.Dataset, place: int, frame: int) -> Picture:
 
 
 FLANKS = (
-    Column("state", "state"),
-    Column("operating point", "operating"),
+    *OF_STATE,
     Column("motion", "motion"),
     Column("mean force", "mean_mesh_force", ".0f", NEWTON),
     Column("greatest force", "greatest_mesh_force", ".0f", NEWTON),
@@ -154,8 +153,7 @@ FLANKS = (
     Column("largest multiplier", "multiplier_modulus", ".4f"),
 )
 RINGS = (
-    Column("state", "state"),
-    Column("operating point", "operating"),
+    *OF_STATE,
     Column("bearing", "bearing"),
     Column("mean force", "mean_bearing_force", ".0f", NEWTON),
     Column("greatest force", "greatest_bearing_force", ".0f", NEWTON),
