@@ -33,7 +33,7 @@ def test_orbit_prints_stores_and_draws(tmp_path: Path, capsys: pytest.CaptureFix
     assert main(["orbit", *NUMBERS, "--start", "0,0", "--period", "2", "-o", str(out)]) == 0
     said = capsys.readouterr().out
     assert "0.511918932" in said
-    assert re.search(r"^ +0\.50* +half order", said, re.MULTILINE)
+    assert re.search(r"^ +0\.50* +half ", said, re.MULTILINE)
     names = {path.name for path in out.iterdir()}
     assert names >= {"orbit.nc", "orbit.json", "orbit.html", "orbit.svg", "orbit.png"}
     page = (out / "orbit.html").read_text(encoding="utf-8")

@@ -22,13 +22,13 @@ from thermogear.views.page import Text
 GAP = np.array([[1.0 / 3e4, -2e-9], [np.nan, 4e-5]])
 COLUMNS = (
     Column("state", "state"),
-    Column("operating point", "operating"),
+    Column("point", "operating"),
     Column("gap", "half_backlash", ".1f"),
     Column("twice", lambda row: 2.0 * row["half_backlash"], 3, MICROMETRE),
     Column("oil", "oil", 3, CELSIUS),
     Column("share", "share", "+.1f", PERCENT),
     Column("teeth", "teeth"),
-    Column("status", lambda row: row["status"].replace("_", " ")),
+    Column("status", lambda row: row["status"].replace("_", "-")),
 )
 
 
@@ -82,14 +82,14 @@ def test_the_page_has_units_in_heads_and_digits_as_declared() -> None:
     rows = rows_along(data(), "state", "operating")
     table = declared("Gaps.", COLUMNS, rows, names=2, marked=lambda row: row["status"] == "jammed")
     assert table.head == [
-        "state", "operating point", "gap [µm]", "twice [µm]", "oil [°C]", "share [%]", "teeth",
+        "state", "point", "gap [µm]", "twice [µm]", "oil [°C]", "share [%]", "teeth",
         "status",
     ]  # fmt: skip
     assert table.rows == [
         ["undeformed", "3000 rpm", "33.3", "66.7", "20.0", "+25.0", "20", "ok"],
         # what rounds to zero has no sign
         ["undeformed", "6000 rpm", "0.0", "−0.00400", "20.0", "−25.0", "20", "jammed"],
-        ["hot", "3000 rpm", "–", "–", "80.0", "+25.0", "20", "not converged"],
+        ["hot", "3000 rpm", "–", "–", "80.0", "+25.0", "20", "not-converged"],
         ["hot", "6000 rpm", "40.0", "80.0", "80.0", "−25.0", "20", "ok"],
     ]
     assert table.marked == {1}
