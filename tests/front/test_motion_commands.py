@@ -32,8 +32,8 @@ def test_orbit_prints_stores_and_draws(tmp_path: Path, capsys: pytest.CaptureFix
     out = tmp_path / "orbit"
     assert main(["orbit", *NUMBERS, "--start", "0,0", "--period", "2", "-o", str(out)]) == 0
     said = capsys.readouterr().out
-    assert "+0.511918932" in said
-    assert re.search(r"\b0\.5\b", said)
+    assert "0.511918932" in said
+    assert re.search(r"^ +0\.50* +half ", said, re.MULTILINE)
     names = {path.name for path in out.iterdir()}
     assert names >= {"orbit.nc", "orbit.json", "orbit.html", "orbit.svg", "orbit.png"}
     page = (out / "orbit.html").read_text(encoding="utf-8")
@@ -90,7 +90,7 @@ def test_continue_in_a_second_parameter(tmp_path: Path, capsys: pytest.CaptureFi
     out = tmp_path / "plane"
     assert main(["continue", *numbers, "-o", str(out)]) == 0
     said = capsys.readouterr().out
-    assert said.count("damping_ratio") > 3
+    assert len(re.findall("^ +1 fold, period 1 ", said, re.MULTILINE)) > 3
     kept = open_results(out)
     assert kept["curve_0"].attrs["kind"] == "fold"
     asked = kept["curve_0"]["second"].values[kept["curve_0"]["asked"].values == 1]
@@ -128,7 +128,7 @@ def test_ctrl_c_keeps_what_is_done(
     arguments = ["lyapunov", *NUMBERS, "--batches", "20", "--batch-periods", "50", "-o", str(out)]
     assert main(arguments) == 130
     said = capsys.readouterr()
-    assert "batches                4 of 50 periods" in said.out
+    assert re.search("batches +4 of 50 periods", said.out)
     last = said.err.strip().splitlines()[-1]
     assert last == f"interrupted: stopped on request; what was found so far stays in {out}"
     assert (out / "lyapunov.html").is_file()

@@ -19,7 +19,8 @@ from thermogear.results.result import open_results
 from thermogear.study.shafts.motion import train_motion
 from thermogear.study.shafts.state import settled
 from thermogear.study.shafts.waterfall import waterfall
-from thermogear.views.pages.waterfall import lines, numbers
+from thermogear.views.columns import lines_of, typed
+from thermogear.views.pages.waterfall import jumps, numbers
 
 HELD = """
 [temperatures]
@@ -112,8 +113,8 @@ def test_waterfall_leaves_a_store_a_page_and_numbers(
     (one,) = numbers(SimpleNamespace(data=data))["apart"]  # type: ignore[arg-type]
     assert one["from_rpm"] == pytest.approx(240.0 * 30.0 / np.pi, rel=1e-15)
     assert (one["up_rms_N"], one["down_rms_N"]) == (1234567.8, 12.3456)
-    told = lines(SimpleNamespace(data=data))[-1]  # type: ignore[arg-type]
-    assert all(number(force) in told for force in (1234567.8, 12.3456))
+    told = lines_of(jumps(data))[-1]
+    assert all(typed(number(force)) in told for force in (1234567.8, 12.3456))
     assert (out / "report.html").exists()
 
 

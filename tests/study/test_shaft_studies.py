@@ -217,7 +217,7 @@ def test_no_linear_force_is_told_above_the_static_load() -> None:
     assert np.all(lifts[lifted] < critical["critical_speed"].values[lifted])
     # in the page, the terminal and the file the speed stands where the force would
     rows = list(criticals(result))
-    words = [line for line in page(result).lines() if "not valid" in line]
+    words = [line for line in page(result).lines() if "not valid:" in line]
     told = [one for one in rows if one["lifts_off_from_rpm"] is not None]
     assert len(words) == len(told) > 0
     for line, one in zip(words, told, strict=True):

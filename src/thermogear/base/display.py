@@ -38,14 +38,24 @@ MICROMETRE = Display("µm", 1e6)
 MILLIMETRE = Display("mm", 1e3)
 KELVIN = Display("K")
 CELSIUS = Display("°C", 1.0, zero=ZERO_CELSIUS)
+NEWTON = Display("N")
+STIFFNESS = Display("10⁸ N/m", 1e-8)
+PER_MICROMETRE = Display("N/µm", 1e-6)
+HERTZ = Display("Hz", 0.5 / math.pi)
+"""Of an angular frequency."""
+SPEED = Display("rpm", 1.0 / RPM)
+MEGAPASCAL = Display("MPa", 1e-6)
+MINUTE = Display("min", 1.0 / 60.0)
+HOUR = Display("h", 1.0 / 3600.0)
+PERCENT = Display("%", 100.0)
 
 _BY_UNIT = {
     "1": Display("–"),
     "m": MICROMETRE,
-    "N/m": Display("10⁸ N/m", 1e-8),
-    "Pa": Display("MPa", 1e-6),
+    "N/m": STIFFNESS,
+    "Pa": MEGAPASCAL,
     "K": CELSIUS,
-    "rad/s": Display("rpm", 1.0 / RPM),
+    "rad/s": SPEED,
     "m/s": Display("m/s"),
     "s": Display("ms", 1e3),
 }

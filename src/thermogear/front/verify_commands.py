@@ -84,15 +84,17 @@ def stiffness(
         Density(refinement=refine),
         near,
     )
+    _say(
+        as_json,
+        read.title,
+        f"{moment:g} N m on the pinion, F_n/b = {1e-3 * found.line_load:.4g} N/mm",
+        *_notes(near),
+        "",
+        *_stiffness_lines(found),
+    )
     if as_json:
         content = {"title": read.title, "torque": moment, "near": near, "notes": STIFFNESS_NOTES}
         click.echo(json_text(content | _stiffness_numbers(found)), nl=False)
-        return
-    click.echo(read.title)
-    click.echo(f"{moment:g} N m on the pinion, F_n/b = {1e-3 * found.line_load:.4g} N/mm")
-    _print_notes(near)
-    click.echo("")
-    _print_stiffness(found)
 
 
 @verify.command()
@@ -116,8 +118,7 @@ def growth(case: str, overrides: tuple[str, ...], bore: str, as_json: bool) -> N
         ("wheel", read.pair.wheel, heat.wheel_bore, heat.wheel_addendum),
     )
     content: dict[str, Any] = {"title": read.title, "bore": bore}
-    if not as_json:
-        click.echo(f"{read.title}\nnormal growth of one flank, plane stress, bores {bore}")
+    _say(as_json, read.title, f"normal growth of one flank, plane stress, bores {bore}")
     for name, gear, inner, outer in gears:
         at_bore, at_tip = (float(np.ravel(np.asarray(t))[0]) for t in (inner, outer))
         field = RadialField(
@@ -129,22 +130,13 @@ def growth(case: str, overrides: tuple[str, ...], bore: str, as_json: bool) -> N
         )
         found = check_growth(gear, field, bore=bore)
         content[name] = _growth_numbers(found)
-        if as_json:
-            continue
-        click.echo(
-            f"\n{name}: bore {at_bore - ZERO_CELSIUS:.4g} degC, "
+        _say(
+            as_json,
+            "",
+            f"{name}: bore {at_bore - ZERO_CELSIUS:.4g} degC, "
             f"addendum {at_tip - ZERO_CELSIUS:.4g} degC, "
-            f"drawn at {heat.reference - ZERO_CELSIUS:.4g} degC"
-        )
-        click.echo(f"{'radius mm':>11}{'model um':>11}{'FE um':>11}{'model - FE um':>15}")
-        for r, model, finite in zip(found.radius, found.model, found.finite, strict=True):
-            click.echo(
-                f"{1e3 * r:>11.4f}{1e6 * model:>11.3f}{1e6 * finite:>11.3f}"
-                f"{1e6 * (model - finite):>+15.3f}"
-            )
-        worst = found.worst
-        click.echo(
-            f"worst {1e6 * found.difference[worst]:+.3f} um at {1e3 * found.radius[worst]:.4f} mm"
+            f"drawn at {heat.reference - ZERO_CELSIUS:.4g} degC",
+            *_growth_lines(found),
         )
     if as_json:
         click.echo(json_text(content), nl=False)
@@ -166,8 +158,7 @@ def pairs(refine: int, near: str, as_json: bool) -> None:
         ("edges", far_pairs()),
     )
     content: dict[str, Any] = {"near": near, "notes": STIFFNESS_NOTES}
-    if not as_json:
-        _print_notes(near)
+    _say(as_json, *_notes(near))
     for group, members in groups:
         worst: tuple[float, str] = (0.0, "")
         for checked in members:
@@ -180,18 +171,21 @@ def pairs(refine: int, near: str, as_json: bool) -> None:
             )
             content.setdefault(group, {})[checked.name] = _stiffness_numbers(found)
             worst = max(worst, (abs(float(found.difference[found.worst])), checked.name))
-            if not as_json:
-                click.echo(f"\n{checked.name}, {1e-3 * checked.line_load:g} N/mm ({group})")
-                _print_stiffness(found)
-        if not as_json:
-            click.echo(f"\nworst of the {group} pairs: {worst[1]}, {100.0 * worst[0]:.2f} %")
+            load = f"{1e-3 * checked.line_load:g} N/mm"
+            _say(as_json, "", f"{checked.name}, {load} ({group})", *_stiffness_lines(found))
+        _say(as_json, "", f"worst of the {group} pairs: {worst[1]}, {100.0 * worst[0]:.2f} %")
     if as_json:
         click.echo(json_text(content), nl=False)
 
 
-def _print_notes(near: str) -> None:
-    for note in (*STIFFNESS_NOTES, f"around the contacts plane {near}"):
-        click.echo(f"- {note}")
+def _say(as_json: bool, *lines: str) -> None:
+    """Print ``lines`` at once, unless a script wants JSON."""
+    if not as_json:
+        click.echo("\n".join(lines))
+
+
+def _notes(near: str) -> list[str]:
+    return [f"- {note}" for note in (*STIFFNESS_NOTES, f"around the contacts plane {near}")]
 
 
 def _stiffness_numbers(found: StiffnessCheck) -> dict[str, Any]:
@@ -219,24 +213,59 @@ def _growth_numbers(found: GrowthCheck) -> dict[str, Any]:
     }
 
 
-def _print_stiffness(found: StiffnessCheck) -> None:
-    click.echo(
-        f"{'phase':>8}{'pairs':>7}{'model':>10}{'FE':>10}{'diff %':>9}"
-        f"{'share':>9}{'FE':>8}{'diff':>9}    secant, N/(mm um)"
+def _stiffness_lines(found: StiffnessCheck) -> list[str]:
+    """The check as a table of the terminal, and where both are farthest apart."""
+    from thermogear.base.display import PERCENT
+    from thermogear.results.tables import rows_of
+    from thermogear.views.columns import Column, declared, lines_of
+
+    columns = (
+        Column("phase", "phase", ".4f"),
+        Column("pairs", "pairs"),
+        Column("model", "model", ".3f"),
+        Column("FE", "finite", ".3f"),
+        Column("difference", "difference", "+.2f", PERCENT),
+        Column("share", "share", ".4f"),
+        Column("FE", "finite_share", ".4f"),
+        Column("difference", "share_difference", "+.4f"),
     )
     unit = found.face_width * 1e9
-    for i, phase in enumerate(found.phase):
-        click.echo(
-            f"{phase:>8.4f}{found.pairs[i]:>7d}{found.model[i] / unit:>10.3f}"
-            f"{found.finite[i] / unit:>10.3f}{100.0 * found.difference[i]:>+9.2f}"
-            f"{found.model_share[i, 0]:>9.4f}{found.finite_share[i, 0]:>8.4f}"
-            f"{found.share_difference[i, 0]:>+9.4f}"
-        )
+    by_name = {
+        "phase": found.phase,
+        "pairs": found.pairs,
+        "model": found.model / unit,
+        "finite": found.finite / unit,
+        "difference": found.difference,
+        "share": found.model_share[:, 0],
+        "finite_share": found.finite_share[:, 0],
+        "share_difference": found.share_difference[:, 0],
+    }
     worst = found.worst
-    click.echo(
+    return [
+        *lines_of(declared("secant, N/(mm um)", columns, rows_of(by_name))),
         f"worst: stiffness {100.0 * found.difference[worst]:+.2f} % at {found.phase[worst]:.4f}, "
-        f"share {found.worst_share:.4f}"
+        f"share {found.worst_share:.4f}",
+    ]
+
+
+def _growth_lines(found: GrowthCheck) -> list[str]:
+    """The check as a table of the terminal, and where both are farthest apart."""
+    from thermogear.base.display import MICROMETRE, MILLIMETRE
+    from thermogear.results.tables import rows_of
+    from thermogear.views.columns import Column, declared, lines_of
+
+    columns = (
+        Column("radius", "radius", ".4f", MILLIMETRE),
+        Column("model", "model", ".3f", MICROMETRE),
+        Column("FE", "finite", ".3f", MICROMETRE),
+        Column("model - FE", "difference", "+.3f", MICROMETRE),
     )
+    by_name = {name: getattr(found, name) for name in ("radius", "model", "finite", "difference")}
+    worst = found.worst
+    return [
+        *lines_of(declared("", columns, rows_of(by_name))),
+        f"worst {1e6 * found.difference[worst]:+.3f} um at {1e3 * found.radius[worst]:.4f} mm",
+    ]
 
 
 COMMANDS: tuple[click.Command, ...] = (verify,)

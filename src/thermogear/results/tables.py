@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.display import display
 from thermogear.base.errors import InputError
@@ -36,6 +36,30 @@ def frames(data: xr.Dataset, units: str = "si") -> dict[tuple[str, ...], pd.Data
         if dims:
             families.setdefault(dims, []).append(str(name))
     return {dims: _frame(data[names], units) for dims, names in families.items()}
+
+
+def stretched(data: xr.Dataset, dims: Iterable[str]) -> dict[str, NDArray[Any]]:
+    """Every variable that runs along no other dimension than ``dims``, spread over all of them.
+
+    Its values in the order of the rows, the last dimension fastest; flags as their words.
+    """
+    sizes = {dim: data.sizes[dim] for dim in dims}
+    return {
+        str(name): variable.set_dims(sizes).values.ravel()  # type: ignore[no-untyped-call]
+        for name, variable in in_words(data).variables.items()
+        if set(variable.dims) <= set(sizes)
+    }
+
+
+def rows_of(columns: Mapping[str, ArrayLike]) -> list[dict[str, Any]]:
+    """The rows of ``columns`` of one length, by their names."""
+    values = [np.asarray(column).tolist() for column in columns.values()]
+    return [dict(zip(columns, row, strict=True)) for row in zip(*values, strict=True)]
+
+
+def rows_along(data: xr.Dataset, *dims: str) -> list[dict[str, Any]]:
+    """A row for each place along ``dims``: the values of :func:`stretched` by their names."""
+    return rows_of(stretched(data, dims))
 
 
 def told(rows: Iterable[Mapping[str, Any]]) -> pd.DataFrame:
@@ -100,7 +124,7 @@ def spread(data: xr.Dataset, dim: str = "bearing") -> xr.Dataset:
 
 
 def _frame(data: xr.Dataset, units: str) -> pd.DataFrame:
-    frame = _in_words(data).to_dataframe().reset_index()
+    frame = in_words(data).to_dataframe().reset_index()
     dims = [name for name in map(str, data.dims) if name in frame.columns]
     first = [*dims, *(name for name in FIRST if name in frame.columns)]
     frame = frame[[*first, *(name for name in map(str, frame.columns) if name not in first)]]
@@ -120,7 +144,7 @@ def _frame(data: xr.Dataset, units: str) -> pd.DataFrame:
     return named
 
 
-def _in_words(data: xr.Dataset) -> xr.Dataset:
+def in_words(data: xr.Dataset) -> xr.Dataset:
     """The same with the words of its flags in place of their numbers."""
     words: dict[Any, Any] = {}
     for name, variable in data.coords.items():

@@ -8,7 +8,7 @@ import math
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +25,7 @@ from thermogear.gears.deviations import PitchError
 from thermogear.gears.iso6336 import iso6336_stiffness
 from thermogear.mesh.model import CHOICES
 from thermogear.results.result import Notice
+from thermogear.results.tables import rows_along
 from thermogear.study.measured_flanks import measured_notices
 from thermogear.study.notices import friction_notices, reasons, several_words
 
@@ -41,7 +42,7 @@ MOST_POINTS = 12
 LIBRARIES = ("numpy", "scipy", "numba", "xarray", "h5netcdf", "matplotlib")
 
 
-def _point(here: xr.Dataset, form: str = ".0f") -> str:
+def _point(here: xr.Dataset | Mapping[str, Any], form: str = ".0f") -> str:
     """Speed and torque of one operating point."""
     speed, torque = float(here["pinion_speed"]) / RPM, float(here["pinion_torque"])
     return f"{speed:{form}} rpm, {torque:{form}} N m"
@@ -344,80 +345,81 @@ def dimensionless_notices(points: xr.Dataset) -> Iterator[Notice]:
 def facts(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[dict[str, object]]:
     """The case's own figures, then those of the run: frequencies, plausibility."""
     mesh = groups["mesh"]
-    table = list(case_facts(case))
-    for place, bundle in enumerate(mesh["bundle"].values):
-        natural = float(mesh["natural_frequency"].isel(bundle=place, state=0, operating=0))
-        resonance = 60.0 * natural / case.pair.pinion.teeth
-        table.append(
-            Fact("natural frequency of the undeformed mean stiffness", str(bundle), natural, "Hz")
-        )
-        table.append(Fact("pinion speed of the mesh resonance", str(bundle), resonance, "rpm"))
-    cold = mesh.isel(bundle=0, state=0, operating=0)
-    for body, words in (("rim", "rim"), ("bore_clamped", "bore clamped")):
-        k = float(cold[f"{body}_stiffness"])
-        natural = math.sqrt(k / case.equivalent_mass) / (2.0 * math.pi)
-        table.append(Fact("loaded contact, undeformed, two readings of the bore", words, k, "N/m"))
-        table.append(Fact("natural frequency of the loaded contact", words, natural, "Hz"))
-    for place in range(mesh.sizes["operating"]):
-        load = float(mesh["normal_force"].isel(bundle=0, state=0, operating=place))
-        tangential = load * math.cos(case.pair.pinion.pressure_angle)
-        iso = float(iso6336_stiffness(case.pair, tangential / case.pair.face_width).mesh)
-        at = f"at {float(mesh['pinion_torque'][place]):.0f} N m"
-        value = iso * case.pair.face_width
-        fact = Fact("mesh stiffness by ISO 6336-1 method B (knows no bore)", at, value, "N/m")
-        if fact not in table:
-            table.append(fact)
-    hot = mesh.isel(bundle=0, state=-1, operating=told_operating(mesh))
+    cold, hot = (mesh.isel(state=end) for end in (0, -1))
+    heat = hot.isel(bundle=0, operating=told_operating(mesh))
+    table = [
+        *case_facts(case),
+        *_frequencies(case, cold.isel(operating=0)),
+        *dict.fromkeys(_iso(case, row) for row in rows_along(cold.isel(bundle=0), "operating")),
+    ]
     for name in ("pinion", "wheel"):
-        heat = float(hot[f"{name}_shaft_heat"])
-        table.append(Fact("heat the assumed field sends into the shaft", name, heat, "W"))
-    path = groups["path"].isel(bundle=0, state=-1)
-    for place in range(path.sizes["operating"]):
-        at = f"at {_point(path.isel(operating=place))}"
-        loss = float(mesh["frictional_power"].isel(bundle=0, state=-1, operating=place))
-        table.append(Fact("frictional power of the mesh", at, loss, "W"))
-    table += _balance_facts(groups)
-    return [asdict(fact) for fact in table]
+        watts = float(heat[f"{name}_shaft_heat"])
+        table.append(Fact("heat the assumed field sends into the shaft", name, watts, "W"))
+    for row in rows_along(hot.isel(bundle=0), "operating"):
+        loss = row["frictional_power"]
+        table.append(Fact("frictional power of the mesh", f"at {_point(row)}", loss, "W"))
+    return [asdict(fact) for fact in (*table, *_balance_facts(groups.get("balance")))]
 
 
-def _balance_facts(groups: Mapping[str, xr.Dataset]) -> list[Fact]:
+def _frequencies(case: GearCase, cold: xr.Dataset) -> Iterator[Fact]:
+    """Natural frequencies of the mean stiffness of every bundle, and of the loaded contact."""
+    for row in rows_along(cold, "bundle"):
+        natural = row["natural_frequency"]
+        name = row["bundle"]
+        resonance = 60.0 * natural / case.pair.pinion.teeth
+        yield Fact("natural frequency of the undeformed mean stiffness", name, natural, "Hz")
+        yield Fact("pinion speed of the mesh resonance", name, resonance, "rpm")
+    for body, words in (("rim", "rim"), ("bore_clamped", "bore clamped")):
+        k = float(cold[f"{body}_stiffness"].isel(bundle=0))
+        natural = math.sqrt(k / case.equivalent_mass) / (2.0 * math.pi)
+        yield Fact("loaded contact, undeformed, two readings of the bore", words, k, "N/m")
+        yield Fact("natural frequency of the loaded contact", words, natural, "Hz")
+
+
+def _iso(case: GearCase, row: Mapping[str, Any]) -> Fact:
+    """The mesh stiffness of ISO 6336-1 at the load of an operating point."""
+    tangential = row["normal_force"] * math.cos(case.pair.pinion.pressure_angle)
+    width = case.pair.face_width
+    value = float(iso6336_stiffness(case.pair, tangential / width).mesh) * width
+    at = f"at {row['pinion_torque']:.0f} N m"
+    return Fact("mesh stiffness by ISO 6336-1 method B (knows no bore)", at, value, "N/m")
+
+
+def _balance_facts(balance: xr.Dataset | None) -> Iterator[Fact]:
     """Node temperatures and losses of every operating point, and the corrected readings."""
-    if "balance" not in groups:
-        return []
-    balance, found = groups["balance"], []
+    if balance is None:
+        return
     for one in json.loads(str(balance.attrs["readings"])):
         words = (
             f"{one['node']}, {one['kind']} reading {CELSIUS.text(one['indicated_K'], 1)} corrected"
         )
         value = f"{CELSIUS.text(one['temperature_K'], 1)} +- {one['uncertainty_K']:.2g} K"
-        found.append(Fact("measured temperatures", words, value))
+        yield Fact("measured temperatures", words, value)
+    few = balance.isel(operating=slice(MOST_POINTS))
     if "half_backlash_uncertainty" in balance:
-        for o in range(min(balance.sizes["operating"], MOST_POINTS)):
-            here = balance.isel(operating=o)
-            sigma = 1e6 * float(here["half_backlash_uncertainty"])
-            words = "uncertainty of b' from the measured temperatures"
-            found.append(Fact(words, f"at {_point(here)}", sigma, "um"))
-    for place, bundle in enumerate(balance["bundle"].values):
-        for o in range(min(balance.sizes["operating"], MOST_POINTS)):
-            here = balance.isel(bundle=place, operating=o)
-            group = f"heat balance, {bundle}, {_point(here)}"
-            if np.isnan(here["residual"]):
-                found.append(Fact(group, "temperatures", "no value"))
-                continue
-            for node, kelvin in zip(
-                here["node"].values, here["node_temperature"].values, strict=True
-            ):
-                found.append(Fact(group, f"{node} temperature", CELSIUS.text(float(kelvin), 1)))
-            for kind, watts in zip(here["loss_kind"].values, here["loss"].values, strict=True):
-                found.append(Fact(group, f"{kind} loss", float(watts), "W"))
-            for name in here["bearing"].values if "bearing" in here.coords else ():
-                one = here.sel(bearing=name)
-                thin = 1e6 * float(one["bearing_viscosity"])
-                found.append(Fact(group, f"{name} loss", float(one["bearing_loss"]), "W"))
-                found.append(Fact(group, f"{name} viscosity", thin, "mm^2/s"))
-            found.append(Fact(group, "iterations", int(here["iterations"])))
-            found.append(Fact(group, "residual", float(here["residual"]), "K"))
-    return found
+        words = "uncertainty of b' from the measured temperatures"
+        for row in rows_along(few, "operating"):
+            yield Fact(words, f"at {_point(row)}", 1e6 * row["half_backlash_uncertainty"], "um")
+    for bundle, o in np.ndindex(few.sizes["bundle"], few.sizes["operating"]):
+        yield from _balance_of(few.isel(bundle=bundle, operating=o))
+
+
+def _balance_of(here: xr.Dataset) -> Iterator[Fact]:
+    """The heat balance of one bundle at one operating point."""
+    group = f"heat balance, {here['bundle'].item()}, {_point(here)}"
+    if np.isnan(here["residual"]):
+        yield Fact(group, "temperatures", "no value")
+        return
+    for row in rows_along(here, "node"):
+        yield Fact(group, f"{row['node']} temperature", CELSIUS.text(row["node_temperature"], 1))
+    for row in rows_along(here, "loss_kind"):
+        yield Fact(group, f"{row['loss_kind']} loss", row["loss"], "W")
+    for row in rows_along(here, "bearing") if "bearing" in here.coords else ():
+        thin = 1e6 * row["bearing_viscosity"]
+        yield Fact(group, f"{row['bearing']} loss", row["bearing_loss"], "W")
+        yield Fact(group, f"{row['bearing']} viscosity", thin, "mm^2/s")
+    yield Fact(group, "iterations", int(here["iterations"]))
+    yield Fact(group, "residual", float(here["residual"]), "K")
 
 
 def choice_meanings() -> dict[str, dict[str, str]]:

@@ -7,11 +7,10 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.results.result import Result
-from thermogear.results.tables import harmless
+from thermogear.results.tables import harmless, stretched
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -88,47 +87,26 @@ def _place_name(data: xr.Dataset, dimension: str, place: int) -> str:
 
 def _columns(data: xr.Dataset, dims: list[str]) -> list[Column]:
     """Every coordinate and variable of ``data``, stretched over ``dims`` and laid flat."""
-    import xarray as xr
-
-    shape = tuple(data.sizes[d] for d in dims)
-    found: list[Column] = []
-    for dimension in dims:
-        if dimension not in data.coords:
-            axis = xr.Variable((dimension,), np.arange(data.sizes[dimension]))
-            found.append((dimension, _flat(axis, dims, shape)))
-    names = [*data.coords, *data.data_vars]
-    for name in sorted(names, key=lambda n: n not in data.coords):
-        variable = data.variables[name]
-        if variable.dims or name in data.data_vars:
-            unit = str(variable.attrs.get("units", ""))
-            found.append((f"{name} [{unit}]" if unit else str(name), _flat(variable, dims, shape)))
-    return found
+    numbered = {d: np.arange(data.sizes[d]) for d in dims if d not in data.coords}
+    values = stretched(data.assign(numbered), dims)
+    axes = [str(name) for name, axis in data.coords.items() if axis.dims]
+    return [
+        (head_text(data, name), [*map(cell_text, values[name].tolist())])
+        for name in (*numbered, *axes, *map(str, data.data_vars))
+    ]
 
 
-def _flat(variable: xr.Variable, dims: list[str], shape: tuple[int, ...]) -> list[str]:
-    """The values of one column as text, in the row order of ``dims``."""
-    values = variable.values
-    if "flag_meanings" in variable.attrs:
-        words = np.array(str(variable.attrs["flag_meanings"]).split())
-        values = words[np.clip(values.astype(int), 0, words.size - 1)]
-    texts = _texts(values)
-    if "missing_value" in variable.attrs:
-        texts[values == variable.attrs["missing_value"]] = ""
-    own = [str(d) for d in variable.dims]
-    wide = texts.transpose([own.index(d) for d in dims if d in own])
-    spread = wide.reshape([variable.sizes[d] if d in own else 1 for d in dims])
-    return np.broadcast_to(spread, shape).ravel().tolist()
+def head_text(data: xr.Dataset, name: str) -> str:
+    """The name of a column with the unit it is stored in, if there is one."""
+    unit = data[name].attrs.get("units", "") if name in data.variables else ""
+    return f"{name} [{unit}]" if unit else name
 
 
-def _texts(values: NDArray[np.generic]) -> NDArray[np.object_]:
-    """Numbers to all fifteen digits of a decimal, words in quotes where CSV wants them."""
-    if values.dtype.kind == "f":
-        texts = [f"{v:.15g}" if v == v else "" for v in values.ravel().tolist()]
-    else:
-        texts = [quoted(str(v)) for v in values.ravel().tolist()]
-    found = np.empty(values.size, dtype=object)
-    found[:] = texts
-    return found.reshape(values.shape)
+def cell_text(value: object) -> str:
+    """A number to all fifteen digits of a decimal, nothing where there is none; a word, quoted."""
+    if isinstance(value, float):
+        return f"{value:.15g}" if value == value else ""
+    return quoted(str(value))
 
 
 def table_text(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:

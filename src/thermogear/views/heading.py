@@ -11,7 +11,6 @@ import numpy as np
 from thermogear.base.display import celsius, number, span
 from thermogear.base.parameters import PARAMETERS
 from thermogear.base.toml import told
-from thermogear.base.units import RPM
 from thermogear.results.result import Result
 
 if TYPE_CHECKING:
@@ -117,13 +116,10 @@ def _points(data: xr.Dataset) -> Iterator[str]:
         values = values[np.isfinite(values)]
         if not values.size:
             continue
-        if name == "pinion_speed":
-            yield f"{span(values / RPM, 5)} rpm"
-        elif name == "pinion_torque":
-            yield f"{span(values, 5)} N m"
-        else:
-            one = PARAMETERS[name]
-            yield f"{one.words} {span(np.asarray(one.show(values)), 5)} {one.shown}".strip()
+        parameter = PARAMETERS[name]
+        words = "" if name in ("pinion_speed", "pinion_torque") else parameter.words
+        shown = span(np.asarray(parameter.show(values)), 5)
+        yield f"{words} {shown} {parameter.shown}".strip()
 
 
 def _heat(result: Result) -> Iterator[str]:

@@ -3,17 +3,26 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 from markupsafe import Markup
 
-from thermogear.base.display import celsius, display, exactly, number, percent, span
-from thermogear.base.vocabulary import DIMENSIONLESS, QUANTITIES, STATUS, is_known
+from thermogear.base.display import (
+    KELVIN,
+    MICROMETRE,
+    celsius,
+    exactly,
+    number,
+    percent,
+    span,
+)
+from thermogear.base.vocabulary import DIMENSIONLESS, QUANTITIES, STATUS, STILL, told_labels
+from thermogear.views.columns import Column, Row, declared, rows_along
 from thermogear.views.page import Cell, Table
 from thermogear.views.plots.rows import of_row, row_names, value_parts
-from thermogear.views.typesetting import html_symbol, jam_at, label_text, operating_names, prose
+from thermogear.views.typesetting import html_symbol, jam_at, prose
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -33,259 +42,280 @@ def unit_text(unit: object) -> str:
     return _UNITS.get(str(unit), str(unit))
 
 
-def value_of(data: xr.Dataset, name: str, digits: int = 3) -> str:
-    """One stored figure in display units, a dash where it is absent or not finite."""
-    if name not in data:
-        return "–"
-    unit = str(data[name].attrs.get("units", QUANTITIES[name].unit if name in QUANTITIES else "1"))
-    known = name if name in QUANTITIES else "displacement"
-    return number(float(display(known, unit)(data[name].item())), digits)
-
-
 def is_jammed(one: xr.Dataset) -> bool:
     """Whether a point's status says jammed."""
     return "status" in one and int(one["status"]) == JAMMED
 
 
-def motion_word(one: xr.Dataset) -> Cell:
+def motion_word(row: Row) -> Cell:
     """The label of a point; where it is jammed, with its temperature."""
-    if is_jammed(one):
-        jam = float(one["jam_temperature"]) if "jam_temperature" in one else math.nan
+    if row.get("status") == "jammed":
+        jam = row.get("jam_temperature", math.nan)
         at = f" at {celsius(jam)}" if math.isfinite(jam) else ""
         return Markup('<b class="jam">jammed{}</b>').format(at)
-    return label_text(one) if "label" in one else "–"
+    return str(row.get("motion", "–"))
+
+
+def labelled(data: xr.Dataset) -> xr.Dataset:
+    """``data`` with the words of its labels, as a reader sees them, under ``motion``."""
+    if "label" not in data:
+        return data
+    return data.assign(motion=(data["label"].dims, told_labels(data)))
+
+
+def is_settled(row: Row) -> bool:
+    """Whether heat and loaded contact of a point are known, jammed or not."""
+    return row.get("status") == "jammed" or row.get("status") not in STILL
+
+
+def jam_words(name: str, hot: Row, cold: Row) -> str:
+    """The words of the jam temperature ``name`` of a point, its undeformed state beside it."""
+    stuck = cold.get("status") == "jammed"
+    return jam_at(float(hot.get(name, math.nan)), without_heat=stuck, known=is_settled(hot))
+
+
+def _jam(name: str) -> Callable[[Row], str]:
+    """The words of a jam temperature of a point that has its undeformed state in its row."""
+    return lambda row: jam_words(name, row, row["cold"])
+
+
+def _change(row: Row) -> str:
+    return percent(row["mean_stiffness"] / row["cold"]["mean_stiffness"] - 1.0)
+
+
+def _gap(row: Row) -> Cell:
+    """The mean over a mesh period, and the least where it reads differently."""
+    if row.get("status") == "jammed":
+        return "none"
+    mean, least = (Column("", name).cell(row) for name in ("half_backlash", "least_half_backlash"))
+    return mean if least in (mean, "–") else f"{mean} (least {least})"
+
+
+STIFF = Column("", "mean_stiffness")
+KEY_RESULTS = (
+    Column("bundle", "bundle"),
+    Column("operating point", "operating"),
+    Column("b′ undeformed → hot [µm]", lambda row: f"{_gap(row['cold'])} → {_gap(row)}"),
+    Column("jams at, housing as it is", _jam("jam_temperature")),
+    Column("jams at, all in proportion", _jam("proportional_jam_temperature")),
+    Column(
+        "mean k undeformed → hot [10⁸ N/m]",
+        lambda row: f"{STIFF.cell(row['cold'])} → {STIFF.cell(row)}",
+    ),
+    Column("change", _change),
+    Column("Δk hot", "peak_to_peak_stiffness"),
+    Column(
+        Markup("f<sub>n</sub> of undeformed mean k [Hz]"),
+        lambda row: row["cold"].get("natural_frequency"),
+        4,
+    ),
+    Column(Markup("ω<sub>h</sub> undeformed"), lambda row: row["cold"].get("frequency_ratio")),
+    Column("flash", "greatest_flash", 3, KELVIN),
+    Column(
+        "motion undeformed → hot",
+        lambda row: Markup("{} → {}").format(motion_word(row["cold"]), motion_word(row)),
+    ),
+    Column("swing of the transmission error, hot", "dte_peak_to_peak"),
+)
 
 
 def key_results(mesh: xr.Dataset, path: xr.Dataset | None, motion: xr.Dataset | None) -> Table:
     """Undeformed and hot side by side, a row for every bundle and operating point."""
-    head: list[Cell] = [
-        "bundle", "operating point",
-        Markup("b′ undeformed → hot [µm]"),
-        "jams at, housing as it is", "jams at, all in proportion",
-        Markup("mean k undeformed → hot [10⁸ N/m]"), "change",
-        "Δk hot [10⁸ N/m]", Markup("f<sub>n</sub> of undeformed mean k [Hz]"),
-        Markup("ω<sub>h</sub> undeformed"),
-        "flash [K]", Markup("motion undeformed → hot"), "swing of the transmission error, hot [µm]",
-    ]  # fmt: skip
-    rows: list[list[Cell]] = []
-    marked: set[int] = set()
-    for b, bundle in enumerate(mesh["bundle"].values):
-        for o, name in enumerate(operating_names(mesh)):
-            points = mesh.isel(bundle=b, operating=o)
-            cold, hot = points.isel(state=0), points.isel(state=-1)
-            moved = None if motion is None else motion.isel(bundle=b, operating=o)
-            flash = "–"
-            if path is not None and "flash_temperature" in path:
-                here = path["flash_temperature"].isel(bundle=b, operating=o, state=-1)
-                top = here.values[np.isfinite(here.values)]
-                flash = number(float(top.max())) if top.size else "–"
-            if is_jammed(hot) or is_jammed(cold):
-                marked.add(len(rows))
-            k = [float(one["mean_stiffness"]) for one in (cold, hot)]
-            rows.append([
-                str(bundle), name,
-                f"{_gap(cold)} → {_gap(hot)}",
-                *(
-                    jam_at(
-                        float(hot.get(name, np.nan)), without_heat=is_jammed(cold),
-                        known=bool(is_known(int(hot["status"]))),
-                    )
-                    for name in ("jam_temperature", "proportional_jam_temperature")
-                ),
-                f"{number(k[0] * 1e-8)} → {number(k[1] * 1e-8)}", percent(k[1] / k[0] - 1.0),
-                value_of(hot, "peak_to_peak_stiffness"), value_of(cold, "natural_frequency", 4),
-                value_of(cold, "frequency_ratio"), flash,
-                Markup("{} → {}").format(_state_word(cold, moved, 0), _state_word(hot, moved, -1)),
-                "–" if moved is None else value_of(moved.isel(state=-1), "dte_peak_to_peak"),
-            ])  # fmt: skip
-    caption = (
+    if motion is not None:
+        moved = labelled(motion)
+        mesh = mesh.assign({n: moved[n] for n in ("motion", "dte_peak_to_peak") if n in moved})
+    if path is not None and "flash_temperature" in path:
+        mesh = mesh.assign(greatest_flash=path["flash_temperature"].max("path_position"))
+    cold, hot = (rows_along(mesh.isel(state=end), "bundle", "operating") for end in (0, -1))
+    return declared(
         "Undeformed and hot differ in the growth of gears and housing alone. b′ is the mean "
         "over a mesh period, Δk the peak to peak mesh stiffness, flash the highest rise along the "
-        "path, swing the peak to peak movement of one base circle against the other."
+        "path, swing the peak to peak movement of one base circle against the other.",
+        KEY_RESULTS,
+        [row | {"cold": undeformed} for row, undeformed in zip(hot, cold, strict=True)],
+        names=2,
+        marked=lambda row: "jammed" in (row.get("status"), row["cold"].get("status")),
     )
-    return Table(caption, head, rows, names=2, marked=frozenset(marked))
 
 
-def _gap(one: xr.Dataset) -> str:
-    """The mean over a mesh period, and the least where it reads differently."""
-    if is_jammed(one):
-        return "none"
-    mean, least = (value_of(one, name) for name in ("half_backlash", "least_half_backlash"))
-    return mean if least in (mean, "–") else f"{mean} (least {least})"
+def _reason(row: Row) -> Cell:
+    reason = prose(row.get("label_reason", ""))
+    if not row.get("multiplier_imag", 0.0) > 0.0:
+        return reason
+    real, imag = (number(row[f"multiplier_{part}"], 4) for part in ("real", "imag"))
+    return Markup("{}, pair {} ± {} i").format(reason, real, imag)
 
 
-def _state_word(figures: xr.Dataset, motion: xr.Dataset | None, state: int) -> Cell:
-    if is_jammed(figures):
-        return motion_word(figures)
-    return "–" if motion is None else motion_word(motion.isel(state=state))
+def _half_order(row: Row) -> float | str | None:
+    """The half-order line; nothing but rounding is written as none."""
+    line: float | None = row.get("half_order_amplitude")
+    swing = row.get("peak_to_peak_displacement", math.nan)
+    return "none" if line is not None and line <= 1e-9 * swing else line
+
+
+PROOF = Column("proof", _reason)
+CONTACT = (
+    Column("out of contact", "contact_loss_share", lambda part: f"{100.0 * max(part, 0.0):.1f} %"),
+    Column("back-side hits per period", "back_impacts", ".3g"),
+)
 
 
 def motion_proofs(motion: xr.Dataset, axis: str, words: Sequence[str]) -> Table:
     """Every motion with its label, what proves it, and the figures of contact."""
-    head: list[Cell] = [
-        "bundle", "state" if axis == "state" else "gear temperature", "operating point",
-        "motion", "proof", "swing of x [µm]", "half-order line [µm]", "out of contact",
-        "back-side hits per period",
-    ]  # fmt: skip
-    rows: list[list[Cell]] = []
-    marked: set[int] = set()
-    for b, bundle in enumerate(motion["bundle"].values):
-        for a, word in enumerate(words):
-            for o, name in enumerate(operating_names(motion)):
-                one = motion.isel({"bundle": b, axis: a, "operating": o})
-                if is_jammed(one) or str(one["label"].item()) == "undecided":
-                    marked.add(len(rows))
-                rows.append([
-                    str(bundle), word, name, motion_word(one), _reason(one),
-                    value_of(one, "peak_to_peak_displacement"), _half_order(one),
-                    _share(one), _impacts(one),
-                ])  # fmt: skip
-    caption = "Every motion, and why it carries its label."
-    return Table(caption, head, rows, names=5, marked=frozenset(marked))
+    data = labelled(motion).assign_coords({axis: list(words)})
+    columns = (
+        Column("bundle", "bundle"),
+        Column("state" if axis == "state" else "gear temperature", lambda row: row[axis]),
+        Column("operating point", "operating"),
+        Column("motion", motion_word),
+        PROOF,
+        Column("swing of x", "peak_to_peak_displacement"),
+        Column("half-order line", _half_order, 3, MICROMETRE),
+        *CONTACT,
+    )
+    return declared(
+        "Every motion, and why it carries its label.",
+        columns,
+        rows_along(data, "bundle", axis, "operating"),
+        names=5,
+        marked=lambda row: row.get("status") == "jammed" or row["label"] == "undecided",
+    )
 
 
-def _reason(one: xr.Dataset) -> Cell:
-    said = prose(one["label_reason"].item()) if "label_reason" in one else Markup("")
-    if "multiplier_imag" not in one or not float(one["multiplier_imag"]) > 0.0:
-        return said
-    real, imag = (number(float(one[f"multiplier_{part}"]), 4) for part in ("real", "imag"))
-    return Markup("{}, pair {} ± {} i").format(said, real, imag)
+def _agrees(row: Row) -> bool:
+    """Whether a motion is what was expected, where anything was."""
+    return not row["expected"] or row["label"] in row["expected"].split(" or ")
 
 
-def _half_order(one: xr.Dataset) -> str:
-    """The half-order line; nothing but rounding is written as none."""
-    if "half_order_amplitude" not in one:
-        return "–"
-    line = float(one["half_order_amplitude"])
-    swing = math.nan
-    if "peak_to_peak_displacement" in one:
-        swing = float(one["peak_to_peak_displacement"])
-    if math.isfinite(swing) and line <= 1e-9 * swing:
-        return "none"
-    return value_of(one, "half_order_amplitude")
-
-
-def _share(one: xr.Dataset) -> str:
-    if "contact_loss_share" not in one:
-        return "–"
-    share = float(one["contact_loss_share"])
-    return f"{100.0 * max(share, 0.0):.1f} %" if math.isfinite(share) else "–"
-
-
-def _impacts(one: xr.Dataset) -> str:
-    if "back_impacts" not in one:
-        return "–"
-    hits = float(one["back_impacts"])
-    return f"{hits:.3g}" if math.isfinite(hits) else "–"
+EXPECTED = (
+    Column("expected", lambda row: row["expected"] or "–"),
+    Column("agrees", lambda row: ("yes" if _agrees(row) else "no") if row["expected"] else "–"),
+)
 
 
 def row_table(points: xr.Dataset, row: str) -> Table:
     """The points of one row: found against expected, with the proof."""
-    data = of_row(points, row)
-    expects = "expected" in data and any(str(e) for e in data["expected"].values)
-    head: list[Cell] = ["value", "motion"]
-    head += ["expected", "agrees"] if expects else []
-    head += ["proof", "half-order line |X|", "out of contact", "back-side hits per period"]
-    rows: list[list[Cell]] = []
-    marked: set[int] = set()
-    for i in range(data.sizes["point"]):
-        one = data.isel(point=i)
-        mark, value, unit = value_parts(one)
-        found = str(one["label"].item())
-        line: list[Cell] = [
-            Markup("{} = {}{}").format(html_symbol(mark), value, unit), label_text(one)
-        ]  # fmt: skip
-        if expects:
-            wanted = str(one["expected"].item())
-            agrees = found in wanted.split(" or ") if wanted else True
-            line += [wanted or "–", ("yes" if agrees else "no") if wanted else "–"]
-            if not agrees:
-                marked.add(i)
-        rows.append([*line, _reason(one), _half_order(one), _share(one), _impacts(one)])
-    names = 5 if expects else 3
-    return Table(f"Row {row}.", head, rows, names=names, marked=frozenset(marked))
+    data = labelled(of_row(points, row))
+    parts = [value_parts(data.isel(point=i)) for i in range(data.sizes["point"])]
+    swept = [Markup("{} = {}{}").format(html_symbol(mark), *rest) for mark, *rest in parts]
+    rows = [row | {"swept": one} for row, one in zip(rows_along(data, "point"), swept, strict=True)]
+    expects = any(row.get("expected") for row in rows)
+    columns = (
+        Column("value", "swept"),
+        Column("motion", "motion"),
+        *(EXPECTED if expects else ()),
+        PROOF,
+        Column("half-order line |X|", _half_order),
+        *CONTACT,
+    )
+    return declared(
+        f"Row {row}.",
+        columns,
+        rows,
+        names=5 if expects else 3,
+        marked=lambda row: expects and not _agrees(row),
+    )
+
+
+def _spans(data: xr.Dataset, digits: int) -> dict[str, str]:
+    return {n: span(data[n].values, digits) for n in DIMENSIONLESS if n in data}
 
 
 def numbers_beside(points: xr.Dataset | None, mesh: xr.Dataset | None, name: str) -> Table:
     """The dimensionless numbers of a base set, and those of the rig beside them."""
-    head: list[Cell] = ["set", *(symbol(n) for n in DIMENSIONLESS)]
-    rows: list[list[Cell]] = []
+    rows: list[Row] = []
     if points is not None:
-        for row in row_names(points):
-            data = of_row(points, row)
-            cells = [span(data[n].values, 4) if n in data else "–" for n in DIMENSIONLESS]
-            rows.append([f"{name}, row {row}", *cells])
+        rows += [
+            {"set": f"{name}, row {row}", **_spans(of_row(points, row), 4)}
+            for row in row_names(points)
+        ]
     if mesh is not None:
-        for b, bundle in enumerate(mesh["bundle"].values):
-            for s, state in enumerate(mesh["state"].values):
-                here = mesh.isel(bundle=b, state=s)
-                cells = [span(here[n].values, 3) if n in here else "–" for n in DIMENSIONLESS]
-                rows.append([f"this rig, {bundle}, {state}", *cells])
-    return Table("Dimensionless numbers side by side.", head, rows)
+        rows += [
+            {"set": f"this rig, {bundle}, {state}", **_spans(mesh.isel(bundle=b, state=s), 3)}
+            for b, bundle in enumerate(mesh["bundle"].values)
+            for s, state in enumerate(mesh["state"].values)
+        ]
+    columns = [Column("set", "set"), *(Column(symbol(n), n) for n in DIMENSIONLESS)]
+    return declared("Dimensionless numbers side by side.", columns, rows)
+
+
+def _choice(row: Row, bundle: str, meanings: Mapping[str, Any]) -> Cell:
+    """What a bundle chooses, with what it means where that is known."""
+    value: str = row[bundle]
+    meant = meanings.get(row["field"], {})
+    name = value.partition("(")[0]  # a law may show its parameters
+    if name not in meant:
+        return value
+    return Markup("<b>{}</b><br/><small>{}</small>").format(value, prose(meant[name]))
 
 
 def choices(bundles: Mapping[str, Any], meanings: Mapping[str, Any]) -> Table:
     """The choices of every bundle; rows in which they differ are marked."""
-    names = list(bundles)
-    fields: dict[str, None] = {}
-    for table in bundles.values():
-        fields |= dict.fromkeys(table if isinstance(table, Mapping) else {})
-    rows: list[list[Cell]] = []
-    marked: set[int] = set()
-    for field in fields:
-        values = [str(bundles[name].get(field, "–")) for name in names]
-        if len(set(values)) > 1:
-            marked.add(len(rows))
-        known = meanings.get(field, {})
-        meant = known if isinstance(known, Mapping) else {}
-        names_of = [value.partition("(")[0] for value in values]  # a law may show its parameters
-        cells: list[Cell] = [
-            Markup("<b>{}</b><br/><small>{}</small>").format(value, prose(meant[name]))
-            if name in meant
-            else value
-            for value, name in zip(values, names_of, strict=True)
-        ]
-        rows.append([field.replace("_", " "), *cells])
-    caption = "The choices of each bundle; marked rows differ."
-    return Table(caption, ["choice", *names], rows, len(names) + 1, frozenset(marked), wordy=True)
-
-
-def errata(rows: Iterable[Mapping[str, Any]]) -> Table:
-    """What is printed wrongly, with its value beside the repaired one."""
-    head: list[Cell] = ["no.", "printed", "what is wrong", "as printed", "repaired", "unit"]
-    lines: list[list[Cell]] = []
-    for row in rows:
-        both = [_maybe(row.get("value_as_printed")), _maybe(row.get("value_repaired"))]
-        shows = both != ["", ""]
-        lines.append([
-            str(row.get("number", "")), prose(row.get("printed", "")),
-            prose(row.get("problem", "")), *both, unit_text(row.get("unit", "")) if shows else "",
-        ])  # fmt: skip
-    caption = "Printed formulas evaluated in SI, for this pair; none of them feeds a result."
-    return Table(caption, head, lines, names=3, wordy=True)
+    fields = dict.fromkeys(field for chosen in bundles.values() for field in chosen)
+    rows = [
+        {"field": field, **{name: str(chosen.get(field, "–")) for name, chosen in bundles.items()}}
+        for field in fields
+    ]
+    columns = [
+        Column("choice", lambda row: row["field"].replace("_", " ")),
+        *(Column(name, partial(_choice, bundle=name, meanings=meanings)) for name in bundles),
+    ]
+    return declared(
+        "The choices of each bundle; marked rows differ.",
+        columns,
+        rows,
+        names=len(columns),
+        marked=lambda row: len({row[name] for name in bundles}) > 1,
+        wordy=True,
+    )
 
 
 def _maybe(value: object) -> str:
     return exactly(float(value), 4) if isinstance(value, int | float) else ""
 
 
-def facts(rows: Iterable[Mapping[str, Any]]) -> Table:
-    """Single figures in groups."""
-    lines: list[list[Cell]] = []
-    before = None
-    for row in rows:
-        group = str(row.get("group", ""))
-        value = row.get("value", "")
-        text = exactly(float(value), 6) if isinstance(value, float) else str(value)
-        shown = group if group != before else ""
-        before = group
-        lines.append([shown, str(row.get("name", "")), text, unit_text(row.get("unit", ""))])
-    return Table(
-        "Derived from the case, or read off the results.",
-        ["group", "quantity", "value", "unit"],
-        lines,
-        names=2,
-    )
+ERRATA = (
+    Column("no.", lambda row: str(row.get("number", ""))),
+    Column("printed", lambda row: prose(row.get("printed", ""))),
+    Column("what is wrong", lambda row: prose(row.get("problem", ""))),
+    Column("as printed", lambda row: _maybe(row.get("value_as_printed"))),
+    Column("repaired", lambda row: _maybe(row.get("value_repaired"))),
+    Column(
+        "unit",
+        lambda row: (
+            unit_text(row.get("unit", ""))
+            if _maybe(row.get("value_as_printed")) + _maybe(row.get("value_repaired"))
+            else ""
+        ),
+    ),
+)
+
+
+def errata(rows: Iterable[Row]) -> Table:
+    """What is printed wrongly, with its value beside the repaired one."""
+    caption = "Printed formulas evaluated in SI, for this pair; none of them feeds a result."
+    return declared(caption, ERRATA, rows, names=3, wordy=True)
+
+
+FACTS = (
+    Column("group", "shown_group"),
+    Column("quantity", lambda row: str(row.get("name", ""))),
+    Column(
+        "value",
+        lambda row: exactly(row["value"]) if isinstance(row["value"], float) else str(row["value"]),
+    ),
+    Column("unit", lambda row: unit_text(row.get("unit", ""))),
+)
+
+
+def facts(rows: Sequence[Row]) -> Table:
+    """Single figures in groups, each named once."""
+    before = [None, *(row["group"] for row in rows)]
+    named = [
+        {**row, "shown_group": "" if row["group"] == last else row["group"]}
+        for row, last in zip(rows, before, strict=False)
+    ]
+    return declared("Derived from the case, or read off the results.", FACTS, named, names=2)
 
 
 def words(caption: str, head: Sequence[str], rows: Iterable[Sequence[object]]) -> Table:

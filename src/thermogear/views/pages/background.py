@@ -6,46 +6,49 @@ from thermogear.base.enclosed import folded
 from thermogear.base.toml import told
 from thermogear.results.result import Result
 from thermogear.views import tables
-from thermogear.views.page import Code, Section, Text
+from thermogear.views.columns import Column, declared
+from thermogear.views.page import Block, Code, Section, Table, Text
 from thermogear.views.typesetting import field_name, prose
+
+ASSUMPTIONS = (
+    Column("field", lambda row: field_name(row.get("field", ""))),
+    Column("value", lambda row: prose(row.get("value", ""))),
+    Column("why, and what it decides", lambda row: prose(row.get("reason", ""))),
+)
+SOURCES = (
+    Column("source", lambda row: row.get("text", "")),
+    Column("used for", lambda row: row.get("used_for", "")),
+)
+PACKAGES = (Column("package", "package"), Column("version", "version"))
 
 
 def background(results: Result) -> list[Section]:
     """What a reader needs to judge and to repeat the results."""
-    found: list[Section] = []
     bundles = results.table("bundles")
-    if bundles:
-        table = tables.choices(bundles, results.table("choices"))
-        title = "What differs between the bundles" if len(bundles) > 1 else "The model's choices"
-        found.append(Section("choices", title, [table]))
-    ours = results.rows("assumptions")
-    if ours:
-        rows = [
-            (field_name(r.get("field", "")), prose(r.get("value", "")), prose(r.get("reason", "")))
-            for r in ours
-        ]
-        table = tables.words(
-            "Values that no source states, each with what it decides.",
-            ["field", "value", "why, and what it decides"],
-            rows,
-        )
-        found.append(Section("assumptions", "Assumptions that are ours", [table]))
-    wrong = results.rows("errata")
-    if wrong:
-        found.append(Section("errata", "Errata of the thesis", [tables.errata(wrong)]))
-    figures = results.rows("facts")
-    if figures:
-        found.append(Section("facts", "Figures of the pair", [tables.facts(figures)]))
-    if results.text("case").strip():
-        found.append(case_file(results))
-    sources = results.rows("citations")
-    if sources:
-        used = [(r.get("text", ""), r.get("used_for", "")) for r in sources]
-        found.append(
-            Section("sources", "Sources", [tables.words("", ["source", "used for"], used)])
-        )
-    found.append(_version(results))
-    return found
+    chosen = "What differs between the bundles" if len(bundles) > 1 else "The model's choices"
+    assumed = declared(
+        "Values that no source states, each with what it decides.",
+        ASSUMPTIONS,
+        results.rows("assumptions"),
+        names=3,
+        wordy=True,
+    )
+    sources = declared("", SOURCES, results.rows("citations"), names=2, wordy=True)
+    found = [
+        Section("choices", chosen, [tables.choices(bundles, results.table("choices"))]),
+        Section("assumptions", "Assumptions that are ours", [assumed]),
+        Section("errata", "Errata of the thesis", [tables.errata(results.rows("errata"))]),
+        Section("facts", "Figures of the pair", [tables.facts(results.rows("facts"))]),
+        case_file(results),
+        Section("sources", "Sources", [sources]),
+        _version(results),
+    ]
+    return [one for one in found if not _empty(one.blocks[0])]
+
+
+def _empty(block: Block) -> bool:
+    """Whether there is nothing in a table or a text."""
+    return not (block.rows if isinstance(block, Table) else getattr(block, "words", ""))
 
 
 def case_file(results: Result) -> Section:
@@ -58,12 +61,10 @@ def case_file(results: Result) -> Section:
 
 
 def _version(results: Result) -> Section:
-    environment = results.table("environment")
-    rows = [(name, version) for name, version in environment.items()]
-    blocks = [
-        Text(f"thermogear {results.text('thermogear')}, results written {results.text('created')}.")
+    rows = [
+        {"package": name, "version": version}
+        for name, version in results.table("environment").items()
     ]
-    if not rows:
-        return Section("version", "Version", blocks)
-    table = tables.words("Versions the results depend on.", ["package", "version"], rows)
-    return Section("version", "Version", [*blocks, table])
+    table = declared("Versions the results depend on.", PACKAGES, rows, names=2, wordy=True)
+    told = f"thermogear {results.text('thermogear')}, results written {results.text('created')}."
+    return Section("version", "Version", [Text(told), *[table] * bool(rows)])

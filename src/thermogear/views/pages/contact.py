@@ -7,15 +7,21 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermogear.base.display import CELSIUS, exactly, number
-from thermogear.results.result import Result
-from thermogear.views.page import Page, Shown, Table
-from thermogear.views.pages import survey_captions as words
-from thermogear.views.pages.survey import (
-    digits,
-    survey,
-    table_of,
+from thermogear.base.display import (
+    CELSIUS,
+    MEGAPASCAL,
+    MICROMETRE,
+    MILLIMETRE,
+    PERCENT,
+    STIFFNESS,
+    exactly,
+    number,
 )
+from thermogear.results.result import Result
+from thermogear.views.columns import Column, declared, rows_along
+from thermogear.views.page import Page, Shown
+from thermogear.views.pages import survey_captions as words
+from thermogear.views.pages.survey import survey, table_of
 from thermogear.views.plots import loaded
 from thermogear.views.typesetting import prose
 
@@ -74,66 +80,69 @@ def page(result: Result) -> Page:
             partial(loaded.iso, iso),
         ),
     ]
-    states = [str(n) for n in data["temperature"].values]
-    rows = []
-    for load in range(data.sizes["load"]):
-        for t, state in enumerate(states):
-            here = data.isel(load=load, temperature=t)
-            error = here["transmission_error"].values
-            rows.append(
-                [
-                    exactly(float(here["load"])),
-                    prose(state),
-                    number(1e-8 * float(here["mean_stiffness"])),
-                    number(1e-8 * float(here["secant_stiffness"].mean())),
-                    number(1e6 * float(error.mean())),
-                    number(1e6 * float(np.ptp(error))),
-                    number(1e3 * float(here["double_contact_length"])),
-                    " / ".join(number(100.0 * share, 2) for share in _corner_shares(here)),
-                    number(1e-6 * float(here["contact_pressure"].max())),
-                ]
-            )
-    table = Table(
+    error = data["transmission_error"]
+    over_phase = data.assign(
+        secant_stiffness=data["secant_stiffness"].mean("mesh_phase"),
+        mean_error=error.mean("mesh_phase"),
+        error_swing=error.max("mesh_phase") - error.min("mesh_phase"),
+        wheel_corner=_corner_share(data, 1),
+        pinion_corner=_corner_share(data, 2),
+        contact_pressure=data["contact_pressure"].max(
+            set(data["contact_pressure"].dims) - {"load", "temperature"}
+        ),
+    )
+    table = declared(
         "Loaded contact by load and temperature. Edge contact: share of the mesh period in which "
         "the wheel's tip corner carries (before A) / the pinion's (beyond E). The Hertzian "
         "pressure is not valid on a corner; the greatest one is that of the flanks alone.",
-        [
-            "torque [N m]", "temperature", "k tangent [10⁸ N/m]", "k secant [10⁸ N/m]",
-            "δ mean [µm]", "δ peak to peak [µm]", "double contact [mm]",
-            "edge contact [%]", "greatest pressure on the flanks [MPa]",
-        ],
-        rows,
+        COLUMNS,
+        rows_along(over_phase, "load", "temperature"),
         names=2,
-    )  # fmt: skip
-    against = Table(
-        "Mean mesh stiffness, undeformed [10⁸ N/m].",
-        ["torque [N m]", "loaded contact", "ISO 6336-1 method B", "difference [%]"],
-        [
-            [
-                exactly(float(torque)),
-                number(1e-8 * float(own)),
-                number(1e-8 * float(standard)),
-                f"{100.0 * (float(standard) / float(own) - 1.0):+.1f}".replace("-", "−"),
-            ]
-            for torque, own, standard in zip(
-                iso["load"].values,
-                iso["loaded_stiffness"].values,
-                iso["iso_stiffness"].values,
-                strict=True,
-            )
-        ],
+    )
+    against = declared(
+        "Mean mesh stiffness, undeformed [10⁸ N/m].", AGAINST_ISO, rows_along(iso, "load")
     )
     summary = (
         f"{data.sizes['mesh_phase']} mesh positions, {words.several(data.sizes['load'], 'load')} "
-        f"and {len(states)} temperatures; body {result.text('body').replace('_', ' ')}."
+        f"and {data.sizes['temperature']} temperatures; body "
+        f"{result.text('body').replace('_', ' ')}."
     )
-    return survey(result, summary, pictures, [against, table], numbers=_numbers, lines=_lines)
+    return survey(result, summary, pictures, [against, table], numbers=_numbers)
 
 
-def _corner_shares(data: xr.Dataset) -> list[float]:
-    """Shares of the mesh period with the wheel's and the pinion's tip corner loaded."""
-    flags = data["edge_contact"].values
-    return [float((flags & bit > 0).any(axis=-1).mean()) for bit in (1, 2)]
+COLUMNS = (
+    Column("torque [N m]", "load", exactly),
+    Column("temperature", lambda row: prose(row["temperature"])),
+    Column("k tangent", "mean_stiffness"),
+    Column("k secant", "secant_stiffness", 3, STIFFNESS),
+    Column("δ mean", "mean_error", 3, MICROMETRE),
+    Column("δ peak to peak", "error_swing", 3, MICROMETRE),
+    Column("double contact", "double_contact_length", 3, MILLIMETRE),
+    Column(
+        "edge contact [%]",
+        lambda row: " / ".join(
+            number(100.0 * row[f"{gear}_corner"], 2) for gear in ("wheel", "pinion")
+        ),
+    ),
+    Column("greatest pressure on the flanks", "contact_pressure", 3, MEGAPASCAL),
+)
+AGAINST_ISO = (
+    Column("torque [N m]", "load", exactly),
+    Column("loaded contact", lambda row: number(1e-8 * row["loaded_stiffness"])),
+    Column("ISO 6336-1 method B", lambda row: number(1e-8 * row["iso_stiffness"])),
+    Column(
+        "difference",
+        lambda row: row["iso_stiffness"] / row["loaded_stiffness"] - 1.0,
+        "+.1f",
+        PERCENT,
+    ),
+)
+
+
+def _corner_share(data: xr.Dataset, bit: int) -> xr.DataArray:
+    """Share of the mesh period in which the tip corner with this flag carries load."""
+    carries = (data["edge_contact"].drop_attrs() & bit) > 0
+    return carries.any("pair").mean("mesh_phase")
 
 
 def _numbers(result: Result) -> dict[str, Any]:
@@ -151,20 +160,3 @@ def _numbers(result: Result) -> dict[str, Any]:
         "edge_contact_share": table_of(data["edge_contact_share"]),
         "iso_6336_stiffness": [float(v) for v in iso["iso_stiffness"].values],
     }
-
-
-def _lines(result: Result) -> list[str]:
-    found = _numbers(result)
-    head = f"{'N m':>10} {'k undeformed':>14} {'k hot':>12} {'ISO 6336':>12}   [1e8 N/m]"
-    lines = [f"{head}  {'edge undeformed':>15} {'hot':>6}   [% of the period]"]
-    for place, torque in enumerate(found["pinion_torque_Nm"]):
-        springs = [found["mean_stiffness"][t][place] for t in (0, 1)]
-        springs.append(found["iso_6336_stiffness"][place])
-        cells = [digits(1e-8 * k) for k in springs]
-        edges = [found["edge_contact_share"][t][place] for t in (0, 1)]
-        shares = [f"{100.0 * s:.1f}" if s == s else "-" for s in edges]
-        lines.append(
-            f"{torque:>10.4g} {cells[0]:>14} {cells[1]:>12} {cells[2]:>12}"
-            f"{shares[0]:>23} {shares[1]:>6}"
-        )
-    return lines

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +11,7 @@ import numpy as np
 from thermogear.base.display import number
 from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.results.result import Result
+from thermogear.views.columns import lines_of
 from thermogear.views.gears import NEEDS, PINION, WHEEL, GearDrawing, gear_drawing
 from thermogear.views.page import Page, Pictures, Section, Shown, Table
 from thermogear.views.pages.survey import survey
@@ -83,37 +85,29 @@ def _least(state: Any) -> str:
     return number(1e3 * float(np.nanmin(state.back_gap)))
 
 
-def rows(result: Result, drawing: GearDrawing) -> list[tuple[str, str, str]]:
+def rows(result: Result, drawing: GearDrawing) -> list[tuple[str, ...]]:
     """Words, pinion's and wheel's value of what can be measured on a gear."""
     data = result.groups["drawing"]
     cold, hot = (drawing.state(name) for name in (UNDEFORMED, "hot"))
 
-    def both(words: str, *values: float) -> tuple[str, str, str]:
-        first, second = (number(value, 6) for value in values)
-        return words, first, second
-
-    def of(name: str, gear: int) -> float:
-        return 1e3 * float(data[name].values[gear])
-
-    def widest(state: Any, gear: int) -> float:
-        return 2.0 * float(np.abs(state.outlines[gear]).max())
+    def both(words: str, values: Iterable[float]) -> tuple[str, ...]:
+        return (words, *(number(float(value), 6) for value in values))
 
     clearance = 1e3 * data["tip_clearance"].isel(operating=0).values
-    found = [
+    return [
         ("teeth", str(drawing.teeth[PINION]), str(drawing.teeth[WHEEL])),
         *(
-            both(f"{name} diameter [mm]", *(2.0 * drawing.circles[g][name] for g in (0, 1)))
+            both(f"{name} diameter [mm]", (2.0 * drawing.circles[g][name] for g in (0, 1)))
             for name in ("tip", "pitch", "base", "root")
         ),
-        both("tip diameter, hot [mm]", widest(hot, PINION), widest(hot, WHEEL)),
-        both("tooth thickness on the pitch circle [mm]", of("thickness", 0), of("thickness", 1)),
+        both("tip diameter, hot [mm]", (2.0 * np.abs(hot.outlines[g]).max() for g in (0, 1))),
+        both("tooth thickness on the pitch circle [mm]", 1e3 * data["thickness"].values),
         ("teeth of the span", *(str(int(k)) for k in data["span_teeth"].values)),
-        both("span over these teeth [mm]", of("span", 0), of("span", 1)),
-        both("tip clearance, cold [mm]", *clearance[0]),
-        both("tip clearance, hot [mm]", *clearance[-1]),
-        both("centre distance, cold and hot [mm]", cold.centre_distance, hot.centre_distance),
+        both("span over these teeth [mm]", 1e3 * data["span"].values),
+        both("tip clearance, cold [mm]", clearance[0]),
+        both("tip clearance, hot [mm]", clearance[-1]),
+        both("centre distance, cold and hot [mm]", (cold.centre_distance, hot.centre_distance)),
     ]
-    return [(words, first, second) for words, first, second in found]
 
 
 def table(result: Result, drawing: GearDrawing) -> Table:
@@ -139,7 +133,6 @@ def lines(result: Result) -> list[str]:
     return [
         result.title,
         drawing.words + f", {result.text('state')}",
-        f"{'':<42}{'pinion':>12}{'wheel':>12}",
-        *(f"{words:<42}{first:>12}{second:>12}" for words, first, second in rows(result, drawing)),
+        *lines_of(table(result, drawing)),
         f"least gap between the back flanks: {', '.join(least)}",
     ]

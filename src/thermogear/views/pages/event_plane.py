@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from thermogear.views.page import Block, Table, Text
+from thermogear.views.columns import Column, Row, declared
+from thermogear.views.page import Block, Text
 from thermogear.views.plots.parameters import page_words
 
 Summary = dict[str, Any]
@@ -12,12 +13,12 @@ SECOND = "second_shown"
 PLANE = "Where the motion jumps or changes"
 
 
-def shown(point: Summary, digits: int = 8, which: str = "shown") -> str:
+def shown(point: Row, digits: int = 8, which: str = "shown") -> str:
     """The value of a point with its unit, of the first or the second parameter."""
     return f"{point[which]:.{digits}g} {point[f'{which}_unit']}".strip()
 
 
-def _turns(curve: Summary) -> list[str]:
+def _turns(curve: Row) -> list[str]:
     """Where a curve turns back, in both parameters."""
     return [f"{shown(one, 6)} at {shown(one, 6, SECOND)}" for one in curve["turns"]]
 
@@ -45,34 +46,24 @@ def plane_tables(summary: Summary) -> list[Block]:
     second = page_words(summary["second"])
     if not summary["curves"]:
         return [Text(f"No bifurcation was followed in the second parameter, {second}.")]
-    rows, ends = [], []
-    for number, curve in enumerate(summary["curves"], start=1):
-        name = f"{number} {curve['kind']}, period {curve['period']}"
-        for one in curve["asked"]:
-            met = "" if one["stable"] else "on an unstable orbit"
-            rows.append([name, shown(one, 6, SECOND), shown(one), met])
-        turns = "; ".join(_turns(curve)) or "–"
-        ends.append([name, str(curve["points"]), turns, curve["ended"]])
-    head = ["curve", second, page_words(summary["parameter"]), ""]
-    return [
-        Table("Bifurcations in two parameters", head, rows, names=1),
-        Table("The curves", ["curve", "points", "turns at", "ended"], ends, names=1),
+    curves = [
+        {**curve, "name": f"{number} {curve['kind']}, period {curve['period']}"}
+        for number, curve in enumerate(summary["curves"], start=1)
     ]
-
-
-def plane_lines(s: Summary) -> list[str]:
-    """The same in a terminal."""
-    lines: list[str] = []
-    for number, curve in enumerate(s.get("curves", ()), start=1):
-        lines.append(
-            f"  curve {number}: {curve['kind']} of period {curve['period']} in {s['second']}, "
-            f"{curve['points']} points; {curve['ended']}"
-        )
-        for one in curve["asked"]:
-            met = "" if one["stable"] else "  (on an unstable orbit)"
-            lines.append(
-                f"    {s['second']} = {shown(one, 6, SECOND):<14} "
-                f"{s['parameter']} = {shown(one)}{met}"
-            )
-        lines += [f"    turns at {one}" for one in _turns(curve)]
-    return lines
+    points = (
+        Column("curve", "name"),
+        Column(second, lambda point: shown(point, 6, SECOND)),
+        Column(page_words(summary["parameter"]), shown),
+        Column("", lambda point: "" if point["stable"] else "on an unstable orbit"),
+    )
+    ends = (
+        Column("curve", "name"),
+        Column("points", "points"),
+        Column("turns at", lambda curve: "; ".join(_turns(curve)) or "–"),
+        Column("ended", "ended"),
+    )
+    asked = [{**point, "name": curve["name"]} for curve in curves for point in curve["asked"]]
+    return [
+        declared("Bifurcations in two parameters", points, asked),
+        declared("The curves", ends, curves),
+    ]

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from thermogear.base.display import MICROMETRE
 from thermogear.results.result import Result
+from thermogear.views.columns import Column, declared, rows_along
 from thermogear.views.page import Block, Pictures, Section, Table
 from thermogear.views.plots import flanks
 
@@ -52,19 +54,19 @@ def caption(data: xr.Dataset) -> str:
     )
 
 
+COLUMNS = (
+    Column("trace", "trace_name"),
+    Column("f_Hα", "profile_slope", ".2f", MICROMETRE),
+    Column("f_fα", "profile_form", ".2f", MICROMETRE),
+    Column("F_α", "profile_total", ".2f", MICROMETRE),
+    Column("class", lambda row: str(row["iso_class"] or "none")),
+)
+
+
 def table(data: xr.Dataset, gear: str) -> Table:
     """Slope, form and total deviation of each trace with its class."""
-    rows = [
-        [
-            str(data["trace_name"].values[place]),
-            *(f"{1e6 * float(data[name].values[place]):.2f}" for name in FIGURES),
-            str(grade or "none"),
-        ]
-        for place, grade in enumerate(int(value) for value in data["iso_class"].values)
-    ]
     words = (
         f"Each trace of the {gear} over the evaluated range, and the class of ISO 1328-1:2013 that "
         "all three figures keep."
     )
-    head = ["trace", "f_Hα [µm]", "f_fα [µm]", "F_α [µm]", "class"]
-    return Table(words, head, rows)
+    return declared(words, COLUMNS, rows_along(data, *map(str, data["iso_class"].dims)))

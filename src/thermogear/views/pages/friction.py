@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from thermogear.base.display import number
+from thermogear.base.display import Display, number
 from thermogear.results.result import Result
-from thermogear.views.page import Page, Shown, Table
+from thermogear.views.columns import Column, Row, declared, lines_of
+from thermogear.views.page import Page, Shown
 from thermogear.views.pages import captions
 from thermogear.views.pages import survey_captions as words
-from thermogear.views.pages.survey import (
-    digits,
-    operating_rows,
-    survey,
-)
+from thermogear.views.pages.survey import operating_rows, survey
 from thermogear.views.plots import laws
+from thermogear.views.style import names_of
 from thermogear.views.typesetting import operating_names
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 MOST_PICTURES = 4
 """Operating points that get a picture of their own."""
@@ -50,35 +51,37 @@ def page(result: Result) -> Page:
             partial(laws.film, data),
         )
     )
-    mean = data["mean_friction"].values
-    share = 100.0 * data["outside_range"].mean("path_position").values
-    table = Table(
-        "Every law: regime it is made for, range its source gives, mean by sliding power.",
-        ["law", "regime", "range", "source", *names],
-        [
-            [
-                row["law"],
-                row["regime"],
-                row["range"] or "none given",
-                row["source"],
-                *(
-                    number(float(mean[i, o])) + (" (outside)" if share[i, o] > 0.0 else "")
-                    for o in range(len(names))
-                ),
-            ]
-            for i, row in enumerate(rows)
-        ],
+    outside = data["outside_range"].mean("path_position").values > 0.0
+    laws_found = [
+        row | {"mean": mean, "outside": beyond}
+        for row, mean, beyond in zip(rows, data["mean_friction"].values, outside, strict=True)
+    ]
+    by_point = [Column(name, partial(_mean, place=place)) for place, name in enumerate(names)]
+    law = Column("law", "law")
+    about = (
+        Column("regime", "regime"),
+        Column("range", lambda row: row["range"] or "none given"),
+        Column("source", "source"),
+    )
+    caption = "Every law: regime it is made for, range its source gives, mean by sliding power."
+    table = declared(
+        caption,
+        [law, *about, *by_point],
+        laws_found,
         names=4,
-        marked=frozenset(i for i, row in enumerate(rows) if row["law"] == data.attrs["chosen"]),
+        marked=lambda row: row["law"] == data.attrs["chosen"],
         wordy=True,
     )
-    regimes = Table(
+    regimes = declared(
         "Share of the path in each regime [%].",
-        ["operating point", *(str(n) for n in data["regime_name"].values)],
         [
-            [name, *(f"{100.0 * float(v):.1f}" for v in data["regime_share"].values[o])]
-            for o, name in enumerate(names)
+            Column("operating point", "operating"),
+            *(
+                Column(name, name, ".1f", Display("", 100.0))
+                for name in names_of(data, "regime_name")
+            ),
         ],
+        [{"operating": n, **row} for n, row in zip(names, _regime_shares(data), strict=True)],
     )
     summary = (
         f"{len(rows)} laws at {words.several(len(names), 'operating point')}; the case computes "
@@ -86,36 +89,37 @@ def page(result: Result) -> Page:
     )
     if len(names) > MOST_PICTURES:
         summary += f" The first {MOST_PICTURES} points have a picture of their own."
-    return survey(result, summary, pictures, [table, regimes], numbers=_numbers, lines=_lines)
+    means_alone = declared(
+        "Mean friction coefficient by sliding power.", [law, *by_point], laws_found
+    )
+    return survey(
+        result,
+        summary,
+        pictures,
+        [table, regimes],
+        numbers=_numbers,
+        lines=lambda _: [summary, *lines_of(means_alone, regimes)],
+    )
+
+
+def _mean(row: Row, place: int) -> str:
+    """The mean coefficient of a law at an operating point; "outside" its source's range."""
+    return number(row["mean"][place]) + " (outside)" * bool(row["outside"][place])
+
+
+def _regime_shares(data: xr.Dataset) -> list[dict[str, float]]:
+    """The share of the path in each regime, by its name, of every operating point."""
+    names = names_of(data, "regime_name")
+    return [dict(zip(names, row.tolist(), strict=True)) for row in data["regime_share"].values]
 
 
 def _numbers(result: Result) -> dict[str, Any]:
     data = result.groups["laws"]
-    rows: list[dict[str, Any]] = []
-    for law in data["law"].values:
-        mean = data["mean_friction"].sel(law=law).values
-        rows.append({"law": str(law), "mean_friction": [float(v) for v in mean]})
     return {
         "operating": operating_rows(data),
-        "laws": rows,
-        "regime_share": [
-            dict(zip(map(str, data["regime_name"].values), map(float, shares), strict=True))
-            for shares in data["regime_share"].values
+        "laws": [
+            {"law": law, "mean_friction": mean.tolist()}
+            for law, mean in zip(names_of(data, "law"), data["mean_friction"].values, strict=True)
         ],
+        "regime_share": _regime_shares(data),
     }
-
-
-def _lines(result: Result) -> list[str]:
-    found = _numbers(result)
-    names = [
-        f"{one['pinion_speed_rpm']:.0f} rpm {one['pinion_torque_Nm']:.4g} N m"
-        for one in found["operating"]
-    ]
-    lines = [f"{'law':<18}" + "".join(f"{name:>22}" for name in names)]
-    for row in found["laws"]:
-        cells = "".join(f"{digits(v):>22}" for v in row["mean_friction"])
-        lines.append(f"{row['law']:<18}{cells}")
-    for name, shares in zip(names, found["regime_share"], strict=True):
-        told = ", ".join(f"{100.0 * v:.0f} % {k}" for k, v in shares.items())
-        lines.append(f"{name}: {told}")
-    return lines

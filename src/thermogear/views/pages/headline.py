@@ -11,9 +11,10 @@ import numpy as np
 from thermogear.base.display import celsius, display, number, percent, span
 from thermogear.base.vocabulary import STATUS, STILL, is_known, told_labels, told_operating
 from thermogear.results.result import Result
+from thermogear.views.columns import Row, rows_along
 from thermogear.views.page import Tile
 from thermogear.views.style import names_of
-from thermogear.views.tables import JAMMED
+from thermogear.views.tables import JAMMED, jam_words
 from thermogear.views.typesetting import jam_at
 
 if TYPE_CHECKING:
@@ -124,11 +125,9 @@ def _rows_summary(points: xr.Dataset | None) -> str:
     )
 
 
-def _rising(hot: xr.Dataset) -> str:
+def _rising(hot: Row) -> str:
     """Where the pair jams with shafts and housing rising in proportion to the gears."""
-    if "proportional_jam_temperature" not in hot:
-        return ""
-    jam = float(np.ravel(hot["proportional_jam_temperature"].values)[0])
+    jam = hot.get("proportional_jam_temperature", math.nan)
     return f"; all bodies in proportion: {jam_at(jam)}" if math.isfinite(jam) else ""
 
 
@@ -139,32 +138,30 @@ def tiles(results: Result) -> list[Tile]:
         return []
     names = names_of(mesh, "bundle")
     told = mesh.isel(operating=told_operating(mesh))
-    cold, hot = told.isel(state=0), told.isel(state=-1)
-    jammed = hot["status"].values == JAMMED
+    cold, hot = (rows_along(told.isel(state=end), "bundle") for end in (0, -1))
     gaps = [
-        "jammed" if stuck else f"{number(1e6 * float(b))} µm"
-        for b, stuck in zip(hot["half_backlash"].values, jammed, strict=True)
+        "jammed" if row["status"] == "jammed" else f"{number(1e6 * row['half_backlash'])} µm"
+        for row in hot
     ]
-    change = hot["mean_stiffness"].values / cold["mean_stiffness"].values - 1.0
-    bare = cold["status"].values == JAMMED
-    jam = [
-        jam_at(float(t), without_heat=bool(stuck), known=bool(ok))
-        for t, stuck, ok in zip(
-            hot["jam_temperature"].values, bare, is_known(hot["status"].values), strict=True
-        )
+    change = [
+        percent(row["mean_stiffness"] / bare["mean_stiffness"] - 1.0)
+        for row, bare in zip(hot, cold, strict=True)
     ]
+    jam = [jam_words("jam_temperature", row, bare) for row, bare in zip(hot, cold, strict=True)]
     found = [
         Tile(
             "hot half backlash",
             gaps[0],
-            f"undeformed {number(1e6 * float(cold['half_backlash'][0]))} µm" + _beside(names, gaps),
+            f"undeformed {number(1e6 * cold[0]['half_backlash'])} µm" + _beside(names, gaps),
         ),
         Tile(
             "mean mesh stiffness, hot against undeformed",
-            percent(float(change[0])),
-            names[0] + _beside(names, [percent(float(c)) for c in change]),
+            change[0],
+            names[0] + _beside(names, change),
         ),
-        Tile("backlash used up at", jam[0], f"housing as it is{_beside(names, jam)}{_rising(hot)}"),
+        Tile(
+            "backlash used up at", jam[0], f"housing as it is{_beside(names, jam)}{_rising(hot[0])}"
+        ),
     ]
     path = results.group("path")
     if path is not None and "flash_temperature" in path:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
+from operator import itemgetter
 from typing import TYPE_CHECKING, Any
 
-from thermogear.base.display import number
+from thermogear.base.display import MICROMETRE, Display, number
 from thermogear.results.result import Result
-from thermogear.views.csv_files import quoted
+from thermogear.views.columns import Column, declared, lines_of, typed
+from thermogear.views.csv_files import cell_text, head_text
 from thermogear.views.page import (
     LEAD,
     Block,
@@ -27,7 +29,6 @@ from thermogear.views.pages.event_plane import (
     plane_tables,
     shown,
 )
-from thermogear.views.pages.motion_lines import LINES
 from thermogear.views.picture import Picture
 from thermogear.views.plots import one_motion as plots
 from thermogear.views.plots.event_plane import plane_picture
@@ -53,30 +54,33 @@ def page(result: Result) -> Page:
     if "curve_0" in groups:
         made = partial(plane_picture, _numbered(groups, "curve_"))
         shown.append(Shown("plane", PLANE, plane_caption(summary), made, wide=True))
+    headline, blocks = _headline(kind, summary), _TABLES[kind](summary)
     return Page(
         result,
-        _headline(kind, summary),
+        headline,
         [
-            Section("numbers", "Numbers", [*_TABLES[kind](summary)]),
+            Section("numbers", "Numbers", blocks),
             Section(LEAD, "In pictures", [Gallery(shown)], folded=False),
         ],
         numbers=lambda: summary,
-        lines=lambda: [*LINES[kind](summary), *notice_lines(result)],
+        lines=lambda: [
+            summary["title"],
+            typed(headline),
+            *lines_of(*blocks),
+            *notice_lines(result),
+        ],
         tables=lambda: csv_tables(kind, groups),
         files=("svg", "png"),
     )
 
 
 def _picture(kind: str, groups: Groups) -> Callable[[], Picture]:
-    if kind == "orbit":
-        return partial(plots.orbit_picture, groups["orbit"])
-    if kind == "lyapunov":
-        return partial(plots.lyapunov_picture, groups["lyapunov"])
+    if kind in ("branch", "cascade"):
+        maker = plots.branch_picture if kind == "branch" else plots.cascade_picture
+        return partial(maker, _numbered(groups, "branch_"))
     if kind == "shared":
         return partial(shared_picture, groups["rest"], groups["motion"])
-    branches = _numbered(groups, "branch_")
-    maker = plots.branch_picture if kind == "branch" else plots.cascade_picture
-    return partial(maker, branches)
+    return partial(plots.orbit_picture if kind == "orbit" else plots.lyapunov_picture, groups[kind])
 
 
 def _numbered(groups: Groups, begin: str) -> list[xr.Dataset]:
@@ -95,17 +99,11 @@ def csv_tables(kind: str, groups: Groups) -> dict[str, str]:
             columns = [str(v) for v in data.variables if data[v].dims == (axis,)]
             if not columns or axis in ("multiplier", "coordinate"):
                 continue
-            units = [str(data[c].attrs.get("units", "")) for c in columns]
-            heads = [f"{c} [{u}]" if u else c for c, u in zip(columns, units, strict=True)]
+            heads = [head_text(data, column) for column in columns]
             lines = files.setdefault(f"{file}_{axis}.csv", [",".join([*own, *heads])])
-            arrays = [data[c].values.tolist() for c in columns]
-            for row in zip(*arrays, strict=True):
-                lines.append(",".join(_cell(v) for v in (*own.values(), *row)))
+            rows = zip(*(data[column].values.tolist() for column in columns), strict=True)
+            lines += [",".join(map(cell_text, (*own.values(), *row))) for row in rows]
     return {name: "\n".join(lines) + "\n" for name, lines in files.items()}
-
-
-def _cell(value: object) -> str:
-    return f"{value:.15g}" if isinstance(value, float) else quoted(str(value))
 
 
 HEADINGS = {
@@ -176,8 +174,7 @@ def _headline(kind: str, summary: Summary) -> str:
 
 
 def _orbit_tables(summary: Summary) -> list[Block]:
-    si = summary["units"] == "SI"
-    length = (1e6, "µm") if si else (1.0, "–")
+    length = MICROMETRE if summary["units"] == "SI" else Display("–")
     share = summary["time_share"]
     factor = summary["dynamic_load_factor"]
     rows = [
@@ -198,7 +195,7 @@ def _orbit_tables(summary: Summary) -> list[Block]:
         ["time in back contact", f"{100 * share['back']:.4g}", "%"],
         ["dynamic load factor", "–" if factor is None else number(factor, 5), ""],
         *(
-            [words, number(summary[name] * length[0], 6), length[1]]
+            [words, number(float(length(summary[name])), 6), length.unit]
             for words, name in (
                 ("least displacement", "least"),
                 ("greatest displacement", "greatest"),
@@ -206,20 +203,17 @@ def _orbit_tables(summary: Summary) -> list[Block]:
             )
         ),
     ]
-    lines = [
-        [
-            number(line["order"], 4),
-            "half order" if line["half_order"] else "",
-            number(line["amplitude"] * length[0], 5),
-            "–" if line["frequency_hz"] is None else number(line["frequency_hz"], 6),
-        ]
-        for line in sorted(summary["lines"], key=lambda line: -float(line["amplitude"]))[:12]
-    ]
-    marked = frozenset(i for i, row in enumerate(lines) if row[1])
-    head = ["order", "", f"amplitude [{length[1]}]", "frequency [Hz]"]
+    columns = (
+        Column("order", "order", 4),
+        Column("", lambda line: "half order" if line["half_order"] else ""),
+        Column(f"amplitude [{length.unit}]", lambda line: length(line["amplitude"]), 5),
+        Column("frequency [Hz]", "frequency_hz", 6),
+    )
+    strongest = sorted(summary["lines"], key=lambda line: -float(line["amplitude"]))[:12]
+    half = itemgetter("half_order")
     return [
         Table("Orbit", ["quantity", "value", "unit"], rows, names=1),
-        Table("Greatest lines", head, lines, names=2, marked=marked),
+        declared("Greatest lines", columns, strongest, names=2, marked=half),
     ]
 
 
@@ -246,39 +240,62 @@ def _lyapunov_tables(summary: Summary) -> list[Block]:
 
 
 def _branch_tables(summary: Summary) -> list[Block]:
-    rows = [
-        [b["kind"], f"period {b['period']}", shown(b, 10), _complex(b["multipliers"][0]), b["note"]]
-        for b in summary["bifurcations"]
+    points = (
+        Column("kind", "kind"),
+        Column("orbit", "orbit"),
+        Column(page_words(summary["parameter"]), lambda point: shown(point, 10)),
+        Column("largest multiplier", lambda point: _complex(point["multipliers"][0])),
+        Column("note", "note"),
+    )
+    legs = (
+        Column("orbit", "orbit"),
+        Column("ended", "ended"),
+        Column("points", "points"),
+        Column("stable", "stable_points"),
+    )
+    found, branches = (
+        [row | {"orbit": f"period {row['period']}"} for row in summary[name]]
+        for name in ("bifurcations", "branches")
+    )
+    none = Text("No bifurcation was found on the way.")
+    return [
+        *_train_words(summary.get("train", {})),
+        declared("Bifurcations", points, found, names=2) if found else none,
+        declared("Branches", legs, branches, names=2),
+        *plane_tables(summary),
     ]
-    legs = [
-        [f"period {b['period']}", b["ended"], str(b["points"]), str(b["stable_points"])]
-        for b in summary["branches"]
-    ]
-    found: list[Block] = []
-    if rows:
-        head = ["kind", "orbit", page_words(summary["parameter"]), "largest multiplier", "note"]
-        found.append(Table("Bifurcations", head, rows, names=2))
-    else:
-        found.append(Text("No bifurcation was found on the way."))
-    found.append(Table("Branches", ["orbit", "ended", "points", "stable"], legs, names=2))
-    return found + plane_tables(summary)
+
+
+def _train_words(train: Summary) -> list[Block]:
+    """What the reduced drive train is, and how far values between its computed ones are off."""
+    words = (
+        [f"Drive train in {train['coordinates']} coordinates; {train['began']}."] if train else []
+    )
+    straight = train.get("straight")
+    if straight is not None:
+        words.append(
+            f"Half way between computed values the greatest mesh force is off by "
+            f"{100.0 * straight['force']:.2g} %, the largest multiplier by "
+            f"{straight['multiplier']:.2g}."
+        )
+    return [Text(text, "note") for text in words]
 
 
 def _cascade_tables(summary: Summary) -> list[Block]:
-    found: list[Block] = []
-    for row in dict.fromkeys(c["row"] for c in summary["cascades"]):
-        own = [c for c in summary["cascades"] if c["row"] == row]
-        most = summary["flips"]
-        rows = []
-        for k in range(most):
-            cells = [f"{2**k} → {2 ** (k + 1)}"]
-            cells += [_flip_words(c["flips"][k]) if k < len(c["flips"]) else "–" for c in own]
-            rows.append(cells)
-        rows.append(["branch then", *(c["ended"] for c in own)])
-        head = ["period doubling", *(c["heat"] for c in own)]
-        span = f", {own[0]['from']:g} to {own[0]['to']:g}"
-        found.append(Table(page_words(own[0]["parameter"]) + span, head, rows))
-    return found
+    return [
+        _cascade_table([c for c in summary["cascades"] if c["row"] == row], summary["flips"])
+        for row in dict.fromkeys(c["row"] for c in summary["cascades"])
+    ]
+
+
+def _cascade_table(cascades: list[Summary], most: int) -> Table:
+    """Flips of the cascades of one row, one column for each state of heat."""
+    flips = [[*map(_flip_words, c["flips"]), *["–"] * most][:most] for c in cascades]
+    doublings = [f"{2**k} → {2 ** (k + 1)}" for k in range(most)]
+    rows = [*zip(doublings, *flips, strict=True), ("branch then", *(c["ended"] for c in cascades))]
+    first = cascades[0]
+    caption = page_words(first["parameter"]) + f", {first['from']:g} to {first['to']:g}"
+    return Table(caption, ["period doubling", *(c["heat"] for c in cascades)], rows)
 
 
 def _flip_words(flip: Summary) -> str:

@@ -5,14 +5,13 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
-from thermogear.base.display import exactly
+from thermogear.base.display import MICROMETRE, MILLIMETRE, exactly
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.results.result import Result
-from thermogear.views.page import Page, Shown, Table
+from thermogear.views.columns import Column, declared
+from thermogear.views.page import Page, Shown
 from thermogear.views.pages import survey_captions as words
-from thermogear.views.pages.survey import (
-    survey,
-)
+from thermogear.views.pages.survey import survey
 from thermogear.views.plots import relief
 
 KINDS = ("relief",)
@@ -48,15 +47,14 @@ def page(result: Result) -> Page:
             partial(relief.over_load, result.groups["loads"], torque),
         ),
     ]
-    rows = [
-        [gear, f"{1e6 * r['amount_m']:.3f}", f"{1e3 * r['length_m']:.4f}", r["shape"]]
-        for gear, r in result.table("reliefs").items()
-    ]
-    table = Table(
-        "Tip relief; lengths along the line of action.",
-        ["gear", "amount [µm]", "length [mm]", "shape"],
-        [[row[0], row[1], row[2], row[3]] for row in rows],
+    columns = (
+        Column("gear", "gear"),
+        Column("amount", "amount_m", ".3f", MICROMETRE),
+        Column("length", "length_m", ".4f", MILLIMETRE),
+        Column("shape", "shape"),
     )
+    rows = [{"gear": gear, **row} for gear, row in result.table("reliefs").items()]
+    table = declared("Tip relief; lengths along the line of action.", columns, rows)
     return survey(
         result,
         summary,

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from thermogear.results.result import Result
-from thermogear.views.page import Block, Cell, Pictures, Table, Text
+from thermogear.views.columns import Column, Row, declared, rows_along
+from thermogear.views.page import Block, Pictures, Table, Text
 from thermogear.views.plots import rig_trains as plots
 from thermogear.views.typesetting import prose
 
@@ -53,35 +54,34 @@ def blocks(results: Result, pictures: Pictures) -> list[Block]:
 
 
 def _shares(data: xr.Dataset) -> Table:
-    head: list[Cell] = ["seen by", *(f"within {float(v):g}" for v in data["limit"].values)]
-    rows: list[list[Cell]] = []
-    for k, words in enumerate(data["seen_words"].values):
-        cells = []
-        for n in range(data.sizes["limit"]):
-            one = data.isel(seen=k, limit=n)
-            share, low, high = (100.0 * float(one[v]) for v in ("share", "share_low", "share_high"))
-            cells.append(f"{int(one['hits'])}: {share:.1f} % ({low:.1f} to {high:.1f} %)")
-        rows.append([str(words), *cells])
+    limits = [f"within {float(limit):g}" for limit in data["limit"].values]
+    each = [_share(row) for row in rows_along(data, "seen", "limit")]
+    seen = [str(words) for words in data["seen_words"].values]
     caption = (
         f"Of {data.attrs['trains']} sampled drive trains so many show 10.4, 19.3 and 48.5 µm "
         "within a factor, growing; in brackets the 95 % interval of the share."
     )
-    return Table(caption, head, rows, names=1)
+    count = len(limits)
+    rows = [[words, *each[k * count : (k + 1) * count]] for k, words in enumerate(seen)]
+    return Table(caption, ["seen by", *limits], rows, names=1)
+
+
+def _share(row: Row) -> str:
+    """How many trains come within a limit, and the share of all with its interval."""
+    share, low, high = (100.0 * row[name] for name in ("share", "share_low", "share_high"))
+    return f"{int(row['hits'])}: {share:.1f} % ({low:.1f} to {high:.1f} %)"
+
+
+ASSUMED = (
+    Column("quantity", lambda row: prose(row["input_words"])),
+    Column("range", lambda row: prose(row["input_range"])),
+    Column("reason or source", lambda row: prose(row["input_why"])),
+)
 
 
 def _assumed(data: xr.Dataset) -> Table:
-    names = ("input_words", "input_range", "input_why")
-    rows: list[list[Cell]] = [
-        [prose(str(text)) for text in line]
-        for line in zip(*(data[name].values for name in names), strict=True)
-    ]
-    return Table(
-        "What is assumed of the rig, all ours unless said.",
-        ["quantity", "range", "reason or source"],
-        rows,
-        names=3,
-        wordy=True,
-    )
+    caption = "What is assumed of the rig, all ours unless said."
+    return declared(caption, ASSUMED, rows_along(data, "input"), names=3, wordy=True)
 
 
 def numbers(data: xr.Dataset) -> dict[str, Any]:

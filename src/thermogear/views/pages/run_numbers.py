@@ -6,8 +6,9 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from thermogear.base.units import RPM
-from thermogear.base.vocabulary import DIMENSIONLESS, STATUS
+from thermogear.base.vocabulary import DIMENSIONLESS
 from thermogear.results.result import Result
+from thermogear.views.columns import Row, rows_along
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -57,66 +58,64 @@ MOTION_FIGURES = (
 )
 
 
+def _of_point(row: Row) -> dict[str, Any]:
+    """The figures of a mesh and of its motion, as far as they are there."""
+    found = {name: float(row[name]) for name in FIGURES if name in row}
+    if "label" in row:
+        found["label"] = row["label"]
+        found |= {name: float(row[name]) for name in MOTION_FIGURES if name in row}
+    return found
+
+
 def _operating_summary(groups: Mapping[str, xr.Dataset]) -> list[dict[str, Any]]:
-    mesh, path, motion = groups["mesh"], groups["path"], groups.get("motion")
-    rows = []
-    for b, bundle in enumerate(mesh["bundle"].values):
-        for s, state in enumerate(mesh["state"].values):
-            for o in range(mesh.sizes["operating"]):
-                at = {"bundle": b, "state": s, "operating": o}
-                here, along = mesh.isel(at), path.isel(at)
-                row: dict[str, Any] = {
-                    "bundle": str(bundle),
-                    "state": str(state),
-                    "pinion_speed_rpm": float(here["pinion_speed"]) / RPM,
-                    "pinion_torque_Nm": float(here["pinion_torque"]),
-                    "status": STATUS[int(here["status"])],
-                    "greatest_flash_temperature_K": float(along["flash_temperature"].max()),
-                    "greatest_friction": float(along["friction_coefficient"].max()),
-                }
-                row |= {name: float(here[name]) for name in FIGURES if name in here}
-                if motion is not None and "label" in motion:
-                    moving = motion.isel(at)
-                    row["label"] = str(moving["label"].values)
-                    row |= {n: float(moving[n]) for n in MOTION_FIGURES if n in moving}
-                rows.append(row)
-    return rows
+    path, motion = groups["path"], groups.get("motion")
+    data = groups["mesh"].assign(
+        flash=path["flash_temperature"].max("path_position"),
+        friction=path["friction_coefficient"].max("path_position"),
+    )
+    if motion is not None and "label" in motion:
+        data = data.assign({n: motion[n] for n in ("label", *MOTION_FIGURES) if n in motion})
+    return [
+        {
+            "bundle": row["bundle"],
+            "state": row["state"],
+            "pinion_speed_rpm": row["pinion_speed"] / RPM,
+            "pinion_torque_Nm": row["pinion_torque"],
+            "status": row["status"],
+            "greatest_flash_temperature_K": row["flash"],
+            "greatest_friction": row["friction"],
+            **_of_point(row),
+        }
+        for row in rows_along(data, "bundle", "state", "operating")
+    ]
 
 
-def _temperature_summary(row: xr.Dataset) -> list[dict[str, Any]]:
-    rows = []
-    for b, bundle in enumerate(row["bundle"].values):
-        for t, temperature in enumerate(row["gear_temperature"].values):
-            for o in range(row.sizes["operating"]):
-                here = row.isel(bundle=b, gear_temperature=t, operating=o)
-                found: dict[str, Any] = {
-                    "bundle": str(bundle),
-                    "gear_temperature_K": float(temperature),
-                    "pinion_speed_rpm": float(here["pinion_speed"]) / RPM,
-                    "status": STATUS[int(here["status"])],
-                    "label": str(here["label"].values),
-                }
-                names = FIGURES + MOTION_FIGURES
-                found |= {name: float(here[name]) for name in names if name in here}
-                rows.append(found)
-    return rows
+def _temperature_summary(data: xr.Dataset) -> list[dict[str, Any]]:
+    return [
+        {
+            "bundle": row["bundle"],
+            "gear_temperature_K": row["gear_temperature"],
+            "pinion_speed_rpm": row["pinion_speed"] / RPM,
+            "status": row["status"],
+            "label": row["label"],
+            **_of_point(row),
+        }
+        for row in rows_along(data, "bundle", "gear_temperature", "operating")
+    ]
 
 
 def _point_summary(points: xr.Dataset) -> list[dict[str, Any]]:
-    rows = []
-    for place in range(points.sizes["point"]):
-        here = points.isel(point=place)
-        rows.append(
-            {
-                "row": str(here["row"].values),
-                "parameter": str(here["parameter"].values),
-                "value": float(here["value"]),
-                "unit": str(here["value_unit"].values),
-                "label": str(here["label"].values),
-                "reason": str(here["label_reason"].values),
-                **{name: int(here[name]) for name in FOLLOWED if name in here},
-                "expected": str(here["expected"].values),
-                "half_order_amplitude": float(here["half_order_amplitude"]),
-            }
-        )
-    return rows
+    return [
+        {
+            "row": row["row"],
+            "parameter": row["parameter"],
+            "value": row["value"],
+            "unit": row["value_unit"],
+            "label": row["label"],
+            "reason": row["label_reason"],
+            **{name: int(row[name]) for name in FOLLOWED if name in row},
+            "expected": row["expected"],
+            "half_order_amplitude": row["half_order_amplitude"],
+        }
+        for row in rows_along(points, "point")
+    ]

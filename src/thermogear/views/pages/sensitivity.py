@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermogear.base.display import number
 from thermogear.base.units import RPM
 from thermogear.results.result import Result
-from thermogear.views.page import Block, Cell, Page, Pictures, Section, Table, Text
+from thermogear.views.columns import Column, Row, declared, rows_along
+from thermogear.views.page import Block, Page, Pictures, Section, Text
 from thermogear.views.pages.background import background
 from thermogear.views.plots import claims as plots
 from thermogear.views.typesetting import prose
@@ -58,8 +58,9 @@ def sensitivity_section(results: Result, pictures: Pictures) -> Section:
         data, ("total",), lambda: plots.sensitivity(data), wide=True,
     )  # fmt: skip
     blocks += pictures.take()
-    blocks.append(_ranges(data))
-    blocks.append(_indices(data))
+    blocks.append(declared("The ranges, all ours.", RANGES, rows_along(data, "input")))
+    caption = "The strongest inputs of every result, at most four, as indices between 0 and 1."
+    blocks.append(declared(caption, INDICES, _strongest(data), names=2))
     return Section("sensitivity", "Which unstated inputs decide", blocks)
 
 
@@ -67,39 +68,42 @@ def _capital(text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
-def _ranges(data: xr.Dataset) -> Table:
-    rows = [
-        [str(w), number(float(low), 4), number(float(high), 4), str(u)]
-        for w, low, high, u in zip(
-            data["input_words"].values, data["input_low"].values, data["input_high"].values,
-            data["input_unit"].values, strict=True,
-        )
-    ]  # fmt: skip
-    return Table("The ranges, all ours.", ["input", "from", "to", "unit"], rows)
+RANGES = (
+    Column("input", "input_words"),
+    Column("from", "input_low", 4),
+    Column("to", "input_high", 4),
+    Column("unit", "input_unit"),
+)
 
 
-def _indices(data: xr.Dataset) -> Table:
-    rows: list[Sequence[Cell]] = []
-    for o in range(data.sizes["output"]):
-        one = data.isel(output=o)
-        words = str(one["output_words"].item())
-        strongest = np.argsort(-one["total"].values, kind="stable")[:4]
-        told = [k for k in strongest if one["total"].values[k] >= 5e-4]
-        for k in told:
-            pair = [
-                f"{float(one[n][k]) + 0.0:.3f} ± {float(one[f'{n}_conf'][k]):.3f}".replace("-", "−")
-                for n in ("first_order", "total")
-            ]
-            rows.append([words, str(data["input_words"].values[k]), *pair])
-        if not told:
-            rows.append([words, "none changes it", "–", "–"])
-    head = ["result", "input", "first order", "total"]
-    return Table(
-        "The strongest inputs of every result, at most four, as indices between 0 and 1.",
-        head,
-        rows,
-        names=2,
-    )
+def _index(name: str) -> Callable[[Row], str]:
+    """A sensitivity index with its confidence interval; a dash for a result that none changes."""
+
+    def words(row: Row) -> str:
+        if name not in row:
+            return "–"
+        return f"{row[name] + 0.0:.3f} ± {row[f'{name}_conf']:.3f}".replace("-", "−")
+
+    return words
+
+
+INDICES = (
+    Column("result", "output_words"),
+    Column("input", "input_words"),
+    Column("first order", _index("first_order")),
+    Column("total", _index("total")),
+)
+
+
+def _strongest(data: xr.Dataset) -> list[Row]:
+    """The strongest inputs of every result; one row without an index where none changes it."""
+    rows: list[Row] = []
+    for place in range(data.sizes["output"]):
+        inputs = sorted(rows_along(data.isel(output=place), "input"), key=lambda row: -row["total"])
+        nothing = {**inputs[0], "input_words": "none changes it"}
+        found = [row for row in inputs[:4] if row["total"] >= 5e-4]
+        rows += found or [{name: nothing[name] for name in ("output_words", "input_words")}]
+    return rows
 
 
 # --- figures as JSON wants them ---------------------------------------------------------------

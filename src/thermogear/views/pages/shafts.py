@@ -8,9 +8,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermogear.base.display import exactly, number
-from thermogear.base.units import RPM, ZERO_CELSIUS
+from thermogear.base.display import (
+    CELSIUS,
+    HERTZ,
+    HOUR,
+    MICROMETRE,
+    NEWTON,
+    PER_MICROMETRE,
+    PERCENT,
+    exactly,
+    number,
+)
+from thermogear.base.units import RPM
 from thermogear.results.result import Result
+from thermogear.views.columns import OF_STATE, Column, Row, declared, rows_along
 from thermogear.views.page import Page, Pictures, Section, Shown, Table
 from thermogear.views.pages.survey import operating_rows, survey
 from thermogear.views.plots import shafts as plots
@@ -76,13 +87,12 @@ def _statics(result: Result) -> Page:
             wide=True,
         ),
     ]
-    tables = [_mesh_table(mesh, names), _ring_table(rings, names)]
     hottest = np.nanmax(rings["bearing_load"].values) if rings["bearing_load"].size else 0.0
     summary = (
         f"Bearings carry up to {number(float(hottest))} N; the centres move apart by up to "
         f"{1e6 * float(np.nanmax(mesh['centre_distance_growth'].values)):.1f} µm."
     )
-    return survey(result, summary, pictures, tables, numbers=_static_numbers, lines=_static_lines)
+    return survey(result, summary, pictures, _static_tables(result), numbers=_static_numbers)
 
 
 def _clearances(rings: xr.Dataset) -> Shown:
@@ -96,113 +106,67 @@ def _clearances(rings: xr.Dataset) -> Shown:
     )
 
 
-def _mesh_table(data: xr.Dataset, names: list[str]) -> Table:
-    head = [
-        "state", "operating point", "mesh force [N]", "teeth give [µm]", "centres apart [µm]",
-        "contact ratio", "backlash [µm]", "flanks part across the face [µm]",
-    ]  # fmt: skip
-    rows = []
-    for s, state in enumerate(names_of(data, "state")):
-        for o, name in enumerate(names):
-            one = data.isel(state=s, operating=o)
-            rows.append(
-                [
-                    state,
-                    name,
-                    _told(one["mesh_force"], 1.0, 0),
-                    _told(one["mesh_deflection"], 1e6, 2),
-                    _told(one["centre_distance_growth"], 1e6, 2),
-                    _told(one["contact_ratio"], 1.0, 4),
-                    _told(one["backlash_at_shift"], 1e6, 1),
-                    _told(one["misalignment_across_face"], 1e6, 2),
-                ]
-            )
-    return Table("The mesh on its deflected shafts.", head, rows, names=2)
+MESH = (
+    *OF_STATE,
+    Column("mesh force", "mesh_force", ".0f", NEWTON),
+    Column("teeth give", "mesh_deflection", ".2f", MICROMETRE),
+    Column("centres apart", "centre_distance_growth", ".2f", MICROMETRE),
+    Column("contact ratio", "contact_ratio", ".4f"),
+    Column("backlash", "backlash_at_shift", ".1f", MICROMETRE),
+    Column("flanks part across the face", "misalignment_across_face", ".2f", MICROMETRE),
+)
+RINGS = (
+    *OF_STATE,
+    Column("bearing", "bearing"),
+    Column("load", "bearing_load", ".0f", NEWTON),
+    Column("radial internal clearance", "clearance", ".2f", MICROMETRE),
+    Column(
+        "journal moves", lambda row: np.hypot(row["journal_x"], row["journal_y"]), ".2f", MICROMETRE
+    ),
+    Column("stiffness x", "bearing_stiffness_x", ".1f", PER_MICROMETRE),
+    Column("stiffness y", "bearing_stiffness_y", ".1f", PER_MICROMETRE),
+    Column("inner ring", "inner_ring_temperature", ".1f", CELSIUS),
+    Column("outer ring", "outer_ring_temperature", ".1f", CELSIUS),
+    Column("static safety", "static_safety", ".1f"),
+    Column("life L10", "bearing_life", ".0f", HOUR),
+)
 
 
-def _ring_table(data: xr.Dataset, names: list[str]) -> Table:
-    head = [
-        "state", "operating point", "bearing", "load [N]", "radial internal clearance [µm]",
-        "journal moves [µm]", "stiffness x [N/µm]", "stiffness y [N/µm]", "inner ring [°C]",
-        "outer ring [°C]", "static safety", "life L10 [h]",
-    ]  # fmt: skip
-    rows = []
-    for s, state in enumerate(names_of(data, "state")):
-        for o, name in enumerate(names):
-            for b, bearing in enumerate(names_of(data, "bearing")):
-                one = data.isel(state=s, operating=o, bearing=b)
-                moved = float(np.hypot(one["journal_x"], one["journal_y"]))
-                rows.append(
-                    [
-                        state,
-                        name,
-                        bearing,
-                        _told(one["bearing_load"], 1.0, 0),
-                        _told(plots.internal_clearance(one), 1e6, 2),
-                        _told(moved, 1e6, 2),
-                        _told(one["bearing_stiffness_x"], 1e-6, 1),
-                        _told(one["bearing_stiffness_y"], 1e-6, 1),
-                        _told(float(one["inner_ring_temperature"]) - ZERO_CELSIUS, 1.0, 1),
-                        _told(float(one["outer_ring_temperature"]) - ZERO_CELSIUS, 1.0, 1),
-                        _told(one["static_safety"], 1.0, 1),
-                        _told(one["bearing_life"], 1.0 / 3600.0, 0),
-                    ]
-                )
-    return Table("The bearings.", head, rows, names=3)
-
-
-def _told(value: Any, factor: float, digits: int) -> str:
-    if value is None:
-        return "–"
-    found = factor * float(value) + 0.0
-    if abs(found) < 0.5 * 10.0**-digits:
-        found = 0.0
-    return f"{found:.{digits}f}" if np.isfinite(found) else "–"
+def _static_tables(result: Result) -> list[Table]:
+    rings = result.groups["bearings"]
+    rings = rings.assign(clearance=plots.internal_clearance(rings))
+    of_mesh = rows_along(result.groups["statics"], "state", "operating")
+    of_rings = rows_along(rings, "state", "operating", "bearing")
+    return [
+        declared("The mesh on its deflected shafts.", MESH, of_mesh, names=2),
+        declared("The bearings.", RINGS, of_rings, names=3),
+    ]
 
 
 def _static_numbers(result: Result) -> dict[str, Any]:
     mesh, rings = result.groups["statics"], result.groups["bearings"]
-    found: dict[str, Any] = {"operating": operating_rows(mesh), "states": {}}
-    for s, state in enumerate(names_of(mesh, "state")):
-        one = mesh.isel(state=s)
-        found["states"][state] = {
-            f"{name}_{one[name].attrs['units'].replace('/', '_per_')}": _list(one[name].values)
-            for name in mesh.data_vars
-            if "units" in mesh[name].attrs
-        }
-        found["states"][state]["bearings"] = {
-            bearing: {
-                f"{name}_{rings[name].attrs['units'].replace('/', '_per_')}": _list(
-                    rings[name].values[s, :, b]
-                )
-                for name in rings.data_vars
+    return {
+        "operating": operating_rows(mesh),
+        "states": {
+            state: {
+                **_stored(mesh.isel(state=s)),
+                "bearings": {
+                    bearing: _stored(rings.isel(state=s, bearing=b))
+                    for b, bearing in enumerate(names_of(rings, "bearing"))
+                },
             }
-            for b, bearing in enumerate(names_of(rings, "bearing"))
-        }
-    return found
+            for s, state in enumerate(names_of(mesh, "state"))
+        },
+    }
 
 
-def _list(values: Any) -> Any:
-    return [None if not np.isfinite(v) else float(v) for v in np.ravel(values)]
-
-
-def _static_lines(result: Result) -> list[str]:
-    rings, mesh = result.groups["bearings"], result.groups["statics"]
-    names = operating_names(mesh)
-    found = []
-    for o, name in enumerate(names):
-        found.append(name)
-        found.append(f"  {'bearing':<16}{'load [N]':>20}{'radial internal clearance [um]':>32}")
-        for b, bearing in enumerate(names_of(rings, "bearing")):
-            both = rings.isel(operating=o, bearing=b)
-            load = " -> ".join(_told(v, 1.0, 0) for v in both["bearing_load"].values)
-            gap = " -> ".join(_told(v, 1e6, 1) for v in plots.internal_clearance(both).values)
-            found.append(f"  {bearing:<16}{load:>20}{gap:>32}")
-        one = mesh.isel(operating=o)
-        apart = " -> ".join(_told(v, 1e6, 2) for v in one["centre_distance_growth"].values)
-        tilt = " -> ".join(_told(v, 1e6, 2) for v in one["misalignment_across_face"].values)
-        found.append(f"  centres move apart {apart} um; flanks part across the face {tilt} um")
-    return [f"undeformed -> hot, {len(names)} operating point{'s' * (len(names) > 1)}", *found]
+def _stored(data: xr.Dataset) -> dict[str, list[float]]:
+    """Every variable with a unit, its unit in the name."""
+    return {
+        f"{name}_{variable.attrs['units'].replace('/', '_per_')}": variable.values.ravel().tolist()
+        for name, variable in data.data_vars.items()
+        if "units" in variable.attrs
+    }
 
 
 # --- modes ------------------------------------------------------------------------------------
@@ -231,36 +195,26 @@ def _modes(result: Result) -> Page:
             wide=True,
         ),
     ]
-    hertz = table["natural_frequency"].values / (2.0 * np.pi)
-    rows = [
-        [
-            str(m + 1),
-            *(f"{hertz[s, m]:.2f}" for s in range(len(states))),
-            f"{100.0 * float(table['modal_damping_ratio'].values[last, m]):.2f}",
-            f"{100.0 * float(table['mesh_share'].values[last, m]):.1f}",
-            _told(table["pinion_whirl"].values[last, m], 1.0, 2),
-            _told(table["wheel_whirl"].values[last, m], 1.0, 2),
-            str(table["mode_name"].values[last, m]),
-        ]
-        for m in range(table.sizes["mode"])
-    ]
-    head = [
-        "mode", *(f"{s} [Hz]" for s in states), "damping [%]", "energy in the mesh [%]",
-        "whirl, pinion", "whirl, wheel", "mostly",
-    ]  # fmt: skip
+    hertz = {
+        state: table["natural_frequency"].isel(state=s, drop=True) for s, state in enumerate(states)
+    }
+    columns = (
+        Column("mode", "mode"),
+        *(Column(state, state, ".2f", HERTZ) for state in states),
+        Column("damping", "modal_damping_ratio", ".2f", PERCENT),
+        Column("energy in the mesh", "mesh_share", ".1f", PERCENT),
+        Column("whirl, pinion", "pinion_whirl", ".2f"),
+        Column("whirl, wheel", "wheel_whirl", ".2f"),
+        Column("mostly", "mode_name"),
+    )
     torque, speed = (float(result.text(name)) for name in ("torque", "speed"))
     summary = (
-        f"The lowest natural frequency is {hertz[last].min():.4g} Hz {states[last]}, at "
-        f"{exactly(speed / RPM)} rpm and {exactly(torque)} N m."
+        f"The lowest natural frequency is {float(HERTZ(hertz[states[last]].min())):.4g} Hz "
+        f"{states[last]}, at {exactly(speed / RPM)} rpm and {exactly(torque)} N m."
     )
-    return survey(
-        result,
-        summary,
-        pictures,
-        [Table("Natural frequencies and what they are.", head, rows)],
-        numbers=_mode_numbers,
-        lines=_mode_lines,
-    )
+    rows = rows_along(table.isel(state=last).assign(hertz), "mode")
+    tables = [declared("Natural frequencies and what they are.", columns, rows)]
+    return survey(result, summary, pictures, tables, numbers=_mode_numbers)
 
 
 def _mode_numbers(result: Result) -> dict[str, Any]:
@@ -270,27 +224,16 @@ def _mode_numbers(result: Result) -> dict[str, Any]:
         "torque_Nm": float(result.text("torque")),
         "states": {
             state: {
-                "natural_frequency_Hz": _list(table["natural_frequency"].values[s] / (2 * np.pi)),
-                "modal_damping_ratio": _list(table["modal_damping_ratio"].values[s]),
-                "mesh_share": _list(table["mesh_share"].values[s]),
-                "mostly": [str(v) for v in table["mode_name"].values[s]],
+                "natural_frequency_Hz": (
+                    table["natural_frequency"].values[s] / (2 * np.pi)
+                ).tolist(),
+                "modal_damping_ratio": table["modal_damping_ratio"].values[s].tolist(),
+                "mesh_share": table["mesh_share"].values[s].tolist(),
+                "mostly": table["mode_name"].values[s].tolist(),
             }
             for s, state in enumerate(names_of(table, "state"))
         },
     }
-
-
-def _mode_lines(result: Result) -> list[str]:
-    table = result.groups["modes"]
-    states = names_of(table, "state")
-    hertz = table["natural_frequency"].values / (2.0 * np.pi)
-    heads = "".join(f"{s + ' [Hz]':>18}" for s in states)
-    found = [f"{'mode':>4}{heads}{'mesh [%]':>10}  mostly"]
-    for m in range(table.sizes["mode"]):
-        cells = "".join(f"{hertz[s, m]:>18.2f}" for s in range(len(states)))
-        share = 100.0 * float(table["mesh_share"].values[-1, m])
-        found.append(f"{m + 1:>4}{cells}{share:>10.1f}  {table['mode_name'].values[-1, m]}")
-    return found
 
 
 # --- critical speeds --------------------------------------------------------------------------
@@ -300,45 +243,59 @@ def criticals(result: Result) -> Iterator[dict[str, Any]]:
     """Critical speeds with their participation, by state and rising speed, that are not nil."""
     data, modes = result.groups["critical"], result.groups["campbell"]
     limit = float(modes["pinion_speed"].values[-1])
-    for s, state in enumerate(names_of(data, "state")):
-        found = []
-        every, lifts = data["resonant_force"].values[s, 1], plots.lift_offs(data)[s, 1]
-        inside = data["critical_speed"].values[s, 1] <= limit
-        known = np.where(inside & np.isfinite(every), every, np.nan)
-        most = float(np.nanmax(known, initial=0.0))
-        for line, words in enumerate(names_of(data, "line")):
-            low, mean, high = data["critical_speed"].values[s, :, line]
-            share = data["participation"].values[s, 1, line]
-            gain = data["amplification"].values[s, 1, line]
-            force = data["resonant_force"].values[s, 1, line]
-            for m in range(mean.size):
-                lifted = bool(np.isfinite(lifts[line, m]))
-                felt = lifted or force[m] >= FELT * most
-                if (gain[m] >= NIL or felt) and low[m] <= limit:
-                    found.append(
-                        {
-                            "state": state,
-                            "order": words,
-                            "mode": m + 1,
-                            "rpm": mean[m] / RPM,
-                            "rpm_least": low[m] / RPM,
-                            "rpm_greatest": high[m] / RPM,
-                            "frequency_Hz": mean[m] * float(data["order"].values[line]) / 2 / np.pi,
-                            "participation": float(share[m]),
-                            "amplification": float(gain[m]),
-                            "bearing_force_N": float(force[m]) if np.isfinite(force[m]) else None,
-                            "lifts_off_from_rpm": lifts[line, m] / RPM if lifted else None,
-                            "mostly": str(modes["mode_name"].values[s, m]),
-                        }
-                    )
-        yield from sorted(found, key=lambda one: one["rpm"])
+    low, mean, high = (data.isel(stiffness_level=level, drop=True) for level in range(3))
+    force = mean["resonant_force"]
+    inside = force.where((mean["critical_speed"] <= limit) & np.isfinite(force))
+    every = mean.assign(
+        low=low["critical_speed"],
+        high=high["critical_speed"],
+        lift_off=(force.dims, plots.lift_offs(data)[:, 1]),
+        greatest_force=inside.max(["line", "mode"]).fillna(0.0),
+        mode_name=modes["mode_name"],
+        place=("state", np.arange(data.sizes["state"])),
+    )
+    rows = rows_along(every, "state", "line", "mode")
+    for row in sorted(rows, key=lambda row: (row["place"], row["critical_speed"])):
+        lifted = np.isfinite(row["lift_off"])
+        felt = lifted or row["resonant_force"] >= FELT * row["greatest_force"]
+        if (row["amplification"] >= NIL or felt) and row["low"] <= limit:
+            yield {
+                "state": row["state"],
+                "order": row["line"],
+                "mode": row["mode"],
+                "rpm": row["critical_speed"] / RPM,
+                "rpm_least": row["low"] / RPM,
+                "rpm_greatest": row["high"] / RPM,
+                "frequency_Hz": row["critical_speed"] * row["order"] / 2 / np.pi,
+                "participation": row["participation"],
+                "amplification": row["amplification"],
+                "bearing_force_N": row["resonant_force"],
+                "lifts_off_from_rpm": row["lift_off"] / RPM if lifted else None,
+                "mostly": row["mode_name"],
+            }
 
 
-def _force(one: dict[str, Any]) -> str:
+def _force(row: Row) -> float | str:
     """The dynamic force of a resonance on a bearing [N], or why there is none."""
-    if one["lifts_off_from_rpm"] is not None:
-        return plots.not_valid(one["lifts_off_from_rpm"] * RPM)
-    return _told(one["bearing_force_N"], 1.0, 1)
+    lifts_off = row["lifts_off_from_rpm"]
+    return row["bearing_force_N"] if lifts_off is None else plots.not_valid(lifts_off * RPM)
+
+
+CRITICAL = (
+    Column("state", "state"),
+    Column("speed [rpm]", "rpm", ".0f"),
+    Column(
+        "over the mesh's stiffness [rpm]",
+        lambda row: f"{row['rpm_least']:.0f} to {row['rpm_greatest']:.0f}",
+    ),
+    Column("frequency [Hz]", "frequency_Hz", ".1f"),
+    Column("excited by", "order"),
+    Column("mode", "mode"),
+    Column("bearing force [N]", _force, ".1f"),
+    Column("participation", "participation", ".4f"),
+    Column("amplification", "amplification", ".2f"),
+    Column("mostly", "mostly"),
+)
 
 
 def _campbell(result: Result) -> Page:
@@ -378,33 +335,14 @@ def _campbell(result: Result) -> Page:
                 wide=True,
             )
         )
-    head = [
-        "state", "speed [rpm]", "over the mesh's stiffness [rpm]", "frequency [Hz]", "excited by",
-        "mode", "bearing force [N]", "participation", "amplification", "mostly",
-    ]  # fmt: skip
-    rows = [
-        [
-            one["state"],
-            f"{one['rpm']:.0f}",
-            f"{one['rpm_least']:.0f} to {one['rpm_greatest']:.0f}",
-            f"{one['frequency_Hz']:.1f}",
-            one["order"],
-            str(one["mode"]),
-            _force(one),
-            f"{one['participation']:.4f}",
-            f"{one['amplification']:.2f}",
-            one["mostly"],
-        ]
-        for one in found
-    ]
     hot = [one for one in found if one["state"] == names_of(data, "state")[-1]]
-    strong = max(hot, key=lambda one: one["bearing_force_N"] or 0.0, default=None)
+    strong = max(hot, key=lambda row: np.nan_to_num(row["bearing_force_N"]), default=None)
     summary = "No order meets a mode it can drive in this range."
     if strong is not None:
         summary = (
             f"{len(hot)} critical speeds hot; the loudest at {strong['rpm']:.0f} rpm, where "
             f"{strong['order']} meets {strong['frequency_Hz']:.0f} Hz ({strong['mostly']}): "
-            f"{_told(strong['bearing_force_N'], 1.0, 0)} N on a bearing."
+            f"{number(strong['bearing_force_N'], 1)} N on a bearing."
         )
     lost = [one for one in hot if one["lifts_off_from_rpm"] is not None]
     if lost:
@@ -420,24 +358,10 @@ def _campbell(result: Result) -> Page:
         "alone; the response has all of them together. Above its static load a bearing "
         "lifts off, or the teeth part, from the speed given on: the linear force is not valid."
     )
-    table = Table(caption, head, rows)
     return survey(
-        result, summary, pictures, [table], numbers=_critical_numbers, lines=_critical_lines
+        result,
+        summary,
+        pictures,
+        [declared(caption, CRITICAL, found)],
+        numbers=lambda _: {"torque_Nm": float(result.text("torque")), "critical": found},
     )
-
-
-def _critical_numbers(result: Result) -> dict[str, Any]:
-    return {"torque_Nm": float(result.text("torque")), "critical": list(criticals(result))}
-
-
-def _critical_lines(result: Result) -> list[str]:
-    head = f"{'state':<12}{'rpm':>8}{'band [rpm]':>16}{'Hz':>9}{'force [N]':>38}{'rises':>7}"
-    found = [f"{head}  by: mostly"]
-    for one in criticals(result):
-        band = f"{one['rpm_least']:.0f}..{one['rpm_greatest']:.0f}"
-        found.append(
-            f"{one['state']:<12}{one['rpm']:>8.0f}{band:>16}{one['frequency_Hz']:>9.1f}"
-            f"{_force(one):>38}{one['amplification']:>7.2f}"
-            f"  {one['order']}: {one['mostly']}"
-        )
-    return ["no order meets a mode it can drive in this range"] if len(found) == 1 else found

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from thermogear.base.units import RPM
 from thermogear.results.result import Result
 from thermogear.results.tables import csv_text, frames
+from thermogear.views.columns import lines_of, typed
 from thermogear.views.page import (
     LEAD,
     Block,
@@ -35,10 +35,13 @@ def survey(
     tables: Sequence[Table],
     *,
     numbers: Callable[[Result], dict[str, Any]],
-    lines: Callable[[Result], Lines],
+    lines: Callable[[Result], Lines] | None = None,
     code: str = "",
 ) -> Page:
-    """Wide pictures come first; ``code`` is what may be copied into a case file."""
+    """Wide pictures come first; ``code`` is what may be copied into a case file.
+
+    Without ``lines`` of its own a terminal shows the summary and the tables.
+    """
     small = [one for one in pictures if not one.wide]
     drawn: list[Block] = [Gallery([one]) for one in pictures if one.wide]
     drawn += [Gallery(small)] * bool(small)
@@ -56,7 +59,10 @@ def survey(
             **numbers(result),
             "notices": [one._asdict() for one in result.notices],
         },
-        lines=lambda: [*lines(result), *notice_lines(result)],
+        lines=lambda: [
+            *(lines(result) if lines else [typed(summary), *lines_of(*tables)]),
+            *notice_lines(result),
+        ],
         tables=lambda: csv_tables(result),
         files=("svg", "png"),
     )
@@ -86,8 +92,3 @@ def operating_rows(data: xr.Dataset) -> list[dict[str, float]]:
 def table_of(data: xr.DataArray) -> list[list[float]]:
     """A grid as rows of numbers."""
     return [[float(v) for v in row] for row in data.values]
-
-
-def digits(value: float) -> str:
-    """A number of a terminal's table."""
-    return f"{value:.4f}" if math.isfinite(value) else "-"

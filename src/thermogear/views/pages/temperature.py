@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermogear.base.display import exactly, number, reach
+from thermogear.base.display import CELSIUS, KELVIN, exactly, number, reach
 from thermogear.base.units import RPM, ZERO_CELSIUS
-from thermogear.base.vocabulary import STATUS, is_known
+from thermogear.base.vocabulary import STATUS
 from thermogear.results.result import Result
+from thermogear.views.columns import Column, Row, declared, rows_along
 from thermogear.views.page import Page, Shown, Table
 from thermogear.views.pages import survey_captions as words
-from thermogear.views.pages.survey import (
-    survey,
-    table_of,
-)
+from thermogear.views.pages.survey import survey, table_of
 from thermogear.views.plots import thermal_map
+from thermogear.views.style import names_of
+from thermogear.views.tables import is_settled
 from thermogear.views.typesetting import prose
 
 if TYPE_CHECKING:
@@ -58,83 +58,90 @@ def page(result: Result) -> Page:
     return survey(result, summary, pictures, tables, numbers=_numbers, lines=_lines)
 
 
-def _conclusion_table(rows: Sequence[Mapping[str, str]]) -> Table:
-    return Table(
+CONCLUSION = (
+    Column("claim", "claim"),
+    Column("found", lambda row: prose(row["found"])),
+    Column("verdict", "verdict"),
+)
+
+
+def _conclusion_table(rows: Sequence[Row]) -> Table:
+    return declared(
         "The thesis's first conclusion, checked over the map. Rank correlations with speed and "
         "torque are means over the lines of the grid.",
-        ["claim", "found", "verdict"],
-        [[row["claim"], prose(row["found"]), row["verdict"]] for row in rows],
+        CONCLUSION,
+        rows,
         names=3,
-        marked=frozenset(i for i, row in enumerate(rows) if row["verdict"] != "holds"),
+        marked=lambda row: row["verdict"] != "holds",
         wordy=True,
     )
 
 
-def _chosen(data: xr.Dataset) -> list[tuple[int, int]]:
-    """Corners and middle of the grid."""
-    speeds, torques = data.sizes["pinion_speed"], data.sizes["pinion_torque"]
-    at_s = sorted({0, speeds // 2, speeds - 1})
-    at_t = sorted({0, torques // 2, torques - 1})
-    return [(i, j) for i in at_s for j in at_t]
+POINT = (Column("speed", "pinion_speed", exactly), Column("torque", "pinion_torque", exactly))
+CORNERS = (
+    *POINT,
+    Column("status", lambda row: row["status"].replace("_", " ")),
+    Column("oil", "oil", 3, CELSIUS),
+    Column("pinion teeth", "pinion_tooth", 3, CELSIUS),
+    Column("wheel teeth", "wheel_tooth", 3, CELSIUS),
+    Column("housing", "housing", 3, CELSIUS),
+    Column("flash", "greatest_flash", 3, KELVIN),
+    Column("Λ least", "least_film_parameter"),
+    Column("b′ least", "least_half_backlash"),
+    Column("scuffing margin", "scuffing_margin", 3, KELVIN),
+    Column("iterations", "iterations"),
+    Column(
+        "residual",
+        lambda row: row["residual"] if is_settled(row) else None,
+        2,
+        KELVIN,
+    ),
+)
 
 
-def _point_name(data: xr.Dataset, i: int, j: int) -> list[str]:
-    speed = float(data["pinion_speed"][i]) / RPM
-    return [exactly(speed), exactly(float(data["pinion_torque"][j]))]
-
-
-def _degrees(kelvin: float) -> str:
-    return number(kelvin - ZERO_CELSIUS, 3) if np.isfinite(kelvin) else "–"
+def _at_corners(data: xr.Dataset) -> list[dict[str, Any]]:
+    """Corners and middle of the grid, with the temperature of every node and each estimate."""
+    chosen = {
+        name: sorted({0, data.sizes[name] // 2, data.sizes[name] - 1})
+        for name in ("pinion_speed", "pinion_torque")
+    }
+    there = data.isel(chosen)
+    of_nodes = {n: there["node_temperature"].sel(node=n, drop=True) for n in names_of(data, "node")}
+    estimates = {
+        n: there["body_estimate"].sel(estimate=n, drop=True) for n in names_of(data, "estimate")
+    }
+    return rows_along(there.assign(of_nodes | estimates), *chosen)
 
 
 def _corner_table(data: xr.Dataset) -> Table:
-    head = [
-        "speed [rpm]", "torque [N m]", "status", "oil [°C]", "pinion teeth [°C]",
-        "wheel teeth [°C]", "housing [°C]", "flash [K]", "Λ least", "b′ least [µm]",
-        "scuffing margin [K]", "iterations", "residual [K]",
-    ]  # fmt: skip
-    rows = []
-    for i, j in _chosen(data):
-        here = data.isel(pinion_speed=i, pinion_torque=j)
-        node = here["node_temperature"]
-        settled = is_known(int(here["status"]))
-        rows.append(
-            [
-                *_point_name(data, i, j),
-                STATUS[int(here["status"])].replace("_", " "),
-                *(
-                    _degrees(float(node.sel(node=name)))
-                    for name in ("oil", "pinion_tooth", "wheel_tooth", "housing")
-                ),
-                number(float(here["greatest_flash"])),
-                number(float(here["least_film_parameter"])),
-                number(1e6 * float(here["least_half_backlash"])),
-                number(float(here["scuffing_margin"])),
-                str(int(here["iterations"])),
-                number(float(here["residual"]), 2) if settled else "–",
-            ]
-        )
     caption = ("The operating point.", "Ends and middle.", "Corners and middle of the map.")
-    return Table(caption[len(words.running(data))], head, rows, names=3)
+    return declared(caption[len(words.running(data))], CORNERS, _at_corners(data), names=3)
+
+
+def _teeth(row: Row) -> float:
+    """Mean temperature [K] of both gears' teeth."""
+    return float(row["pinion_tooth"] + row["wheel_tooth"]) / 2.0
+
+
+def _estimate(row: Row, name: str) -> str:
+    """An estimate of the body's temperature and its difference to the heat balance."""
+    difference = row[name] - _teeth(row)
+    apart = f" ({difference:+.1f})" if np.isfinite(difference) else ""
+    return f"{Column('', name, 3, CELSIUS).cell(row)}{apart}".replace("-", "−")
 
 
 def _estimate_table(data: xr.Dataset) -> Table:
-    names = [str(n) for n in data["estimate"].values]
-    rows = []
-    for i, j in _chosen(data):
-        here = data.isel(pinion_speed=i, pinion_torque=j)
-        teeth = here["node_temperature"].sel(node=["pinion_tooth", "wheel_tooth"]).values
-        cells = []
-        for value in here["body_estimate"].values:
-            difference = float(value) - float(np.mean(teeth))
-            apart = f" ({difference:+.1f})" if np.isfinite(difference) else ""
-            cells.append(f"{_degrees(float(value))}{apart}".replace("-", "−"))
-        rows.append([*_point_name(data, i, j), _degrees(float(np.mean(teeth))), *cells])
-    return Table(
+    names = names_of(data, "estimate")
+    columns = [
+        *POINT,
+        Column("heat balance", lambda row: number(float(CELSIUS(_teeth(row))))),
+        *(Column(name, partial(_estimate, name=name)) for name in names),
+    ]
+    return declared(
         "Body temperature [°C]: mean of both gears' teeth by the heat balance, and the estimates "
         "of the ISO reports at the same oil temperature (difference to the heat balance in K).",
-        ["speed [rpm]", "torque [N m]", "heat balance", *names],
-        rows,
+        columns,
+        _at_corners(data),
         names=2,
     )
 

@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermogear.base.display import number
-from thermogear.base.vocabulary import told_labels
+from thermogear.base.display import MICROMETRE, NEWTON
 from thermogear.results.result import Result
+from thermogear.views.columns import OF_STATE, Column, declared, lines_of, rows_along
 from thermogear.views.moving import Dial
 from thermogear.views.page import Block, Pictures, Section, Table, Text
 from thermogear.views.picture import Picture
 from thermogear.views.plots import bearings
 from thermogear.views.plots import train_motion as plots
 from thermogear.views.plots.shafts import internal_clearance
-from thermogear.views.style import names_of
+from thermogear.views.tables import labelled
 from thermogear.views.typesetting import operating_names
 
 if TYPE_CHECKING:
@@ -94,7 +94,7 @@ def section(result: Result, pictures: Pictures) -> Section | None:
     if closer and len(closer) < len(names):
         told = f"Bearings are shown at {names[closer[0]]}, where one carries most."
         blocks.append(Text(told, "note"))
-    blocks += [_table(data, names), _rings(data, names)]
+    blocks += _tables(data)
     worst = float(np.nanmax(data["reduction_error"].values, initial=0.0))
     size = int(data["coordinates"].values.max())
     if size:
@@ -142,120 +142,45 @@ def _frame(data: xr.Dataset, place: int, frame: int) -> Picture:
     return bearings.bearing_orbits(data, place, sample=sample)
 
 
-def _table(data: xr.Dataset, names: list[str]) -> Table:
-    head = [
-        "state", "operating point", "motion", "mean force [N]", "greatest force [N]",
-        "over that at rest", "contact losses per mesh period", "back-side impacts",
-        "largest multiplier",
-    ]  # fmt: skip
-    rows = []
-    for s, state in enumerate(names_of(data, "state")):
-        for o, name in enumerate(names):
-            one = data.isel(state=s, operating=o)
-            rows.append(
-                [
-                    state,
-                    name,
-                    str(told_labels(one)),
-                    _told(one["mean_mesh_force"], "{:.0f}"),
-                    _told(one["greatest_mesh_force"], "{:.0f}"),
-                    _told(one["train_dynamic_factor"], "{:.3f}"),
-                    _told(one["losses_per_period"], "{:.2f}"),
-                    _told(one["back_impacts_per_period"], "{:.2f}"),
-                    _told(one["multiplier_modulus"], "{:.4f}"),
-                ]
-            )
-    return Table("Flanks of the drive train.", head, rows, names=3)
+FLANKS = (
+    *OF_STATE,
+    Column("motion", "motion"),
+    Column("mean force", "mean_mesh_force", ".0f", NEWTON),
+    Column("greatest force", "greatest_mesh_force", ".0f", NEWTON),
+    Column("over that at rest", "train_dynamic_factor", ".3f"),
+    Column("contact losses per mesh period", "losses_per_period", ".2f"),
+    Column("back-side impacts", "back_impacts_per_period", ".2f"),
+    Column("largest multiplier", "multiplier_modulus", ".4f"),
+)
+RINGS = (
+    *OF_STATE,
+    Column("bearing", "bearing"),
+    Column("mean force", "mean_bearing_force", ".0f", NEWTON),
+    Column("greatest force", "greatest_bearing_force", ".0f", NEWTON),
+)
+PATHS = (
+    Column("radial internal clearance", "clearance", ".1f", MICROMETRE),
+    Column("carries load [% of time]", lambda row: 100.0 * row["bearing_contact_share"], ".1f"),
+    Column("contact losses per mesh period", "bearing_contact_losses", ".2f"),
+)
 
 
-def _rings(data: xr.Dataset, names: list[str]) -> Table:
-    head = [
-        "state", "operating point", "bearing", "mean force [N]", "greatest force [N]",
-        "radial internal clearance [µm]", "carries load [% of time]",
-        "contact losses per mesh period",
-    ]  # fmt: skip
-    rows = []
-    for s, state in enumerate(names_of(data, "state")):
-        for o, name in enumerate(names):
-            for b, bearing in enumerate(names_of(data, "bearing")):
-                one = data.isel(state=s, operating=o, bearing=b)
-                mean, most = one["mean_bearing_force"], one["greatest_bearing_force"]
-                told = [_told(mean, "{:.0f}"), _told(most, "{:.0f}")]
-                if "journal_path" in data:
-                    told += [
-                        _told(1e6 * internal_clearance(one), "{:.1f}"),
-                        _told(100.0 * one["bearing_contact_share"], "{:.1f}"),
-                        _told(one["bearing_contact_losses"], "{:.2f}"),
-                    ]
-                rows.append([state, name, bearing, *told])
+def _tables(data: xr.Dataset) -> list[Table]:
+    """Flanks and bearings in motion; of bearings stored without their paths the forces alone."""
+    columns: tuple[Column, ...] = RINGS
+    if "journal_path" in data:
+        columns += PATHS
+        data = data.assign(clearance=internal_clearance(data))
     caption = "The bearings in motion; a clearance below zero is a preload, a spring has none."
-    return Table(caption, head[: len(rows[0])] if rows else head, rows, names=3)
-
-
-def _told(value: Any, form: str) -> str:
-    found = float(value)
-    return form.format(found) if np.isfinite(found) else "–"
-
-
-def numbers(result: Result) -> dict[str, Any]:
-    """The figures of the drive train's motion for the JSON file; empty where there is none."""
-    data = result.group("train_motion")
-    if data is None:
-        return {}
-    names = operating_names(data)
-    found: dict[str, Any] = {}
-    for s, state in enumerate(names_of(data, "state")):
-        for o, name in enumerate(names):
-            one = data.isel(state=s, operating=o)
-            found[f"{state}, {name}"] = {
-                "motion": str(told_labels(one)),
-                "reason": str(one["label_reason"].values),
-                "mean_mesh_force_N": _plain(one["mean_mesh_force"]),
-                "greatest_mesh_force_N": _plain(one["greatest_mesh_force"]),
-                "dynamic_factor": _plain(one["train_dynamic_factor"]),
-                "contact_losses_per_mesh_period": _plain(one["losses_per_period"]),
-                "greatest_bearing_force_N": {
-                    bearing: _plain(one["greatest_bearing_force"][b])
-                    for b, bearing in enumerate(names_of(data, "bearing"))
-                },
-                **_contact(one, names_of(data, "bearing")),
-            }
-    return found
-
-
-def _contact(one: xr.Dataset, names: list[str]) -> dict[str, Any]:
-    """How long each bearing carries; the second base frequency of a motion on a torus."""
-    if "bearing_contact_share" not in one:
-        return {}
-    share = one["bearing_contact_share"].values
-    found: dict[str, Any] = {
-        "bearing_contact_share": {b: _plain(s) for b, s in zip(names, share, strict=True)}
-    }
-    if np.isfinite(one["second_frequency"].values):
-        found["second_frequency_of_mesh"] = _plain(one["second_frequency"])
-    return found
-
-
-def _plain(value: Any) -> float | None:
-    found = float(value)
-    return found if np.isfinite(found) else None
+    flanks = rows_along(labelled(data), "state", "operating")
+    rings = rows_along(data, "state", "operating", "bearing")
+    return [
+        declared("Flanks of the drive train.", FLANKS, flanks, names=3),
+        declared(caption, columns, rings, names=3),
+    ]
 
 
 def lines(result: Result) -> list[str]:
     """What the terminal tells of the drive train's motion."""
     data = result.group("train_motion")
-    if data is None:
-        return []
-    found = []
-    for o, name in enumerate(operating_names(data)):
-        told = []
-        for s, state in enumerate(names_of(data, "state")):
-            one = data.isel(state=s, operating=o)
-            force = _told(one["greatest_mesh_force"], "{:.0f}")
-            ring = float(np.nanmax(one["greatest_bearing_force"].values, initial=0.0))
-            told.append(
-                f"{state}: {told_labels(one)}, mesh up to {force} N, bearings up to "
-                f"{number(ring)} N"
-            )
-        found.append(f"train, {name}: " + "; ".join(told))
-    return found
+    return [] if data is None else lines_of(*_tables(data))

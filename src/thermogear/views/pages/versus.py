@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from markupsafe import Markup
 
-from thermogear.base.display import Display, display, in_words, number, percent
-from thermogear.base.vocabulary import STATUS, is_known
+from thermogear.base.display import display, in_words, percent
 from thermogear.results.result import Result
+from thermogear.views.columns import Column, Row, declared, rows_along
 from thermogear.views.csv_files import table_text
 from thermogear.views.page import (
     Block,
-    Cell,
     Code,
     Page,
     Pictures,
@@ -24,16 +25,15 @@ from thermogear.views.page import (
     notice_lines,
 )
 from thermogear.views.plots import versus as plots
-from thermogear.views.style import chosen
-from thermogear.views.tables import is_jammed
-from thermogear.views.typesetting import field_name, jam_at, operating_names, prose
+from thermogear.views.style import chosen, names_of
+from thermogear.views.tables import jam_words
+from thermogear.views.typesetting import field_name, operating_names, prose
 
 if TYPE_CHECKING:
     import xarray as xr
 
 MOST_POINTS = 3
 """At most so many operating points are drawn."""
-JAMMED = STATUS.index("jammed")
 
 FIGURES = {
     "half_backlash": "half backlash b′",
@@ -97,34 +97,24 @@ def _summary(data: xr.Dataset) -> str:
     )
 
 
+def _value(row: Row, place: int) -> Markup:
+    return prose(in_words(row["values"][place]))
+
+
 def _differences(data: xr.Dataset) -> Section:
-    titles = [str(title) for title in data["case"].values]
-    fields = json.loads(data.attrs["differences"])
-    blocks: list[Block] = []
+    titles = names_of(data, "case")
+    by_case = [Column(title, partial(_value, place=k)) for k, title in enumerate(titles)]
+    fields, made = (json.loads(data.attrs[name]) for name in ("differences", "choices"))
+    blocks: list[Block] = [Text("The case files say the same; at most their titles differ.")]
     if fields:
-        rows = [
-            [field_name(row["field"]), *map(prose, map(in_words, row["values"]))] for row in fields
-        ]
-        blocks.append(
-            Table("Fields of the case files that differ.", ["field", *titles], rows,
-                  names=len(titles) + 1, wordy=True)
-        )  # fmt: skip
-    else:
-        blocks.append(Text("The case files say the same; at most their titles differ."))
-    made = json.loads(data.attrs["choices"])
+        caption = "Fields of the case files that differ."
+        columns = [Column("field", lambda row: field_name(row["field"])), *by_case]
+        blocks = [declared(caption, columns, fields, names=len(columns), wordy=True)]
     if made:
-        rows = [
-            [
-                row["bundle"],
-                row["choice"].replace("_", " "),
-                *map(prose, map(in_words, row["values"])),
-            ]
-            for row in made
-        ]
-        blocks.append(
-            Table("Choices in which bundles of one name differ.", ["bundle", "choice", *titles],
-                  rows, names=len(titles) + 2, wordy=True)
-        )  # fmt: skip
+        caption = "Choices in which bundles of one name differ."
+        choice = Column("choice", lambda row: row["choice"].replace("_", " "))
+        columns = [Column("bundle", "bundle"), choice, *by_case]
+        blocks.append(declared(caption, columns, made, names=len(columns), wordy=True))
     elif data.attrs["of"] == "gear":
         blocks.append(Text("Bundles of one name make the same choices in all cases."))
     return Section("differences", "What differs", blocks, folded=False)
@@ -144,28 +134,39 @@ def _figures(data: xr.Dataset) -> Section:
     return Section("figures", "Key figures", blocks, folded=False)
 
 
+CASES = (
+    Column("operating point", lambda row: row["operating"] if row["rank"] == 1 else ""),
+    Column(
+        "case",
+        lambda row: row["case"] if row["cases"] > 1 else f"{row['case']}, in this case only",
+    ),
+)
+
+
 def _table(here: xr.Dataset, names: Sequence[str], words: str) -> Table:
     """A row for each case, those of one operating point below each other."""
-    head: list[Cell] = ["operating point", "case", *[_head(here, name) for name in names]]
-    rows: list[list[Cell]] = []
-    marked: set[int] = set()
-    titles = [str(title) for title in here["case"].values]
-    for o, point in enumerate(_points(here)):
-        there = np.flatnonzero(here["present"].isel(operating=o).values)
-        for place, c in enumerate(there):
-            one = here.isel(case=int(c), operating=o)
-            if (one["status"].values == JAMMED).any():
-                marked.add(len(rows))
-            first = point if place == 0 else ""
-            own = titles[c] if there.size > 1 else f"{titles[c]}, in this case only"
-            rows.append([first, own, *[_cell(one, name) for name in names]])
-    several = here.sizes["state"] > 1
+    there = here["present"]
+    here = here.assign_coords(operating=_points(here)).assign(
+        rank=there.cumsum("case"), cases=there.sum("case")
+    )
+    by_state = [
+        rows_along(here.isel(state=s), "operating", "case") for s in range(here.sizes["state"])
+    ]
     caption = f"{words}: cases below each other at every operating point"
-    if several:
+    if len(by_state) > 1:
         alone = [FIGURES[name] for name in names if name in HOT_ALONE]
         caption += ", undeformed → hot" + (f"; hot alone: {', '.join(alone)}" if alone else "")
-    caption += "."
-    return Table(caption, head, rows, names=2, marked=frozenset(marked))
+    return declared(
+        f"{caption}.",
+        [*CASES, *(_column(here, name) for name in names)],
+        [
+            row | {"states": (*more, row)}
+            for *more, row in zip(*by_state, strict=True)
+            if row["present"]
+        ],
+        names=2,
+        marked=lambda row: any(state["status"] == "jammed" for state in row["states"]),
+    )
 
 
 def _any(here: xr.Dataset, name: str) -> bool:
@@ -173,36 +174,31 @@ def _any(here: xr.Dataset, name: str) -> bool:
     return bool((values != "").any() if values.dtype.kind in "UO" else not np.isnan(values).all())
 
 
-def _head(here: xr.Dataset, name: str) -> str:
-    if name in ("label", *JAMS, "thermal_stiffness_ratio"):
-        return FIGURES[name]
-    unit = _display(here, name).unit
-    return FIGURES[name] if unit == "–" else f"{FIGURES[name]} [{unit}]"
-
-
-def _display(here: xr.Dataset, name: str) -> Display:
-    known = "flash_temperature" if name == "greatest_flash_temperature" else name
-    return display(known, str(here[name].attrs["units"]))
-
-
-def _cell(one: xr.Dataset, name: str) -> Cell:
-    states = [one.isel(state=s) for s in range(one.sizes["state"])]
-    if name in HOT_ALONE:
-        value = float(states[-1][name])
-        if name in JAMS:
-            known = bool(is_known(int(states[-1]["status"])))
-            return jam_at(value, without_heat=is_jammed(states[0]), known=known)
-        if name == "thermal_stiffness_ratio":
-            return percent(value)
-        return number(float(_display(one, name)(value)))
+def _column(here: xr.Dataset, name: str) -> Column:
+    """A figure of a point, undeformed → hot where it has both and they read differently."""
+    words = FIGURES[name]
+    if name in JAMS:
+        return Column(words, lambda row: jam_words(name, row, row["states"][0]))
+    if name == "thermal_stiffness_ratio":
+        return Column(words, name, percent)
     if name == "label":
-        return _both([str(state["label"].item()) or "–" for state in states])
-    texts = []
-    for state in states:
-        jammed = name == "half_backlash" and int(state["status"]) == JAMMED
-        value = float(_display(one, name)(float(state[name])))
-        texts.append("none" if jammed else number(value, 4 if name == "natural_frequency" else 3))
-    return _both(texts)
+        return Column(words, lambda row: _both([row["label"] or "–" for row in row["states"]]))
+    known = "flash_temperature" if name == "greatest_flash_temperature" else name
+    digits = 4 if name == "natural_frequency" else 3
+    figure = Column(words, name, digits, display(known, str(here[name].attrs["units"])))
+    if name in HOT_ALONE:
+        return figure
+    jams = name == "half_backlash"
+
+    def both(row: Row) -> str:
+        return _both(
+            [
+                "none" if jams and state["status"] == "jammed" else str(figure.cell(state))
+                for state in row["states"]
+            ]
+        )
+
+    return Column(figure.title, both)
 
 
 def _both(texts: Sequence[str]) -> str:
@@ -280,8 +276,22 @@ def _cases(data: xr.Dataset) -> Section:
 # --- tables as files ----------------------------------------------------------------------
 
 
+def _rows(data: xr.Dataset) -> list[dict[str, Any]]:
+    """The figures of every case, bundle, point and state that there are."""
+    names = ("case", "bundle", "point", "state", "label", *_numbers_there(data))
+    places = data.assign_coords(operating=data["point"].values)
+    rows = rows_along(places, "case", "bundle", "operating", "state")
+    return [{name: row[name] for name in names} for row in rows if row["present"]]
+
+
+def _numbers_there(data: xr.Dataset) -> dict[str, str]:
+    """The stored figures that are numbers, with their units."""
+    names = [name for name in FIGURES if name in data and name != "label"]
+    return {name: str(data[name].attrs.get("units", "1")) for name in names}
+
+
 def _csv_tables(data: xr.Dataset) -> dict[str, tuple[list[str], list[list[str]]]]:
-    titles = [str(title) for title in data["case"].values]
+    titles = names_of(data, "case")
     fields = [
         [r["field"], *map(in_words, r["values"])] for r in json.loads(data.attrs["differences"])
     ]
@@ -289,17 +299,8 @@ def _csv_tables(data: xr.Dataset) -> dict[str, tuple[list[str], list[list[str]]]
         [r["bundle"], r["choice"], *map(in_words, r["values"])]
         for r in json.loads(data.attrs["choices"])
     ]
-    names = [name for name in FIGURES if name in data and name != "label"]
-    units = [f"{name} [{data[name].attrs['units']}]" for name in names]
-    rows = []
-    for c, b, o in np.argwhere(data["present"].values > 0):
-        for s, state in enumerate(data["state"].values):
-            one = data.isel(case=c, bundle=b, operating=o, state=s)
-            numbers = [float(one[name]) for name in names]
-            rows.append([
-                titles[c], str(one["bundle"].item()), str(one["point"].item()), str(state),
-                str(one["label"].item()), *[f"{v:.15g}" if v == v else "" for v in numbers],
-            ])  # fmt: skip
+    units = [f"{name} [{unit}]" for name, unit in _numbers_there(data).items()]
+    rows = [[_cell(value) for value in row.values()] for row in _rows(data)]
     return {
         "differences": (["field", *titles], fields),
         "choices": (["bundle", "choice", *titles], made),
@@ -307,34 +308,26 @@ def _csv_tables(data: xr.Dataset) -> dict[str, tuple[list[str], list[list[str]]]
     }
 
 
+def _cell(value: str | float) -> str:
+    if isinstance(value, str):
+        return value
+    return f"{value:.15g}" if value == value else ""
+
+
 # --- figures as JSON wants them ---------------------------------------------------------------
 
 
 def _numbers(result: Result) -> dict[str, Any]:
     """What a machine wants to read of :func:`versus`: texts, and a row for each point."""
-    data, rows = result.data, []
-    figures = [name for name in FIGURES if name in data and name != "label"]
-    for c, title in enumerate(data["case"].values):
-        for b, bundle in enumerate(data["bundle"].values):
-            for o, point in enumerate(data["point"].values):
-                here = data.isel(case=c, bundle=b, operating=o)
-                if not int(here["present"]):
-                    continue
-                for s, state in enumerate(data["state"].values):
-                    one = here.isel(state=s)
-                    numbers = {name: float(one[name]) for name in figures}
-                    rows.append({
-                        "case": str(title), "bundle": str(bundle), "point": str(point),
-                        "state": str(state), "label": str(one["label"].item()), **numbers,
-                    })  # fmt: skip
+    data = result.data
     return {
         "thermogear": result.text("thermogear"),
         "title": result.title,
         "kind": result.text("of"),
-        "cases": [str(title) for title in data["case"].values],
+        "cases": names_of(data, "case"),
         "notices": [one._asdict() for one in result.notices],
         "differences": result.rows("differences"),
         "choices": result.rows("choices"),
-        "units": {name: str(data[name].attrs.get("units", "1")) for name in figures},
-        "figures": rows,
+        "units": _numbers_there(data),
+        "figures": _rows(data),
     }

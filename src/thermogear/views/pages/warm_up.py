@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermogear.base.display import exactly, number
-from thermogear.base.units import RPM, ZERO_CELSIUS
+from thermogear.base.display import CELSIUS, KELVIN, MICROMETRE, MINUTE, exactly, number
 from thermogear.results.result import Result
+from thermogear.views.columns import Column, declared, rows_along
 from thermogear.views.page import Page, Shown, Table
 from thermogear.views.pages.survey import survey
 from thermogear.views.plots import warm_up as plots
@@ -62,7 +62,6 @@ def page(result: Result) -> Page:
         pictures,
         tables,
         numbers=_numbers,
-        lines=_lines,
     )
 
 
@@ -140,152 +139,132 @@ def _sensor_words(names: Mapping[str, str]) -> str:
     return "; ".join(f"{name}: {words}" for name, words in names.items()) + "."
 
 
-def _degrees(kelvin: float) -> str:
-    return number(kelvin - ZERO_CELSIUS, 4) if np.isfinite(kelvin) else "–"
-
-
 def _thousandths(kelvin: float) -> str:
     return number(round(kelvin, 3) + 0.0)
 
 
+NODES = ("pinion_tooth", "wheel_tooth", "pinion_shaft", "wheel_shaft", "oil", "housing")
+MOMENTS = (
+    Column("moment", "name"),
+    Column("time", "time", 4, MINUTE),
+    Column("b′", "half_backlash", 4),
+    Column("margin", "jam_margin", 3, KELVIN),
+    *(Column(node.replace("_", " "), node, 4, CELSIUS) for node in NODES),
+    Column("flash", "greatest_flash", 3, KELVIN),
+    Column("Λ least", "least_film_parameter"),
+    Column("k mean", "mean_stiffness"),
+)
+
+
 def _moments(data: xr.Dataset, worst: Mapping[str, Any]) -> Table:
     """Start, worst moment, end."""
+    of_nodes = {node: data["node_temperature"].sel(node=node, drop=True) for node in NODES}
     places = [0, int(np.argmin(data["half_backlash"].values)), data.sizes["moment"] - 1]
-    names = ["start", "least backlash", "end"]
-    nodes = ("pinion_tooth", "wheel_tooth", "pinion_shaft", "wheel_shaft", "oil", "housing")
-    rows = []
-    for name, place in zip(names, places, strict=True):
-        here = data.isel(moment=place)
-        worst_row = name == "least backlash"
-        minutes = float(worst["time_s"] if worst_row else here["time"]) / 60.0
-        gap = float(worst["half_backlash_m"] if worst_row else here["half_backlash"])
-        temperatures = [
-            worst["temperatures_K"].get(node, float(here["node_temperature"].sel(node=node)))
-            if worst_row
-            else float(here["node_temperature"].sel(node=node))
-            for node in nodes
-        ]
-        rows.append(
-            [
-                name,
-                number(minutes, 4),
-                number(1e6 * gap, 4),
-                number(float(here["jam_margin"])),
-                *(_degrees(t) for t in temperatures),
-                number(float(here["greatest_flash"])),
-                number(float(here["least_film_parameter"])),
-                number(1e-8 * float(here["mean_stiffness"])),
-            ]
-        )
-    return Table(
+    start, least, end = rows_along(data.assign(of_nodes).isel(moment=places), "moment")
+    found = {"time": worst["time_s"], "half_backlash": worst["half_backlash_m"]}
+    rows = [
+        start | {"name": "start"},
+        least | found | worst["temperatures_K"] | {"name": "least backlash"},
+        end | {"name": "end"},
+    ]
+    return declared(
         "Start, worst moment, end.",
-        [
-            "moment", "time [min]", "b′ [µm]", "margin [K]",
-            *(f"{node.replace('_', ' ')} [°C]" for node in nodes),
-            "flash [K]", "Λ least", "k mean [10⁸ N/m]",
-        ],
+        MOMENTS,
         rows,
-        marked=frozenset({1}),
-    )  # fmt: skip
+        marked=lambda row: row["name"] == "least backlash",
+    )
 
 
 MOST_ROWS = 40
+PIECES = (
+    Column("from", "begin", 4, MINUTE),
+    Column("speed", "pinion_speed", lambda rpm: exactly(round(rpm, 6))),
+    Column("torque", "pinion_torque", exactly),
+    Column("ambient", "ambient", 4, CELSIUS),
+    Column("b′ least", "least", 4, MICROMETRE),
+    Column("b′ for good", "half_backlash", 4),
+    Column("oil for good", "oil", 4, CELSIUS),
+)
 
 
 def _pieces(data: xr.Dataset, steady: xr.Dataset) -> Table:
     """The pieces of the duty, and what each would leave for good."""
-    time = data["time"].values
-    ends = np.append(steady["begin"].values[1:], time[-1])
-    rows = []
-    for place in range(min(steady.sizes["piece"], MOST_ROWS)):
-        here = steady.isel(piece=place)
-        begin, end = float(here["begin"]), float(ends[place])
-        inside = (time >= begin) & (time <= end)
-        least = float(data["half_backlash"].values[inside].min()) if inside.any() else np.nan
-        rows.append(
-            [
-                number(begin / 60.0, 4),
-                exactly(round(float(here["pinion_speed"]) / RPM, 6)),
-                exactly(float(here["pinion_torque"])),
-                _degrees(float(here["ambient"])),
-                number(1e6 * least, 4),
-                number(1e6 * float(here["half_backlash"]), 4),
-                _degrees(float(here["node_temperature"].sel(node="oil"))),
-            ]
-        )
-    more = steady.sizes["piece"] - len(rows)
-    return Table(
-        "The duty, and what each point would leave if it were held for good."
-        + (f" {more} more rows stand in the CSV." if more else ""),
-        [
-            "from [min]", "speed [rpm]", "torque [N m]", "ambient [°C]", "b′ least [µm]",
-            "b′ for good [µm]", "oil for good [°C]",
-        ],
-        rows,
-        names=0,
-    )  # fmt: skip
+    time, gap = data["time"].values, data["half_backlash"].values
+    begins = steady["begin"].values
+    ends = np.append(begins[1:], time[-1])
+    least = [
+        gap[(time >= begin) & (time <= end)].min(initial=np.inf)
+        for begin, end in zip(begins, ends, strict=True)
+    ]
+    oil = steady["node_temperature"].sel(node="oil", drop=True)
+    rows = rows_along(steady.assign(least=("piece", least), oil=oil), "piece")
+    more = len(rows) - MOST_ROWS
+    caption = "The duty, and what each point would leave if it were held for good."
+    caption += f" {more} more rows stand in the CSV." * (more > 0)
+    return declared(caption, PIECES, rows[:MOST_ROWS], names=0)
+
+
+SENSORS = (
+    Column("sensor", "sensor"),
+    Column("at the end", "end", _thousandths, KELVIN),
+    Column("least", "least", _thousandths, KELVIN),
+    Column("greatest", "greatest", _thousandths, KELVIN),
+    Column("shown", "sensor_temperature", 4, CELSIUS),
+    Column("true", "true_temperature", 4, CELSIUS),
+)
 
 
 def _sensors(data: xr.Dataset) -> Table:
-    error = data["sensor_temperature"].values - data["true_temperature"].values
-    rows = []
-    for place, name in enumerate(str(n) for n in data["sensor"].values):
-        own = error[:, place]
-        rows.append(
-            [
-                name,
-                _thousandths(float(own[-1])),
-                _thousandths(float(own.min())),
-                _thousandths(float(own.max())),
-                _degrees(float(data["sensor_temperature"].values[-1, place])),
-                _degrees(float(data["true_temperature"].values[-1, place])),
-            ]
-        )
-    return Table(
-        "What each sensor shows less what is true.",
-        ["sensor", "at the end [K]", "least [K]", "greatest [K]", "shown [°C]", "true [°C]"],
-        rows,
+    error = data["sensor_temperature"] - data["true_temperature"]
+    last = data.isel(moment=-1).assign(
+        end=error.isel(moment=-1),
+        least=error.min("moment", skipna=False),
+        greatest=error.max("moment", skipna=False),
     )
+    return declared(
+        "What each sensor shows less what is true.", SENSORS, rows_along(last, "sensor")
+    )
+
+
+DIFFERENCES = (
+    Column("channel", "channel"),
+    Column("readings", "readings"),
+    Column("mean", "mean", 3, KELVIN),
+    Column("rms", "rms", 3, KELVIN),
+    Column("farthest", "farthest", 3, KELVIN),
+)
 
 
 def _differences(record: xr.Dataset) -> Table:
-    rows = []
-    for name in (str(n) for n in record["channel"].values):
-        own = record["difference"].sel(channel=name).values
-        known = own[np.isfinite(own)]
-        if not known.size:
-            continue
-        rows.append(
-            [
-                name,
-                str(known.size),
-                number(float(known.mean())),
-                number(float(np.sqrt(np.mean(known**2)))),
-                number(float(known[np.argmax(np.abs(known))])),
-            ]
-        )
-    return Table(
-        "Computed less measured.",
-        ["channel", "readings", "mean [K]", "rms [K]", "farthest [K]"],
-        rows,
+    difference = record["difference"]
+    over = [dim for dim in difference.dims if dim != "channel"]
+    low, high = difference.min(over), difference.max(over)
+    told = record.assign(
+        readings=difference.count(over),
+        mean=difference.mean(over),
+        rms=np.sqrt((difference**2).mean(over)),
+        farthest=high.where(high > -low, low),
     )
+    rows = [row for row in rows_along(told, "channel") if row["readings"]]
+    return declared("Computed less measured.", DIFFERENCES, rows)
+
+
+FACTORS = (
+    Column("factor", "name"),
+    Column("value", "value"),
+    Column("from", "low"),
+    Column("to", "high"),
+)
 
 
 def _fitted(fit: Mapping[str, Any]) -> Table:
-    rows = [
-        [
-            one["name"],
-            *(number(one[k]) if one[k] is not None else "–" for k in ("value", "low", "high")),
-        ]
-        for one in fit["factors"]
-    ]
     text = (
         f"Factors on conductances with 95 % intervals from {fit['count']} readings, worth "
         f"{number(fit['effective'])} independent ones."
     )
     if fit["correlation"] is not None:
         text += f" Errors of both factors correlate with {number(fit['correlation'], 2)}."
-    return Table(text, ["factor", "value", "from", "to"], rows)
+    return declared(text, FACTORS, fit["factors"])
 
 
 # --- figures as the terminal and JSON want them -----------------------------------------------
@@ -307,15 +286,3 @@ def _numbers(result: Result) -> dict[str, Any]:
         "seconds": float(result.text("seconds")),
         "fit": result.table("fit"),
     }
-
-
-def _lines(result: Result) -> list[str]:
-    found = _numbers(result)
-    cold = float(found["worst"]["undeformed_half_backlash_m"])
-    lines = [answer(found["worst"], cold).replace("−", "-")]
-    if found["fit"]:
-        lines.append(fit_sentence(found["fit"]).strip())
-    degrees = [(name, f"{t - ZERO_CELSIUS:.1f}") for name, t in found["end_K"].items()]
-    lines.append("at the end [degC]: " + ", ".join(f"{name} {t}" for name, t in degrees))
-    shown = [f"{n} {e:+.2f}" for n, e in found["sensor_error_at_the_end_K"].items()]
-    return [*lines, "sensors, shown less true at the end [K]: " + ", ".join(shown)]

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import json
 from functools import partial
+from operator import itemgetter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermogear.base.display import number
+from thermogear.base.display import HERTZ, NEWTON, SPEED, number
 from thermogear.base.units import RPM
 from thermogear.base.vocabulary import STATUS, STILL
 from thermogear.results.result import Result
+from thermogear.views.columns import Column, Row, declared
 from thermogear.views.page import Page, Shown, Table
 from thermogear.views.pages.survey import survey
 from thermogear.views.plots import waterfall as plots
@@ -40,8 +42,8 @@ def page(result: Result) -> Page:
         if np.isfinite(data["housing_line"].values).any():
             made.append(("sound", "Housing by order", LINES, partial(plots.sound, data, 0)))
     pictures = [Shown(*one, wide=True) for one in made]
-    tables = [_jumps(data), _critical(data)]
-    return survey(result, summary(data), pictures, tables, numbers=numbers, lines=lines)
+    tables = [jumps(data), _critical(data)]
+    return survey(result, summary(data), pictures, tables, numbers=numbers)
 
 
 def summary(data: xr.Dataset) -> str:
@@ -81,71 +83,77 @@ def _apart(data: xr.Dataset) -> list[dict[str, Any]]:
     ]
 
 
-def _shown(stretch: dict[str, Any]) -> list[str]:
-    """One of them as the cells of a table."""
-    digits = {"rpm": "{:.6g}".format, "N": number}
-    return [
-        value if isinstance(value, str) else digits[name.rpartition("_")[2]](value)
-        for name, value in stretch.items()
-    ]
+APART = (
+    Column("state", "state"),
+    Column("from [rpm]", "from_rpm", ".6g"),
+    Column("to [rpm]", "to_rpm", ".6g"),
+    Column("most at [rpm]", "at_rpm", ".6g"),
+    Column("of", "of"),
+    Column("up, rms [N]", "up_rms_N"),
+    Column("down, rms [N]", "down_rms_N"),
+    Column("because of", "because_of"),
+)
 
 
-def _jumps(data: xr.Dataset) -> Table:
-    rows = [_shown(one) for one in _apart(data)]
-    head = [
-        "state", "from [rpm]", "to [rpm]", "most at [rpm]", "of", "up, rms [N]", "down, rms [N]",
-        "because of",
-    ]  # fmt: skip
-    title = "Where up and down differ." if rows else "Up and down agree: no jump."
-    return Table(title, head, rows)
+def jumps(data: xr.Dataset) -> Table:
+    """The stretches of speed on which the ways up and down differ."""
+    rows = _apart(data)
+    return declared(
+        "Where up and down differ." if rows else "Up and down agree: no jump.", APART, rows
+    )
+
+
+def _force(row: Row) -> float | str:
+    """The force of a resonance on a bearing [N], or from which speed on none is valid."""
+    lift_off = row.get("lift_off", np.nan)
+    return not_valid(lift_off) if np.isfinite(lift_off) else row["force"]
+
+
+CRITICAL = (
+    Column("state", "state"),
+    Column("order", "order"),
+    Column("speed", "speed", ".5g", SPEED),
+    Column("mode", "frequency", ".5g", HERTZ),
+    Column("mostly", "mostly"),
+    Column("force on a bearing", _force, 3, NEWTON),
+)
 
 
 def _critical(data: xr.Dataset) -> Table:
-    states = plots.states_of(data)
     low, high = data["pinion_speed"].values[[0, -1]]
-    rows = []
-    for state, found in zip(states, json.loads(data.attrs["critical"]), strict=True):
-        for one in sorted(found, key=lambda c: c["speed"]):
-            if low <= one["speed"] <= high:
-                force = one["force"]
-                told = number(force) if force is not None and np.isfinite(force) else "–"
-                if np.isfinite(one.get("lift_off", np.nan)):
-                    told = not_valid(one["lift_off"])
-                speed = f"{one['speed'] / RPM:.5g}"
-                hertz = f"{one['frequency'] / (2.0 * np.pi):.5g}"
-                rows.append([state, one["order"], speed, hertz, one["mostly"], told])
-    head = ["state", "order", "speed [rpm]", "mode [Hz]", "mostly", "force on a bearing [N]"]
-    return Table("Critical speeds of the linear train within the run.", head, rows, names=2)
+    rows = [
+        {"state": state, **resonance}
+        for state, found in zip(
+            plots.states_of(data), json.loads(data.attrs["critical"]), strict=True
+        )
+        for resonance in sorted(found, key=itemgetter("speed"))
+        if low <= resonance["speed"] <= high
+    ]
+    return declared("Critical speeds of the linear train within the run.", CRITICAL, rows, names=2)
 
 
 def numbers(result: Result) -> dict[str, Any]:
     """The figures of a run-up, JSON-ready."""
     data = result.data
-    found: dict[str, Any] = {"speeds_rpm": (data["pinion_speed"].values / RPM).tolist()}
-    for s, state in enumerate(plots.states_of(data)):
-        found[state] = {}
-        for d, way in enumerate(("up", "down")):
-            one = data.isel(state=s, direction=d)
-            found[state][way] = {
-                "mesh_force_rms_N": one["mesh_force_rms"].values.tolist(),
-                "mesh_force_max_N": one["mesh_force_max"].values.tolist(),
-                "contact_loss_share": one["contact_loss_share"].values.tolist(),
-                "bearing_force_max_N": np.nanmax(one["bearing_force_max"].values, axis=1).tolist(),
-                "housing_rms_m_per_s2": one["housing_rms"].values.tolist(),
+    return {
+        "speeds_rpm": (data["pinion_speed"].values / RPM).tolist(),
+        **{
+            state: {
+                way: _of_one_way(data.isel(state=s, direction=d))
+                for d, way in enumerate(("up", "down"))
             }
-    return found | {"apart": _apart(data)}
+            for s, state in enumerate(plots.states_of(data))
+        },
+        "apart": _apart(data),
+    }
 
 
-def _span(low: str, high: str) -> str:
-    return low if low == high else f"{low} to {high}"
-
-
-def lines(result: Result) -> list[str]:
-    """What the terminal tells."""
-    data = result.data
-    told = [
-        f"  {row[0]}, {_span(row[1], row[2])} rpm: {row[4]} {row[5]} N rms up, {row[6]} N "
-        f"down, because of {row[7]}"
-        for row in map(_shown, _apart(data))
-    ]
-    return [summary(data), *told]
+def _of_one_way(data: xr.Dataset) -> dict[str, list[float]]:
+    """Vibration over speed of one state and direction."""
+    return {
+        "mesh_force_rms_N": data["mesh_force_rms"].values.tolist(),
+        "mesh_force_max_N": data["mesh_force_max"].values.tolist(),
+        "contact_loss_share": data["contact_loss_share"].values.tolist(),
+        "bearing_force_max_N": np.nanmax(data["bearing_force_max"].values, axis=1).tolist(),
+        "housing_rms_m_per_s2": data["housing_rms"].values.tolist(),
+    }
