@@ -167,8 +167,8 @@ def _pairs(
     strong: Sequence[Strong],
     reach: float,
 ) -> tuple[float, float]:
-    """Power of lines at equal distances to both sides of one, up to ``reach`` from it, that are no
-    known sidebands, over its own; and what of it turns the line's phase (Q)."""
+    """Power of lines at equal distances to both sides of one, up to ``reach``, that are no known
+    sidebands, over its own; and what of it turns the line's phase (Q)."""
     width, own = spectrum.bin_width, reading.amplitude**2
     free = [
         one
@@ -182,8 +182,10 @@ def _pairs(
     phase = np.conj(line.amplitude) / abs(line.amplitude)
     power = turned = 0.0
     for above, below in twins(free, reading.frequency / width):
-        power += abs(above.amplitude) ** 2 + abs(below.amplitude) ** 2
-        turned += abs(above.amplitude * phase - np.conj(below.amplitude * phase)) ** 2 / 2.0
+        one, two = above.amplitude * phase, np.conj(below.amplitude * phase)
+        power += abs(one) ** 2 + abs(two) ** 2
+        # the line's own phase is known to some hundredths: so much of I would pass for Q
+        turned += abs(one - two) ** 2 / 2.0 if abs(one - two) > 0.1 * abs(one + two) else 0.0
     return max(power, reading.pairs) / own, float(turned) / own
 
 
@@ -236,7 +238,7 @@ def _or_sidebands(
         f"the record holds {nearest / width:.2g} turns of the slowest shaft: below {_FEW:g} its "
         "sidebands are not told from a speed that wanders"
     )
-    reach, said = _AS_FAR * nearest + near, turns.said
+    reach = _AS_FAR * nearest + near
     turned = 0.0
     if turns.turning is not None:
         why, near = f"the speed wanders, and {why}", reach
@@ -244,8 +246,6 @@ def _or_sidebands(
         turned = max(band_power(straight, 1.0, reach / turns.frequency) / turns.power - 1.0, 0.0)
     elif nearest >= near:
         return replace(turns, withheld=why, near=near)
-    else:
-        said = "; ".join(one for one in (said, why) if one)
     own = reading.amplitude**2 / (1.0 + reading.changing**2 + reading.turning**2)
     more = max(band_power(spectrum, reading.frequency, reach) - own, 0.0)
     # a phase that oscillates by sqrt(turned) [rad] may be at any place at both ends
@@ -257,7 +257,7 @@ def _or_sidebands(
         spread=float(np.hypot(turns.spread, spread)),
         withheld=why,
         near=near,
-        said=said,
+        said=turns.said if turns.turning else "; ".join(filter(None, (turns.said, why))),
     )
 
 
