@@ -20,6 +20,7 @@ from thermogear.base.display import (
     number,
 )
 from thermogear.base.units import RPM
+from thermogear.results.files import finite
 from thermogear.results.result import Result
 from thermogear.views.columns import OF_STATE, Column, Row, declared, rows_along
 from thermogear.views.page import Page, Pictures, Section, Shown, Table
@@ -269,13 +270,13 @@ def criticals(result: Result) -> Iterator[dict[str, Any]]:
                 "frequency_Hz": row["critical_speed"] * row["order"] / 2 / np.pi,
                 "participation": row["participation"],
                 "amplification": row["amplification"],
-                "bearing_force_N": row["resonant_force"],
+                "bearing_force_N": finite(row["resonant_force"]),
                 "lifts_off_from_rpm": row["lift_off"] / RPM if lifted else None,
                 "mostly": row["mode_name"],
             }
 
 
-def _force(row: Row) -> float | str:
+def _force(row: Row) -> float | str | None:
     """The dynamic force of a resonance on a bearing [N], or why there is none."""
     lifts_off = row["lifts_off_from_rpm"]
     return row["bearing_force_N"] if lifts_off is None else plots.not_valid(lifts_off * RPM)
@@ -336,13 +337,13 @@ def _campbell(result: Result) -> Page:
             )
         )
     hot = [one for one in found if one["state"] == names_of(data, "state")[-1]]
-    strong = max(hot, key=lambda row: np.nan_to_num(row["bearing_force_N"]), default=None)
+    strong = max(hot, key=lambda row: row["bearing_force_N"] or 0.0, default=None)
     summary = "No order meets a mode it can drive in this range."
     if strong is not None:
         summary = (
             f"{len(hot)} critical speeds hot; the loudest at {strong['rpm']:.0f} rpm, where "
             f"{strong['order']} meets {strong['frequency_Hz']:.0f} Hz ({strong['mostly']}): "
-            f"{number(strong['bearing_force_N'], 1)} N on a bearing."
+            f"{Column('', 'bearing_force_N', '.0f').cell(strong)} N on a bearing."
         )
     lost = [one for one in hot if one["lifts_off_from_rpm"] is not None]
     if lost:
