@@ -1,5 +1,5 @@
 #!/bin/sh
-# pint 0.24 asks for any flexparser from 0.2 on, and with flexparser 0.4 `import pint` ends in
+# pint 0.24 asks for flexparser 0.3 or newer, and with flexparser 0.4 `import pint` ends in
 # TypeError "cannot inherit frozen dataclass from a non-frozen one": a fresh installation of pint==0.24
 # cannot be used today. pint 0.24.4 works with the same flexparser.
 # thermogear asks for pint 0.24.4 or newer.
