@@ -9,7 +9,9 @@ import sys
 import pytest
 
 SIGNALS = [getattr(signal, n) for n in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, n)]
-LOADED = "import os, signal; from thermogear.front import entry;"
+# whoever starts the tests in the background has them ignore SIGINT
+LOADED = "import os, signal; signal.signal(signal.SIGINT, signal.default_int_handler);"
+LOADED += "from thermogear.front import entry;"
 KILL = "os.kill(os.getpid(), signal.{})"
 
 

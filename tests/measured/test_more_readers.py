@@ -12,10 +12,10 @@ from scipy import io
 
 from said import numbers
 from thermogear.base.errors import InputError
-from thermogear.measured.comparison import verdict
 from thermogear.measured.readers import read_record
 from thermogear.measured.record import Channel, Record
 from thermogear.measured.reduction import measure
+from thermogear.measured.verdicts import Row, verdict
 
 HEAD = """LabVIEW Measurement\t
 Separator\tTab
@@ -254,5 +254,9 @@ def test_a_velocity_has_acceleration_and_displacement() -> None:
 
 
 def test_no_model_is_preferred_where_all_are_far() -> None:
-    assert "better" not in verdict([4.0, 2.5], ["a", "b"], 0.1)
-    assert verdict([4.0, 0.5], ["a", "b"], 0.1) == "b better"
+    far, near = (
+        Row(speed=1.0, quantity="dte", measured=1.0, simulated=(5.0, second), u_data=0.1)
+        for second in (3.5, 1.5)
+    )
+    assert verdict(far, ["a", "b"]) == "no preference: all are more than 100 % away"
+    assert verdict(near, ["a", "b"]) == "b better"

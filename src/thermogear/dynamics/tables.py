@@ -108,6 +108,20 @@ def mixed(one: Lanes, other: Lanes, share: float) -> Lanes:
     """Lanes with every coefficient at a ``share`` of its way from ``one`` to ``other``.
 
     Raises InputError where their tables jump otherwise than each other's, or differ in length.
+
+    >>> from thermogear.dynamics.models import TorsionalModel
+    >>> slow, fast = (
+    ...     TorsionalModel(
+    ...         damping_ratio=0.1,
+    ...         frequency=w,
+    ...         stiffness_amplitude=0.0,
+    ...         mean_force=0.1,
+    ...         force_amplitude=0.0,
+    ...     ).lanes()
+    ...     for w in (1.0, 2.0)
+    ... )
+    >>> bool(mixed(slow, fast, 0.5).period[0] == 0.75 * slow.period[0])
+    True
     """
     alike = one.stiffness_pieces == other.stiffness_pieces, one.force_pieces == other.force_pieces
     names = ("period", "damping", "half_backlash", "stiffness", "force")

@@ -17,11 +17,7 @@ from thermogear.analysis.bifurcations import FLIP, FOLD
 from thermogear.analysis.branches import with_branches, with_branches_of_states
 from thermogear.analysis.family import axis_values
 from thermogear.analysis.follow import Leap, follow
-from thermogear.analysis.outcome import (
-    outcome_arrays,
-    outcome_variables,
-    settle_with_status,
-)
+from thermogear.analysis.outcome import outcome_arrays, outcome_variables, settle_with_status
 from thermogear.analysis.section import units_of
 from thermogear.analysis.settle import PERIODIC, Rule, Settled
 from thermogear.base.errors import InputError

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from thermogear.base.units import RPM
@@ -104,6 +105,11 @@ def _temperature_summary(data: xr.Dataset) -> list[dict[str, Any]]:
     ]
 
 
+def _count(number: float) -> int | None:
+    """A count, None where there is none."""
+    return int(number) if isfinite(number) else None
+
+
 def _point_summary(points: xr.Dataset) -> list[dict[str, Any]]:
     return [
         {
@@ -113,7 +119,7 @@ def _point_summary(points: xr.Dataset) -> list[dict[str, Any]]:
             "unit": row["value_unit"],
             "label": row["label"],
             "reason": row["label_reason"],
-            **{name: int(row[name]) for name in FOLLOWED if name in row},
+            **{name: _count(row[name]) for name in FOLLOWED if name in row},
             "expected": row["expected"],
             "half_order_amplitude": row["half_order_amplitude"],
         }

@@ -34,13 +34,12 @@ def views(row: xr.Dataset, *, bundle: int, operating: int) -> Picture:
     rows: list[list[Panel]] = [[], [], [], []]
     for column, place in enumerate(columns):
         one = here.isel(gear_temperature=place)
-        first = column == 0
-        history = _panel("t [ms]", "x − b′ [µm]" * first)
+        history = _panel("t [ms]", "x − b′ [µm]")
         history.title = f"{celsius(float(temperatures[place]))}: {label_of(one)}"
-        phase = _panel("x − b′ [µm]", "ẋ [mm/s]" * first)
-        section = _panel("x − b′ [µm], section", "ẋ [mm/s]" * first)
+        phase = _panel("x − b′ [µm]", "ẋ [mm/s]")
+        section = _panel("x − b′ [µm], section", "ẋ [mm/s]")
         lines = over_orders(
-            "mesh order [–]", "|x| [µm]" * first, floor=floor, top=top, highest=HIGHEST_ORDER
+            "mesh order [–]", "|x| [µm]", floor=floor, top=top, highest=HIGHEST_ORDER
         )
         lines.x.small = lines.y.small = True
         if moving(one):
