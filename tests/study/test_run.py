@@ -109,7 +109,9 @@ def test_results_are_read_back_as_they_were(written: Path, small: Result) -> Non
     for node in small.tree.subtree:
         for name, values in node.data_vars.items():
             other = stored[node.path][str(name)]
-            np.testing.assert_array_equal(values.values, other.values)
+            none = values.attrs.get("missing_value", np.nan)  # others read a missing number
+            wanted = values.where(values != none) if none == none else values
+            np.testing.assert_array_equal(wanted.values, other.values)
             assert other.attrs.get("units") == values.attrs.get("units")
     told = json.loads((written / SUMMARY).read_text(encoding="utf-8"))
     fresh = page(small).figures
