@@ -3,8 +3,8 @@
 ``make lowest`` installs the package with all its extras twice, each in an environment of its own
 below .bounds-venv: every direct dependency at its declared minimum, and the newest that the
 declaration allows. In both it runs a case from its file to a report and quick
-tests of each floor, and writes docs/bounds.md. ``python checks/bounds.py 3.12 3.13`` tries these versions of
-Python with the newest libraries instead, and prints the table.
+tests of each floor, and writes docs/bounds.md. ``python checks/bounds.py 3.12 3.13`` tries these
+versions of Python with the newest libraries instead, and prints the table.
 """
 
 from __future__ import annotations
@@ -24,33 +24,33 @@ UV = ROOT / ".venv" / "bin" / "uv"
 EXTRAS = ("measure", "cluster", "fe", "sensitivity", "app", "cad")
 TOOLS = ("pytest", "pytest-xdist", "hypothesis", "axe-core-python")
 """What the tests need beside the package; always the newest, no bound of ours."""
-QUICK = """
-tests/base
-tests/case/test_case.py
-tests/case/test_charts.py
-tests/case/test_duty.py
-tests/case/test_rexs.py
-tests/gears/test_loaded.py
-tests/heat/test_heat_units.py
-tests/mesh/test_mesh_nan.py
-tests/dynamics/test_exact.py
-tests/analysis/test_labels.py
-tests/signals
-tests/measured/test_readers.py
-tests/measured/test_foreign_formats.py
-tests/shafts/test_bearings.py
-tests/results/test_store.py
-tests/results/test_workers.py
-tests/study/test_sensitivity.py
-tests/study/test_warm_up_study.py
-tests/verify/test_elements.py
-tests/views/test_netcdf.py
-tests/views/test_report.py
-tests/front/test_cli.py
-tests/front/test_draw_command.py
-tests/front/test_measure_commands.py
-tests/front/app/test_security.py
-""".split()
+QUICK = (
+    "tests/base",
+    "tests/case/test_case.py",
+    "tests/case/test_charts.py",
+    "tests/case/test_duty.py",
+    "tests/case/test_rexs.py",
+    "tests/gears/test_loaded.py",
+    "tests/heat/test_heat_units.py",
+    "tests/mesh/test_mesh_nan.py",
+    "tests/dynamics/test_exact.py",
+    "tests/analysis/test_labels.py",
+    "tests/signals",
+    "tests/measured/test_readers.py",
+    "tests/measured/test_foreign_formats.py",
+    "tests/shafts/test_bearings.py",
+    "tests/results/test_store.py",
+    "tests/results/test_workers.py",
+    "tests/study/test_sensitivity.py",
+    "tests/study/test_warm_up_study.py",
+    "tests/verify/test_elements.py",
+    "tests/views/test_netcdf.py",
+    "tests/views/test_report.py",
+    "tests/front/test_cli.py",
+    "tests/front/test_draw_command.py",
+    "tests/front/test_measure_commands.py",
+    "tests/front/app/test_security.py",
+)
 """Tests of each floor; those that are slow are left out."""
 TEST = ("-m", "pytest", "-q", "-p", "no:cacheprovider", "-n", "2", "--dist", "loadfile")
 
