@@ -17,7 +17,7 @@ from thermogear.base.vocabulary import STATUS, STILL
 from thermogear.case.case import GearCase, load_case
 from thermogear.case.derived import facts
 from thermogear.case.examples import example_text
-from thermogear.case.family import family
+from thermogear.case.family import Tabulated, family
 from thermogear.case.one_point import of_case
 from thermogear.heat.gearbox import Surroundings
 from thermogear.heat.measured_temperature import InfraredReading
@@ -287,6 +287,10 @@ def test_jammed_means_no_gap_left_and_heat_that_does_not_settle_is_a_status_of_i
     ]
     assert words[0] == words[1] == ["ok", "heat_not_settled"]
     assert words[2] == words[3] == ["ok", "ok"]
+    # a table of both has at its points their own status, between them the worse one
+    table = Tabulated.of(family(case, ("pinion_speed",)), slow_and_fast[:, 0])
+    there = np.append(slow_and_fast, [slow_and_fast.mean(axis=0)], axis=0)
+    assert [STATUS[code] for code in table(there).status] == [*words[0], words[0][1]]
 
     hot = np.linspace(300.0, 700.0, 4)
     want = ("half_backlash", "proportional_jam_temperature")

@@ -104,6 +104,15 @@ def test_a_period_that_is_none_is_missing_in_every_file(
     assert all("chaos" in told for told in words)
 
 
+def test_a_count_stays_beside_coordinates_that_become_words() -> None:
+    runs = xr.Dataset(
+        {"period": ("direction", [2, 0], {"missing_value": 0})}, {"direction": [1, -1]}
+    )
+    (frame,) = frames(runs).values()
+    assert frame["direction"].tolist() == ["up", "down"]
+    np.testing.assert_array_equal(frame["period"], [2.0, np.nan])
+
+
 def test_a_code_without_a_word_is_no_other_word() -> None:
     codes = xr.Dataset({"regime": ("point", np.array([0, 1, -1]))})
     codes["regime"].attrs["flag_meanings"] = "boundary mixed"

@@ -9,7 +9,8 @@ on the way, or leave the range: then there is none. Order and nearness decide no
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections import Counter
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -21,6 +22,7 @@ from thermogear.analysis.family import Family, dimension_of, model_at
 from thermogear.analysis.orbits import closed
 from thermogear.analysis.section import lanes_of
 from thermogear.base.errors import ConvergenceError, InputError
+from thermogear.base.vocabulary import moves
 from thermogear.dynamics.return_map import return_map
 from thermogear.dynamics.tables import mixed
 
@@ -97,7 +99,19 @@ def matches(
                 "partner": partner, "share": abs(way - share), "drawn": bool(twins),
                 "met": end if partner == JOINED else None, "why": why,
             })  # fmt: skip
+    for side in ("one", "other"):
+        counts = Counter(_place(row, side) for row in rows if row["partner"] == MATCHED)
+        for row in rows:
+            if row["partner"] == MATCHED and counts[_place(row, side)] > 1:
+                # a curve that passes close to another can go on along it: neither is believed
+                row |= {"partner": UNKNOWN, "why": "two curves end at one bifurcation"}
+                row[side] = None
     return sorted(rows, key=lambda row: float(row["other" if row["one"] is None else "one"]))
+
+
+def _place(row: Mapping[str, Any], side: str) -> tuple[Any, ...]:
+    """Kind, period and value of a row's bifurcation in the state ``side``."""
+    return row["kind"], row["period"], row[side]
 
 
 def _same(event: _Event, kind: _Event, value: float, near: float) -> bool:
@@ -126,8 +140,8 @@ def _followed(
 
     def between(value: float, share: float) -> object:
         one, other = (family(np.array([[value]])) for family in pair)
-        if np.any(getattr(one, "status", 0)) or np.any(getattr(other, "status", 0)):
-            raise InputError(name, value, why="one of both has no motion there")
+        if not all(np.all(moves(getattr(points, "status", 0))) for points in (one, other)):
+            raise ConvergenceError("one of both states has no motion there")
         return mixed(lanes_of(one), lanes_of(other), share)
 
     try:

@@ -473,7 +473,9 @@ class Tabulated:
         with np.errstate(invalid="ignore"):  # a point without a gap has no lengths
             push = error * (ranks * frequency[:, None]) ** 2 / length[:, None]
         push[:, 0] = force / (stiffness * length)
-        status = np.where(moves(a.status) & (b.status != 0), b.status, a.status)
+        # a grid point has its own status; between two the worse one holds
+        worse = np.where(moves(a.status) & (b.status != 0), b.status, a.status)
+        status = np.select([weight == 0.0, weight == 1.0], [a.status, b.status], worse)
         flat = Lanes(
             period=2.0 * np.pi / frequency,
             damping=mix(a.flat.damping, b.flat.damping),

@@ -157,8 +157,11 @@ def lines(result: Result) -> list[str]:
             continue
         elif name == "lost_contact":
             found += [f"- {lost_line(row)}" for row in value] or ["- nothing loses contact"]
+        elif name == "ways_apart":
+            at = ", ".join(f"{place:.9g}" for place in value)
+            found += [f"two motions, up and down, at {at}"] * bool(value)
         elif isinstance(value, list):
-            found += [f"- {row if isinstance(row, str) else _line(row)}" for row in value]
+            found += [f"- {_line(row) if isinstance(row, dict) else row}" for row in value]
         else:
             found.append(f"{name}: {_line(value) if isinstance(value, dict) else value}")
     return found
