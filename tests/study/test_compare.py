@@ -316,6 +316,13 @@ def test_speeds_are_one_for_all_or_one_of_each() -> None:
         compare("thesis-5.2", ["thesis-5.2"] * 3, speed=(100.0, 200.0))
 
 
+def test_a_record_of_another_speed_is_not_judged() -> None:
+    with pytest.raises(InputError) as refused:
+        compare("thesis-5.2", made_record("low", 1000.5, 10.0), teeth=25, speed=2000.0 * RPM)
+    assert numbers(str(refused.value))[:1] == [2000.0]
+    assert "is that of 1000.5 rpm and 25 teeth; leave the speed out" in str(refused.value)
+
+
 def test_a_toleranced_value_keeps_its_unit() -> None:
     assert scaled("100 N m", 1.1) == "110.00000000000001 N m"
     assert scaled("0.07", 2.0) == "0.14"

@@ -87,6 +87,10 @@ class Comparison:
         return min(rows, key=lambda row: abs(row.speed - speed))
 
 
+ANOTHER_SPEED = 0.05
+"""Share of a speed: a mesh line further off is of another speed, as LineTable.near has it."""
+
+
 def table_of(found: Measurement, speed: float | None = None) -> LineTable:
     """The mesh line of a measurement (its clearest channel) as a table."""
     lines = [line for line in found.lines if line.name == "mesh x 1"]
@@ -112,6 +116,15 @@ def table_of(found: Measurement, speed: float | None = None) -> LineTable:
         why = "no tooth number is known" if found.teeth is None else "the record does not decide it"
         raise InputError(
             "speed", "none", why=why, fix="--speed" if found.teeth else "--teeth or --speed"
+        )
+    implied = 2.0 * np.pi * line.frequency / found.teeth if found.teeth else nominal
+    if abs(implied - nominal) > ANOTHER_SPEED * nominal:
+        raise InputError(
+            "speed",
+            f"{nominal / RPM:.6g} rpm",
+            why=f"the mesh line of {found.record.source}, {line.frequency:.6g} Hz, is that of "
+            f"{implied / RPM:.6g} rpm and {found.teeth} teeth",
+            fix="leave the speed out, or state other teeth",
         )
     return LineTable(
         f"{found.record.source}, {line.channel}",
