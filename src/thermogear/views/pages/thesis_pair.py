@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +11,7 @@ import numpy as np
 
 from thermogear.base.display import celsius, exactly, number, span
 from thermogear.base.parameters import PARAMETERS
-from thermogear.base.units import RPM
+from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import STATUS
 from thermogear.results.result import Result
 from thermogear.views.page import Block, Gallery, Page, Pictures, Section, Table, Text, notice_lines
@@ -51,7 +50,7 @@ def page(result: Result) -> Page:
     ]
     summary = _summary(result)
     return Page(
-        replace(result, notices=()),
+        result,
         summary,
         sections + background(result),
         numbers=lambda: _numbers(result, findings),
@@ -65,18 +64,26 @@ def page(result: Result) -> Page:
 
 def _summary(result: Result) -> str:
     mesh = _hot(result.groups["mesh"])
+    ratios = result.groups["mesh"]["frequency_ratio"].isel(bundle=0, operating=0)
+    known = ratios[np.isfinite(ratios.values)]
+    at = f"ω_h = {number(float(known[-1]))}" if known.size else "ω_h not known"
+    at += f" undeformed; hot {_status(mesh)}" * (known.size == 1)
     cut = "Stopped on request before the end: what is missing was not computed. "
     return (
         f"{cut if result.interrupted else ''}The steps of the thesis for this pair at "
         f"{exactly(float(mesh['pinion_speed']) / RPM)} rpm and "
-        f"{exactly(float(mesh['pinion_torque']))} N m (ω_h = "
-        f"{number(float(mesh['frequency_ratio']))}), bundle {mesh['bundle'].item()}."
+        f"{exactly(float(mesh['pinion_torque']))} N m ({at}), "
+        f"bundle {mesh['bundle'].item()}."
     )
 
 
 def _hot(data: xr.Dataset) -> xr.Dataset:
     """The one point of a group, hot."""
     return data.isel(bundle=0, operating=0, state=-1)
+
+
+def _status(one: xr.Dataset) -> str:
+    return STATUS[int(one["status"])].replace("_", " ")
 
 
 def _sentence(parts: Sequence[str]) -> str:
@@ -138,10 +145,11 @@ def _at(one: xr.Dataset) -> str:
 
 
 def _gap(points: list[xr.Dataset]) -> str:
-    """The half backlash of jammed points, and where it is used up."""
+    """The half backlash of jammed points, and where it is used up: each has its own housing."""
     gaps = span([1e6 * float(one["half_backlash"]) for one in points])
-    jam = float(points[-1]["jam_temperature"])
-    return f", half backlash {gaps} µm" + f", used up at {celsius(jam)}" * (jam == jam)
+    jams = span([round(float(one["jam_temperature"]) - ZERO_CELSIUS, 0) for one in points])
+    used = f", used up at {jams} °C with the housing of each" * (jams != "–")
+    return f", half backlash {gaps} µm{used}"
 
 
 def _diagram(name: str, result: Result, pictures: Pictures) -> Told:
@@ -191,9 +199,9 @@ def _friction(result: Result, pictures: Pictures) -> Told:
     mean = [number(float(np.mean(here[f"friction_coefficient_{n}"].values))) for n in names]
     flash = [number(float(np.max(here[f"flash_temperature_{n}"].values))) for n in names]
     if "–" in (*mean, *flash):
-        hot = int(_hot(result.groups["mesh"])["status"])
+        hot = _hot(result.groups["mesh"])
         why = "Benedict and Kelley's law has no value for these flanks"
-        why = STATUS[hot].replace("_", " ") if hot > JAMMED else why
+        why = _status(hot) if int(hot["status"]) > JAMMED else why
         return f"Mixed lubrication cannot be put beside dry friction hot: {why}.", []
     section = gear_sections.friction(result, pictures)
     galleries = [one for one in section.blocks if isinstance(one, Gallery)] if section else []
@@ -225,7 +233,9 @@ def _outlook(result: Result, pictures: Pictures) -> Told:
         )  # fmt: skip
     film = captions.regimes(path) or "The film is not known: the heat does not settle."
     play = result.group("play")
-    words = "The play of bearings is not varied: the case has no [[shafts]] and [[bearings]]."
+    why = "the case has no [[shafts]] and [[bearings]]"
+    why = "stopped before it" if result.interrupted and result.table("train") else why
+    words = f"The play of bearings is not varied: {why}."
     if play is not None:
         words = f"Over the play of all bearings: {lost_words(play)} {finding(play)}"
         pictures.add(
