@@ -32,20 +32,15 @@ def from_data(data: xr.Dataset) -> list[str]:
 
     Of the latter nothing where a motion is not known.
     """
-    found = without_bath(data)
-    if "back_share" not in data:
-        return found
-    # a jammed point has no gap to spare: there a wider one would change everything
-    never = np.all(moves(data["status"].values) & (data["back_share"].values == 0.0))
-    return found + [NO_BACK_IMPACT] * bool(never)
-
-
-def without_bath(data: xr.Dataset) -> list[str]:
-    """How many points rest on an oil bath that cannot exist."""
     status = data["status"].values if "status" in data else np.empty(0)
     hot = int((status == NO_OIL_BATH).sum())
-    return [
+    found = [
         f"{hot} of {status.size} points rest on an oil bath that cannot exist (status no_oil_bath):"
         f" the oil is above its flash point, or above {NO_BATH - ZERO_CELSIUS:.0f} °C where that "
         "is not given; give oil.flash_point, or an oil that stays cooler"
     ] * (hot > 0)
+    if "back_share" not in data:
+        return found
+    # a jammed point has no gap to spare: there a wider one would change everything
+    never = np.all(moves(status) & (data["back_share"].values == 0.0))
+    return found + [NO_BACK_IMPACT] * bool(never)

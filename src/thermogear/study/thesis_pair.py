@@ -28,7 +28,7 @@ from thermogear.case.family import GearFamily
 from thermogear.case.points import Points, largest_fluctuation
 from thermogear.case.thermal_state import HOT, UNDEFORMED, ThermalState
 from thermogear.measured.comparison import result_of
-from thermogear.results.beside import without_bath
+from thermogear.results.beside import from_data
 from thermogear.results.result import Notice, Result
 from thermogear.study.compare import compare
 from thermogear.study.diagrams import Train, case_diagram, overlaid
@@ -106,10 +106,9 @@ def thesis_pair(
     told = [
         Notice("important", f"{PARAMETERS[name].words}, undeformed and hot: {words}")
         for name in matches
-        for words in without_bath(groups[f"diagrams/{name}"])
+        for words in from_data(groups[f"diagrams/{name}"][["status"]])
     ]
-    told += [RIGID] * (case.train is not None)
-    notices = (*told, *friction_notices(alone, groups))
+    notices = (*[RIGID] * (case.train is not None), *told, *friction_notices(alone, groups))
     return replace(ran, kind="thesis-pair", groups=groups, notices=notices).with_(
         interrupted=cut, left_out=left_out, matches=matches, conclusion=beside.text("conclusion")
     )

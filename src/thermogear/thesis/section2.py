@@ -137,7 +137,7 @@ def _two_states(e: Evidence) -> Finding:
     film = [REGIMES[place] for place in np.unique(regime(lam[np.isfinite(lam)]))]
     return Finding(
         f"dry {dry.mean():.3g}; mixed {mixed.min():.3g} to {mixed.max():.3g} along the path",
-        f"film parameter {np.nanmin(lam):.2g} to {np.nanmax(lam):.2g}: {' and '.join(film)} lubrication",
+        f"film parameter {np.nanmin(lam):.2g} to {np.nanmax(lam):.2g}: {' and '.join(film)}",
         Verdict.ASSUMED if "mixed" in film else Verdict.UNDECIDED,
         "Both states are computed. A film is mixed at a film parameter from 1 to 3; that of this "
         "pair rests on the oil and roughness assumed.",

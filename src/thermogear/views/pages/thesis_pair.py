@@ -64,15 +64,14 @@ def page(result: Result) -> Page:
 
 def _summary(result: Result) -> str:
     mesh = _hot(result.groups["mesh"])
-    ratios = result.groups["mesh"]["frequency_ratio"].isel(bundle=0, operating=0)
-    known = ratios[np.isfinite(ratios.values)]
-    at = f"ω_h = {number(float(known[-1]))}" if known.size else "ω_h not known"
-    at += f" undeformed; hot {_status(mesh)}" * (known.size == 1)
+    cold, hot = result.groups["mesh"]["frequency_ratio"].isel(bundle=0, operating=0).values
+    why = STATUS[int(mesh["status"])].replace("_", " ")
+    at = number(float(hot)) if hot == hot else f"{number(float(cold))} undeformed; hot {why}"
     cut = "Stopped on request before the end: what is missing was not computed. "
     return (
         f"{cut if result.interrupted else ''}The steps of the thesis for this pair at "
         f"{exactly(float(mesh['pinion_speed']) / RPM)} rpm and "
-        f"{exactly(float(mesh['pinion_torque']))} N m ({at}), "
+        f"{exactly(float(mesh['pinion_torque']))} N m (ω_h = {at}), "
         f"bundle {mesh['bundle'].item()}."
     )
 
@@ -80,10 +79,6 @@ def _summary(result: Result) -> str:
 def _hot(data: xr.Dataset) -> xr.Dataset:
     """The one point of a group, hot."""
     return data.isel(bundle=0, operating=0, state=-1)
-
-
-def _status(one: xr.Dataset) -> str:
-    return STATUS[int(one["status"])].replace("_", " ")
 
 
 def _sentence(parts: Sequence[str]) -> str:
@@ -199,9 +194,9 @@ def _friction(result: Result, pictures: Pictures) -> Told:
     mean = [number(float(np.mean(here[f"friction_coefficient_{n}"].values))) for n in names]
     flash = [number(float(np.max(here[f"flash_temperature_{n}"].values))) for n in names]
     if "–" in (*mean, *flash):
-        hot = _hot(result.groups["mesh"])
+        hot = int(_hot(result.groups["mesh"])["status"])
         why = "Benedict and Kelley's law has no value for these flanks"
-        why = _status(hot) if int(hot["status"]) > JAMMED else why
+        why = STATUS[hot].replace("_", " ") if hot > JAMMED else why
         return f"Mixed lubrication cannot be put beside dry friction hot: {why}.", []
     section = gear_sections.friction(result, pictures)
     galleries = [one for one in section.blocks if isinstance(one, Gallery)] if section else []
@@ -233,8 +228,8 @@ def _outlook(result: Result, pictures: Pictures) -> Told:
         )  # fmt: skip
     film = captions.regimes(path) or "The film is not known: the heat does not settle."
     play = result.group("play")
-    why = "the case has no [[shafts]] and [[bearings]]"
-    why = "stopped before it" if result.interrupted and result.table("train") else why
+    stopped = result.interrupted and result.table("train")
+    why = "stopped before it" if stopped else "the case has no [[shafts]] and [[bearings]]"
     words = f"The play of bearings is not varied: {why}."
     if play is not None:
         words = f"Over the play of all bearings: {lost_words(play)} {finding(play)}"
