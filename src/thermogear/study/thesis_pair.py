@@ -28,7 +28,8 @@ from thermogear.case.family import GearFamily
 from thermogear.case.points import Points, largest_fluctuation
 from thermogear.case.thermal_state import HOT, UNDEFORMED, ThermalState
 from thermogear.measured.comparison import result_of
-from thermogear.results.result import Result
+from thermogear.results.beside import from_data
+from thermogear.results.result import Notice, Result
 from thermogear.study.compare import compare
 from thermogear.study.diagrams import Train, case_diagram, overlaid
 from thermogear.study.notices import friction_notices
@@ -56,6 +57,12 @@ FOLLOWED = 12
 """Bifurcations of each diagram that are followed from one state to the other, grazings last: a
 second of processor time each, about."""
 
+RIGID = Notice(
+    "important",
+    "Gear temperature, damping, speed and stiffness fluctuation are computed with the gears on "
+    "rigid bearings; the shafts of the case move over the play of its bearings alone.",
+)
+
 
 def thesis_pair(
     case: GearCase,
@@ -71,8 +78,8 @@ def thesis_pair(
 
     Left out, the point is the one nearest to the resonance of the mean stiffness, undeformed, and
     the bundle the first. ``temperatures`` [K] of the gears; ``values`` of each diagram.
-    ``records``: file -> nominal speed [rad/s] of the pinion, None where the record says it; they
-    are compared with the case at all its speeds. After Ctrl+C what was finished, once the motion
+    ``records``: file -> nominal speed [rad/s] of the pinion, None where the record says it; the
+    case is simulated at these speeds beside them. After Ctrl+C what was finished, once the motion
     over temperature is there; ``interrupted`` says so.
     """
     alone, point = _alone(case, operating, bundle)
@@ -96,8 +103,13 @@ def thesis_pair(
             groups["play"] = _played(alone, progress)
     except KeyboardInterrupt:
         cut = True
-    told = tuple(friction_notices(alone, groups))
-    return replace(ran, kind="thesis-pair", groups=groups, notices=told).with_(
+    told = [
+        Notice("important", f"{PARAMETERS[name].words}, undeformed and hot: {words}")
+        for name in matches
+        for words in from_data(groups[f"diagrams/{name}"][["status"]])
+    ]
+    notices = (*[RIGID] * (case.train is not None), *told, *friction_notices(alone, groups))
+    return replace(ran, kind="thesis-pair", groups=groups, notices=notices).with_(
         interrupted=cut, left_out=left_out, matches=matches, conclusion=beside.text("conclusion")
     )
 

@@ -87,14 +87,17 @@ def _sentence(parts: Mapping[str, str], start: str = "") -> str:
 def regimes(here: xr.Dataset) -> str:
     """The lubrication regime of every drawn operating point by its film; "" if unknown.
 
-    ``here`` has the axes operating and path_position alone.
+    ``here`` has the axes operating and path_position alone. A film is nan where the heat does not
+    settle, and infinite without load.
     """
     known = "regime" in here and "flag_meanings" in here["regime"].attrs
     if not known or "film_parameter" not in here:
         return ""
-    drawn = chosen(here.sizes["operating"])
-    names = operating_names(here)
-    film = here["film_parameter"].values[drawn]
+    film = here["film_parameter"].values
+    drawn = [o for o in chosen(len(film)) if not np.isnan(film[o]).any()]
+    if not drawn:
+        return ""
+    names, film = operating_names(here), film[drawn]
     if not np.isfinite(film).any():
         return "Without load the film has no limit."
     told = {names[o]: _regime_along(here.isel(operating=o)) for o in drawn}

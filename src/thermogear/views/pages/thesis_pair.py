@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +11,7 @@ import numpy as np
 
 from thermogear.base.display import celsius, exactly, number, span
 from thermogear.base.parameters import PARAMETERS
-from thermogear.base.units import RPM
+from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import STATUS
 from thermogear.results.result import Result
 from thermogear.views.page import Block, Gallery, Page, Pictures, Section, Table, Text, notice_lines
@@ -51,7 +50,7 @@ def page(result: Result) -> Page:
     ]
     summary = _summary(result)
     return Page(
-        replace(result, notices=()),
+        result,
         summary,
         sections + background(result),
         numbers=lambda: _numbers(result, findings),
@@ -65,12 +64,15 @@ def page(result: Result) -> Page:
 
 def _summary(result: Result) -> str:
     mesh = _hot(result.groups["mesh"])
+    cold, hot = result.groups["mesh"]["frequency_ratio"].isel(bundle=0, operating=0).values
+    why = STATUS[int(mesh["status"])].replace("_", " ")
+    at = number(float(hot)) if hot == hot else f"{number(float(cold))} undeformed; hot {why}"
     cut = "Stopped on request before the end: what is missing was not computed. "
     return (
         f"{cut if result.interrupted else ''}The steps of the thesis for this pair at "
         f"{exactly(float(mesh['pinion_speed']) / RPM)} rpm and "
-        f"{exactly(float(mesh['pinion_torque']))} N m (ω_h = "
-        f"{number(float(mesh['frequency_ratio']))}), bundle {mesh['bundle'].item()}."
+        f"{exactly(float(mesh['pinion_torque']))} N m (ω_h = {at}), "
+        f"bundle {mesh['bundle'].item()}."
     )
 
 
@@ -138,10 +140,11 @@ def _at(one: xr.Dataset) -> str:
 
 
 def _gap(points: list[xr.Dataset]) -> str:
-    """The half backlash of jammed points, and where it is used up."""
+    """The half backlash of jammed points, and where it is used up: each has its own housing."""
     gaps = span([1e6 * float(one["half_backlash"]) for one in points])
-    jam = float(points[-1]["jam_temperature"])
-    return f", half backlash {gaps} µm" + f", used up at {celsius(jam)}" * (jam == jam)
+    jams = span([round(float(one["jam_temperature"]) - ZERO_CELSIUS, 0) for one in points])
+    used = f", used up at {jams} °C with the housing of each" * (jams != "–")
+    return f", half backlash {gaps} µm{used}"
 
 
 def _diagram(name: str, result: Result, pictures: Pictures) -> Told:
@@ -225,7 +228,9 @@ def _outlook(result: Result, pictures: Pictures) -> Told:
         )  # fmt: skip
     film = captions.regimes(path) or "The film is not known: the heat does not settle."
     play = result.group("play")
-    words = "The play of bearings is not varied: the case has no [[shafts]] and [[bearings]]."
+    stopped = result.interrupted and result.table("train")
+    why = "stopped before it" if stopped else "the case has no [[shafts]] and [[bearings]]"
+    words = f"The play of bearings is not varied: {why}."
     if play is not None:
         words = f"Over the play of all bearings: {lost_words(play)} {finding(play)}"
         pictures.add(
