@@ -84,16 +84,48 @@ def test_a_worker_that_differs_is_refused_by_name_and_once(answer: object, why: 
 
 @pytest.mark.parametrize(
     "address",
-    ["tls://10.0.0.7:8786", "tcp://127.0.0.1:8786", "[::1]:8786", "localhost:1", "inproc://a"],
+    [
+        "tls://10.0.0.7:8786",
+        "TLS://10.0.0.7:8786",
+        "wss://10.0.0.7:8786",
+        "ws://127.0.0.1:1",
+        "tcp://127.0.0.1:8786",
+        "[::1]:8786",
+        "localhost:1",
+        "inproc://a",
+        "inproc://10.0.0.1/7/1",
+    ],
 )
 def test_a_private_scheduler_is_taken(address: str) -> None:
     crew.require_private(address)
 
 
-@pytest.mark.parametrize("address", ["tcp://10.0.0.7:8786", "node7:8786", "tcp://[fe80::1]:8786"])
-def test_a_scheduler_that_strangers_may_reach_is_refused(address: str) -> None:
-    with pytest.raises(InputError, match=r"over plain tcp whoever reaches it runs code as its"):
+@pytest.mark.parametrize(
+    ("address", "scheme"),
+    [
+        ("tcp://10.0.0.7:8786", "tcp"),
+        ("node7:8786", "tcp"),
+        ("tcp://[fe80::1]:8786", "tcp"),
+        ("TCP://10.0.0.1:8786", "tcp"),
+        ("ws://192.0.2.2:18799", "ws"),
+        ("inproc://10.0.0.1:8786", "inproc"),
+        ("ucx://10.0.0.1:8786", "ucx"),
+    ],
+)
+def test_a_scheduler_that_strangers_may_reach_is_refused(address: str, scheme: str) -> None:
+    with pytest.raises(InputError, match=rf"over plain {scheme} whoever reaches it runs code as"):
         crew.require_private(address)
+
+
+def test_an_encrypted_cluster_needs_certificates_before_anyone_is_asked() -> None:
+    pytest.importorskip("distributed")
+    begun = time.monotonic()
+    with (
+        pytest.raises(InputError, match=r"dask's certificates are not configured; set distributed"),
+        crew.cluster("tls://127.0.0.1:1"),
+    ):
+        pass
+    assert time.monotonic() - begun < 5.0
 
 
 def test_a_worker_that_does_not_answer_holds_nobody_up(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,6 +10,8 @@ import sys
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, replace
 from functools import cache
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,6 +20,7 @@ from scripts import script
 from said import numbers
 from thermogear.base.limits import FINE, LIMITS, LOOK, OPEN, Limit
 from thermogear.base.progress import silent
+from thermogear.base.vocabulary import STATUS
 from thermogear.case.case import GearCase, load_case
 from thermogear.case.thermal_state import HOT, UNDEFORMED
 from thermogear.gears.accuracy import flank_tolerances
@@ -191,6 +194,25 @@ def test_what_is_not_steady_is_not_stated() -> None:
     assert course.sentence.endswith(ends)
     assert found["relief"].sentence == found["resonance"].sentence == unknown
     assert verdicts("jammed")["resonance"].sentence == jammed
+    for name in ("contact_loss", "back_contact", "coexisting"):
+        slow = verdicts("slow")[name]
+        assert (slow.verdict, slow.value) == (OPEN, None)
+        assert slow.sentence.startswith("Not decided at its own speeds, too slow to vibrate; ")
+    impossible: Any = SimpleNamespace(
+        hot={"status": [STATUS.index("jammed")]}, unsettled=lambda _: "no bath"
+    )
+    assert Asked.still(impossible, 0) == "no bath"
+
+
+@pytest.mark.parametrize("supply", [60.0, 160.0])
+def test_a_pair_with_an_oil_flow_is_told_to_have_more_of_it(supply: float) -> None:
+    """Oil supplied hotter than the bath carries nothing off; no power below zero is told."""
+    text = FIVE.replace('temperature = "80 degC"\n', "")
+    hot = ("operating.torque=900 N m", "gearbox.oil_flow=0.01 l/min")
+    case = read(*hot, f"gearbox.supply_temperature={supply} degC", text=text)
+    oil = asked_of(case, steady.heat)["oil_temperature"]
+    assert "more gearbox.oil_flow, a cooler gearbox.supply_temperature or" in oil.sentence
+    assert oil.figures.get("carried", 1.0) > 0.0
 
 
 def test_an_oil_bath_above_its_flash_point_is_called_impossible() -> None:
@@ -410,6 +432,17 @@ def test_a_jam_is_not_told_beyond_what_the_materials_bear() -> None:
         assert one.value == one.figures["off"]
         assert "jam" not in one.figures or "borne" not in one.figures
     assert hard.value < tough.value
+    bodies = ("pinion_addendum", "pinion_bore", "wheel_addendum", "wheel_bore")
+    case = read(
+        *(f"temperatures.{name}=316 degC" for name in bodies),
+        "temperatures.housing=40 degC",
+        "backlash.value=1 mm",
+        *WHOLE,
+    )
+    burnt = asked_of(case, steady.gap)["jam_margin"]
+    assert (burnt.verdict, burnt.value) == (LOOK, pytest.approx(180.0 - 316.0))
+    assert burnt.figures["jam"] > 316.0
+    assert numbers(burnt.sentence) == [round(burnt.figures["jam"]), 180.0, 136.0]
 
 
 def test_a_jam_is_told_by_the_pinion_however_warm_the_wheel_is() -> None:

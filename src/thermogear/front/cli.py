@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import click
 
 from thermogear import __version__
-from thermogear.base.errors import InputError, InputErrors, ThermogearError, nearest
+from thermogear.base.errors import InputError, InputErrors, ThermogearError, nearest, printable
 from thermogear.base.parameters import long_name
 from thermogear.front import (
     app_command,
@@ -33,7 +33,7 @@ from thermogear.front import (
     verify_commands,
     versus_commands,
 )
-from thermogear.front.lines import say, system_error, warnings_as_lines
+from thermogear.front.lines import say, show_path, system_error, warnings_as_lines
 
 if TYPE_CHECKING:
     from thermogear.base.progress import Progress
@@ -140,7 +140,7 @@ def report(directory: str, of: str, pictures: str | None, kind: str | None) -> N
     if pictures is not None:
         written = write_pictures(place, Path(pictures), kind or "png", of)
     for path in (write_report(place, of), *written):
-        click.echo(path)
+        show_path(path)
 
 
 @cli.command()
@@ -169,7 +169,7 @@ def check(case: str, overrides: tuple[str, ...], as_json: bool) -> None:
             group = fact.group
             click.echo(f"\n{group}")
         value = f"{fact.value:.7g}" if isinstance(fact.value, float) else str(fact.value)
-        click.echo(f"  {fact.name:<38} {value} {fact.unit}".rstrip())
+        click.echo(f"  {fact.name:<38} {printable(value)} {fact.unit}".rstrip())
     taken = [line if line.startswith(" ") else f"\n{line}" for line in defaults(read.assumptions)]
     for line in taken:
         click.echo(line)
@@ -215,7 +215,7 @@ def _put(text: str, output: str | None) -> None:
         return
     from thermogear.base.files import put_new
 
-    click.echo(put_new(Path(output), text))
+    show_path(put_new(Path(output), text))
 
 
 for _list in (

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from thermogear.base.errors import InputError
+from thermogear.base.errors import InputError, printable
 from thermogear.base.progress import Progress
+from thermogear.front.lines import show_path
 
 if TYPE_CHECKING:
     from thermogear.case.case import DimensionlessCase, GearCase
@@ -126,7 +127,7 @@ def deliver(
         page = page_of(result)
         if folder is not None:
             result.put(folder)
-            every = f"All of them: thermogear report {place}"
+            every = f"All of them: thermogear report {printable(str(place))}"
             shown = page if pictures == "all" else page.showing(pictures, every)
             written = write(shown, folder)
     if place is not None:
@@ -147,4 +148,4 @@ def tell(page: Page, path: Path | None, *, as_json: bool) -> None:
     for line in page.lines():
         click.echo(line)
     if path is not None:
-        click.echo(path)
+        show_path(path)

@@ -9,6 +9,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TextIO
 
+import click
+
 from thermogear.base.errors import printable
 
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
@@ -18,6 +20,11 @@ NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 def one_line(text: object) -> str:
     """``text`` without line breaks, tabs or control characters."""
     return printable(" ".join(str(text).split()))
+
+
+def show_path(path: object, before: str = "") -> None:
+    """A path on standard output, by itself or after the words ``before``."""
+    click.echo(f"{before}{printable(str(path))}")
 
 
 def say(kind: str, text: object) -> None:

@@ -10,6 +10,7 @@ from typing import Any
 import click
 
 from thermogear.base.errors import InputError
+from thermogear.front.lines import show_path
 
 NEEDED = {
     "teeth": ("Teeth of pinion and wheel", "20 40"),
@@ -92,8 +93,8 @@ def new(output: str | None, **given: Any) -> None:
     if output is None:
         click.echo(text, nl=False)
         return
-    click.echo(put_new(Path(output), text))
-    click.echo(f"next: thermogear answers {output}")
+    show_path(put_new(Path(output), text))
+    show_path(output, "next: thermogear answers ")
 
 
 def _from(folder: Path, chart: str) -> str:

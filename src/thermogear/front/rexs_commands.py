@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 import click
 
+from thermogear.base.errors import printable
 from thermogear.front import delivery
-from thermogear.front.lines import say
+from thermogear.front.lines import say, show_path
 from thermogear.results.files import json_text
 
 if TYPE_CHECKING:
@@ -69,10 +70,10 @@ def import_(
     if as_json:
         return
     for path in written:
-        click.echo(path)
+        show_path(path)
     for line in found.unused:
-        click.echo(f"  not used: {line}")
-    click.echo(f"next: thermogear answers {output}")
+        click.echo(f"  not used: {printable(line)}")
+    show_path(output, "next: thermogear answers ")
 
 
 def _list(model: Model, file: str, *, as_json: bool) -> None:
@@ -109,27 +110,28 @@ def _list(model: Model, file: str, *, as_json: bool) -> None:
         click.echo(json_text(content), nl=False)
         return
     click.echo(
-        f"REXS {model.version}, {model.container}, {model.application or 'an unnamed program'}; "
+        f"REXS {model.version}, {model.container}, "
+        f"{printable(model.application or 'an unnamed program')}; "
         f"{len(model.load_cases)} load cases"
     )
     click.echo("\nshafts")
     for line in turning or ["none"]:
-        click.echo(f"  {line}")
+        click.echo(f"  {printable(line)}")
     click.echo("\ncylindrical stages")
     for one in found:
         head = f"  {one.stage.number}  {one.stage.component.called}: "
-        click.echo(head + (one.words if one.why is None else f"no case; {one.why}"))
+        click.echo(printable(head + (one.words if one.why is None else f"no case; {one.why}")))
     if not found:
         click.echo("  none")
     if rest:
         click.echo("\nbeside them")
         for line in rest:
-            click.echo(f"  {line}")
+            click.echo(f"  {printable(line)}")
     for note in notes:
         say("warning", note)
     able = [one.stage.number for one in found if one.why is None]
     if able:
-        click.echo(f"\nnext: thermogear import {file} --stage {able[0]} -o mine.toml")
+        click.echo(f"\nnext: thermogear import {printable(file)} --stage {able[0]} -o mine.toml")
 
 
 @click.command()
@@ -153,7 +155,7 @@ def export(case: str, output: str, overrides: tuple[str, ...], version: str) -> 
     from thermogear.case.rexs.writing import write_rexs
 
     read = delivery.load_gears(case, overrides)
-    click.echo(write_rexs(read, output, version=version))
+    show_path(write_rexs(read, output, version=version))
 
 
 COMMANDS: tuple[click.Command, ...] = (import_, export)

@@ -37,6 +37,9 @@ PATIENCE = 300.0
 GRACE = 10.0
 """Seconds that a cluster may have none but workers that are refused."""
 
+_ENCRYPTED = ("tls", "wss")
+"""Schemes of dask whose connections are encrypted."""
+
 _ASKED, _LATER = 20.0, 30.0
 """Seconds that a worker has to say who it is, and after which it is asked again."""
 
@@ -65,19 +68,20 @@ def compute_chunk(plan: bytes, key: Key, before: Arrays | None) -> dict[str, Any
 
 
 def require_private(scheduler: str) -> None:
-    """InputError where ``scheduler`` is reached over plain tcp on another machine.
+    """InputError where ``scheduler`` is reached in the clear on another machine.
 
     Such a scheduler takes code from whoever reaches its port and runs it as the user that started
-    it; ``tls://`` asks both sides for certificates, a loopback address is the machine's own.
+    it; ``tls://`` and ``wss://`` ask both sides for certificates, a loopback address is the
+    machine's own, and ``inproc:`` without a port this process's.
     """
     scheme, _, place = scheduler.rpartition("://")
     host = place.rpartition(":")[0].strip("[]")
-    if scheme in ("", "tcp") and host and not (host == "localhost" or _loopback(host)):
+    if scheme.lower() not in _ENCRYPTED and host and not (host == "localhost" or _loopback(host)):
         raise InputError(
             "scheduler",
             scheduler,
             allowed="tls://HOST:PORT, or tcp:// on this machine (127.0.0.1)",
-            why="over plain tcp whoever reaches it runs code as its user",
+            why=f"over plain {scheme.lower() or 'tcp'} whoever reaches it runs code as its user",
             fix="use an SSH tunnel or tls://; --insecure on a network that is yours alone",
         )
 
@@ -99,6 +103,16 @@ def cluster(scheduler: str) -> Iterator[Any]:
         raise InputError(
             "scheduler", scheduler, allowed="tcp://HOST:PORT", why="the port is missing"
         )
+    if scheduler.lower().startswith(tuple(f"{scheme}://" for scheme in _ENCRYPTED)):
+        known = distributed.security.Security().get_connection_args("client")
+        if not known.get("ssl_context"):
+            raise InputError(
+                "scheduler",
+                scheduler,
+                why="dask's certificates are not configured",
+                fix="set distributed.comm.tls.ca-file, .client.cert and .client.key in dask's "
+                "configuration, or DASK_DISTRIBUTED__COMM__TLS__CA_FILE and so on",
+            )
     # what a cluster logs when it dies is said in one line of ours
     handlers = logging.getLogger("distributed").handlers
     levels = [handler.level for handler in handlers]

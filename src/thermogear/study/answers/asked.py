@@ -123,9 +123,8 @@ class Asked:
 
     def still(self, point: int) -> str:
         """Why the hot pair does not move at a point; empty where it does."""
-        if self.hot["status"][point] == STATUS.index("jammed"):
-            return "the hot pair is jammed"
-        return self.unsettled(point)
+        jammed = bool(self.hot["status"][point] == STATUS.index("jammed"))
+        return self.unsettled(point) or "the hot pair is jammed" * jammed
 
     @cached_property
     def hardest(self) -> int:

@@ -74,9 +74,7 @@ def speeds(asked: Asked) -> Iterator[Answer]:
         figures |= {"points": int(apart.sum()), "of": apart.size} | (
             {"most": 100.0 * float(share.max())} if name == "contact_loss" else {}
         )
-        if not apart.size:
-            words = f"{sentence[0].lower()}{sentence[1:]}"
-            sentence = f"Not decided at its own speeds, too slow to vibrate; faster, {words}"
+        sentence = sentence if apart.size else _faster(sentence)
         value = 100.0 * float(np.mean(apart)) if apart.size else float("nan")
         yield answer(SPEEDS, name, f"{sentence}.", value, figures=figures, units=OF_SPEEDS)
     words, figures = told(found.several, ends=ends)
@@ -90,7 +88,15 @@ def speeds(asked: Asked) -> Iterator[Answer]:
         sentence += "; two or more at {points} of {of} operating points"
         figures |= {"points": int(several.sum()), "of": several.size}
     value = 2.0 if several.any() else 1.0
+    if not moves.any():
+        sentence, value = _faster(sentence), float("nan")
     yield answer(SPEEDS, "coexisting", f"{sentence}.", value, figures=figures, units=OF_SPEEDS)
+
+
+def _faster(sentence: str) -> str:
+    """What the look over speeds says where no speed of the case itself is one of a motion."""
+    words = f"{sentence[0].lower()}{sentence[1:]}"
+    return f"Not decided at its own speeds, too slow to vibrate; faster, {words}"
 
 
 def _resonance(asked: Asked, found: Speeds, main: float) -> Answer:

@@ -77,7 +77,7 @@ def answer_numbers(family: GearFamily, rows: ArrayLike) -> dict[str, Floats]:
         "scuffing_safety": safety,
         "backlash": 2.0 * found["least_half_backlash"],
         "jam_temperature": jam,
-        "jam_margin": np.where(teeth < borne, np.minimum(jam, borne), jam) - teeth,
+        "jam_margin": np.minimum(jam, borne) - teeth,
         "static_error": np.ptp(found["transmission_error"], axis=1),
     }
 

@@ -143,11 +143,16 @@ def _excess(asked: Asked, point: int) -> tuple[str, dict[str, float]]:
     made, carried = (float(watts[point]) / 1e3 for watts in asked.bath)
     if not made > carried:
         return "", {}
+    cooled = asked.case.gearbox.surroundings.oil_flow > 0.0
+    flow = "more gearbox.oil_flow, a cooler" if cooled else "gearbox.oil_flow"
+    flow += " gearbox.supply_temperature" * cooled
+    takes = "{carried:.3g kW}" if carried > 0.0 else "nothing off"
     words = (
-        "{made:.3g kW} are made and the bath carries {carried:.3g kW} with oil at "
-        "{carried_at:.0f °C}: give oil.temperature, gearbox.oil_flow or gearbox.housing_area"
+        f"{{made:.3g kW}} are made and the bath carries {takes} with oil at "
+        f"{{carried_at:.0f °C}}: give oil.temperature, {flow} or gearbox.housing_area"
     )
-    return words, {"made": made, "carried": carried, "carried_at": WARMEST_USUAL - ZERO_CELSIUS}
+    figures = {"made": made, "carried_at": WARMEST_USUAL - ZERO_CELSIUS}
+    return words, figures | ({"carried": carried} if carried > 0.0 else {})
 
 
 def _tooth_limit(case: GearCase) -> str:
@@ -194,7 +199,7 @@ def gap(asked: Asked) -> Iterator[Answer]:
         )
         jam = float(asked.hot["jam_temperature"][point]) - ZERO_CELSIUS
         hot = float(asked.pinion[point]) - ZERO_CELSIUS
-        most, why = borne_by(asked.case.pair)
+        most, cause = borne_by(asked.case.pair)
         borne = most - ZERO_CELSIUS
         if not np.isfinite(jam):
             free = left > 0.0
@@ -204,17 +209,22 @@ def gap(asked: Asked) -> Iterator[Answer]:
             continue
         beyond = hot < borne < jam
         jams = "does not jam below {borne:.0f °C}" if beyond else "jams at {jam:.0f °C}"
-        why = f" ({why})" * beyond
-        margin = (borne if beyond else jam) - hot
+        why = f" ({cause})" * beyond
+        margin, burnt = min(jam, borne) - hot, hot >= borne
+        off = f", {{off:.0f K}} {'above' if margin > 0.0 else 'below'} what they have"
+        if burnt:
+            hotter = f"; they are hotter than the {{borne:.0f °C}} that they bear ({cause})"
+            off = off + hotter if jam < borne else hotter + ", by {off:.0f K}"
         yield answer(
             GAP,
             "jam_margin",
             f"It {jams} of the pinion's teeth{why}, the wheel's changed alike and the "
-            f"housing as it is, {{off:.0f K}} {'above' if margin > 0.0 else 'below'} what they "
-            "have.",
+            f"housing as it is{off}.",
             margin,
             at=at,
-            figures={"borne" if beyond else "jam": borne if beyond else jam, "off": abs(margin)},
+            figures={"off": abs(margin)}
+            | ({} if beyond else {"jam": jam})
+            | ({"borne": borne} if beyond or burnt else {}),
         )
     yield _worst_moment(asked)
 

@@ -85,7 +85,7 @@ def page(result: Result) -> Page:
     )
     summary = (
         f"{len(rows)} laws at {words.several(len(names), 'operating point')}; the case computes "
-        f"with {data.attrs['chosen']} (marked)."
+        f"with {data.attrs['chosen']}."
     )
     if len(names) > MOST_PICTURES:
         summary += f" The first {MOST_PICTURES} points have a picture of their own."
