@@ -99,13 +99,13 @@ def matches(
                 "partner": partner, "share": abs(way - share), "drawn": bool(twins),
                 "met": end if partner == JOINED else None, "why": why,
             })  # fmt: skip
-    for side in ("one", "other"):
-        counts = Counter(_place(row, side) for row in rows if row["partner"] == MATCHED)
+    for state in ("one", "other"):
+        counts = Counter(_place(row, state) for row in rows if row["partner"] == MATCHED)
         for row in rows:
-            if row["partner"] == MATCHED and counts[_place(row, side)] > 1:
+            if row["partner"] == MATCHED and counts[_place(row, state)] > 1:
                 # a curve that passes close to another can go on along it: neither is believed
                 row |= {"partner": UNKNOWN, "why": "two curves end at one bifurcation"}
-                row[side] = None
+                row[state] = None
     return sorted(rows, key=lambda row: float(row["other" if row["one"] is None else "one"]))
 
 

@@ -162,10 +162,9 @@ def in_words(data: xr.Dataset) -> xr.Dataset:
             known = (places >= 0) & (places < meanings.size - 1)
             words[name] = (variable.dims, meanings[np.where(known, places, -1)])
         elif "missing_value" in variable.attrs:
-            # a Variable: the words of its coordinates are other labels than its own
-            words[name] = variable.variable.where(
-                variable.values != variable.attrs["missing_value"]
-            )
+            # no coordinates: those of the frame are words by now
+            counts, none = variable.values, variable.attrs["missing_value"]
+            words[name] = (variable.dims, np.where(counts == none, np.nan, counts), variable.attrs)
         elif "flag_masks" in variable.attrs and "flags" in variable.attrs:
             words[name] = (variable.dims, _sums(variable))
     return data.assign(words)
