@@ -162,6 +162,8 @@ def test_pages_have_no_empty_table_and_speak_of_a_jam_where_one_is(
     told = page_of(jammed).figures["findings"]["Gear temperature"]
     gaps = sorted(1e6 * row["half_backlash"].values)
     assert numbers(told)[2:4] == pytest.approx(gaps, rel=5e-3)
+    jams = sorted(row["jam_temperature"].values - 273.15)
+    assert numbers(told)[4:6] == pytest.approx([jams[0], jams[-1]], abs=0.51)
 
 
 def test_temperatures_that_a_material_does_not_have_are_left_out() -> None:

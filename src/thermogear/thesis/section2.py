@@ -8,7 +8,6 @@ import numpy as np
 
 from thermogear.base.vocabulary import REGIMES
 from thermogear.gears.contact import hertz_half_width
-from thermogear.heat.film import regime
 from thermogear.heat.friction import benedict_kelley, benedict_kelley_as_printed
 from thermogear.heat.temperature import FLASH_FACTORS, blok_as_printed, blok_flash
 from thermogear.thesis import chain
@@ -134,10 +133,10 @@ def _two_states(e: Evidence) -> Finding:
     here = e.bundle("path", "consistent").isel(operating=0)
     mixed, dry = (here[f"friction_coefficient_{k}"].values for k in ("mixed", "dry"))
     lam = here["film_parameter"].values
-    film = [REGIMES[place] for place in np.unique(regime(lam[np.isfinite(lam)]))]
+    film = " and ".join(sorted({REGIMES[place] for place in here["regime"].values}))
     return Finding(
         f"dry {dry.mean():.3g}; mixed {mixed.min():.3g} to {mixed.max():.3g} along the path",
-        f"film parameter {np.nanmin(lam):.2g} to {np.nanmax(lam):.2g}: {' and '.join(film)}",
+        f"film parameter {np.nanmin(lam):.2g} to {np.nanmax(lam):.2g}: {film}",
         Verdict.ASSUMED if "mixed" in film else Verdict.UNDECIDED,
         "Both states are computed. A film is mixed at a film parameter from 1 to 3; that of this "
         "pair rests on the oil and roughness assumed.",

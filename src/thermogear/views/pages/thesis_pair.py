@@ -228,8 +228,8 @@ def _outlook(result: Result, pictures: Pictures) -> Told:
         )  # fmt: skip
     film = captions.regimes(path) or "The film is not known: the heat does not settle."
     play = result.group("play")
-    stopped = result.interrupted and result.table("train")
-    why = "stopped before it" if stopped else "the case has no [[shafts]] and [[bearings]]"
+    # nothing but a stop leaves the play of a drive train out
+    why = "stopped before it" if result.table("train") else "the case has no [[shafts]]"
     words = f"The play of bearings is not varied: {why}."
     if play is not None:
         words = f"Over the play of all bearings: {lost_words(play)} {finding(play)}"
