@@ -120,6 +120,7 @@ def judged(values: Mapping[str, float], rows: motions.Rows) -> Judged:
     holds = {
         **dict.fromkeys(("4.1.3", "4.1.4", "4.1.5", "4.1.6", "4.1.8"), alternates),
         "4.1.7": alternates and turns[1] > MANY_POINTS,
+        "4.2.3": motions.stability_falls(diagrams["zeta/none"]),
         "4.2.6": len(omega) > 3,
         "4.2.8": "period-2" in epsilon,
         "4.2.10": {"period-1", "period-2", "chaotic"} <= zeta,

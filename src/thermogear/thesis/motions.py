@@ -265,6 +265,18 @@ def sequence(data: xr.Dataset, falling: bool) -> list[str]:
     return list(dict.fromkeys(names))
 
 
+def stability_falls(data: xr.Dataset) -> bool:
+    """Whether a period-1 motion comes nearer to its loss with every step of a falling parameter.
+
+    The modulus [1] of its largest Floquet multiplier rises from the largest value of the diagram
+    down to where period 1 ends, and it ends before the smallest value.
+    """
+    here = data.sel(direction=-1).isel(start=0)
+    lost = np.flatnonzero(here["period"].values != 1)
+    modulus = np.hypot(here["multiplier_real"].values, here["multiplier_imag"].values)
+    return lost.size > 0 and bool(np.all(np.diff(modulus[lost[-1] + 1 :]) < 0.0))
+
+
 def coexisting(data: xr.Dataset) -> int:
     """Values of a diagram at which the way up and the way down end on different orbits."""
     up, down = (data.sel(direction=d).isel(start=0) for d in (1, -1))
