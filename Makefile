@@ -14,7 +14,7 @@ BENCH_STAMP := .bench-venv/.installed
 AUDIT_BIN := .audit-venv/bin
 AUDIT_STAMP := .audit-venv/.installed
 
-.PHONY: audit bench bench-coordinates bench-geared bench-measure bench-paths bench-shafts bench-train-map check chromium clean compile demo friction-evidence house licences lint lock look lowest mutate same sbom test trial-answers trial-app trial-attacks trial-base-sets trial-branches trial-coverage trial-damage trial-defects trial-experiment trial-heat trial-hostile trial-kills trial-labels trial-located trial-long trial-matched trial-pairs trial-public trial-shafts trial-stamps trial-swings trial-teeth trial-trains trial-turning unit
+.PHONY: audit bench bench-coordinates bench-geared bench-measure bench-paths bench-shafts bench-train-map check chromium clean compile demo friction-evidence house licences lint lock look lowest mutate same sbom test trial-answers trial-app trial-attacks trial-base-sets trial-branches trial-coverage trial-damage trial-defects trial-experiment trial-heat trial-hostile trial-kills trial-labels trial-located trial-long trial-matched trial-pairs trial-public trial-shafts trial-stamps trial-swings trial-teeth trial-trains trial-turning trial-verdicts unit
 
 demo: $(STAMP)  ## the main job: the rig's case file to a report
 	$(BIN)/thermogear example rig > .venv/rig.toml
@@ -189,6 +189,9 @@ trial-branches: $(STAMP)  ## random branches and run-ups against finer ones, ten
 
 trial-base-sets: $(STAMP)  ## base sets drawn at random that meet the thesis's table 4.2, half an hour; src/thermogear/thesis/base_sets.csv
 	@$(BIN)/python checks/trial_base_sets.py
+
+trial-verdicts: $(STAMP)  ## five verdicts on the thesis by scipy and by exact pieces, half a minute; docs/trial_verdicts.md
+	@$(BIN)/python checks/verdicts.py
 
 trial-experiment: $(STAMP)  ## the thesis's experiment on 256 sampled drive trains, ten minutes; src/thermogear/thesis/experiment.csv
 	@$(BIN)/python checks/trial_experiment.py

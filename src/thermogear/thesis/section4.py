@@ -421,8 +421,8 @@ IMPOSSIBLE = ("4.1.7", "4.3.9", *base_sets.TORUS)
 """Statements that an argument excludes for settled motion, in whatever base set."""
 NO_SET = "It says nothing of a base set, so it has no share of the sampled ones."
 CHOSEN = (
-    "It holds for all {count} sampled base sets by choice (100 %, no interval): a set is kept where "
-    "all three rows begin at period-1 and end in chaos."
+    "It holds for all {count} sampled base sets by choice (100 %, no interval): a set is kept "
+    "where all three rows begin at period-1 and end in chaos."
 )
 DRAWN = "All nine are drawn for each of the {count} sampled base sets, so it has no interval."
 WITHOUT_INTERVAL = {
