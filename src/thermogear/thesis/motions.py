@@ -226,11 +226,10 @@ def solver_orders(base: Rows, steps: tuple[int, ...] = (64, 128, 256, 512)) -> d
         ("smooth", smooth, (3.0, 0.0)),
         ("rattling", base.model("none"), (1.0, 0.0)),
     ):
-        errors = []
         true = _sections(model, start, "exact", 64)
-        for count in steps:
-            errors.append(np.max(np.abs(_sections(model, start, "rk4", count) - true)))
-        found[name] = np.array(errors)
+        found[name] = np.array(
+            [np.max(np.abs(_sections(model, start, "rk4", count) - true)) for count in steps]
+        )
     return found
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +14,9 @@ from thermogear.dynamics.models import TorsionalModel
 from thermogear.thesis import base_sets, motions
 from thermogear.thesis.claim import Claim, Finding, Verdict, listed, verdict_of
 from thermogear.thesis.evidence import Evidence
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 LABEL, CASCADE = "thermogear.analysis.labels.label", "thermogear.analysis.continuation.cascade"
 DIAGRAM = "thermogear.analysis.diagram.orbit_diagram"
@@ -35,10 +39,15 @@ def _no_torus(*models: TorsionalModel) -> str:
     )
 
 
+def _points(e: Evidence, name: str, row: str) -> xr.Dataset:
+    """The points of one row of a ready-made case."""
+    points = e.groups[f"base_sets/{name}"]
+    return points.isel(point=np.flatnonzero(points["row"].values == row))
+
+
 def _labels(e: Evidence, row: str) -> list[tuple[float, str]]:
     """(value, label in words) of the ready-made row."""
-    points = e.groups["base_sets/table-4.2"]
-    here = points.isel(point=np.flatnonzero(points["row"].values == row))
+    here = _points(e, "table-4.2", row)
     return list(zip(here["value"].values.tolist(), told_labels(here).tolist(), strict=True))
 
 
@@ -93,8 +102,7 @@ def _less_stable(e: Evidence) -> Finding:
 
 
 def _fluctuates(e: Evidence) -> Finding:
-    points = e.groups["base_sets/section-4.1"]
-    here = points.isel(point=np.flatnonzero(points["row"].values == "thesis"))
+    here = _points(e, "section-4.1", "thesis")
     half = here["half_order_amplitude"].values
     swing = here["peak_to_peak_displacement"].values
     return Finding(
@@ -130,11 +138,10 @@ def _spread(e: Evidence) -> Finding:
 
 
 def _half_line(e: Evidence) -> Finding:
-    points = e.groups["base_sets/section-4.1"]
-    lines = {}
-    for row in ("thesis", "consistent"):
-        here = points.isel(point=np.flatnonzero(points["row"].values == row))
-        lines[row] = here["half_order_amplitude"].values
+    lines = {
+        row: _points(e, "section-4.1", row)["half_order_amplitude"].values
+        for row in ("thesis", "consistent")
+    }
     return Finding(
         f"{listed(np.where(lines['thesis'] < 1e-9, 0.0, lines['thesis']))} half backlashes",
         f"at most {lines['consistent'].max():.1e}",
@@ -297,14 +304,12 @@ def _zeta_sequence(e: Evidence, wanted: str) -> Finding:
 
 
 def _same_points(e: Evidence) -> Finding:
-    v = e.flips["value"]
-    shifts = {}
-    for heat in ("thesis", "consistent", "backlash"):
-        rows = []
-        for row in motions.SWEPT:
-            first = float(v.sel(row=row, heat="none")[0])
-            rows.append(100.0 * (float(v.sel(row=row, heat=heat)[0]) / first - 1.0))
-        shifts[heat] = rows
+    first = e.flips["value"].sel(flip=1)
+    cold = first.sel(heat="none").values
+    shifts = {
+        heat: 100.0 * (first.sel(heat=heat).values / cold - 1.0)
+        for heat in ("thesis", "consistent", "backlash")
+    }
     worst = max(abs(x) for x in shifts["backlash"])
     return Finding(
         f"first flip moves by {listed(shifts['thesis'], '+.2f')} % (ζ, ω_h, ε)",
