@@ -82,17 +82,12 @@ def _mainly(e: Evidence) -> Finding:
 
 
 def _control(e: Evidence) -> Finding:
-    ranges = {
-        "ζ": ("zeta", 4), "ω_h": ("omega", 4), "ε": ("epsilon", 4),
-    }  # fmt: skip
-    words = []
-    for symbol, (row, _) in ranges.items():
-        values = e.flips["value"].sel(row=row, heat="none").values
-        words.append(f"{symbol}: {int(np.isfinite(values).sum())} flips")
+    located = np.isfinite(e.flips["value"].sel(heat="none").values)
+    counts = zip(section4.SYMBOLS.values(), located.sum(axis=-1), strict=True)
     return Finding(
-        "; ".join(words),
+        "; ".join(f"{symbol}: {count} flips" for symbol, count in counts),
         "located on continued branches",
-        verdict_of(bool(np.isfinite(e.flips["value"].sel(heat="none")).all()), assumption=True),
+        verdict_of(bool(located.all()), assumption=True),
         section4.SET,
     )
 

@@ -140,11 +140,11 @@ def _at(one: xr.Dataset) -> str:
 
 
 def _gap(points: list[xr.Dataset]) -> str:
-    """The half backlash of jammed points, and where it is used up: each has its own housing."""
-    gaps = span([1e6 * float(one["half_backlash"]) for one in points])
+    """What is left at the tightest phase where it jams, and where: each has its own housing."""
+    gaps = span([1e6 * float(one["least_half_backlash"]) for one in points])
     jams = span([round(float(one["jam_temperature"]) - ZERO_CELSIUS, 0) for one in points])
     used = f", used up at {jams} °C with the housing of each" * (jams != "–")
-    return f", half backlash {gaps} µm{used}"
+    return f", least half backlash {gaps} µm{used}"
 
 
 def _diagram(name: str, result: Result, pictures: Pictures) -> Told:
@@ -162,9 +162,11 @@ def _diagram(name: str, result: Result, pictures: Pictures) -> Told:
     told = [f"{state} {words}" for state, words in zip(states, motions, strict=True)]
     told = told if len(set(motions)) > 1 else [f"{' and '.join(states)} alike {motions[0]}"]
     counts = [f"{one.sizes.get('bifurcation', 0)} {s}" for s, one in zip(states, here, strict=True)]
-    matched = sum(row["partner"] == "matched" for row in rows)
+    matched = [row for row in rows if row["partner"] == "matched"]
+    hidden = sum(not row["drawn"] for row in matched)
     told.append(
-        f"bifurcations: {', '.join(counts)}, {matched} followed from one state to the other"
+        f"bifurcations: {', '.join(counts)}, {len(matched)} followed from one state to the other"
+        f"{f', {hidden} of them to a branch that is not drawn' * (hidden > 0)}"
         if rows
         else "no bifurcation was found"
     )
