@@ -117,8 +117,15 @@ class Speeds:
     def several(self) -> list[tuple[float, float]]:
         """Ranges [rad/s] in which two motions or more exist: a run-up may jump there."""
         speed = self.column("pinion_speed")
-        _, place, count = np.unique(speed, return_inverse=True, return_counts=True)
+        _, place = np.unique(speed, return_inverse=True)
+        count = np.bincount(place, np.isfinite(self.column("dynamic_factor")))
         return self.ranges(count[place] > 1)
+
+    @property
+    def unsettled(self) -> int:
+        """At how many speeds no motion settles: nothing is said of them."""
+        known = np.isfinite(self.column("dynamic_factor"))
+        return self.grid.size - np.unique(self.column("pinion_speed")[known]).size
 
     def peaks(self) -> list[tuple[float, float]]:
         """(speed [rad/s], dynamic factor) of the resonances, the greatest first."""
@@ -155,7 +162,7 @@ def look(mesh: Excitations, *, teeth: int, own: Floats) -> Speeds:
     lanes = points_of(replace(along, mesh_frequency=natural * ratio))
     motions = motions_along(lanes.flat, starts_of(lanes))
     found = respond(lanes.take(motions.lane), motions.state, RECORD, lines=False)
-    columns = {name: found[name] for name in VALUES}
+    columns = {name: motions.settled(found[name]) for name in VALUES}
     columns |= {"period": motions.period, "label_code": motions.label, "state": motions.state}
     columns["pinion_speed"] = lanes.mesh_frequency[motions.lane] / teeth
     return Speeds(columns, float(ratio[1] / ratio[0] - 1.0), np.unique(own))

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.analysis.side_by_side import motions_along
+from thermogear.analysis.side_by_side import RULE, motions_along
 from thermogear.base.display import worded
 from thermogear.base.limits import LIMITS, NO_LIMIT
 from thermogear.base.progress import Progress
@@ -213,16 +213,29 @@ class Asked:
         self.progress("speeds", 1, 1)
         return found
 
+    def slow(self, point: int) -> bool:
+        """Whether the pair turns so slowly that no motion is followed."""
+        natural = np.sqrt(self.hot["mean_stiffness"][point] / self.case.equivalent_mass)
+        mesh = self.case.pair.pinion.teeth * self.case.stated.speed[point]
+        return bool(mesh < SLOWEST * natural)
+
+    def motionless(self, point: int) -> str:
+        """Why a moving pair has no steady motion at a point."""
+        if not self.case.stated.torque[point] > 0.0:
+            return "there is no load"
+        slow = "it turns too slowly to vibrate"
+        return slow if self.slow(point) else f"no motion settles within {RULE.cap} mesh periods"
+
     @cached_property
     def motion(self) -> dict[str, Floats]:
         """Figures (point, motion) of the motions at the operating points answered, else nan.
 
         From rest first, then from the other starts of the look over speeds and from the motions
-        that it found within a step of the point's own. Nan too where the pair turns so slowly that
-        no motion is followed: the load is static.
+        that it found within a step of the point's own. Nan too where a motion does not settle, and
+        where the pair turns so slowly that none is followed: the load is static.
         """
         points = points_of(excitations(self.case, self._part(self.points)))
-        slow = points.mesh_frequency < SLOWEST * points.rate
+        slow = np.array([self.slow(point) for point in self.points])
         stated = np.array([not self.unsettled(point) for point in self.points])
         moving = np.flatnonzero((points.status == 0) & ~slow & stated)
         if not moving.size:
@@ -239,7 +252,7 @@ class Asked:
         every = {}
         for name, values in figures.items():
             every[name] = np.full((self.count, place.max() + 1), np.nan)
-            every[name][np.array(self.points)[moving[lane]], place] = values
+            every[name][np.array(self.points)[moving[lane]], place] = motions.settled(values)
         return every
 
 
@@ -273,7 +286,7 @@ def answer(
         sentence=words,
         value=float(value) if np.isfinite(value) else None,
         unit=bound.unit,
-        limit=bound.words,
+        limit=bound.beside(value),
         source=bound.source,
         verdict=verdict or bound.verdict(value),
         operating=at,

@@ -110,16 +110,19 @@ def heat(asked: Asked) -> Iterator[Answer]:
             yield undecided(HEAT, "tooth_temperature", why, limit=of_teeth, at=at)
             continue
         hottest = float(teeth[point]) - ZERO_CELSIUS
-        flash = float(np.fmax.reduce(asked.hot["flash_temperature"][point]))
         how, figures = _how(asked, point, 1)
+        flash = "the pair is jammed"
+        if not asked.still(point):
+            figures = {**figures, "flash": float(np.fmax.reduce(asked.hot["flash_temperature"][point]))}
+            flash = "the flash adds up to {flash:.0f K}"
         yield answer(
             HEAT,
             "tooth_temperature",
-            f"The teeth are at {hottest:.0f} °C ({how}), the flash adds up to {{flash:.0f K}}.",
+            f"The teeth are at {hottest:.0f} °C ({how}), {flash}.",
             hottest,
             limit=of_teeth,
             at=at,
-            figures={**figures, "flash": flash},
+            figures=figures,
         )
 
 
@@ -203,9 +206,14 @@ def gap(asked: Asked) -> Iterator[Answer]:
         borne = most - ZERO_CELSIUS
         if not np.isfinite(jam):
             free = left > 0.0
-            sentence = f"No heat of the gears alone {'jams' if free else 'frees'} the pair."
-            verdict = FINE if free else LOOK
-            yield answer(GAP, "jam_margin", sentence, float("nan"), at=at, verdict=verdict)
+            sentence = f"No heat of the gears alone {'jams' if free else 'frees'} the pair"
+            figures, verdict = {}, FINE if free and hot < borne else LOOK
+            if hot >= borne:
+                sentence += f"; its teeth are hotter than the {{borne:.0f °C}} they bear ({cause})"
+                figures["borne"] = borne
+            yield answer(
+                GAP, "jam_margin", f"{sentence}.", np.nan, at=at, verdict=verdict, figures=figures
+            )
             continue
         beyond = hot < borne < jam
         jams = "does not jam below {borne:.0f °C}" if beyond else "jams at {jam:.0f °C}"
@@ -250,10 +258,40 @@ def _worst_moment(asked: Asked) -> Answer:
     words = f"Warming up from {{start:.0f °C}}{how} it is"
     end = float(course.time[-1]) / 60.0
     steady_known = course.course.settled or asked.case.computed
+    if (lost := course.bath_lost).any():
+        bath = asked.case.stated.lubricant.hottest_bath - ZERO_CELSIUS
+        least = 2e6 * float(course.half_backlash[~lost].min(initial=np.inf))
+        figures = {"start": start, "bath": bath}
+        sentence = f"{words} not decided: the oil is above {{bath:.0f °C}}, where no bath exists"
+        if np.isfinite(least):
+            sentence = (
+                f"{words} at least {{least:.0f µm}} until the oil reaches {{bath:.0f °C}} after "
+                "{end:.3g min}: no oil bath exists above it"
+            )
+            figures |= {"least": least, "end": float(course.time[lost][0]) / 60.0}
+        return answer(
+            GAP, "warm_up_backlash", f"{sentence}.", np.nan if least > 0.0 else least,
+            limit="backlash", at=at, verdict=OPEN if least > 0.0 else LOOK, figures=figures,
+        )  # fmt: skip
     if course.course.too_hot or asked.unsettled(asked.hardest) or not steady_known:
         unknown = (
             "no steady state is known"
-            if course.course.too_hot or asked.unsettled(asked.hardest)
+            if (lost := course.bath_lost).any():
+        bath = asked.case.stated.lubricant.hottest_bath - ZERO_CELSIUS
+        least = 2e6 * float(course.half_backlash[~lost].min(initial=np.inf))
+        figures = {"start": start, "bath": bath}
+        sentence = f"{words} not decided: the oil is above {{bath:.0f °C}}, where no bath exists"
+        if np.isfinite(least):
+            sentence = (
+                f"{words} at least {{least:.0f µm}} until the oil reaches {{bath:.0f °C}} after "
+                "{end:.3g min}: no oil bath exists above it"
+            )
+            figures |= {"least": least, "end": float(course.time[lost][0]) / 60.0}
+        return answer(
+            GAP, "warm_up_backlash", f"{sentence}.", np.nan if least > 0.0 else least,
+            limit="backlash", at=at, verdict=OPEN if least > 0.0 else LOOK, figures=figures,
+        )  # fmt: skip
+    if course.course.too_hot or asked.unsettled(asked.hardest)
             else "it is not steady by then"
         )
         burnt = "until a node reaches {hottest:.0f °C} after"
@@ -290,9 +328,9 @@ def film(asked: Asked) -> Iterator[Answer]:
         at = asked.at(point)
         film = asked.hot["film_parameter"][point]
         least = float(np.nanmin(film)) if np.isfinite(film).any() else float("nan")
-        unsettled = asked.unsettled(point)
-        if unsettled:
-            yield undecided(FILM, "film", unsettled, at=at)
+        unsettled, still = asked.unsettled(point), asked.still(point)
+        if still:
+            yield undecided(FILM, "film", still, at=at)
         elif not np.isfinite(least):
             yield undecided(FILM, "film", "no film could be computed", at=at)
         else:
@@ -303,6 +341,7 @@ def film(asked: Asked) -> Iterator[Answer]:
         torque, speed = (float(asked.hot[f"pinion_{n}"][point]) for n in ("torque", "speed"))
         known = not unsettled or ("oil" in case.gearbox.measured and not asked.no_bath(point))
         why = unrated(case, torque, float(oil[point])) if known else unsettled
+        why = why if unsettled else still or why
         if why:
             for name in ("scuffing_margin", "scuffing_safety"):
                 yield undecided(FILM, name, why, at=at)
