@@ -190,8 +190,9 @@ def test_what_is_not_steady_is_not_stated() -> None:
         if name not in MESH:
             assert one.verdict != FINE, one
             assert steady_words not in one.sentence
-    ends, jammed = "; no steady state is known.", "Not decided: the hot pair is jammed."
+    ends, jammed = "; no bath exists beyond.", "Not decided: the hot pair is jammed."
     assert course.sentence.endswith(ends)
+    assert course.figures["hottest"] == NO_BATH - ZERO_CELSIUS
     assert found["relief"].sentence == found["resonance"].sentence == unknown
     assert verdicts("jammed")["resonance"].sentence == jammed
     for name in ("contact_loss", "back_contact", "coexisting"):

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.analysis.settle import PERIODIC, UNDECIDED, Rule, Settled, settle
+from thermogear.analysis.settle import PERIODIC, Rule, Settled, settle
 from thermogear.dynamics.tables import Lanes
 
 Floats = NDArray[np.float64]
@@ -32,10 +32,6 @@ class Motions:
     state: Floats
     label: NDArray[np.int8]
     period: NDArray[np.int32]
-
-    def settled(self, values: ArrayLike) -> Floats:
-        """``values`` (motion,) of the motions that settled, nan for those that are undecided."""
-        return np.where(self.label == UNDECIDED, np.nan, values)
 
     def count(self, lanes: int) -> Whole:
         """How many motions each of ``lanes`` lanes has."""

@@ -44,7 +44,7 @@ class Limit:
         return self.beside(math.nan)
 
     def beside(self, value: float) -> str:
-        """:attr:`words`, with the ``value`` where it comes within 2 % of the bound, 0.05 of one of 0.
+        """:attr:`words`, with the ``value`` where it is within 2 % of the bound, 0.05 of a bound 0.
 
         As many digits of both as tell them apart: a sentence may round the difference away.
         """

@@ -67,12 +67,13 @@ def mesh_cycle(
     stays, once when shafts and housing rise in proportion; nan where that never jams), and
     ``status``: ``ok``; ``jammed`` where the least half backlash over the phase is <= 0 (the values
     stay: they say how far it is jammed); ``no_oil_bath`` where the oil is hotter than any bath of
-    it; ``not_converged`` where the loaded contact did not settle. ``friction_coefficient_least`` and ``_greatest`` span the laws of oiled contacts that
-    are within their range there, ``friction_outside_range`` is 1 where the chosen one is not, and
+    it; ``not_converged`` where the loaded contact did not settle.
+    ``friction_coefficient_least`` and ``_greatest`` span the laws of oiled contacts that are
+    within their range there, ``friction_outside_range`` is 1 where the chosen one is not, and
     ``film_outside_range`` where the film forms beyond the range of the oil's viscosity line.
-    ``edge_contact`` names the tip corner that carries along the path, where the pressure
-    is nan; ``edge_contact_share`` is the share of the mesh period with such a corner, beyond A
-    and E too, nan where the stiffness model knows none.
+    ``edge_contact`` names the tip corner that carries along the path, where the pressure is
+    nan; ``edge_contact_share`` is the share of the mesh period with such a corner, beyond A and
+    E too, nan where the stiffness model knows none.
 
     ``want``: names of stored quantities; only they are computed, with ``status``, which then says
     ``not_converged`` where one of them is not known. Left out, all are.

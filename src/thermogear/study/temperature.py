@@ -67,8 +67,8 @@ def thermal_map(
     alone: :func:`~thermogear.study.warm_up.warm_up_survey` has the way there.
 
     Groups: ``map`` over (pinion_speed, pinion_torque), ``status`` per point (ok, jammed,
-    no_oil_bath; not_converged, heat_not_settled: every number is nan) with ``iterations`` and ``residual``, and
-    ``several`` where from hot another state is steady than the one told, from cold;
+    no_oil_bath; not_converged, heat_not_settled: every number is nan) with ``iterations`` and
+    ``residual``, and ``several`` where from hot another state is steady than the one told;
     ``conclusion`` (friction, flash and growth, mixed and dry, with rank correlations).
     For the thesis's rig ``verdicts`` (attribute) say what holds of the
     thesis's first conclusion.

@@ -20,6 +20,7 @@ from thermogear.mesh.scuffing_rating import Scuffing, flash_rating, integral_rat
 from thermogear.results.answer import Answer
 from thermogear.study.answers.asked import (
     MOST_WETTED,
+    NO_BATH,
     WARMEST_USUAL,
     Asked,
     answer,
@@ -113,7 +114,8 @@ def heat(asked: Asked) -> Iterator[Answer]:
         how, figures = _how(asked, point, 1)
         flash = "the pair is jammed"
         if not asked.still(point):
-            figures = {**figures, "flash": float(np.fmax.reduce(asked.hot["flash_temperature"][point]))}
+            added = float(np.fmax.reduce(asked.hot["flash_temperature"][point]))
+            figures = {**figures, "flash": added}
             flash = "the flash adds up to {flash:.0f K}"
         yield answer(
             HEAT,
@@ -249,60 +251,35 @@ def _worst_moment(asked: Asked) -> Answer:
         course = asked.warming
     except ThermogearError as error:
         return undecided(GAP, "warm_up_backlash", str(error), limit="backlash")
-    worst, at = course.worst, asked.at(asked.hardest)
+    worst, at, hot = course.worst, asked.at(asked.hardest), course.bath_lost
+    if hot[0]:
+        return undecided(GAP, "warm_up_backlash", NO_BATH, limit="backlash", at=at)
     least, steady = 2e6 * worst.half_backlash, 2e6 * float(course.half_backlash[-1])
     start = float(course.temperatures["pinion_body"][0]) - ZERO_CELSIUS
     held = " and ".join(name.replace("_", " ") for name in course.held)
     how = f" with {held} held" if held else ""
     how += "" if asked.case.computed else " by the heat balance"
     words = f"Warming up from {{start:.0f °C}}{how} it is"
-    end = float(course.time[-1]) / 60.0
-    steady_known = course.course.settled or asked.case.computed
-    if (lost := course.bath_lost).any():
-        bath = asked.case.stated.lubricant.hottest_bath - ZERO_CELSIUS
-        least = 2e6 * float(course.half_backlash[~lost].min(initial=np.inf))
-        figures = {"start": start, "bath": bath}
-        sentence = f"{words} not decided: the oil is above {{bath:.0f °C}}, where no bath exists"
-        if np.isfinite(least):
-            sentence = (
-                f"{words} at least {{least:.0f µm}} until the oil reaches {{bath:.0f °C}} after "
-                "{end:.3g min}: no oil bath exists above it"
-            )
-            figures |= {"least": least, "end": float(course.time[lost][0]) / 60.0}
-        return answer(
-            GAP, "warm_up_backlash", f"{sentence}.", np.nan if least > 0.0 else least,
-            limit="backlash", at=at, verdict=OPEN if least > 0.0 else LOOK, figures=figures,
-        )  # fmt: skip
-    if course.course.too_hot or asked.unsettled(asked.hardest) or not steady_known:
-        unknown = (
-            "no steady state is known"
-            if (lost := course.bath_lost).any():
-        bath = asked.case.stated.lubricant.hottest_bath - ZERO_CELSIUS
-        least = 2e6 * float(course.half_backlash[~lost].min(initial=np.inf))
-        figures = {"start": start, "bath": bath}
-        sentence = f"{words} not decided: the oil is above {{bath:.0f °C}}, where no bath exists"
-        if np.isfinite(least):
-            sentence = (
-                f"{words} at least {{least:.0f µm}} until the oil reaches {{bath:.0f °C}} after "
-                "{end:.3g min}: no oil bath exists above it"
-            )
-            figures |= {"least": least, "end": float(course.time[lost][0]) / 60.0}
-        return answer(
-            GAP, "warm_up_backlash", f"{sentence}.", np.nan if least > 0.0 else least,
-            limit="backlash", at=at, verdict=OPEN if least > 0.0 else LOOK, figures=figures,
-        )  # fmt: skip
-    if course.course.too_hot or asked.unsettled(asked.hardest)
-            else "it is not steady by then"
-        )
-        burnt = "until a node reaches {hottest:.0f °C} after"
+    burnt, open_at = course.course.too_hot, asked.unsettled(asked.hardest)
+    if burnt or open_at or hot.any() or not (course.course.settled or asked.case.computed):
+        until, unknown = "within", "it is not steady by then"
+        figures = {"start": start, "end": float(course.time[-1]) / 60.0}
+        if burnt or open_at:
+            unknown = "no steady state is known"
+        if hot.any():
+            least = 2e6 * float(course.half_backlash[~hot].min())
+            figures["end"] = float(course.time[hot][0]) / 60.0
+            figures["hottest"] = asked.case.stated.lubricant.hottest_bath - ZERO_CELSIUS
+            until, unknown = "until the oil reaches {hottest:.0f °C} after", "no bath exists beyond"
+        elif burnt:
+            figures["hottest"] = HOTTEST - ZERO_CELSIUS
+            until = "until a node reaches {hottest:.0f °C} after"
         return answer(
             GAP, "warm_up_backlash",
-            f"{words} at least {{least:.0f µm}} {burnt if course.course.too_hot else 'within'} "
-            f"{{end:.3g min}}; {unknown}.",
+            f"{words} at least {{least:.0f µm}} {until} {{end:.3g min}}; {unknown}.",
             np.nan if least > 0.0 else least,
             limit="backlash", at=at, verdict=OPEN if least > 0.0 else LOOK,
-            figures={"least": least, "start": start, "end": end}
-            | ({"hottest": HOTTEST - ZERO_CELSIUS} if course.course.too_hot else {}),
+            figures={"least": least, **figures},
         )  # fmt: skip
     sentence = f"{words} never less than when steady, {least:.0f} µm."
     if least < steady - 0.005 * abs(steady) - 0.05:
