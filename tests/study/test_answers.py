@@ -19,7 +19,9 @@ from scripts import script
 
 from said import numbers
 from thermogear.base.limits import FINE, LIMITS, LOOK, OPEN, Limit
+from thermogear.base.materials import NO_BATH
 from thermogear.base.progress import silent
+from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import STATUS
 from thermogear.case.case import GearCase, load_case
 from thermogear.case.thermal_state import HOT, UNDEFORMED

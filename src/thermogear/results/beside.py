@@ -9,7 +9,7 @@ import numpy as np
 
 from thermogear.base.materials import NO_BATH
 from thermogear.base.units import ZERO_CELSIUS
-from thermogear.base.vocabulary import NO_OIL_BATH
+from thermogear.base.vocabulary import NO_OIL_BATH, moves
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -41,6 +41,6 @@ def from_data(data: xr.Dataset) -> list[str]:
     ] * (hot > 0)
     if "back_share" not in data:
         return found
-    # a jammed point has no gap to spare, and one without an oil bath proves nothing
-    never = np.all((status == 0) & (data["back_share"].values == 0.0))
+    # a jammed point has no gap to spare; points without an oil bath alone prove nothing
+    never = np.any(status == 0) and np.all(moves(status) & (data["back_share"].values == 0.0))
     return found + [NO_BACK_IMPACT] * bool(never)

@@ -152,7 +152,10 @@ def _diagram(name: str, result: Result, pictures: Pictures) -> Told:
     data = result.group(f"diagrams/{name}")
     if data is None:
         cold = result.groups["motion"].isel(bundle=0, operating=0, state=0)
-        why = "stopped before it" if result.interrupted else f"undeformed it is {label_of(cold)}"
+        why = f"undeformed it is {label_of(cold)}"
+        if moves(cold["status"]):
+            why = "its stiffness does not fluctuate"
+        why = "stopped before it" if result.interrupted else why
         return f"Not computed: {why}.", []
     states = json.loads(str(data.attrs["state_names"]))
     rows = result.table("matches")[name]
