@@ -140,7 +140,7 @@ def _entry(entries: list[Any], keys: list[str], depth: int) -> int:
     if key in names:
         return names.index(key)
     allowed = f"0..{count - 1}, or all" if count else "none: the list is empty"
-    allowed += f", or a name: {', '.join(map(str, names))}" * all(names)
+    allowed += f", or a name: {', '.join(map(str, names))}" * bool(names and all(names))
     raise InputError(".".join(keys), f"entry {key} of {'.'.join(keys[:depth])}", allowed=allowed)
 
 

@@ -122,13 +122,13 @@ class Speeds:
         """Ranges [rad/s] in which two motions or more exist: a run-up may jump there."""
         speed = self.column("pinion_speed")
         _, place = np.unique(speed, return_inverse=True)
-        count = np.bincount(place, np.isfinite(self.column("dynamic_factor")))
+        count = np.bincount(place, np.isfinite(self.column("contact_loss_share")))
         return self.ranges(count[place] > 1)
 
     @property
     def unsettled(self) -> int:
         """At how many speeds no motion settles: nothing is said of them."""
-        known = np.isfinite(self.column("dynamic_factor"))
+        known = np.isfinite(self.column("contact_loss_share"))
         return self.grid.size - np.unique(self.column("pinion_speed")[known]).size
 
     def peaks(self) -> list[tuple[float, float]]:
