@@ -203,12 +203,13 @@ class GearCase(Case):
                 if error.field != "prandtl":
                     raise
                 least = fluid_from(at.lubricant) - ZERO_CELSIUS
-                held = self.gearbox.measured.get("oil")
+                oil, got = "oil", f"a Prandtl number of {error.got}"
+                if "oil" in self.gearbox.measured:
+                    kelvin = np.ravel(self.gearbox.measured["oil"]).min()
+                    oil, got = "oil.temperature", f"{kelvin - ZERO_CELSIUS:.5g} °C"
                 raise InputError(
-                    "oil" if held is None else "oil.temperature",
-                    f"a Prandtl number of {error.got}"
-                    if held is None
-                    else f"{float(np.ravel(held)[0]) - ZERO_CELSIUS:.5g} °C",
+                    oil,
+                    got,
                     allowed=f"this oil from {least:.1f} °C on",
                     why="so cold the oil is too stiff for the laws of convection",
                     fix="take a warmer, or a thinner, oil",

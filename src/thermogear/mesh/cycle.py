@@ -240,8 +240,7 @@ class _Cycle:
 
     def status(self, names: Collection[str]) -> NDArray[np.int64]:
         """Where the gap is used up, and where what is asked for is not known."""
-        at = self.hot.operating
-        bath = np.where(at.oil_temperature > at.lubricant.hottest_bath, NO_OIL_BATH, 0)
+        bath = np.where(self.hot.operating.no_bath, NO_OIL_BATH, STATUS.index("ok"))
         found = np.where(self.least > 0.0, bath, STATUS.index("jammed"))
         known = np.isfinite(self.stiffness).all(axis=1)
         for name, mean in (("rim_stiffness", "rim"), ("bore_clamped_stiffness", "clamped")):

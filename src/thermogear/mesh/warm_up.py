@@ -141,12 +141,6 @@ class WarmUp:
     jams: Floats
     held: Mapping[str, float]
 
-    @property
-    def bath_lost(self) -> NDArray[np.bool_]:
-        """Where the oil is hotter than any bath of it, (time,)."""
-        at = self.operating
-        return np.asarray(at.oil_temperature > at.lubricant.hottest_bath)
-
 
 def warm_up(
     pair: GearPair,

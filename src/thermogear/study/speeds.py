@@ -166,7 +166,7 @@ def look(mesh: Excitations, *, teeth: int, own: Floats) -> Speeds:
     lanes = points_of(replace(along, mesh_frequency=natural * ratio))
     motions = motions_along(lanes.flat, starts_of(lanes))
     found = figures_of(lanes, motions)
-    columns = {name: found[name] for name in VALUES}
+    columns: dict[str, ArrayLike] = {name: found[name] for name in VALUES}
     columns |= {"period": motions.period, "label_code": motions.label, "state": motions.state}
     columns["pinion_speed"] = lanes.mesh_frequency[motions.lane] / teeth
     return Speeds(columns, float(ratio[1] / ratio[0] - 1.0), np.unique(own))

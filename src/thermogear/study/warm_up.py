@@ -412,10 +412,10 @@ def _notices(
         )
     low, high = case.stated.lubricant.temperature_range
     oil = np.asarray(course.operating.oil_temperature)
-    if course.bath_lost.any():
+    if (hot := course.operating.no_bath).any():
         yield Notice(
             "important",
-            f"From {course.time[course.bath_lost][0] / 60.0:.2f} min on no oil bath exists: the "
+            f"From {course.time[hot][0] / 60.0:.2f} min on no oil bath exists: the "
             f"oil is above {case.stated.lubricant.hottest_bath - ZERO_CELSIUS:.0f} °C. What is "
             "told of later moments holds only if a bath could be kept.",
         )

@@ -207,14 +207,17 @@ def gap(asked: Asked) -> Iterator[Answer]:
         most, cause = borne_by(asked.case.pair)
         borne = most - ZERO_CELSIUS
         if not np.isfinite(jam):
-            free = left > 0.0
-            sentence = f"No heat of the gears alone {'jams' if free else 'frees'} the pair"
-            figures, verdict = {}, FINE if free and hot < borne else LOOK
-            if hot >= borne:
-                sentence += f"; its teeth are hotter than the {{borne:.0f °C}} they bear ({cause})"
-                figures["borne"] = borne
+            free, burnt = left > 0.0, hot >= borne
+            hotter = f"; its teeth are hotter than the {{borne:.0f °C}} they bear ({cause})"
             yield answer(
-                GAP, "jam_margin", f"{sentence}.", np.nan, at=at, verdict=verdict, figures=figures
+                GAP,
+                "jam_margin",
+                f"No heat of the gears alone {'jams' if free else 'frees'} the pair"
+                f"{hotter * burnt}.",
+                np.nan,
+                at=at,
+                verdict=FINE if free and not burnt else LOOK,
+                figures={"borne": borne} if burnt else {},
             )
             continue
         beyond = hot < borne < jam
@@ -251,7 +254,7 @@ def _worst_moment(asked: Asked) -> Answer:
         course = asked.warming
     except ThermogearError as error:
         return undecided(GAP, "warm_up_backlash", str(error), limit="backlash")
-    worst, at, hot = course.worst, asked.at(asked.hardest), course.bath_lost
+    worst, at, hot = course.worst, asked.at(asked.hardest), course.operating.no_bath
     if hot[0]:
         return undecided(GAP, "warm_up_backlash", NO_BATH, limit="backlash", at=at)
     least, steady = 2e6 * worst.half_backlash, 2e6 * float(course.half_backlash[-1])
