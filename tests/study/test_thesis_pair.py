@@ -15,7 +15,7 @@ from in_words import in_words
 from own_pair import OWN_PAIR
 from said import numbers
 from thermogear.base.errors import InputError
-from thermogear.base.parameters import FLUCTUATION
+from thermogear.case.allowed import FLUCTUATION
 from thermogear.case.case import GearCase, gear_case, load_case
 from thermogear.case.family import family
 from thermogear.case.points import largest_fluctuation
