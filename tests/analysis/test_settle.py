@@ -310,6 +310,7 @@ def test_points_without_motion_keep_their_start_and_their_status():
     found.label[0], found.label[2] = UNDECIDED, DIVERGED
     stored = outcome_arrays(found, status)
     assert [STATUS[n] for n in stored["status"]] == ["not_converged", "jammed", "diverged"]
+    assert np.isnan(stored["used_periods"]).tolist() == [False, True, False]
     assert np.array_equal(stored["drive_share"], found.shares[:, 2], equal_nan=True)
     assert np.array_equal(stored["point_v"], found.point[:, 1], equal_nan=True)
 

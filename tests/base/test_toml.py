@@ -97,6 +97,22 @@ def test_what_the_file_does_not_hold_is_refused(path: str, words: str) -> None:
     assert data == {"a": {"bcd": 1, "b": 2}, "e": 3}
 
 
+def test_an_entry_is_named_by_its_number_or_its_name() -> None:
+    data = {"bearings": [{"name": "pinion left"}, {"name": "wheel left", "play": "9 um"}]}
+    named = overridden(data, (("bearings.wheel left.play", "12 um"),))
+    assert named == overridden(data, (("bearings.1.play", "12 um"),)) != data
+    for path, words in (
+        ("bearings.rear.play", "0..1, or all, or a name: pinion left, wheel left"),
+        ("sensors.all.play", "got no list; the file holds no sensors"),
+        ("sensors.0.play", "got no list; the file holds no sensors"),
+        ("a.b!", "got no path; allowed dotted names: gears.pinion.teeth"),
+    ):
+        with pytest.raises(InputError) as error:
+            overridden(data, ((path, "3"),))
+        assert error.value.field.strip("'") == path
+        assert str(error.value).endswith(words)
+
+
 def test_what_only_an_override_put_in_is_not_in_the_file() -> None:
     with pytest.raises(InputError, match="nothing to leave out"):
         overridden({"a": {}}, (("a.b", "1"), ("a.b", "")))

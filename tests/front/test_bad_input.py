@@ -331,7 +331,7 @@ BAD_VALUES: list[tuple[str, str]] = [
         'write "title" = { value = ..., reason = "..." }',
     ),
     ("gears.module", "--set: got 'gears.module'; allowed PATH=VALUE; write gears.pinion.teeth=30"),
-    ("a b=3", "--set: got 'a b'; allowed a dotted path: gears.pinion.teeth"),
+    ("a b=3", "'a b': got no path; allowed dotted names: gears.pinion.teeth"),
 ]
 
 

@@ -208,6 +208,11 @@ def test_wrong_words_are_one_line(cases, tmp_path, name, words, message):
 
 def test_numbers_beside_a_gear_case_are_refused(cases, tmp_path):
     words = [cases / "rig.toml", "--over", "rpm=4200:4400:2", "-o", tmp_path / "x"]
-    for option in ("--but", "--against"):
-        with pytest.raises(InputError, match="damping_ratio: got a number beside a gear case"):
-            call("bifurcation", *words, option, "zeta=0.1")
+    with pytest.raises(InputError, match="damping_ratio: got a number beside a gear case"):
+        call("bifurcation", *words, "--but", "zeta=0.1")
+    for name, fix in (("zeta", "known: state"), ("stat", "did you mean 'state'?")):
+        with pytest.raises(InputError) as caught:
+            call("bifurcation", *words, "--against", f"{name}=0.1")
+        assert str(caught.value) == (
+            f"--against: got '{name}'; allowed state=VALUE of a gear case; {fix}"
+        )

@@ -11,7 +11,7 @@ import xarray as xr
 from conftest import Compared
 from thermogear import Gear, GearPair, InputError, MeshModel, Operating, Temperatures, mesh_cycle
 from thermogear.base.errors import ValidityWarning
-from thermogear.base.materials import ZERO_CELSIUS
+from thermogear.base.materials import ZERO_CELSIUS, lubricant
 from thermogear.base.vocabulary import FLAGS, QUANTITIES, STATUS
 from thermogear.gears.deviations import FlankTable, PitchError
 from thermogear.mesh.elastic import LoadedPair, MeshCurves
@@ -439,3 +439,20 @@ def test_a_cycle_says_where_a_corner_carries_along_the_path(
     assert float(cycle["edge_contact_share"].min()) > 0.03
     # a model of uncoupled springs knows no corner
     assert np.isnan(mesh_cycle(rig, hot_rig, MeshModel.thesis())["edge_contact_share"]).all()
+
+
+def test_the_cycle_itself_says_where_no_oil_bath_exists() -> None:
+    """One rule for runs, surveys and sweeps: hotter than its flash point no bath of oil is kept."""
+    oil = replace(lubricant("FVA3"), flash_point=ZERO_CELSIUS + 200.0)
+    pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    for oil_temperature, status in ((199.0, "ok"), (201.0, "no_oil_bath")):
+        point = Operating(
+            speed=[100.0],
+            torque=[200.0],
+            lubricant=oil,
+            oil_temperature=ZERO_CELSIUS + oil_temperature,
+            temperatures=Temperatures.uniform(353.15, reference=293.15),
+            half_backlash=60e-6,
+        )
+        cycle = mesh_cycle(pair, point, mesh_positions=8, path_positions=5, want=["mean_stiffness"])
+        assert STATUS[int(cycle["status"][0])] == status

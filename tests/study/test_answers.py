@@ -19,7 +19,9 @@ from scripts import script
 
 from said import numbers
 from thermogear.base.limits import FINE, LIMITS, LOOK, OPEN, Limit
+from thermogear.base.materials import NO_BATH
 from thermogear.base.progress import silent
+from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import STATUS
 from thermogear.case.case import GearCase, load_case
 from thermogear.case.thermal_state import HOT, UNDEFORMED
@@ -190,8 +192,9 @@ def test_what_is_not_steady_is_not_stated() -> None:
         if name not in MESH:
             assert one.verdict != FINE, one
             assert steady_words not in one.sentence
-    ends, jammed = "; no steady state is known.", "Not decided: the hot pair is jammed."
+    ends, jammed = "; no bath exists beyond.", "Not decided: the hot pair is jammed."
     assert course.sentence.endswith(ends)
+    assert course.figures["hottest"] == NO_BATH - ZERO_CELSIUS
     assert found["relief"].sentence == found["resonance"].sentence == unknown
     assert verdicts("jammed")["resonance"].sentence == jammed
     for name in ("contact_loss", "back_contact", "coexisting"):
@@ -272,7 +275,7 @@ UNITS = {
     "K": "flash off margin", "kW": "made carried", "min": "after end", "kHz": "natural",
     "rpm": "main there own strong looked ranges", "%": "off most",
     "": "wetted more_wetted top limit motions factor own ratio grade drawings points of more stage "
-        "safety",
+        "safety unsettled speeds",
 }  # fmt: skip
 """Unit -> the figures that have it; one name may stand in several answers with other units."""
 

@@ -228,3 +228,15 @@ def test_a_point_that_does_not_settle_has_a_status_and_no_number() -> None:
     assert frame.loc[rows, "greatest_flash [K]"].isna().all()
     (line,) = (one for one in page(tree).lines() if one.startswith("greatest flash"))
     assert line.endswith(reach(grid["greatest_flash"].values[~lost]))
+
+
+@pytest.mark.filterwarnings("ignore::thermogear.ValidityWarning")
+def test_a_point_without_an_oil_bath_has_its_status() -> None:
+    """The survey's rows, its notices and the warm-up tell one and the same bath."""
+    case = rig("oil.flash_point=40 degC", "operating.speed=1500 rpm", "operating.torque=200 N m")
+    result = thermal_map(case, (SPEEDS[1],), (200.0,))
+    there = result.groups["map"]
+    oil = there["node_temperature"].sel(node="oil").values
+    assert np.all(oil > case.stated.lubricant.hottest_bath)
+    assert np.all(there["status"].values == STATUS.index("no_oil_bath"))
+    assert numbers(result.notices[0].text)[:2] == [1.0, 1.0]

@@ -15,14 +15,17 @@ from in_words import in_words
 from own_pair import OWN_PAIR
 from said import numbers
 from thermogear.base.errors import InputError
+from thermogear.case.allowed import FLUCTUATION
 from thermogear.case.case import GearCase, gear_case, load_case
 from thermogear.case.family import family
 from thermogear.case.points import largest_fluctuation
 from thermogear.results.result import Result
 from thermogear.study import thesis_pair as study
 from thermogear.study.thesis_pair import thesis_pair
-from thermogear.views.page import Table, render
+from thermogear.views.page import Pictures, Table, render
+from thermogear.views.pages import thesis_pair as thesis_pair_page
 from thermogear.views.plots import temperature
+from thermogear.views.plots.motion import label_of
 from thermogear.views.write import page_of
 
 pytestmark = pytest.mark.filterwarnings("ignore::thermogear.base.errors.ValidityWarning")
@@ -190,3 +193,12 @@ def test_temperatures_that_a_material_does_not_have_are_left_out() -> None:
     assert numbers(told)[-2:] == [160.0, 133.6]
     with pytest.raises(InputError, match=r"^temperature of POM: got .* degC; allowed < 133\.6"):
         thesis_pair(plastic, temperatures=(433.15,))
+
+
+def test_a_stiffness_that_does_not_fluctuate_is_no_motion_of_its_own(moving: Result) -> None:
+    """What moves undeformed lacks a diagram for another cause than its motion."""
+    name, cold = FLUCTUATION, moving.groups["motion"].isel(bundle=0, operating=0, state=0)
+    bare = replace(moving, groups={"motion": moving.groups["motion"]})
+    told, blocks = thesis_pair_page._diagram(name, bare, Pictures())
+    assert label_of(cold) not in told
+    assert blocks == []

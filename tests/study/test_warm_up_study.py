@@ -285,6 +285,20 @@ def test_rows_after_the_end_are_left_out_with_a_word() -> None:
         warm_up_survey(rig(), short, measured=late)
 
 
+def test_a_course_says_from_when_on_it_has_no_oil_bath() -> None:
+    """Its first moment with an oil hotter than any bath stands in the notice, and no other."""
+    case = load_case(OWN_PAIR, [*QUICK[1:2], "oil.flash_point=40 degC"])
+    assert isinstance(case, GearCase)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = warm_up_survey(case, moments=30)
+    course = found.groups["course"]
+    oil = course["node_temperature"].sel(node="oil").values
+    hot = oil > case.stated.lubricant.hottest_bath
+    told = [round(float(course["time"].values[hot][0]) / 60.0, 2), 40.0]
+    assert told in [numbers(one.text) for one in found.notices]
+
+
 # --- in words, and another pair --------------------------------------------------------------
 
 

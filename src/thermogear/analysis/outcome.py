@@ -101,7 +101,7 @@ def outcome_arrays(settled: Settled, status: NDArray[np.int8], lanes: Models = N
         "back_share": settled.shares[:, 0].copy(),
         "point_x": point[:, 0].copy(),
         "point_v": point[:, 1].copy(),
-        "used_periods": settled.used,
+        "used_periods": np.where(moves(status), settled.used, np.nan),
         "status": done,
     }
 

@@ -41,6 +41,13 @@ class Limit:
     @property
     def words(self) -> str:
         """The bound as a reader sees it, called usual where it is unconfirmed, or ours."""
+        return self.beside(math.nan)
+
+    def beside(self, value: float) -> str:
+        """:attr:`words`, with the ``value`` where it is within 2 % of the bound, 0.05 of a bound 0.
+
+        As many digits of both as tell them apart: a sentence may round the difference away.
+        """
         if not math.isfinite(self.least) and not math.isfinite(self.most):
             return "no limit known"
         side, bound = (
@@ -49,7 +56,13 @@ class Limit:
         unit = f" {self.unit}" if self.unit else ""
         what = f"{self.what} " if self.what else ""
         whose = ", ours" if self.source.startswith("ours") else ""
-        return f"{what}{side} {bound:.4g}{unit}{whose}" + ("" if self.confirmed else ", usual")
+        close = abs(value - bound) <= (0.02 * abs(bound) or 0.05)
+        digits, near = 4, close and value != bound
+        while near and f"{value:.{digits}g}" == f"{bound:.{digits}g}":
+            digits += 1
+        here = f", here {value:.{digits}g}{unit}" * near
+        usual = "" if self.confirmed else ", usual"
+        return f"{what}{side} {bound:.{digits}g}{unit}{whose}{usual}{here}"
 
 
 PARTING = 2.0

@@ -16,7 +16,7 @@ from thermogear.base.errors import InputError, nearest, printable, short
 NAMED = {"model.friction": "law"}
 """A name that may replace a table, and the field of the table that holds it."""
 
-_KEY = re.compile(r"[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+)*")
+_KEY = re.compile(r"[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+( [A-Za-z0-9_-]+)*)*")
 
 
 MOST_KEYS = 16
@@ -70,9 +70,10 @@ def pairs(overrides: Mapping[str, str] | Sequence[str]) -> tuple[tuple[str, str]
 def overridden(data: dict[str, Any], changes: tuple[tuple[str, str], ...]) -> dict[str, Any]:
     """``data`` with ``changes`` put in; tables on the way are new, made where missing.
 
-    A key of a list is the number of an entry, from 0, or "all" for every one. An empty text leaves
-    out what ``data`` holds at its path, a field or a table; InputError where ``data`` holds nothing
-    there, and where a list has no such entry. ``data`` itself stays as it is.
+    A key of a list is the number of an entry, from 0, its name, or "all" for every one. An
+    empty text leaves out what ``data`` holds at its path, a field or a table; InputError where
+    ``data`` holds nothing there, and where a list has no such entry. ``data`` itself stays as
+    it is.
 
     >>> overridden({"oil": {"name": "M220"}}, (("oil.name", ""), ("grid.harmonics", "12")))
     {'oil': {}, 'grid': {'harmonics': 12}}
@@ -84,7 +85,7 @@ def overridden(data: dict[str, Any], changes: tuple[tuple[str, str], ...]) -> di
     made = dict(data)
     for path, text in changes:
         if not settable(path):
-            raise InputError("--set", short(path), allowed="a dotted path: gears.pinion.teeth")
+            raise InputError(short(path), "no path", allowed="dotted names: gears.pinion.teeth")
         if not text.strip():
             _require_held(data, path)
         for place in entries_of(made, path):
@@ -119,6 +120,8 @@ def _put(inside: Any, keys: list[str], depth: int, text: str) -> Any:
     made: Any = inside.copy()
     key: Any = _entry(inside, keys, depth) if isinstance(inside, list) else keys[depth]
     if depth + 1 < len(keys):
+        if key not in made and (keys[depth + 1] == "all" or keys[depth + 1].isdecimal()):
+            raise InputError(".".join(keys), "no list", why=f"the file holds no {key}")
         below = inside.get(key, {}) if isinstance(inside, dict) else inside[key]
         made[key] = _put(below, keys, depth + 1, text)
     elif text.strip():
@@ -133,7 +136,11 @@ def _entry(entries: list[Any], keys: list[str], depth: int) -> int:
     key, count = keys[depth], len(entries)
     if key.isdecimal() and len(key) < 9 and int(key) < count:
         return int(key)
+    names = [one.get("name") for one in entries if isinstance(one, Mapping)]
+    if key in names:
+        return names.index(key)
     allowed = f"0..{count - 1}, or all" if count else "none: the list is empty"
+    allowed += f", or a name: {', '.join(map(str, names))}" * bool(names and all(names))
     raise InputError(".".join(keys), f"entry {key} of {'.'.join(keys[:depth])}", allowed=allowed)
 
 

@@ -20,6 +20,7 @@ from thermogear.base.excitation import Periodic
 from thermogear.base.materials import MATERIALS, Material
 from thermogear.base.parameters import NUMBERS
 from thermogear.base.toml import overridden, pairs, tables
+from thermogear.base.units import ZERO_CELSIUS
 from thermogear.case import build as parts
 from thermogear.case.allowed import gear_parameter, gear_reader
 from thermogear.case.assumptions import Assumption, assumptions
@@ -43,6 +44,7 @@ from thermogear.case.source import case_text, folder_of
 from thermogear.case.units import shown
 from thermogear.gears.deviations import Deviation
 from thermogear.gears.pair import GearPair
+from thermogear.heat.gearbox import fluid_from
 from thermogear.mesh.balance import Gearbox, HeatBalance, heat_balance
 from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.model import MeshModel
@@ -200,10 +202,15 @@ class GearCase(Case):
             except InputError as error:
                 if error.field != "prandtl":
                     raise
+                least = fluid_from(at.lubricant) - ZERO_CELSIUS
+                oil, got = "oil", f"a Prandtl number of {error.got}"
+                if "oil" in self.gearbox.measured:
+                    kelvin = np.ravel(self.gearbox.measured["oil"]).min()
+                    oil, got = "oil.temperature", f"{kelvin - ZERO_CELSIUS:.5g} °C"
                 raise InputError(
-                    "oil",
-                    f"a Prandtl number of {error.got}",
-                    allowed=error.allowed,
+                    oil,
+                    got,
+                    allowed=f"this oil from {least:.1f} °C on",
                     why="so cold the oil is too stiff for the laws of convection",
                     fix="take a warmer, or a thinner, oil",
                 ) from error

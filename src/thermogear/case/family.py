@@ -21,7 +21,7 @@ from thermogear.base.errors import InputError, ThermogearError, nearest
 from thermogear.base.excitation import Excitations, Periodic
 from thermogear.base.parameters import NUMBERS
 from thermogear.base.plan import Alive, keep_going
-from thermogear.base.vocabulary import NO_OIL_BATH, STATUS, moves, still
+from thermogear.base.vocabulary import STATUS, moves, still
 from thermogear.case.allowed import (
     LANE,
     gear_parameter,
@@ -348,9 +348,7 @@ class GearFamily:
 
     def _meshed(self, group: _Group) -> Excitations:
         """Springs, backlash and load of a group, without the kinematic error."""
-        found = self._cycled(group, (*EXCITES, "oil_temperature"))
-        hot = found["oil_temperature"] > group.case.stated.lubricant.hottest_bath
-        found["status"] = np.where(hot & (found["status"] == 0), NO_OIL_BATH, found["status"])
+        found = self._cycled(group, EXCITES)
         return excitations(replace(group.case, transmission_error=NO_ERROR), found)
 
     def _cycled(

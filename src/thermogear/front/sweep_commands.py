@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from thermogear.base.errors import InputError
+from thermogear.base.errors import InputError, nearest
 from thermogear.base.units import RPM
 from thermogear.front import delivery
 from thermogear.front.motion_commands import is_train
@@ -159,6 +159,10 @@ def bifurcation(
     other_state = state
     _estimate_alone(options, as_json)
     second: dict[str, str] = dict(_split(text) for text in against)
+    for given in second if read.kind == "gear" else ():
+        if given != "state":
+            raise InputError("--against", repr(given), allowed="state=VALUE of a gear case",
+                             fix=nearest(given, ("state",)))  # fmt: skip
     if "state" in second:
         _, other_state = _choice(read, {"bundle": None, "state": second.pop("state")}, "--against")
     texts = [f"{k}={v}" for k, v in second.items()]

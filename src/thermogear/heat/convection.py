@@ -34,6 +34,8 @@ SHEAR = 0.0267
 
 _FAR = 24.0  # thickness of the layer in sqrt(nu/omega): the flow decays as exp(-0.884 z)
 _PRANDTL = (0.05, 2e6)
+MOST_PRANDTL = 1e6
+"""Greatest Prandtl number [-] that the laws below take: half of what was solved (ours)."""
 
 _GROWING = (
     1.4687027045781436, 3.408347537616242, -0.3252285068358618, 0.1774278492101273,
@@ -150,7 +152,7 @@ def disc_nusselt(prandtl: ArrayLike, *, exponent: float = 2.0) -> Floats:
     '0.6159'
     """
     pr = np.asarray(prandtl, dtype=float)
-    if not np.all((pr >= 0.1) & (pr <= 1e6)):
+    if not np.all((pr >= 0.1) & (pr <= MOST_PRANDTL)):
         raise InputError("prandtl", f"{pr.min():.3g} .. {pr.max():.3g}", allowed="0.1 .. 1e6")
     return np.asarray(np.exp(_gradient_table(float(exponent))(np.log(pr))))
 

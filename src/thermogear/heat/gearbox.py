@@ -8,6 +8,7 @@ and meant to be replaced by a user who knows better.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field, fields
@@ -17,9 +18,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.bounds import BODY
-from thermogear.base.errors import InputError
+from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.base.materials import Lubricant, Material
-from thermogear.heat.convection import rotating_face_convection, transition_pieces
+from thermogear.heat.convection import MOST_PRANDTL, rotating_face_convection, transition_pieces
 from thermogear.heat.expansion import GearLike
 from thermogear.heat.lubrication import density, kinematic_viscosity
 from thermogear.heat.network import Link, ThermalNetwork
@@ -216,6 +217,23 @@ def oil_prandtl(lubricant: Lubricant, temperature: ArrayLike) -> Floats:
     heat = density(lubricant, temperature) * lubricant.specific_heat
     diffusivity = lubricant.thermal_conductivity / heat
     return np.asarray(kinematic_viscosity(lubricant, temperature) / diffusivity)
+
+
+def fluid_from(lubricant: Lubricant) -> float:
+    """Temperature [K] from which an oil is thin enough for the laws of convection: Pr <= 10^6.
+
+    >>> oil = lubricant("FVA3")
+    >>> f"{oil_prandtl(oil, fluid_from(oil)):.3g}"
+    '1e+06'
+    """
+    from scipy.optimize import brentq
+
+    def beyond(kelvin: float) -> float:
+        return float(np.log(oil_prandtl(lubricant, kelvin) / MOST_PRANDTL))
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ValidityWarning)
+        return float(brentq(beyond, BODY.least, BODY.most))
 
 
 def face_conductance(

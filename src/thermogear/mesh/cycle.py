@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import InputError, ValidityWarning, nearest
-from thermogear.base.vocabulary import STATUS, label
+from thermogear.base.vocabulary import NO_OIL_BATH, STATUS, label
 from thermogear.gears.contact import (
     entrainment_velocity,
     flank_radii,
@@ -66,13 +66,14 @@ def mesh_cycle(
     jam temperature (of the pinion's addendum: once when both gears warm alike and the housing
     stays, once when shafts and housing rise in proportion; nan where that never jams), and
     ``status``: ``ok``; ``jammed`` where the least half backlash over the phase is <= 0 (the values
-    stay: they say how far it is jammed); ``not_converged`` where the loaded contact did not
-    settle. ``friction_coefficient_least`` and ``_greatest`` span the laws of oiled contacts that
-    are within their range there, ``friction_outside_range`` is 1 where the chosen one is not, and
+    stay: they say how far it is jammed); ``no_oil_bath`` where the oil is hotter than any bath of
+    it; ``not_converged`` where the loaded contact did not settle.
+    ``friction_coefficient_least`` and ``_greatest`` span the laws of oiled contacts that are
+    within their range there, ``friction_outside_range`` is 1 where the chosen one is not, and
     ``film_outside_range`` where the film forms beyond the range of the oil's viscosity line.
-    ``edge_contact`` names the tip corner that carries along the path, where the pressure
-    is nan; ``edge_contact_share`` is the share of the mesh period with such a corner, beyond A
-    and E too, nan where the stiffness model knows none.
+    ``edge_contact`` names the tip corner that carries along the path, where the pressure is
+    nan; ``edge_contact_share`` is the share of the mesh period with such a corner, beyond A and
+    E too, nan where the stiffness model knows none.
 
     ``want``: names of stored quantities; only they are computed, with ``status``, which then says
     ``not_converged`` where one of them is not known. Left out, all are.
@@ -239,7 +240,8 @@ class _Cycle:
 
     def status(self, names: Collection[str]) -> NDArray[np.int64]:
         """Where the gap is used up, and where what is asked for is not known."""
-        found = np.where(self.least > 0.0, STATUS.index("ok"), STATUS.index("jammed"))
+        bath = np.where(self.hot.operating.no_bath, NO_OIL_BATH, STATUS.index("ok"))
+        found = np.where(self.least > 0.0, bath, STATUS.index("jammed"))
         known = np.isfinite(self.stiffness).all(axis=1)
         for name, mean in (("rim_stiffness", "rim"), ("bore_clamped_stiffness", "clamped")):
             if name in names:

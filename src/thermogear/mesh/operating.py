@@ -169,6 +169,12 @@ class Operating:
         bounds.TORQUE.require("operating.torque", torque)
         bounds.HALF_BACKLASH.require("operating.half_backlash", self.half_backlash)
 
+    @property
+    def no_bath(self) -> NDArray[np.bool_]:
+        """Where the oil is hotter than any bath of it, (operating,)."""
+        hot = np.asarray(self.oil_temperature) > self.lubricant.hottest_bath
+        return np.broadcast_to(hot, self.speed.shape)
+
     def point(self, place: int) -> Operating:
         """The operating point ``place`` alone."""
         return self.part(slice(place, place + 1))

@@ -41,6 +41,6 @@ def from_data(data: xr.Dataset) -> list[str]:
     ] * (hot > 0)
     if "back_share" not in data:
         return found
-    # a jammed point has no gap to spare: there a wider one would change everything
-    never = np.all(moves(status) & (data["back_share"].values == 0.0))
+    # a jammed point has no gap to spare; points without an oil bath alone prove nothing
+    never = np.any(status == 0) and np.all(moves(status) & (data["back_share"].values == 0.0))
     return found + [NO_BACK_IMPACT] * bool(never)

@@ -165,7 +165,8 @@ def _read(measured: Measured, teeth: int | None, speed: float | None) -> Printed
         if str(measured) in PUBLISHED:
             return Printed(PUBLISHED[str(measured)].measured, {})
         if not path.is_file():
-            raise InputError("measured", str(measured), fix=nearest(str(measured), PUBLISHED))
+            fix = nearest(path.name, PUBLISHED)
+            raise InputError("measured", str(measured), why="there is no such file", fix=fix)
         measured = read_lines(path, teeth) if is_table(path) else read_record(path)
     if isinstance(measured, Record):
         return measure(measured, teeth=teeth, speed=speed)

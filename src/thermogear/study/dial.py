@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from thermogear.base.bounds import BODY
 from thermogear.base.progress import Progress, silent
 from thermogear.base.units import ZERO_CELSIUS
-from thermogear.base.vocabulary import STATUS, attributes, label
+from thermogear.base.vocabulary import STATUS, attributes, label, moves
 from thermogear.case.case import GearCase
 from thermogear.case.family import GearFamily
 from thermogear.case.thermal_state import HOT
@@ -63,7 +63,7 @@ def dial(case: GearCase, cycle: xr.Dataset, progress: Progress = silent) -> xr.D
     status = found["status"].astype(np.int8)
     speed = float(np.ravel(case.stated.speed)[0])
     if moved is not None:
-        status = np.where(status == 0, moved.values["status"], status).astype(np.int8)
+        status = np.where(moves(status), moved.values["status"], status).astype(np.int8)
         mesh = case.pair.pinion.teeth * speed / (2.0 * np.pi)
         variables["time"] = (("sample",), moved.motion.phase / mesh)
         variables["order"], variables["line_frequency"] = (("order",), [1.0]), (("order",), [mesh])

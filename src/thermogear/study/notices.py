@@ -22,6 +22,10 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
+NOT_DECIDED = "whether contact is lost is not decided: 0 of {} points are valid"
+"""Where no point has status ok: what rests on no oil bath proves nothing."""
+
+
 def finished(data: xr.Dataset, title: str = "") -> Result:
     """What a store of long work holds, with what should be known beside it."""
     return stored_dataset(with_notices(data), title)
@@ -37,11 +41,14 @@ def contact_notices(data: xr.Dataset) -> list[str]:
     speeds = data["pinion_speed"].values / RPM
     axis = data["label"].dims.index("pinion_speed")
     others = tuple(i for i in range(data["label"].ndim) if i != axis)
-    lost = moving & (data["contact_loss_share"].values > 0.0)
+    share = data["contact_loss_share"].values
+    lost = moving & (share > 0.0)
+    valid = int(((data["status"].values == 0) & np.isfinite(share)).sum())
+    never = f"contact is never lost at the {valid} of {moving.size} points that are valid"
     # of a motion that is not periodic the impacts are not counted; its least force tells
     hit = moving & ((data["back_impacts"].values > 0) | (data["mesh_force_min"].values < 0.0))
     for flags, yes, no in (
-        (lost, "contact is lost", "contact is never lost at these speeds"),
+        (lost, "contact is lost", never if valid else NOT_DECIDED.format(moving.size)),
         (hit, "the back flanks are hit", ""),
     ):
         here = np.asarray(flags.any(axis=others))

@@ -24,6 +24,7 @@ from thermogear.case.thesis_cases import of_the_thesis
 from thermogear.gears.deviations import PitchError
 from thermogear.gears.iso6336 import iso6336_stiffness
 from thermogear.mesh.model import CHOICES
+from thermogear.results.beside import from_data
 from thermogear.results.result import Notice
 from thermogear.results.tables import rows_along
 from thermogear.study.measured_flanks import measured_notices
@@ -206,6 +207,7 @@ def _deviations(case: GearCase) -> Iterator[Notice]:
 
 def _jammed(case: GearCase, mesh: xr.Dataset) -> Iterator[Notice]:
     hot = mesh.isel(state=-1)
+    yield from (Notice("important", words) for words in from_data(hot))
     for place, bundle in enumerate(mesh["bundle"].values):
         here = hot.isel(bundle=place)
         bare = mesh.isel(state=0, bundle=place)["status"] == STATUS.index("jammed")

@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.analysis.side_by_side import motions_along
+from thermogear.analysis.settle import UNDECIDED
+from thermogear.analysis.side_by_side import Motions, motions_along
 from thermogear.base.excitation import Excitations
 from thermogear.base.units import RPM
 from thermogear.base.vocabulary import NO_COUNT, label
@@ -35,6 +36,9 @@ FARTHEST = 10.0
 """How far the case's own speeds may widen that range."""
 PEAK = 1.05
 """A peak stands out by this factor from the least between it and the next."""
+LEAST_FACTOR = 0.99
+"""Dynamic factor [-] below which a record has not seen its motion: 1 less what samples may miss of
+a peak (ours)."""
 LOST = 1e-3
 """Share of time out of contact below which contact is kept."""
 
@@ -117,8 +121,15 @@ class Speeds:
     def several(self) -> list[tuple[float, float]]:
         """Ranges [rad/s] in which two motions or more exist: a run-up may jump there."""
         speed = self.column("pinion_speed")
-        _, place, count = np.unique(speed, return_inverse=True, return_counts=True)
+        _, place = np.unique(speed, return_inverse=True)
+        count = np.bincount(place, np.isfinite(self.column("contact_loss_share")))
         return self.ranges(count[place] > 1)
+
+    @property
+    def unsettled(self) -> int:
+        """At how many speeds no motion settles: nothing is said of them."""
+        known = np.isfinite(self.column("contact_loss_share"))
+        return self.grid.size - np.unique(self.column("pinion_speed")[known]).size
 
     def peaks(self) -> list[tuple[float, float]]:
         """(speed [rad/s], dynamic factor) of the resonances, the greatest first."""
@@ -154,11 +165,25 @@ def look(mesh: Excitations, *, teeth: int, own: Floats) -> Speeds:
     along = mesh.take(np.zeros(ratio.size, int))
     lanes = points_of(replace(along, mesh_frequency=natural * ratio))
     motions = motions_along(lanes.flat, starts_of(lanes))
-    found = respond(lanes.take(motions.lane), motions.state, RECORD, lines=False)
-    columns = {name: found[name] for name in VALUES}
+    found = figures_of(lanes, motions)
+    columns: dict[str, ArrayLike] = {name: found[name] for name in VALUES}
     columns |= {"period": motions.period, "label_code": motions.label, "state": motions.state}
     columns["pinion_speed"] = lanes.mesh_frequency[motions.lane] / teeth
     return Speeds(columns, float(ratio[1] / ratio[0] - 1.0), np.unique(own))
+
+
+def figures_of(points: Points, motions: Motions) -> dict[str, Floats]:
+    """:func:`~thermogear.case.response.respond` of ``motions`` of ``points``, (motion,).
+
+    nan where a motion does not settle, and where the record lies within a flight longer than it:
+    over a steady motion the mesh force has the load as its mean, so its greatest is no less.
+    """
+    found = respond(points.take(motions.lane), motions.state, RECORD, lines=False)
+    unknown = (motions.label == UNDECIDED) | (found["dynamic_factor"] < LEAST_FACTOR)
+    return {
+        name: values if name == "frequency_ratio" else np.where(unknown, np.nan, values)
+        for name, values in found.items()
+    }
 
 
 def starts_of(points: Points) -> Floats:

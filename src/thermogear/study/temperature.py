@@ -35,6 +35,7 @@ from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.trends import conclusion, verdicts
+from thermogear.results.beside import from_data
 from thermogear.results.result import Notice, Result
 from thermogear.study.notices import reasons, several_words
 from thermogear.study.scuffing import load_stage, not_steel
@@ -66,8 +67,8 @@ def thermal_map(
     alone: :func:`~thermogear.study.warm_up.warm_up_survey` has the way there.
 
     Groups: ``map`` over (pinion_speed, pinion_torque), ``status`` per point (ok, jammed,
-    not_converged; then every number is nan) with ``iterations`` and ``residual``, and
-    ``several`` where from hot another state is steady than the one told, from cold;
+    no_oil_bath; not_converged, heat_not_settled: every number is nan) with ``iterations`` and
+    ``residual``, and ``several`` where from hot another state is steady than the one told;
     ``conclusion`` (friction, flash and growth, mixed and dry, with rank correlations).
     For the thesis's rig ``verdicts`` (attribute) say what holds of the
     thesis's first conclusion.
@@ -263,6 +264,7 @@ def _notices(
         )
     if text := several_words(grid, settled):
         yield Notice("important", text)
+    yield from (Notice("important", words) for words in from_data(grid))
     outside = settled & (grid["within_oil_range"].values == 0)
     low, high = case.stated.lubricant.temperature_range
     if outside.any():

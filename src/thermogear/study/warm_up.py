@@ -412,6 +412,13 @@ def _notices(
         )
     low, high = case.stated.lubricant.temperature_range
     oil = np.asarray(course.operating.oil_temperature)
+    if (hot := course.operating.no_bath).any():
+        yield Notice(
+            "important",
+            f"From {course.time[hot][0] / 60.0:.2f} min on no oil bath exists: the "
+            f"oil is above {case.stated.lubricant.hottest_bath - ZERO_CELSIUS:.0f} °C. What is "
+            "told of later moments holds only if a bath could be kept.",
+        )
     outside = (oil < low) | (oil > high)
     if outside.any():
         spent = float(np.diff(course.time)[outside[1:]].sum()) / 60.0

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.analysis.side_by_side import motions_along
+from thermogear.analysis.side_by_side import RULE, motions_along
 from thermogear.base.display import worded
 from thermogear.base.limits import LIMITS, NO_LIMIT
 from thermogear.base.progress import Progress
@@ -20,7 +20,7 @@ from thermogear.base.vocabulary import HEAT_NOT_SETTLED, STATUS, STILL, is_known
 from thermogear.case.case import GearCase
 from thermogear.case.duty import chosen_point, point_duty
 from thermogear.case.points import excitations, points_of
-from thermogear.case.response import VALUES, respond
+from thermogear.case.response import VALUES
 from thermogear.mesh.balance import Gearbox, HeatBalance
 from thermogear.mesh.balance_table import LOSSES
 from thermogear.mesh.clearance import PARTS
@@ -28,7 +28,7 @@ from thermogear.mesh.excite import EXCITES
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.warm_up import WarmUp, warm_up
 from thermogear.results.answer import Answer
-from thermogear.study.speeds import RECORD, Speeds, look, starts_of
+from thermogear.study.speeds import Speeds, figures_of, look, starts_of
 
 Floats = NDArray[np.float64]
 Cycle = Mapping[str, NDArray[Any]]
@@ -55,6 +55,7 @@ WARMEST_USUAL = ZERO_CELSIUS + 120.0
 """Oil [K] at which it is said what a bath carries: above the limits of all kinds of oil."""
 MOST_WETTED = 0.5
 """The other end of the band in which the wetted share of a gear is guessed (ours)."""
+NO_BATH = "it rests on an oil bath that cannot exist"
 WARM_UP_TOLERANCE = 0.1
 """Of a step's error [K]."""
 
@@ -110,7 +111,7 @@ class Asked:
         """Why nothing hot is stated of a point; empty where it is."""
         if why := self.lost(point):
             return why
-        return "it rests on an oil bath that cannot exist" if self.no_bath(point) else ""
+        return NO_BATH if self.no_bath(point) else ""
 
     def lost(self, point: int) -> str:
         """Why nothing hot is known of a point; empty where it is."""
@@ -213,16 +214,29 @@ class Asked:
         self.progress("speeds", 1, 1)
         return found
 
+    def slow(self, point: int) -> bool:
+        """Whether the pair turns so slowly that no motion is followed."""
+        natural = np.sqrt(self.hot["mean_stiffness"][point] / self.case.equivalent_mass)
+        mesh = self.case.pair.pinion.teeth * self.case.stated.speed[point]
+        return bool(mesh < SLOWEST * natural)
+
+    def motionless(self, point: int) -> str:
+        """Why a moving pair has no steady motion at a point."""
+        if not self.case.stated.torque[point] > 0.0:
+            return "there is no load"
+        slow = "it turns too slowly to vibrate"
+        return slow if self.slow(point) else f"no motion is steady within {RULE.cap} mesh periods"
+
     @cached_property
     def motion(self) -> dict[str, Floats]:
         """Figures (point, motion) of the motions at the operating points answered, else nan.
 
         From rest first, then from the other starts of the look over speeds and from the motions
-        that it found within a step of the point's own. Nan too where the pair turns so slowly that
-        no motion is followed: the load is static.
+        that it found within a step of the point's own. Nan too where a motion does not settle, and
+        where the pair turns so slowly that none is followed: the load is static.
         """
         points = points_of(excitations(self.case, self._part(self.points)))
-        slow = points.mesh_frequency < SLOWEST * points.rate
+        slow = np.array([self.slow(point) for point in self.points])
         stated = np.array([not self.unsettled(point) for point in self.points])
         moving = np.flatnonzero((points.status == 0) & ~slow & stated)
         if not moving.size:
@@ -234,7 +248,7 @@ class Asked:
             starts = np.concatenate([starts, self.speeds.beside(speed, start=starts[:, 0])], axis=1)
         motions = motions_along(points.flat, starts)
         lane = motions.lane
-        figures = respond(points.take(lane), motions.state, RECORD, lines=False)
+        figures = figures_of(points, motions)
         place = np.arange(lane.size) - np.searchsorted(lane, lane)
         every = {}
         for name, values in figures.items():
@@ -273,7 +287,7 @@ def answer(
         sentence=words,
         value=float(value) if np.isfinite(value) else None,
         unit=bound.unit,
-        limit=bound.words,
+        limit=bound.beside(float(value)),
         source=bound.source,
         verdict=verdict or bound.verdict(value),
         operating=at,

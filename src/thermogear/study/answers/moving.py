@@ -44,8 +44,11 @@ RELIEFS = (0.25, 0.5, 0.75, 1.0, 1.25, 1.5)
 
 def speeds(asked: Asked) -> Iterator[Answer]:
     found = asked.speeds
-    if found is None:
-        why = asked.still(asked.hardest) or "its mesh has no stiffness that moves"
+    if found is None or found.unsettled == found.grid.size:
+        why = asked.still(asked.hardest) or (
+            "its mesh has no stiffness that moves" if found is None else
+            asked.motionless(asked.hardest)
+        )  # fmt: skip
         for name in ("resonance", "contact_loss", "back_contact", "coexisting"):
             yield undecided(SPEEDS, name, why)
         return
@@ -54,9 +57,12 @@ def speeds(asked: Asked) -> Iterator[Answer]:
     speed, share = found.column("pinion_speed"), found.column("contact_loss_share")
     moves = np.isfinite(asked.motion["contact_loss_share"])
     # a motion beside the one from rest counts too: a run may end on it
-    loss, force = (asked.motion[n][moves[:, 0]] for n in ("contact_loss_share", "mesh_force_min"))
+    some = moves.any(axis=1)
+    loss, force = (asked.motion[n][some] for n in ("contact_loss_share", "mesh_force_min"))
     parted, struck = (loss > LOST).any(axis=1), (force < 0.0).any(axis=1)
     ends = (float(speed.min()), float(speed.max()))
+    open_at = "; at {unsettled} of {speeds} speeds no motion settles" * (found.unsettled > 0)
+    of_open = {"unsettled": found.unsettled, "speeds": found.grid.size} if open_at else {}
     for name, ranges, happens, never, apart in (
         ("contact_loss", found.lost,
          ("Flanks lose contact", ", for up to {most:.0f %} of the time"),
@@ -72,13 +78,14 @@ def speeds(asked: Asked) -> Iterator[Answer]:
                 f"; {'so' if ranges else 'otherwise'} at {{points}} of {{of}} operating points"
             )
         figures |= {"points": int(apart.sum()), "of": apart.size} | (
-            {"most": 100.0 * float(share.max())} if name == "contact_loss" else {}
+            {"most": 100.0 * float(np.nanmax(share))} if name == "contact_loss" else {}
         )
-        sentence = sentence if apart.size else _faster(sentence)
+        sentence = (sentence if apart.size else _faster(asked, sentence)) + open_at
+        figures |= of_open
         value = 100.0 * float(np.mean(apart)) if apart.size else float("nan")
         yield answer(SPEEDS, name, f"{sentence}.", value, figures=figures, units=OF_SPEEDS)
     words, figures = told(found.several, ends=ends)
-    several = moves[:, 1:].any(axis=1)
+    several = moves.sum(axis=1) > 1
     sentence = (
         f"Two motions exist {words}: it may jump there, up and down elsewhere"
         if found.several
@@ -89,14 +96,16 @@ def speeds(asked: Asked) -> Iterator[Answer]:
         figures |= {"points": int(several.sum()), "of": several.size}
     value = 2.0 if several.any() else 1.0
     if not moves.any():
-        sentence, value = _faster(sentence), float("nan")
+        sentence, value = _faster(asked, sentence), float("nan")
+    sentence += open_at
+    figures |= of_open
     yield answer(SPEEDS, "coexisting", f"{sentence}.", value, figures=figures, units=OF_SPEEDS)
 
 
-def _faster(sentence: str) -> str:
+def _faster(asked: Asked, sentence: str) -> str:
     """What the look over speeds says where no speed of the case itself is one of a motion."""
     words = f"{sentence[0].lower()}{sentence[1:]}"
-    return f"Not decided at its own speeds, too slow to vibrate; faster, {words}"
+    return f"Not decided at its own speeds, {asked.motionless(asked.hardest)}; elsewhere, {words}"
 
 
 def _resonance(asked: Asked, found: Speeds, main: float) -> Answer:
@@ -151,20 +160,20 @@ def loads(asked: Asked) -> Iterator[Answer]:
     for point in asked.points:
         at = asked.at(point)
         every = asked.motion["dynamic_factor"][point]
-        every = every[np.isfinite(every)]
+        rested, every = bool(np.isfinite(every[0])), every[np.isfinite(every)]
         words, figures = _rated_factor(asked, point)
         rated = figures.get("factor", np.inf)
         limit = "dynamic_factor" if rated < PARTING else "parting"
         about = {"limit": limit, "most": min(rated, PARTING), "at": at}
         if not every.size:
-            loaded = asked.case.stated.torque[point] > 0.0
-            slow = "it turns too slowly to vibrate" if loaded else "there is no load"
-            why = f"{asked.still(point) or slow}; ISO 6336-1 {words}"
+            why = f"{asked.still(point) or asked.motionless(point)}; ISO 6336-1 {words}"
             yield undecided(LOADS, "dynamic_factor", why, figures=figures, **about)
             continue
         figures |= {"own": float(every.max())}
-        gives = "{own:.2f}"
-        if every.size > 1:
+        gives = "{own:.2f}" + " in a motion beside the one from rest, which does not settle" * (
+            not rested
+        )
+        if every.size > 1 and rested:
             figures |= {"motions": every.tolist()}
             others = ", ".join(f"{{motions[{n}]:.2f}}" for n in range(1, every.size))
             gives = f"{{motions[0]:.2f}} from rest, {others} in another motion at the same speed"
@@ -194,7 +203,7 @@ def errors(asked: Asked) -> Iterator[Answer]:
         at = asked.at(point)
         words, figures = _allowed_error(asked.case, float(asked.hot["pinion_torque"][point]))
         most = figures.get("made", np.inf) + figures.get("load", np.inf)
-        if why := asked.unsettled(point):
+        if why := asked.still(point):
             yield undecided(ERROR, "transmission_error", why, most=most, at=at)
             continue
         figures |= {name: float(values[point]) for name, values in swing.items()}

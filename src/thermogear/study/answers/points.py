@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import InputError, ThermogearError
 from thermogear.base.plan import Variable
+from thermogear.base.vocabulary import STATUS
 from thermogear.case.allowed import LANE
 from thermogear.case.case import GearCase
 from thermogear.case.family import BESIDE, GearFamily
@@ -68,6 +69,10 @@ def answer_numbers(family: GearFamily, rows: ArrayLike) -> dict[str, Floats]:
     margin, safety = _scuffing(family, points, found)
     jam, teeth = found["jam_temperature"], found["pinion_temperature"]
     borne = borne_by(case.pair)[0]
+    # a jammed pair has no running contact
+    running = found["status"] != STATUS.index("jammed")
+    flash, film = (np.where(running[:, None], values, np.nan) for values in (flash, film))
+    margin, safety = (np.where(running, values, np.nan) for values in (margin, safety))
     return {
         "oil_temperature": found["oil_temperature"],
         "tooth_temperature": found["tooth_temperature"],
@@ -78,7 +83,7 @@ def answer_numbers(family: GearFamily, rows: ArrayLike) -> dict[str, Floats]:
         "backlash": 2.0 * found["least_half_backlash"],
         "jam_temperature": jam,
         "jam_margin": np.minimum(jam, borne) - teeth,
-        "static_error": np.ptp(found["transmission_error"], axis=1),
+        "static_error": np.where(running, np.ptp(found["transmission_error"], axis=1), np.nan),
     }
 
 

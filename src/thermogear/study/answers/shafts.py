@@ -36,7 +36,7 @@ def answers(asked: Asked) -> Iterator[Answer]:
         found = settled(case, [asked.hardest], model=asked.model, progress=asked.progress)
         cold, hot = (row[0] for row in found)
         rest = hot.rest
-        if why := asked.unsettled(asked.hardest):
+        if why := asked.still(asked.hardest):
             raise InputError("oil.temperature", why)
     except InputError as error:
         for question, name in (

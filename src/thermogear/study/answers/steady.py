@@ -20,6 +20,7 @@ from thermogear.mesh.scuffing_rating import Scuffing, flash_rating, integral_rat
 from thermogear.results.answer import Answer
 from thermogear.study.answers.asked import (
     MOST_WETTED,
+    NO_BATH,
     WARMEST_USUAL,
     Asked,
     answer,
@@ -110,16 +111,20 @@ def heat(asked: Asked) -> Iterator[Answer]:
             yield undecided(HEAT, "tooth_temperature", why, limit=of_teeth, at=at)
             continue
         hottest = float(teeth[point]) - ZERO_CELSIUS
-        flash = float(np.fmax.reduce(asked.hot["flash_temperature"][point]))
         how, figures = _how(asked, point, 1)
+        flash = "the pair is jammed"
+        if not asked.still(point):
+            added = float(np.fmax.reduce(asked.hot["flash_temperature"][point]))
+            figures = {**figures, "flash": added}
+            flash = "the flash adds up to {flash:.0f K}"
         yield answer(
             HEAT,
             "tooth_temperature",
-            f"The teeth are at {hottest:.0f} °C ({how}), the flash adds up to {{flash:.0f K}}.",
+            f"The teeth are at {hottest:.0f} °C ({how}), {flash}.",
             hottest,
             limit=of_teeth,
             at=at,
-            figures={**figures, "flash": flash},
+            figures=figures,
         )
 
 
@@ -202,10 +207,18 @@ def gap(asked: Asked) -> Iterator[Answer]:
         most, cause = borne_by(asked.case.pair)
         borne = most - ZERO_CELSIUS
         if not np.isfinite(jam):
-            free = left > 0.0
-            sentence = f"No heat of the gears alone {'jams' if free else 'frees'} the pair."
-            verdict = FINE if free else LOOK
-            yield answer(GAP, "jam_margin", sentence, float("nan"), at=at, verdict=verdict)
+            free, burnt = left > 0.0, hot >= borne
+            hotter = f"; its teeth are hotter than the {{borne:.0f °C}} they bear ({cause})"
+            yield answer(
+                GAP,
+                "jam_margin",
+                f"No heat of the gears alone {'jams' if free else 'frees'} the pair"
+                f"{hotter * burnt}.",
+                np.nan,
+                at=at,
+                verdict=FINE if free and not burnt else LOOK,
+                figures={"borne": borne} if burnt else {},
+            )
             continue
         beyond = hot < borne < jam
         jams = "does not jam below {borne:.0f °C}" if beyond else "jams at {jam:.0f °C}"
@@ -241,30 +254,35 @@ def _worst_moment(asked: Asked) -> Answer:
         course = asked.warming
     except ThermogearError as error:
         return undecided(GAP, "warm_up_backlash", str(error), limit="backlash")
-    worst, at = course.worst, asked.at(asked.hardest)
+    worst, at, hot = course.worst, asked.at(asked.hardest), course.operating.no_bath
+    if hot[0]:
+        return undecided(GAP, "warm_up_backlash", NO_BATH, limit="backlash", at=at)
     least, steady = 2e6 * worst.half_backlash, 2e6 * float(course.half_backlash[-1])
     start = float(course.temperatures["pinion_body"][0]) - ZERO_CELSIUS
     held = " and ".join(name.replace("_", " ") for name in course.held)
     how = f" with {held} held" if held else ""
     how += "" if asked.case.computed else " by the heat balance"
     words = f"Warming up from {{start:.0f °C}}{how} it is"
-    end = float(course.time[-1]) / 60.0
-    steady_known = course.course.settled or asked.case.computed
-    if course.course.too_hot or asked.unsettled(asked.hardest) or not steady_known:
-        unknown = (
-            "no steady state is known"
-            if course.course.too_hot or asked.unsettled(asked.hardest)
-            else "it is not steady by then"
-        )
-        burnt = "until a node reaches {hottest:.0f °C} after"
+    burnt, open_at = course.course.too_hot, asked.unsettled(asked.hardest)
+    if burnt or open_at or hot.any() or not (course.course.settled or asked.case.computed):
+        until, unknown = "within", "it is not steady by then"
+        figures = {"start": start, "end": float(course.time[-1]) / 60.0}
+        if burnt or open_at:
+            unknown = "no steady state is known"
+        if hot.any():
+            least = 2e6 * float(course.half_backlash[~hot].min())
+            figures["end"] = float(course.time[hot][0]) / 60.0
+            figures["hottest"] = asked.case.stated.lubricant.hottest_bath - ZERO_CELSIUS
+            until, unknown = "until the oil reaches {hottest:.0f °C} after", "no bath exists beyond"
+        elif burnt:
+            figures["hottest"] = HOTTEST - ZERO_CELSIUS
+            until = "until a node reaches {hottest:.0f °C} after"
         return answer(
             GAP, "warm_up_backlash",
-            f"{words} at least {{least:.0f µm}} {burnt if course.course.too_hot else 'within'} "
-            f"{{end:.3g min}}; {unknown}.",
+            f"{words} at least {{least:.0f µm}} {until} {{end:.3g min}}; {unknown}.",
             np.nan if least > 0.0 else least,
             limit="backlash", at=at, verdict=OPEN if least > 0.0 else LOOK,
-            figures={"least": least, "start": start, "end": end}
-            | ({"hottest": HOTTEST - ZERO_CELSIUS} if course.course.too_hot else {}),
+            figures={"least": least, **figures},
         )  # fmt: skip
     sentence = f"{words} never less than when steady, {least:.0f} µm."
     if least < steady - 0.005 * abs(steady) - 0.05:
@@ -290,9 +308,9 @@ def film(asked: Asked) -> Iterator[Answer]:
         at = asked.at(point)
         film = asked.hot["film_parameter"][point]
         least = float(np.nanmin(film)) if np.isfinite(film).any() else float("nan")
-        unsettled = asked.unsettled(point)
-        if unsettled:
-            yield undecided(FILM, "film", unsettled, at=at)
+        unsettled, still = asked.unsettled(point), asked.still(point)
+        if still:
+            yield undecided(FILM, "film", still, at=at)
         elif not np.isfinite(least):
             yield undecided(FILM, "film", "no film could be computed", at=at)
         else:
@@ -303,6 +321,7 @@ def film(asked: Asked) -> Iterator[Answer]:
         torque, speed = (float(asked.hot[f"pinion_{n}"][point]) for n in ("torque", "speed"))
         known = not unsettled or ("oil" in case.gearbox.measured and not asked.no_bath(point))
         why = unrated(case, torque, float(oil[point])) if known else unsettled
+        why = why if unsettled else still or why
         if why:
             for name in ("scuffing_margin", "scuffing_safety"):
                 yield undecided(FILM, name, why, at=at)

@@ -16,7 +16,7 @@ from thermogear.analysis.family import Models
 from thermogear.analysis.settle import CHAOTIC, PERIODIC, UNDECIDED, Settled
 from thermogear.base.errors import InputError, ThermogearError, nearest
 from thermogear.base.plan import Arrays, Coordinate, Variable
-from thermogear.base.vocabulary import STATUS, still
+from thermogear.base.vocabulary import STATUS, moves, still
 from thermogear.case.allowed import LANE
 from thermogear.case.case import GearCase
 from thermogear.case.family import GearFamily
@@ -194,7 +194,7 @@ class TrainFamily:
 
     def _moving(self, row: Sequence[float]) -> MovingTrain | None:
         found, case = self.at_rest(row)
-        if found.status != 0:
+        if not moves(found.status):
             return None
         made = moving(
             case, found, reduction=self._coordinates(found.assembly), friction=rubbing(case, found)
@@ -252,7 +252,7 @@ class TrainFamily:
 
     def _model(self, row: tuple[float, ...]) -> tuple[GearedModel | None, int]:
         train = self.train(row)
-        return (None, self.at_rest(row)[0].status) if train is None else (train.model, 0)
+        return None if train is None else train.model, self.at_rest(row)[0].status
 
     # --- what else is seen of a settled motion ----------------------------------------------
 

@@ -14,7 +14,7 @@ from thermogear.analysis.torus import Torus
 from thermogear.analysis.walk import Motion, Search
 from thermogear.base.errors import ConvergenceError
 from thermogear.base.progress import Progress, silent
-from thermogear.base.vocabulary import STATUS, STILL, label
+from thermogear.base.vocabulary import STATUS, STILL, label, moves
 from thermogear.case.case import GearCase
 from thermogear.dynamics.ladder import Engine
 from thermogear.results.result import Notice
@@ -72,7 +72,7 @@ class Moved:
 
 def moved(case: GearCase, state: TrainState, *, coordinates: int | None = None) -> Moved:
     """What the train of ``state`` settles on from rest, with friction of the teeth."""
-    if state.status != 0:
+    if not moves(state.status):
         return Moved(state=state)
     train = moving(case, state, coordinates=coordinates, friction=rubbing(case, state))
     cycle = train.model.cycle

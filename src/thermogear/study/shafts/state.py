@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.errors import GeometryError, InputError, ValidityWarning
 from thermogear.base.progress import Progress, silent
-from thermogear.base.vocabulary import HEAT_NOT_SETTLED, STATUS, still
+from thermogear.base.vocabulary import HEAT_NOT_SETTLED, STATUS, moves, still
 from thermogear.case.case import GearCase
 from thermogear.case.shaft_plan import TrainPlan
 from thermogear.case.thermal_state import HOT, UNDEFORMED, ThermalState
@@ -39,7 +39,7 @@ MOST_POINTS = 6
 MOST_ROUNDS = 8
 CLOSED = 1e-9
 """Change of the centre distance [m] that ends the rounds."""
-OK, JAMMED, NOT_CONVERGED = (STATUS.index(one) for one in ("ok", "jammed", "not_converged"))
+JAMMED, NOT_CONVERGED = STATUS.index("jammed"), STATUS.index("not_converged")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -193,7 +193,7 @@ def _settled(
             break
         mesh = meshing(case, model, moved_apart(case.pair, growths[-1]), at)
     status = mesh.status if known else HEAT_NOT_SETTLED
-    if rest is not None and status == OK and rest.back_force > 0.0:
+    if rest is not None and moves(status) and rest.back_force > 0.0:
         status = JAMMED
     return TrainState(
         state=state,

@@ -33,7 +33,7 @@ from thermogear.base.plan import (
     ranges_of,
     spread,
 )
-from thermogear.base.vocabulary import STATUS
+from thermogear.base.vocabulary import STATUS, moves
 from thermogear.case.case import GearCase
 from thermogear.case.thermal_state import HOT, UNDEFORMED, ThermalState
 from thermogear.dynamics.geared_map import GearedMap
@@ -155,7 +155,7 @@ class WaterfallPlan:
                         coordinates=self.size or None,
                         friction=rubbing(self.case, one),
                     )
-                    if one.status == 0
+                    if moves(one.status)
                     else None
                 )
             return self._trains[state]
@@ -299,7 +299,7 @@ class WaterfallPlan:
         felt = np.linalg.norm(seen.bearing_force, axis=2)
         orders = self.orders
         values: dict[str, Any] = {
-            "status": 0,
+            "status": train.state.status,
             "mesh_force_rms": seen.mesh_force.std(),
             "mesh_force_max": seen.mesh_force.max(),
             "back_force_max": seen.back_force.max(),

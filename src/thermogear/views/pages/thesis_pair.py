@@ -12,7 +12,7 @@ import numpy as np
 from thermogear.base.display import celsius, exactly, number, span
 from thermogear.base.parameters import PARAMETERS
 from thermogear.base.units import RPM, ZERO_CELSIUS
-from thermogear.base.vocabulary import STATUS
+from thermogear.base.vocabulary import STATUS, moves
 from thermogear.results.result import Result
 from thermogear.views.page import Block, Gallery, Page, Pictures, Section, Table, Text, notice_lines
 from thermogear.views.pages import captions, gear_sections, overlay
@@ -124,7 +124,7 @@ def _warming(result: Result, pictures: Pictures) -> Told:
         told[-1] += f", {ends}" * lines
         section = gear_sections.row(result, pictures)
         blocks = [one for one in section.blocks if one.kind != "text"] if section else []
-    still = [one for one in points if int(one["status"]) != 0]
+    still = [one for one in points if not moves(one["status"])]
     for word in dict.fromkeys(map(label_of, still)):
         some = [one for one in still if label_of(one) == word]
         told.append(f"at {', '.join(map(_at, some))} {word}{_gap(some) * (word == 'jammed')}")
@@ -152,7 +152,10 @@ def _diagram(name: str, result: Result, pictures: Pictures) -> Told:
     data = result.group(f"diagrams/{name}")
     if data is None:
         cold = result.groups["motion"].isel(bundle=0, operating=0, state=0)
-        why = "stopped before it" if result.interrupted else f"undeformed it is {label_of(cold)}"
+        why = f"undeformed it is {label_of(cold)}"
+        if moves(cold["status"]):
+            why = "its stiffness does not fluctuate"
+        why = "stopped before it" if result.interrupted else why
         return f"Not computed: {why}.", []
     states = json.loads(str(data.attrs["state_names"]))
     rows = result.table("matches")[name]
@@ -170,7 +173,7 @@ def _diagram(name: str, result: Result, pictures: Pictures) -> Told:
         if rows
         else "no bifurcation was found"
     )
-    if any((one["status"].values == 0).any() for one in here):
+    if any(moves(one["status"]).any() for one in here):
         pictures.add(
             f"diagram-{name}", "Undeformed and hot", overlay.CAPTION, data, (),
             lambda: overlay_picture(data, states, rows), wide=True,
