@@ -338,9 +338,10 @@ class GearFamily:
             some = {n: v[first] for n, v in (known | {"operating.speed": speed}).items()}
             distinct = replace(group, columns=some, index=first)
             springs = _kept(self._springs, key, lambda: self._meshed(distinct)).take(which.ravel())
-        error = Periodic.columns([case.transmission_error]) * samples.error[:, None]
         return replace(
-            with_error(springs, error),
+            with_error(
+                springs, Periodic.columns([case.transmission_error]) * samples.error[:, None]
+            ),
             mesh_frequency=case.pair.pinion.teeth * samples.case.stated.speed,
             damping_ratio=samples.damping_ratio,
             inertias=samples.inertias,
