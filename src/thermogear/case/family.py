@@ -327,8 +327,7 @@ class GearFamily:
         if self.state.hangs_on_the_load(case):
             springs = self._meshed(group)
         else:
-            # where the heat is given, springs and backlash do not know the damping, and the speed
-            # alone by the growth that it causes
+            # of given heat springs and backlash know no damping, and the speed by the growth alone
             known = {name: values for name, values in columns.items() if name not in BESIDE}
             turning = samples.case.stated.speed
             speed = np.sign(turning) if self.state == UNDEFORMED else turning
