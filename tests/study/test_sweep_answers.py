@@ -167,3 +167,34 @@ def test_a_row_without_an_oil_bath_says_so_and_keeps_its_numbers() -> None:
             np.testing.assert_array_equal(there[name].values, same[name].values)
     assert numbers(hot[0].notices[0].text) == [2.0, 2.0, 150.0]
     assert 150.0 not in numbers(known[0].notices[0].text)
+
+
+def test_motion_and_answers_of_a_sweep_share_one_heat_balance(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Whichever of the two is asked first, the other solves no balance and tells the same."""
+    rng = np.random.default_rng(SEED)
+    case = next(
+        made for made in iter(lambda: gear_case(load_case(own(rng))), None) if made.computed
+    )
+    rows = float(np.ravel(case.torques)[0]) * np.array([[0.8], [1.1]])
+    solved: list[int] = []
+    solve = GearCase.balance_of
+
+    def counted(self: GearCase, *given: object, **how: object) -> object:
+        solved.append(1)
+        return solve(self, *given, **how)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(GearCase, "balance_of", counted)
+    want = ("oil_temperature", "mean_stiffness")
+    both = GearFamily(case, ("pinion_torque",))
+    moving_points, still_points = both(rows), both.quasi_static(rows, want)
+    assert len(solved) == 1
+    alone = GearFamily(case, ("pinion_torque",)).quasi_static(rows, want)
+    assert len(solved) == 2
+    for name, values in alone.items():
+        np.testing.assert_array_equal(still_points[name], values)
+    again = GearFamily(case, ("pinion_torque",))(rows)
+    np.testing.assert_array_equal(moving_points.stiffness, again.stiffness)
+    both.quasi_static(1.01 * rows, want)
+    assert len(solved) == 4

@@ -11,7 +11,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from itertools import product
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -40,6 +40,7 @@ from thermogear.case.samples import (
     GEARS_AT,
     WIDTHS,
     Columns,
+    Samples,
     fields_of,
     quasi_static,
     sampled,
@@ -164,6 +165,9 @@ class GearFamily:
         init=False, repr=False, compare=False, default_factory=dict
     )
     _springs: dict[tuple[object, ...], Excitations] = field(
+        init=False, repr=False, compare=False, default_factory=dict
+    )
+    _samples: dict[tuple[object, ...], Samples] = field(
         init=False, repr=False, compare=False, default_factory=dict
     )
 
@@ -307,14 +311,14 @@ class GearFamily:
         """The case with parameters of its file put to other ``values`` (SI)."""
         if not names:
             return self.case
-        key = tuple(values.tolist())
-        made = self._cases.get(key)
-        if made is None:
+
+        def make() -> GearCase:
             made = self.case.with_values(dict(zip(names, values, strict=True)), told=False)
-            if not any(name.startswith("operating.") for name in names):
-                made = replace(made, speeds=self.case.speeds, torques=self.case.torques)
-            _keep(self._cases, key, made)
-        return made
+            if any(name.startswith("operating.") for name in names):
+                return made
+            return replace(made, speeds=self.case.speeds, torques=self.case.torques)
+
+        return _kept(self._cases, tuple(values.tolist()), make)
 
     def _excited(self, group: _Group) -> Excitations:
         case, columns, count = group.case, group.columns, group.index.size
@@ -323,24 +327,20 @@ class GearFamily:
         if self.state.hangs_on_the_load(case):
             springs = self._meshed(group)
         else:
-            # where the heat is given, springs and backlash do not know the damping, and the speed
-            # alone by the growth that it causes
+            # of given heat springs and backlash know no damping, and the speed by the growth alone
             known = {name: values for name, values in columns.items() if name not in BESIDE}
             turning = samples.case.stated.speed
             speed = np.sign(turning) if self.state == UNDEFORMED else turning
             every = np.stack([*known.values(), speed])
             _, first, which = np.unique(every, axis=1, return_index=True, return_inverse=True)
             key = (group.values, every[:, first].tobytes())
-            each = self._springs.get(key)
-            if each is None:
-                some = {name: values[first] for name, values in known.items()}
-                some["operating.speed"] = speed[first]
-                each = self._meshed(replace(group, columns=some, index=first))
-                _keep(self._springs, key, each)
-            springs = each.take(which.ravel())
-        error = Periodic.columns([case.transmission_error]) * samples.error[:, None]
+            some = {n: v[first] for n, v in (known | {"operating.speed": speed}).items()}
+            distinct = replace(group, columns=some, index=first)
+            springs = _kept(self._springs, key, lambda: self._meshed(distinct)).take(which.ravel())
         return replace(
-            with_error(springs, error),
+            with_error(
+                springs, Periodic.columns([case.transmission_error]) * samples.error[:, None]
+            ),
             mesh_frequency=case.pair.pinion.teeth * samples.case.stated.speed,
             damping_ratio=samples.damping_ratio,
             inertias=samples.inertias,
@@ -357,13 +357,17 @@ class GearFamily:
         """Quantities of the mesh cycle of every row of a group, and its status."""
         case = group.case
         # by its place where a choice that varies changes the name
-        known = [m.name for m in case.models]
-        names = known if self.bundle in known else [m.name for m in self.case.models]
-        model = case.models[names.index(self.bundle)]
-        count, columns = group.index.size, group.columns
+        names = [m.name for m in (*case.models, *self.case.models)]
+        model = case.models[names.index(self.bundle) % len(case.models)]
+
+        def sample(case: GearCase, columns: Columns, count: int) -> Samples:
+            """The same for the motion and for the answers: its heat balance is solved once."""
+            key = (group.values, count, *((n, v.tobytes()) for n, v in columns.items()))
+            return _kept(self._samples, key, lambda: sampled(case, columns, count))
+
         return quasi_static(
-            case, columns, count, model, self.state, want,
-            path_positions=path_positions, alive=self.alive,
+            case, group.columns, group.index.size, model, self.state, want,
+            path_positions=path_positions, sample=sample, alive=self.alive,
         )  # fmt: skip
 
 
@@ -377,11 +381,18 @@ class _Group:
     columns: Columns
 
 
-def _keep(kept: dict[Any, Any], key: object, value: object) -> None:
-    """Remember ``value``, the oldest forgotten; threads share what is kept."""
-    for old in list(kept)[: max(len(kept) - KEPT + 1, 0)]:
-        kept.pop(old, None)
-    kept[key] = value
+Kept = TypeVar("Kept")
+
+
+def _kept(kept: dict[Any, Kept], key: object, make: Callable[[], Kept]) -> Kept:
+    """What ``make`` made for ``key``, the oldest forgotten; threads share what is kept."""
+    value = kept.get(key)
+    if value is None:
+        value = make()
+        for old in list(kept)[: max(len(kept) - KEPT + 1, 0)]:
+            kept.pop(old, None)
+        kept[key] = value
+    return value
 
 
 def along(family: GearFamily | NumberFamily) -> Callable[[float], Points]:

@@ -306,10 +306,12 @@ def quasi_static(
     want: Sequence[str],
     *,
     path_positions: int = FEW,
+    sample: Callable[[GearCase, Columns, int], Samples] = sampled,
     alive: Alive = keep_going,
 ) -> dict[str, NDArray[Any]]:
     """Stored quantities of the mesh cycle of ``count`` samples, in SI: name -> (sample, ...).
 
+    ``sample`` is :func:`sampled`, or one that keeps what it made.
     ``want`` names them (:func:`~thermogear.mesh.cycle.mesh_cycle`); only they are computed, and
     with them ``pinion_speed``, ``pinion_torque`` and ``status``. A sample that no case could
     have is "impossible", one whose heat or mesh does not settle says so, both are nan, and no
@@ -323,7 +325,7 @@ def quasi_static(
         alive()
         some = {name: values[places] for name, values in columns.items()}
         try:
-            here = sampled(case, some, places.size).case
+            here = sample(case, some, places.size).case
             return [(places, _cycle(here, some, model, state, want, path_positions))]
         except ThermogearError as error:
             if places.size == 1:
