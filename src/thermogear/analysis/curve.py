@@ -13,8 +13,8 @@ from scipy.optimize import brentq
 from thermogear.analysis.orbits import Orbit, closed
 from thermogear.analysis.section import plain
 from thermogear.base.errors import ConvergenceError, InputError
+from thermogear.dynamics.lanes import Lanes
 from thermogear.dynamics.return_map import ReturnMap, Visit, is_moved, return_map
-from thermogear.dynamics.tables import Lanes
 
 Floats = NDArray[np.float64]
 Family = Callable[[float], object]

@@ -23,8 +23,8 @@ from thermogear.analysis.orbits import closed
 from thermogear.analysis.section import lanes_of
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.base.vocabulary import moves
+from thermogear.dynamics.lanes import mixed
 from thermogear.dynamics.return_map import return_map
-from thermogear.dynamics.tables import mixed
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -9,8 +9,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.bounds import whole
 from thermogear.base.errors import ConvergenceError, InputError
+from thermogear.dynamics.lanes import Lanes
 from thermogear.dynamics.return_map import ReturnMap, return_map
-from thermogear.dynamics.tables import Lanes
 
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
