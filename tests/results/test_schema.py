@@ -9,8 +9,9 @@ import pytest
 import xarray as xr
 
 from thermogear.base.errors import InputError
+from thermogear.base.files import SCHEMA
 from thermogear.base.netcdf import write_tree
-from thermogear.base.stores import FORMAT, SCHEMA, require_schema
+from thermogear.base.stores import FORMAT, require_schema
 from thermogear.results.files import json_text
 from thermogear.results.result import Result, open_results
 

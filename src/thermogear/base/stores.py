@@ -30,8 +30,6 @@ COPY = "manifest.copy.json"
 JOURNAL = "journal.jsonl"
 METADATA = "zarr.json"
 FORMAT = 2
-SCHEMA = 1
-"""Version of what results and JSON outputs are called and mean; results without one came before."""
 
 _AGAIN = "repeat the command that began it"
 

@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from thermogear.base.errors import InputError
-from thermogear.base.files import LOCK, held, put, require_directory, together
-from thermogear.base.stores import SCHEMA
+from thermogear.base.files import LOCK, SCHEMA, held, put, require_directory, together
 
 RESULTS = "results.nc"
 SUMMARY = "summary.json"

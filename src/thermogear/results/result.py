@@ -16,9 +16,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import thermogear
 from thermogear.base.errors import InputError, nearest
+from thermogear.base.files import SCHEMA
 from thermogear.base.netcdf import read_tree, write_tree
 from thermogear.base.stores import RESULT as STORE
-from thermogear.base.stores import SCHEMA, about_store, read_store, require_schema
+from thermogear.base.stores import about_store, read_store, require_schema
 from thermogear.results.answer import Answer
 from thermogear.results.beside import with_notices
 from thermogear.results.files import RESULTS, claimed, finite
