@@ -23,6 +23,13 @@ FLOORS = (
 )  # fmt: skip
 
 
+CHANGING = {
+    "LoadedModel", "answers", "campbell", "drawing", "loaded_contact", "modes", "read_rexs",
+    "sensitivity", "statics", "waterfall", "write_rexs",
+}  # fmt: skip
+"""Public names whose arguments and stored names may change with any release."""
+
+
 def sizes() -> dict[str, tuple[int, int, int]]:
     """Floor -> modules, their lines, and the lines of the longest."""
     found = {}
@@ -74,9 +81,16 @@ def page() -> str:
     below = imports()
     for floor, (count, total, most) in sizes().items():
         lines.append(f"| `{floor}` | {count} | {total} | {most} | {', '.join(below[floor])} |")
-    lines += ["", "## Public names", "", "| name | where | what it is |", "|---|---|---|"]
+    lines += [
+        "", "## Public names", "",
+        "What is not listed here is not public. A stable name keeps its arguments, units and stored",
+        "names; where it must change, the old form works for one more release. A changing one may",
+        "differ with any release, and the change log says so.", "",
+        "| name | where | stability | what it is |", "|---|---|---|---|",
+    ]  # fmt: skip
     for name, module, words in names():
-        lines.append(f"| `{name}` | `{module}` | {words.replace('|', chr(92) + '|')} |")
+        kept = "changing" if name in CHANGING else "stable"
+        lines.append(f"| `{name}` | `{module}` | {kept} | {words.replace('|', chr(92) + '|')} |")
     return "\n".join(lines) + "\n"
 
 

@@ -121,6 +121,10 @@ def test_every_public_name_with_numbers_states_their_units() -> None:
     assert [n for n, doc in docs.items() if n not in WITHOUT_NUMBERS and not UNIT.search(doc)] == []
 
 
+def test_only_public_names_have_a_stability() -> None:
+    assert set(thermogear.__all__) >= house.CHANGING
+
+
 def test_every_public_name_is_loaded_when_first_used() -> None:
     code = "import sys, thermogear; print([m for m in sys.modules if m.startswith('thermogear.')])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
