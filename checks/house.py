@@ -83,9 +83,9 @@ def page() -> str:
         lines.append(f"| `{floor}` | {count} | {total} | {most} | {', '.join(below[floor])} |")
     lines += [
         "", "## Public names", "",
-        "What is not listed here is not public. A stable name keeps its arguments, units and stored",
-        "names; where it must change, the old form works for one more release. A changing one may",
-        "differ with any release, and the change log says so.", "",
+        "What is not listed here is not public. A stable name keeps its arguments, units and",
+        "stored names; where it must change, the old form works for one more release. A changing",
+        "one may differ with any release, and the change log says so.", "",
         "| name | where | stability | what it is |", "|---|---|---|---|",
     ]  # fmt: skip
     for name, module, words in names():
