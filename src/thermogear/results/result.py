@@ -185,8 +185,8 @@ class Result:
     def attrs(self) -> dict[str, Plain]:
         """The root attributes of the stored file."""
         told = json.dumps([one._asdict() for one in self.notices])
-        named = {"title": self.title, "kind": self.kind, "notices": told, "schema": SCHEMA}
-        return {**self.provenance, **named}
+        about: dict[str, Plain] = {"title": self.title, "kind": self.kind, "notices": told}
+        return {**self.provenance, **about, "schema": SCHEMA}
 
     def _repr_html_(self) -> str:
         """What a notebook shows: title, kind, answers or notices, the groups with their axes."""
