@@ -7,8 +7,8 @@ s = 1. A curve may turn back and end at another bifurcation of its own diagram, 
 on the way, or leave the range: then there is none. Order and nearness decide nothing.
 
 It is a homotopy of the equation. Each curve is a continuation in two parameters, so that it costs
-as much as some branches. It fails, and the row says why, where a curve breaks off or two curves end at
-one bifurcation. That two curves pass close to each other is the trap: neither is believed then.
+as much as some branches. It fails, and the row says why, where a curve breaks off or two curves
+end at one bifurcation. That two curves pass close to each other is the trap: neither is believed then.
 """
 
 from __future__ import annotations
