@@ -8,7 +8,8 @@ on the way, or leave the range: then there is none. Order and nearness decide no
 
 It is a homotopy of the equation. Each curve is a continuation in two parameters, so that it costs
 as much as some branches. It fails, and the row says why, where a curve breaks off or two curves
-end at one bifurcation. That two curves pass close to each other is the trap: neither is believed then.
+end at one bifurcation. Where two curves pass close to each other, one may go on along the other:
+neither is believed then.
 """
 
 from __future__ import annotations
