@@ -14,7 +14,7 @@ BENCH_STAMP := .bench-venv/.installed
 AUDIT_BIN := .audit-venv/bin
 AUDIT_STAMP := .audit-venv/.installed
 
-.PHONY: audit bench bench-coordinates bench-geared bench-measure bench-paths bench-shafts bench-train-map check chromium clean compile demo friction-evidence house licences lint lock look lowest mutate same sbom test trial-answers trial-app trial-attacks trial-base-sets trial-branches trial-coverage trial-damage trial-defects trial-experiment trial-heat trial-hostile trial-kills trial-labels trial-located trial-long trial-matched trial-pairs trial-public trial-shafts trial-stamps trial-swings trial-teeth trial-trains trial-turning trial-verdicts unit
+.PHONY: audit bench bench-coordinates bench-geared bench-measure bench-paths bench-shafts bench-train-map check chromium clean compile demo friction-evidence house licences lint lock look lowest mutate release-check same sbom test trial-answers trial-app trial-attacks trial-base-sets trial-branches trial-coverage trial-damage trial-defects trial-experiment trial-heat trial-hostile trial-kills trial-labels trial-located trial-long trial-matched trial-pairs trial-public trial-shafts trial-stamps trial-swings trial-teeth trial-trains trial-turning trial-verdicts unit
 
 demo: $(STAMP)  ## the main job: the rig's case file to a report
 	$(BIN)/thermogear example rig > .venv/rig.toml
@@ -112,6 +112,19 @@ audit: $(AUDIT_STAMP)  ## known vulnerabilities of the lock; needs the network
 
 mutate: $(AUDIT_STAMP)  ## does a changed formula fail a test? MUTATE="--per-module 8 --seed 2" for another sample
 	@$(AUDIT_BIN)/python checks/mutate.py $(MUTATE)
+
+release-check: $(STAMP)  ## sdist and wheel built, installed without the checkout, the demo run there; needs the packages
+	@set -e; place=$$(mktemp -d); trap 'rm -rf "$$place"' EXIT; \
+	$(BIN)/uv build --quiet --out-dir "$$place/dist" .; \
+	$(BIN)/uv venv --quiet --python $(BIN)/python "$$place/venv"; \
+	VIRTUAL_ENV="$$place/venv" $(BIN)/uv pip install --quiet --constraint requirements/dev.txt \
+	  "$$place"/dist/*.whl; \
+	cd "$$place"; unset PYTHONPATH; \
+	venv/bin/thermogear example rig -o rig.toml; \
+	venv/bin/thermogear run rig.toml -o demo > demo.txt; \
+	test -s demo/report.html; \
+	venv/bin/python -c "import thermogear; assert 'venv' in thermogear.__file__, thermogear.__file__"; \
+	venv/bin/thermogear --version; ls dist
 
 $(AUDIT_STAMP): $(STAMP) requirements/audit.txt
 	test -x $(AUDIT_BIN)/python || $(BIN)/python -m venv .audit-venv

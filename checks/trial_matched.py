@@ -31,7 +31,7 @@ from thermogear.base.plan import gather
 from thermogear.base.units import RPM
 from thermogear.case.case import load_case, load_example
 from thermogear.case.points import Points
-from thermogear.dynamics.tables import mixed
+from thermogear.dynamics.lanes import mixed
 from thermogear.study.diagrams import case_diagram
 
 Floats = NDArray[np.float64]

@@ -14,9 +14,9 @@ from thermogear.base.vocabulary import STATUS
 from thermogear.dynamics.integrate import simulate
 from thermogear.dynamics.kernels.rk4 import advance_pair
 from thermogear.dynamics.kernels.shared import advance_shared, pairs_push
+from thermogear.dynamics.lanes import Lanes
 from thermogear.dynamics.load_shared import LoadSharedModel
 from thermogear.dynamics.models import TorsionalModel
-from thermogear.dynamics.tables import Lanes
 
 BASE = TorsionalModel(
     damping_ratio=0.1535,

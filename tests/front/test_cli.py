@@ -144,6 +144,23 @@ def test_help_imports_nothing_heavy(arguments: list[str]) -> None:
     assert done.stdout.strip()
 
 
+def test_the_help_lists_every_command_once_in_whole_sentences(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    listed = [name for rows in command_line.GROUPS.values() for name in rows]
+    assert sorted(listed) == sorted(command_line.cli.commands)
+    assert main(["--help"]) == 0
+    shown = capsys.readouterr().out.splitlines()
+    titles = [shown.index(f"{title}:") for title in command_line.GROUPS]
+    assert titles == sorted(titles)
+    for rows in command_line.GROUPS.values():
+        for name, words in rows.items():
+            assert f"  {name:<12}  {words}" in shown  # not cut off, not broken
+            assert words.endswith(".")
+            assert words.count(".") == 1
+    assert max(map(len, shown)) <= 80
+
+
 # --- as a program -------------------------------------------------------------------------
 def test_module_and_errors_as_a_program(tmp_path: Path) -> None:
     version = started("--version")

@@ -18,7 +18,7 @@ from thermogear.analysis.settle import (
 )
 from thermogear.base.plan import Alive, keep_going
 from thermogear.dynamics.bundle import WIDTH, Bundle, bundles
-from thermogear.dynamics.tables import Lanes
+from thermogear.dynamics.lanes import Lanes
 
 Floats = NDArray[np.float64]
 Whole = NDArray[np.int64]

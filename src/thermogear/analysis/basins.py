@@ -39,10 +39,10 @@ from thermogear.base.plan import (
     spread,
 )
 from thermogear.base.vocabulary import NO_COUNT, STATUS, status_attributes
+from thermogear.dynamics.lanes import Lanes
 from thermogear.dynamics.models import ClearanceModel
 from thermogear.dynamics.plane import plane_of
 from thermogear.dynamics.return_map import return_map
-from thermogear.dynamics.tables import Lanes
 
 Floats = NDArray[np.float64]
 

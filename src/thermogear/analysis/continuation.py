@@ -1,4 +1,13 @@
-"""Continuation of periodic orbits in one parameter: branches, branch switching, cascades."""
+"""Continuation of periodic orbits in one parameter: branches, branch switching, cascades.
+
+Predictor and corrector along the arc of the branch (pseudo-arclength continuation): a step goes
+ahead by the tangent and the bend of the last step, Newton's method brings it back onto the branch
+across the tangent. The arc, not the parameter, is stepped, so that the walk goes round a fold. A
+step is halved where the corrector fails, turns too far or lands on a neighbouring branch, and
+grows where the branch is nearly straight. A step costs a few runs of the orbit's period with its
+variational equations. A branch ends in a gap where no step as short as SHORTEST_STEP succeeds;
+islands without a connection to the first orbit are not seen.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,11 @@
-"""The curve of periodic orbits over a parameter, and Newton's method onto it."""
+"""The curve of periodic orbits over a parameter, and Newton's method onto it.
+
+G(z, p) = P^n(z; p) - z = 0 with states and parameter scaled. dG/dz comes from the variational
+equations, dG/dp from derivatives of the map where it has them and else from a difference. A fold
+is where (1 - mu_1)(1 - mu_2)... vanishes, a period doubling where (1 + mu_1)(1 + mu_2)... does, a
+torus where a product 1 - mu_i mu_j of a pair does. Where the return map jumps, Newton's method has
+nothing to end on: the orbit is then said not to be there.
+"""
 
 from __future__ import annotations
 
@@ -13,8 +20,8 @@ from scipy.optimize import brentq
 from thermogear.analysis.orbits import Orbit, closed
 from thermogear.analysis.section import plain
 from thermogear.base.errors import ConvergenceError, InputError
+from thermogear.dynamics.lanes import Lanes
 from thermogear.dynamics.return_map import ReturnMap, Visit, is_moved, return_map
-from thermogear.dynamics.tables import Lanes
 
 Floats = NDArray[np.float64]
 Family = Callable[[float], object]

@@ -14,9 +14,10 @@ from thermogear.analysis.section import lanes_of
 from thermogear.base.errors import InputError, nearest
 from thermogear.base.excitation import Periodic
 from thermogear.base.plan import Arrays, Coordinate, Variable
+from thermogear.dynamics.lanes import Lanes
 from thermogear.dynamics.models import ClearanceModel
 from thermogear.dynamics.return_map import return_map
-from thermogear.dynamics.tables import Lanes, Pieces
+from thermogear.dynamics.tables import Pieces
 
 if TYPE_CHECKING:
     from thermogear.analysis.settle import Settled

@@ -33,9 +33,9 @@ from thermogear.analysis.walk import Search
 from thermogear.base.bounds import whole
 from thermogear.base.errors import InputError
 from thermogear.dynamics.blocks import Progress
+from thermogear.dynamics.lanes import Lanes
 from thermogear.dynamics.models import ClearanceModel
 from thermogear.dynamics.return_map import ReturnMap, return_map
-from thermogear.dynamics.tables import Lanes
 
 Floats = NDArray[np.float64]
 

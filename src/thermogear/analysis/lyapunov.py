@@ -1,4 +1,11 @@
-"""The largest Lyapunov exponent along a trajectory, with its batch-means error."""
+"""The largest Lyapunov exponent along a trajectory, with its batch-means error.
+
+One tangent vector travels along and is made unit every period; the mean of the logarithms of its
+growth is the exponent (Benettin's method with one vector). Tangents are those of the variational
+equations, so that no small distance has to be chosen. Its error is the standard error of the means
+of batches, true if a batch is long beside the memory of the motion. A long chaotic transient looks
+like chaos: the exponent is that of the stretch that was run.
+"""
 
 from __future__ import annotations
 
@@ -14,9 +21,9 @@ from thermogear.base.bounds import whole
 from thermogear.base.errors import InputError
 from thermogear.dynamics.blocks import Pace, Progress, run_blocks
 from thermogear.dynamics.bundle import Bundle, bundles
+from thermogear.dynamics.lanes import Lanes
 from thermogear.dynamics.models import ClearanceModel
 from thermogear.dynamics.return_map import ReturnMap, return_map
-from thermogear.dynamics.tables import Lanes
 
 Floats = NDArray[np.float64]
 

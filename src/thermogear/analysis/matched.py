@@ -5,6 +5,11 @@ one to the other, s = 0..1. A bifurcation is a curve in the plane of the paramet
 (:func:`~thermogear.analysis.event_curve.event_curve`). It has a partner where its curve arrives at
 s = 1. A curve may turn back and end at another bifurcation of its own diagram, where the two meet
 on the way, or leave the range: then there is none. Order and nearness decide nothing.
+
+It is a homotopy of the equation. Each curve is a continuation in two parameters, so that it costs
+as much as some branches. It fails, and the row says why, where a curve breaks off or two curves
+end at one bifurcation. Where two curves pass close to each other, one may go on along the other:
+neither is believed then.
 """
 
 from __future__ import annotations
@@ -23,8 +28,8 @@ from thermogear.analysis.orbits import closed
 from thermogear.analysis.section import lanes_of
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.base.vocabulary import moves
+from thermogear.dynamics.lanes import mixed
 from thermogear.dynamics.return_map import return_map
-from thermogear.dynamics.tables import mixed
 
 if TYPE_CHECKING:
     import xarray as xr

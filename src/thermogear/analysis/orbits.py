@@ -1,4 +1,11 @@
-"""Periodic orbits: Newton shooting on the event-exact map, multipliers, what happens on them."""
+"""Periodic orbits: Newton shooting on the event-exact map, multipliers, what happens on them.
+
+Single shooting: Newton's method for P^n(z) = z with D P^n of the variational equations, which finds
+unstable orbits too and converges quadratically near one; Floquet multipliers are the eigenvalues of
+that matrix. A step costs n periods with d tangents. Steps are cut to a half backlash, for the map
+has kinks. It fails from a far guess, at a fold, and on orbits so long and unstable that rounding
+times D P^n is larger than the tolerance.
+"""
 
 from __future__ import annotations
 
@@ -9,8 +16,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.bounds import whole
 from thermogear.base.errors import ConvergenceError, InputError
+from thermogear.dynamics.lanes import Lanes
 from thermogear.dynamics.return_map import ReturnMap, return_map
-from thermogear.dynamics.tables import Lanes
 
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]

@@ -20,8 +20,8 @@ from thermogear.base.vocabulary import (
     moves,
     status_attributes,
 )
+from thermogear.dynamics.lanes import Lanes
 from thermogear.dynamics.plane import plane_of
-from thermogear.dynamics.tables import Lanes
 
 Floats = NDArray[np.float64]
 Models = Lanes | Sequence[object] | None

@@ -11,8 +11,8 @@ from thermogear.analysis.agreement import Told
 from thermogear.analysis.lyapunov import Lyapunov
 from thermogear.analysis.orbits import Orbit, shoot
 from thermogear.analysis.section import units_of
+from thermogear.dynamics.lanes import Lanes
 from thermogear.dynamics.return_map import return_map
-from thermogear.dynamics.tables import Lanes
 
 Floats = NDArray[np.float64]
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import InputError
-from thermogear.dynamics.tables import Lanes
+from thermogear.dynamics.lanes import Lanes
 
 
 def lanes_of(model: object) -> Lanes:

@@ -24,7 +24,7 @@ from thermogear.base.errors import InputError
 from thermogear.base.plan import Alive, keep_going
 from thermogear.base.vocabulary import STILL
 from thermogear.dynamics.bundle import Bundle, Visits, bundles
-from thermogear.dynamics.tables import Lanes
+from thermogear.dynamics.lanes import Lanes
 
 Floats = NDArray[np.float64]
 Whole = NDArray[np.int64]

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.settle import PERIODIC, Rule, Settled, settle
-from thermogear.dynamics.tables import Lanes
+from thermogear.dynamics.lanes import Lanes
 
 Floats = NDArray[np.float64]
 Whole = NDArray[np.int64]

@@ -18,6 +18,8 @@ from typing import BinaryIO
 
 from thermogear.base.errors import InputError, meant
 
+SCHEMA = 1
+"""Version of what results and JSON outputs call and mean things; without one: before the first."""
 LOCK = "lock"
 """Stands in every directory that one process at a time writes into; stays there."""
 SEAL = ".sha256"

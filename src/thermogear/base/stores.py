@@ -34,6 +34,22 @@ FORMAT = 2
 _AGAIN = "repeat the command that began it"
 
 
+def require_schema(found: object, *, newest: int, what: str, version: str) -> None:
+    """Refuse ``what`` whose schema ``found`` is above the ``newest`` known here.
+
+    Raises InputError, one line with the schema and the ``version`` of thermogear that wrote it.
+    """
+    schema = int(found) if isinstance(found, int | np.integer) else 0
+    if schema > newest:
+        raise InputError(
+            what,
+            f"schema {schema}",
+            allowed=f"at most {newest}",
+            why=f"thermogear {version or '(version not stated)'} wrote it",
+            fix="read it with that version, or a newer one",
+        )
+
+
 def numbers_hash(values: NDArray[Any]) -> str:
     """sha256 of an array's numbers, independent of how they are compressed."""
     plain = np.ascontiguousarray(values)
@@ -136,6 +152,9 @@ def read_store(directory: str | Path) -> xr.Dataset:
     manifests = read_manifests(place)
     if not manifests:
         raise InputError("store", str(place), why="there is no store, or its manifest is damaged")
+    for manifest in manifests.values():
+        version = str(manifest.get("code", "")).partition("+")[0]
+        require_schema(manifest.get("format"), newest=FORMAT, what="store", version=version)
     if all(manifest.get("format") != FORMAT for manifest in manifests.values()):
         why = "another version of thermogear wrote it, whose stores do not vouch for the same"
         raise InputError("store", str(place), why=why, fix="compute it anew in another directory")

@@ -48,8 +48,8 @@ from thermogear.case.samples import (
     with_error,
 )
 from thermogear.case.thermal_state import HOT, UNDEFORMED, StateLike, ThermalState
+from thermogear.dynamics.lanes import Lanes
 from thermogear.dynamics.models import TorsionalModel
-from thermogear.dynamics.tables import Lanes
 from thermogear.mesh.excite import EXCITES, NO_ERROR
 from thermogear.mesh.model import MeshModel
 

@@ -14,8 +14,8 @@ from thermogear.base.excitation import Excitations, Periodic
 from thermogear.base.vocabulary import moves
 from thermogear.case.allowed import FLUCTUATION
 from thermogear.case.case import GearCase
+from thermogear.dynamics.lanes import Lanes
 from thermogear.dynamics.models import DeadZoneModel, TorsionalModel
-from thermogear.dynamics.tables import Lanes
 from thermogear.mesh.excite import excitations as mesh_excitations
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.errors import ConvergenceError
-from thermogear.dynamics.tables import Lanes
+from thermogear.dynamics.lanes import Lanes
 
 Floats = NDArray[np.float64]
 Rate = Callable[[float, Floats, int], Floats]

@@ -17,7 +17,7 @@ from thermogear.dynamics.kernels.batch import CARRIED, QUEUE
 from thermogear.dynamics.kernels.crossing import SCRATCH
 from thermogear.dynamics.kernels.exact import advance_exact
 from thermogear.dynamics.kernels.sensitivity import prepare_moved, sensitivity
-from thermogear.dynamics.tables import Lanes, Pieces
+from thermogear.dynamics.tables import LaneTables, Pieces
 
 Floats = NDArray[np.float64]
 Whole = NDArray[np.int64]
@@ -28,7 +28,7 @@ BLOCK = 128
 _COUNTS = tuple(base * 2**k for k in range(11) for base in (32, 48))
 
 
-def _bounds(lanes: Lanes, name: str) -> tuple[Floats, Floats]:
+def _bounds(lanes: LaneTables, name: str) -> tuple[Floats, Floats]:
     """Per lane: a bound of |p| over the period and of |dp/dphi| (without the jumps)."""
     coefficients = np.abs(getattr(lanes, name))
     size = coefficients.sum(axis=1)
@@ -49,7 +49,7 @@ def _powers(width: int, order: int) -> Floats:
     return np.asarray((np.arange(width)[:, None] * turn) ** (order - 1))
 
 
-def substeps(lanes: Lanes, order: int = ORDER) -> Whole:
+def substeps(lanes: LaneTables, order: int = ORDER) -> Whole:
     """Sub-steps a period each lane needs so that a polynomial of ``order`` is exact.
 
     The tail of the series stays below a few units in the last place: h sqrt(k_max) <= 0.3 for
@@ -200,7 +200,7 @@ def _turned(
     return np.cos(angle), np.sin(angle), parts[0], parts[1], which.ravel()
 
 
-def _taylor(lanes: Lanes, name: str, centres: Floats, half: Floats, order: int) -> Floats:
+def _taylor(lanes: LaneTables, name: str, centres: Floats, half: Floats, order: int) -> Floats:
     """Coefficients in u about the centre of every sub-step: (sub-step, lane, order + 1)."""
     coefficients = getattr(lanes, name)
     pieces: tuple[Pieces | None, ...] = getattr(lanes, name + "_pieces")
@@ -243,7 +243,7 @@ def _of_harmonics(
     return out
 
 
-def prepare_maps(lanes: Lanes, borders: Floats, marks: Bytes, order: int = ORDER) -> ExactMaps:
+def prepare_maps(lanes: LaneTables, borders: Floats, marks: Bytes, order: int = ORDER) -> ExactMaps:
     """The maps of ``lanes`` on the sub-steps between ``borders`` (phases from 0 to 1)."""
     widths = np.diff(borders)
     centres = borders[:-1] + 0.5 * widths
@@ -286,7 +286,10 @@ def prepare_maps(lanes: Lanes, borders: Floats, marks: Bytes, order: int = ORDER
 
 
 def maps_moved(
-    maps: ExactMaps, lanes: Lanes, around: Sequence[tuple[float, Lanes]], order: int = ORDER
+    maps: ExactMaps,
+    lanes: LaneTables,
+    around: Sequence[tuple[float, LaneTables]],
+    order: int = ORDER,
 ) -> tuple[Floats, Floats, float]:
     """Derivatives of the polynomials (N, 5, K + 1), half widths (N) and half backlash of one lane.
 
@@ -383,7 +386,7 @@ def _borders(count: int, jumps: tuple[float, ...], samples: int) -> tuple[Floats
 
 
 def layouts(
-    lanes: Lanes, *, samples: int = 0, block: int = BLOCK, refine: int = 1
+    lanes: LaneTables, *, samples: int = 0, block: int = BLOCK, refine: int = 1
 ) -> Iterator[tuple[Whole, Floats, Bytes]]:
     """Blocks of lanes with equal sub-steps: their indices, the borders, the sampled borders.
 

@@ -10,19 +10,21 @@ from numpy.typing import NDArray
 
 from thermogear.dynamics import exact
 from thermogear.dynamics.bundle import Prepared, Visits
-from thermogear.dynamics.tables import Lanes
+from thermogear.dynamics.tables import LaneTables
 
 Floats = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
 
-def exact_bundles(lanes: Lanes, refine: int = 1) -> Iterator[Prepared]:
+def exact_bundles(lanes: LaneTables, refine: int = 1) -> Iterator[Prepared]:
     """Blocks of lanes with equal sub-steps, and how the maps of each are prepared."""
     for index, borders, marks in exact.layouts(lanes, refine=refine):
         yield index, partial(_prepared, lanes, index, borders, marks)
 
 
-def _prepared(lanes: Lanes, index: Whole, borders: Floats, marks: NDArray[np.uint8]) -> ExactBundle:
+def _prepared(
+    lanes: LaneTables, index: Whole, borders: Floats, marks: NDArray[np.uint8]
+) -> ExactBundle:
     mine = lanes.take(index)
     return ExactBundle(
         exact.prepare_maps(mine, borders, marks), period=mine.period, damping=mine.damping

@@ -12,12 +12,12 @@ from thermogear.base.errors import InputError
 from thermogear.dynamics import exact
 from thermogear.dynamics.blocks import Pace, run_blocks
 from thermogear.dynamics.return_map import Stretch, Visit, stretched
-from thermogear.dynamics.tables import Lanes
+from thermogear.dynamics.tables import LaneTables
 
 Floats = NDArray[np.float64]
 
 
-def scales(lanes: Lanes) -> Floats:
+def scales(lanes: LaneTables) -> Floats:
     """Scales of (x, x') for distances, of the first lane: b and 2 pi b/period."""
     backlash = float(lanes.half_backlash[0])
     return np.array([backlash, 2.0 * np.pi * backlash / float(lanes.period[0])])
@@ -26,15 +26,15 @@ def scales(lanes: Lanes) -> Floats:
 Rates = tuple[Floats, Floats, float]
 
 
-def _lanes(model: object) -> Lanes:
-    found: Lanes = model if isinstance(model, Lanes) else model.lanes()  # type: ignore[attr-defined]
+def _lanes(model: object) -> LaneTables:
+    found: LaneTables = model if isinstance(model, LaneTables) else model.lanes()  # type: ignore[attr-defined]
     return found
 
 
 class ExactMap:
     """P: (x, x') at phase 0 to (x, x') one period later, of one lane, by event-exact maps."""
 
-    def __init__(self, lanes: Lanes, samples: int = 0) -> None:
+    def __init__(self, lanes: LaneTables, samples: int = 0) -> None:
         if len(lanes) != 1:
             raise InputError("model", f"{len(lanes)} lanes", allowed="one lane")
         self.lanes = lanes
@@ -137,7 +137,7 @@ class Ensemble:
 
     def __init__(
         self,
-        lanes: Lanes,
+        lanes: LaneTables,
         start: Floats,
         *,
         threads: int | None = None,

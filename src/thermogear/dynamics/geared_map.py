@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.dynamics.geared import GearedModel
+from thermogear.dynamics.geared_equation import GearedEquation
 from thermogear.dynamics.ladder import Engine, Steps
 from thermogear.dynamics.plane import Plane
 from thermogear.dynamics.return_map import Stretch, Visit
@@ -22,13 +22,13 @@ WATCHED = 128
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class GearedMap:
-    """P of a :class:`~thermogear.dynamics.geared.GearedModel`, by its engine.
+    """P of a :class:`~thermogear.dynamics.geared_equation.GearedEquation`, by its engine.
 
     The state (q, q') is that of the model; a period is its ``cycle`` of mesh periods, one without
     forces at shaft orders. ``samples`` a mesh period of what a visit records.
     """
 
-    model: GearedModel
+    model: GearedEquation
     how: Steps = field(default_factory=Steps)
     samples: int = 0
     concurrent: ClassVar[bool] = True
@@ -176,7 +176,7 @@ class GearedMap:
         return found / model.half_backlash
 
 
-def _of_journal(model: GearedModel, seen: Floats, rest: Floats) -> Plane:
+def _of_journal(model: GearedEquation, seen: Floats, rest: Floats) -> Plane:
     """(u_x, u_y) of a journal [um], in shapes that move it against the least inertia."""
     n = model.size
     onto, lift = np.zeros((2, model.dimension)), np.zeros((model.dimension, 2))

@@ -16,11 +16,11 @@ from thermogear.base.errors import InputError, nearest
 from thermogear.dynamics import adaptive, exact
 from thermogear.dynamics.blocks import Pace, Progress, run_blocks
 from thermogear.dynamics.kernels.rk4 import advance_rk4
+from thermogear.dynamics.lanes import Lanes
 from thermogear.dynamics.load_shared import LoadSharedModel, simulate_shared
 from thermogear.dynamics.models import ClearanceModel, PairModel
 from thermogear.dynamics.outcome import DIVERGED, Result, dataset
 from thermogear.dynamics.pair import four_of, simulate_pair, with_angles
-from thermogear.dynamics.tables import Lanes
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -1,4 +1,4 @@
-"""The engine of a :class:`~thermogear.dynamics.geared.GearedModel`: tables of its steps, and runs.
+"""The engine of a drive train's equation: tables of its steps, and runs.
 
 The steps themselves are :mod:`~thermogear.dynamics.kernels.ladder`.
 """
@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.base.excitation import Periodic
-from thermogear.dynamics.geared import Function, GearedModel
+from thermogear.dynamics.geared_equation import Function, GearedEquation
 from thermogear.dynamics.kernels import drive as k
 from thermogear.dynamics.kernels import ladder as steps
 from thermogear.dynamics.kernels.drive_run import advance
@@ -81,7 +81,9 @@ class Engine:
     ``ramp`` [Hz/s]: how the mesh frequency rises during a run.
     """
 
-    def __init__(self, model: GearedModel, how: Steps | None = None, *, ramp: float = 0.0) -> None:
+    def __init__(
+        self, model: GearedEquation, how: Steps | None = None, *, ramp: float = 0.0
+    ) -> None:
         self.model = model
         self.how = how or Steps()
         self.ramp = ramp
@@ -355,7 +357,7 @@ def _joined(numbers: ArrayLike) -> NDArray[np.complex128]:
 
 
 def periodic_table(
-    model: GearedModel,
+    model: GearedEquation,
 ) -> tuple[Floats, NDArray[np.int64], Floats, Floats, NDArray[np.int64]]:
     """Edges of panels, the guide to them, polynomials, borders of steps, which functions jump.
 

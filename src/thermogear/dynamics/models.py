@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import Excitation, Periodic
-from thermogear.dynamics.tables import Lanes, Pieces, Table, stack
+from thermogear.dynamics.lanes import Lanes
+from thermogear.dynamics.tables import Pieces, Table, stack
 
 Floats = NDArray[np.float64]
 

@@ -6,15 +6,13 @@ counted in periods, 0 at the Poincare section.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
-from importlib import import_module
-from typing import Any
+from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.base.errors import InputError
 from thermogear.base.excitation import Periodic
 from thermogear.base.pieces import Pieces as Pieces
 
@@ -26,7 +24,7 @@ Table = Periodic | Pieces
 
 
 @dataclass(frozen=True, kw_only=True)
-class Lanes:
+class LaneTables:
     """Parameter points side by side: x'' + c x' + k(t) f(x; b) = F(t), one entry per lane.
 
     ``stiffness`` and ``force`` are Fourier coefficients of shape (lane, harmonic), column 0 the
@@ -44,10 +42,10 @@ class Lanes:
     def __len__(self) -> int:
         return int(self.period.size)
 
-    def take(self, index: ArrayLike) -> Lanes:
+    def take(self, index: ArrayLike) -> Self:
         """The lanes of ``index``, in that order."""
         chosen = np.atleast_1d(np.asarray(index))
-        return Lanes(
+        return type(self)(
             period=self.period[chosen],
             damping=self.damping[chosen],
             half_backlash=self.half_backlash[chosen],
@@ -56,27 +54,6 @@ class Lanes:
             stiffness_pieces=tuple(self.stiffness_pieces[i] for i in chosen),
             force_pieces=tuple(self.force_pieces[i] for i in chosen),
         )
-
-    def return_map(self, samples: int = 0) -> Any:
-        """The event-exact return map of one lane; ``samples`` a period of what it records."""
-        return _maps("exact_map").ExactMap(self, samples)
-
-    def bundles(self, refine: int = 1) -> Iterator[Any]:
-        """The return maps of all lanes in blocks that run together: indices, how each is made."""
-        found: Iterator[Any] = _maps("exact_bundle").exact_bundles(self, refine)
-        return found
-
-    def ensemble(
-        self,
-        start: Floats,
-        *,
-        threads: int | None = None,
-        refine: int = 1,
-        parting: bool = False,
-    ) -> Any:
-        """All lanes from ``start`` (lane, 2) on their way, on ``threads``; see its class."""
-        how: dict[str, Any] = {"threads": threads, "refine": refine, "parting": parting}
-        return _maps("exact_map").Ensemble(self, start, **how)
 
     def jumps(self, lane: int) -> tuple[float, ...]:
         """Phases in (0, 1) where a table of this lane may jump."""
@@ -102,39 +79,6 @@ class Lanes:
             if piece is not None:
                 total[..., lane] += piece(phi)
         return total
-
-
-def mixed(one: Lanes, other: Lanes, share: float) -> Lanes:
-    """Lanes with every coefficient at a ``share`` of its way from ``one`` to ``other``.
-
-    Raises InputError where their tables jump otherwise than each other's, or differ in length.
-
-    >>> from thermogear.dynamics.models import TorsionalModel
-    >>> slow, fast = (
-    ...     TorsionalModel(
-    ...         damping_ratio=0.1,
-    ...         frequency=w,
-    ...         stiffness_amplitude=0.0,
-    ...         mean_force=0.1,
-    ...         force_amplitude=0.0,
-    ...     ).lanes()
-    ...     for w in (1.0, 2.0)
-    ... )
-    >>> bool(mixed(slow, fast, 0.5).period[0] == 0.75 * slow.period[0])
-    True
-    """
-    alike = one.stiffness_pieces == other.stiffness_pieces, one.force_pieces == other.force_pieces
-    names = ("period", "damping", "half_backlash", "stiffness", "force")
-    if not all((*alike, *(getattr(one, n).shape == getattr(other, n).shape for n in names))):
-        raise InputError("lanes", "tables that differ", allowed="as many harmonics, the same jumps")
-    rows = {n: (1.0 - share) * getattr(one, n) + share * getattr(other, n) for n in names}
-    pieces = {n: getattr(one, n) for n in ("stiffness_pieces", "force_pieces")}
-    return Lanes(**rows, **pieces)
-
-
-def _maps(name: str) -> Any:
-    """The module that makes maps of lanes, by name: it knows the lanes."""
-    return import_module(f"thermogear.dynamics.{name}")
 
 
 def stack(tables: Iterable[Table]) -> tuple[Complexes, tuple[Pieces | None, ...]]:

@@ -46,11 +46,69 @@ USER_ERROR = 2
 INTERRUPTED = 130
 
 
+GROUPS = {
+    "Begin": {
+        "new": "Write a short case of your own gear pair.",
+        "example": "Print a ready-made case, or list them.",
+        "schema": "Print the JSON schema of a case file.",
+        "check": "Check CASE without running it, and list its defaults.",
+        "app": "Open CASE in the browser and turn its dials.",
+        "draw": "Draw the gears of CASE in mesh, cold and hot.",
+    },
+    "One pair": {
+        "answers": "Answer the usual questions on CASE, each with a verdict.",
+        "run": "Run CASE: temperatures, stiffness, motion, and a report.",
+        "friction": "Draw every friction law over the path of contact of CASE.",
+        "temperature": "Map temperatures and backlash over speed and torque.",
+        "warmup": "Follow CASE from a cold start through its duty.",
+        "relief": "Find the tip relief that makes the hot pair run evenly.",
+        "contact": "Solve the loaded tooth contact over position and load.",
+        "orbit": "Find the closed orbit a motion settles on.",
+        "lyapunov": "Compute the largest Lyapunov exponent of a motion.",
+        "shared-force": "Compare the force shared by tooth pairs with one spring.",
+    },
+    "Over speed and load": {
+        "sweep": "Compute the settled motion over any grid of parameters.",
+        "runup": "Run CASE up and down in speed, without heat and hot.",
+        "bifurcation": "Draw the orbit diagram of CASE over one parameter.",
+        "continue": "Follow an orbit in a parameter and locate bifurcations.",
+        "map": "Map the regimes of CASE over two parameters.",
+        "basins": "Map which motion every start of CASE ends on.",
+    },
+    "Drive train": {
+        "statics": "Compute the loads of shafts and bearings at rest.",
+        "modes": "Compute the natural frequencies of the drive train.",
+        "campbell": "Find the critical speeds, cold and hot.",
+        "waterfall": "Run the drive train up and down, with forces and sound.",
+    },
+    "Records": {
+        "measure": "Read a record and print its lines with their uncertainty.",
+        "compare": "Compare CASE with records or tables of lines.",
+        "import": "List a REXS model, or write one of its stages as a case.",
+        "export": "Write CASE and its results as a REXS model.",
+        "report": "Draw the page of stored results anew.",
+        "versus": "Set two to six cases side by side.",
+    },
+    "Research": {
+        "sensitivity": "Rank the inputs that decide the results.",
+        "thesis": "Judge the claims of the thesis, or redo it for CASE.",
+        "verify": "Hold the models against finite elements.",
+    },
+}
+"""Commands as the help lists them: group -> name -> one sentence of at most 60 characters."""
+
+
 class _Commands(click.Group):
-    """Commands in the order of use; an unknown one is answered with the nearest."""
+    """Commands in groups, in the order of use; an unknown one is answered with the nearest."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        return list(self.commands)
+        return [name for rows in GROUPS.values() for name in rows]
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        widest = max(map(len, self.commands))
+        for title, rows in GROUPS.items():
+            with formatter.section(title):
+                formatter.write_dl([(name.ljust(widest), words) for name, words in rows.items()])
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]

@@ -1,4 +1,10 @@
-"""What the loaded contact is solved from: the model's choices, compliances and gaps of a mesh."""
+"""What the loaded contact is solved from: the model's choices, compliances and gaps of a mesh.
+
+Forces on the candidates of contact are >= 0, gaps are >= 0, and one of both is 0: a complementarity
+problem with a convex energy, solved by the active set of Lawson and Hanson with Newton's steps for
+the Hertzian approach (``sharing_kernel``). Its size is the few tooth pairs that may touch, so that
+a direct solve is cheap. A point that does not settle is told as such.
+"""
 
 from __future__ import annotations
 

@@ -3,6 +3,10 @@
 G T = q steadily and C dT/dt = q - G T in time, with given temperatures on some nodes. Every
 conductance, source and given temperature may be an array over operating points: one call
 solves them all. Within one call the network is linear, so that the time course is exact.
+
+Steady states are one linear solve for each operating point. In time the network goes by its modes
+(symmetric eigenvalue problem of G scaled by the root of C), so that a stiff network, a tooth beside
+a housing, costs no small steps. What depends on temperature is iterated by the caller.
 """
 
 from __future__ import annotations

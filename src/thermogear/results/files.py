@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from thermogear.base.errors import InputError
-from thermogear.base.files import LOCK, held, put, require_directory, together
+from thermogear.base.files import LOCK, SCHEMA, held, put, require_directory, together
 
 RESULTS = "results.nc"
 SUMMARY = "summary.json"
@@ -19,8 +19,9 @@ _MARKED = "results of thermogear\n"
 
 
 def json_text(summary: Mapping[str, Any]) -> str:
-    """A summary as a JSON text of lines; what is not finite is null."""
-    return json.dumps(finite(summary), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    """A summary, with the version of its schema, as lines of JSON; what is not finite is null."""
+    content = {"schema": SCHEMA, **summary}
+    return json.dumps(finite(content), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def finite(value: Any) -> Any:

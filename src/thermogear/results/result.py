@@ -16,9 +16,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import thermogear
 from thermogear.base.errors import InputError, nearest
+from thermogear.base.files import SCHEMA
 from thermogear.base.netcdf import read_tree, write_tree
 from thermogear.base.stores import RESULT as STORE
-from thermogear.base.stores import about_store, read_store
+from thermogear.base.stores import about_store, read_store, require_schema
 from thermogear.results.answer import Answer
 from thermogear.results.beside import with_notices
 from thermogear.results.files import RESULTS, claimed, finite
@@ -184,7 +185,8 @@ class Result:
     def attrs(self) -> dict[str, Plain]:
         """The root attributes of the stored file."""
         told = json.dumps([one._asdict() for one in self.notices])
-        return {**self.provenance, "title": self.title, "kind": self.kind, "notices": told}
+        about: dict[str, Plain] = {"title": self.title, "kind": self.kind, "notices": told}
+        return {**self.provenance, **about, "schema": SCHEMA}
 
     def _repr_html_(self) -> str:
         """What a notebook shows: title, kind, answers or notices, the groups with their axes."""
@@ -296,6 +298,8 @@ def stored_dataset(data: xr.Dataset, title: str = "") -> Result:
 
 def _from_attributes(attrs: Mapping[Any, Any], groups: Mapping[str, xr.Dataset]) -> Result:
     about = {str(name): _plain(value) for name, value in attrs.items()}
+    version = str(about.get("thermogear", ""))
+    require_schema(about.pop("schema", 0), newest=SCHEMA, what="results", version=version)
     kind, title = str(about.pop("kind", "")), str(about.pop("title", ""))
     try:
         told = json.loads(str(about.pop("notices", "[]")))

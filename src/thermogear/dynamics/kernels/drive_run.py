@@ -1,4 +1,8 @@
-"""Run a drive train through its mesh periods: which step next, contacts that change, tangents."""
+"""Run a drive train through its mesh periods: which step next, contacts that change, tangents.
+
+Steps of halved lengths stand ready (``ladder``). A step that misses the tolerance, or whose sweeps
+do not settle, is taken again on a shorter one; where a contact changes the step ends.
+"""
 
 from __future__ import annotations
 
