@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermogear.base.units import ZERO_CELSIUS
+from thermogear.base.display import CELSIUS
 from thermogear.results.result import Result
 from thermogear.results.tables import harmless, stretched
 
@@ -81,7 +81,7 @@ def _place_name(data: xr.Dataset, dimension: str, place: int) -> str:
         return f"{dimension}{place}"
     value = data[dimension].values[place]
     if dimension == "gear_temperature":
-        return f"{float(value) - ZERO_CELSIUS:.4g}degC"
+        return f"{CELSIUS(float(value)):.4g}degC"
     return str(value)
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermogear.base.display import number
+from thermogear.base.display import MILLIMETRE, number
 from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.results.result import Result
 from thermogear.views.columns import lines_of
@@ -82,7 +82,7 @@ def caption(drawing: GearDrawing) -> str:
 
 
 def _least(state: Any) -> str:
-    return number(1e3 * float(np.nanmin(state.back_gap)))
+    return number(MILLIMETRE(float(np.nanmin(state.back_gap))))
 
 
 def rows(result: Result, drawing: GearDrawing) -> list[tuple[str, ...]]:
@@ -93,7 +93,7 @@ def rows(result: Result, drawing: GearDrawing) -> list[tuple[str, ...]]:
     def both(words: str, values: Iterable[float]) -> tuple[str, ...]:
         return (words, *(number(float(value), 6) for value in values))
 
-    clearance = 1e3 * data["tip_clearance"].isel(operating=0).values
+    clearance = MILLIMETRE(data["tip_clearance"].isel(operating=0).values)
     return [
         ("teeth", str(drawing.teeth[PINION]), str(drawing.teeth[WHEEL])),
         *(
@@ -101,9 +101,9 @@ def rows(result: Result, drawing: GearDrawing) -> list[tuple[str, ...]]:
             for name in ("tip", "pitch", "base", "root")
         ),
         both("tip diameter, hot [mm]", (2.0 * np.abs(hot.outlines[g]).max() for g in (0, 1))),
-        both("tooth thickness on the pitch circle [mm]", 1e3 * data["thickness"].values),
+        both("tooth thickness on the pitch circle [mm]", MILLIMETRE(data["thickness"].values)),
         ("teeth of the span", *(str(int(k)) for k in data["span_teeth"].values)),
-        both("span over these teeth [mm]", 1e3 * data["span"].values),
+        both("span over these teeth [mm]", MILLIMETRE(data["span"].values)),
         both("tip clearance, cold [mm]", clearance[0]),
         both("tip clearance, hot [mm]", clearance[-1]),
         both("centre distance, cold and hot [mm]", (cold.centre_distance, hot.centre_distance)),

@@ -7,7 +7,7 @@ from functools import partial
 from operator import itemgetter
 from typing import TYPE_CHECKING, Any
 
-from thermogear.base.display import MICROMETRE, Display, number
+from thermogear.base.display import MICROMETRE, NANOMETRE, Display, number
 from thermogear.results.result import Result
 from thermogear.views.columns import Column, declared, lines_of, typed
 from thermogear.views.csv_files import cell_text, head_text
@@ -316,8 +316,8 @@ def _shared_tables(summary: Summary) -> list[Block]:
     head = ["difference", "mean load", "light load"]
     found: list[Block] = [Table("Load-shared force against the one spring", head, rows)]
     if "mean_clearance_m" in summary:
-        least, mean = (number(1e6 * summary[f"{n}_clearance_m"]) for n in ("least", "mean"))
-        apart = number(1e9 * summary["clearance_apart_m"])
+        least, mean = (number(MICROMETRE(summary[f"{n}_clearance_m"])) for n in ("least", "mean"))
+        apart = number(NANOMETRE(summary["clearance_apart_m"]))
         found.append(
             Text(
                 f"The free play 2b′ is {mean} µm in the mean over a mesh period and {least} µm "

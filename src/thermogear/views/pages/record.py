@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from markupsafe import Markup
 
-from thermogear.base.display import number
-from thermogear.base.units import RPM, STANDARD_GRAVITY
+from thermogear.base.display import SPEED, number
+from thermogear.base.units import STANDARD_GRAVITY
 from thermogear.results.result import Result
 from thermogear.views import tables
 from thermogear.views.page import Block, Cell, Page, Pictures, Section, Table, Text
@@ -134,7 +134,7 @@ def _spectrum(results: Result) -> Section | None:
 
 def _spectrum_of_run(results: Result, data: xr.Dataset, slices: xr.Dataset) -> Section:
     """Of a run whose speed changes: no line has one frequency, so none is marked."""
-    rate, speed = results.text("rate"), slices["slice_speed"].values / RPM
+    rate, speed = results.text("rate"), SPEED(slices["slice_speed"].values)
     words = "frequency [Hz]" if rate else "frequency [cycles/sample]"
     known = bool(rate) and not int(slices.attrs.get("of_mesh", 0))
     ends = f"from {speed.min():.5g} to {speed.max():.5g} rpm"
@@ -288,7 +288,7 @@ def comparison_table(data: xr.Dataset) -> Table:
         rows.append(
             [
                 *(texts[place] for texts in beside.values()),
-                number(float(one["pinion_speed"]) / RPM, 4),
+                number(SPEED(float(one["pinion_speed"])), 4),
                 words,
                 str(one["verdict"].values) or "–",
                 number(float(one["measured_value"]) * factor, 5),
@@ -316,9 +316,9 @@ def implied_table(implied: xr.Dataset) -> Table:
     """Acceleration, speed and distance from the mesh line that measured lines imply."""
     lines: list[list[str | Markup]] = [
         [
-            number(float(implied["pinion_speed"].values[i]) / RPM, 4),
+            number(SPEED(float(implied["pinion_speed"].values[i])), 4),
             f"{float(implied['implied_acceleration'].values[i]) / STANDARD_GRAVITY:.1f}",
-            _maybe(float(implied["implied_shaft_speed"].values[i]) / RPM, 1),
+            _maybe(SPEED(float(implied["implied_shaft_speed"].values[i])), 1),
             _maybe(float(implied["mesh_line_offset"].values[i]), 2),
             _maybe(float(implied["line_bin_offset"].values[i]), 2),
         ]

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from thermogear.base.units import RPM, STANDARD_GRAVITY
+from thermogear.base.display import SPEED
+from thermogear.base.units import STANDARD_GRAVITY
 from thermogear.results.result import Result
 
 _TOLD = 5e-4
@@ -48,18 +49,19 @@ def _greatest(one: Mapping[str, Any]) -> str:
         interval = f"; greatest of {one['steps']} steps {low:.5g}..{high:.5g}"
     return (
         f"{one['channel'][:12]:12} {one['name'][:22]:22} order {one['order']:9.3f}: "
-        f"{one['reading']:.5g} at {one['speed'] / RPM:.5g} rpm, {one['frequency']:.5g} Hz{interval}"
+        f"{one['reading']:.5g} at {SPEED(one['speed']):.5g} rpm, "
+        f"{one['frequency']:.5g} Hz{interval}"
     )
 
 
 def _shaft(found: Mapping[str, Any]) -> str:
     """The shaft's speed with its interval, or as a mean with its range."""
-    speed, half = found["shaft_speed"] / RPM, found["shaft_speed_half_width"]
+    speed, half = SPEED(found["shaft_speed"]), found["shaft_speed_half_width"]
     span = found.get("shaft_speed_range")
     if span is not None:
-        low, high = (one / RPM for one in span)
+        low, high = (SPEED(one) for one in span)
         return f"mean shaft speed over the record: {speed:.6g} rpm (from {low:.5g} to {high:.5g})"
-    around = f" +- {half / RPM:.3g} rpm (95 %)" if half is not None else ""
+    around = f" +- {SPEED(half):.3g} rpm (95 %)" if half is not None else ""
     return f"shaft speed: {speed:.8g} rpm{around}"
 
 
@@ -72,7 +74,7 @@ def resonance(one: Mapping[str, Any]) -> str:
     if one["kind"] == "resonance":
         return f"resonance at {place}{damping}: {seen} peak there at different speeds"
     if one["kind"] == "speed":
-        rpm = one["speed"] / RPM
+        rpm = SPEED(one["speed"])
         return f"at {rpm:.5g} rpm {seen} peak together: the speed's doing, no resonance in hertz"
     return f"{seen} alone peaks, at {place}: one order cannot tell a resonance from a speed"
 
@@ -83,7 +85,7 @@ def given_and_found(figures: Mapping[str, Any]) -> list[str]:
         return []
     given, found = figures["given"], figures["found"]
     said = [f"{given['teeth']} teeth"] if given["teeth"] is not None else []
-    said += [f"{given['speed'] / RPM:.6g} rpm"] if given["speed"] is not None else []
+    said += [f"{SPEED(given['speed']):.6g} rpm"] if given["speed"] is not None else []
     told = [f"given: {', '.join(said) if said else 'neither teeth nor speed'}"]
     if found["teeth"]:
         return [*told, f"found: {_decided(found)}"]
@@ -151,15 +153,15 @@ def comparison(result: Result) -> list[str]:
         )
         named = f"{row['record']}: " if row.get("record") else ""
         told.append(
-            f"{named}{row['speed'] / RPM:.0f} rpm, {row.get('where') or row['quantity']}: measured "
-            f"{row['measured'] * factor:.5g} {unit}; {models}; u_val {100 * row['u_val']:.2f} % "
+            f"{named}{SPEED(row['speed']):.0f} rpm, {row.get('where') or row['quantity']}: "
+            f"measured {row['measured'] * factor:.5g} {unit}; {models}; u_val {100 * row['u_val']:.2f} % "
             f"(num {100 * row['u_num']:.2f}, input {100 * row['u_input']:.2f}, data "
             f"{100 * row['u_data']:.2f}); {row['verdict']}"
         )
     for item in found["implied"]:
-        text = f"{item['speed'] / RPM:.0f} rpm: the line implies {item['acceleration_g']:.1f} g"
+        text = f"{SPEED(item['speed']):.0f} rpm: the line implies {item['acceleration_g']:.1f} g"
         if item["shaft_speed"] is not None:
-            text += f" and {item['shaft_speed'] / RPM:.1f} rpm"
+            text += f" and {SPEED(item['shaft_speed']):.1f} rpm"
         if item["offset_bins"] is not None:
             text += f", {item['offset_bins']:+.2f} bins off the nominal mesh line"
         told.append(text)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.units import ZERO_CELSIUS
+from thermogear.base.display import CELSIUS, MICROMETRE
 from thermogear.base.vocabulary import ASSUMED, FASTER_RULE
 from thermogear.results.result import Result
 from thermogear.views.pages.findings import ways_apart
@@ -68,7 +68,7 @@ def _bifurcations(data: xr.Dataset, name: str) -> list[dict[str, Any]]:
 
 
 def _degrees(data: xr.Dataset, state: int) -> float:
-    return round(float(data["gear_temperature"].values[state]) - ZERO_CELSIUS, 6)
+    return round(CELSIUS(float(data["gear_temperature"].values[state])), 6)
 
 
 def _diagram(result: Result) -> dict[str, Any]:
@@ -118,8 +118,8 @@ def _run_up(result: Result) -> dict[str, Any]:
             "fold_rpm": rpm("jump_fold", i),
             "return_rpm": rpm("jump_return", i),
             "into_period": int(data["jump_into"].values[i]),
-            "before_um": 1e6 * float(data["jump_before"].values[i]),
-            "after_um": 1e6 * float(data["jump_after"].values[i]),
+            "before_um": MICROMETRE(float(data["jump_before"].values[i])),
+            "after_um": MICROMETRE(float(data["jump_after"].values[i])),
         }
         for i in range(data.sizes["jump"])
     ]

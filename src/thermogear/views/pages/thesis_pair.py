@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermogear.base.display import celsius, exactly, number, span
+from thermogear.base.display import CELSIUS, MICROMETRE, SPEED, celsius, exactly, number, span
 from thermogear.base.parameters import PARAMETERS
-from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import STATUS
 from thermogear.results.result import Result
 from thermogear.views.page import Block, Gallery, Page, Pictures, Section, Table, Text, notice_lines
@@ -70,7 +69,7 @@ def _summary(result: Result) -> str:
     cut = "Stopped on request before the end: what is missing was not computed. "
     return (
         f"{cut if result.interrupted else ''}The steps of the thesis for this pair at "
-        f"{exactly(float(mesh['pinion_speed']) / RPM)} rpm and "
+        f"{exactly(SPEED(float(mesh['pinion_speed'])))} rpm and "
         f"{exactly(float(mesh['pinion_torque']))} N m (ω_h = {at}), "
         f"bundle {mesh['bundle'].item()}."
     )
@@ -87,7 +86,7 @@ def _sentence(parts: Sequence[str]) -> str:
 
 
 def _micro(one: xr.Dataset, name: str) -> str:
-    return number(1e6 * float(one[name]))
+    return number(MICROMETRE(float(one[name])))
 
 
 def _temperatures(result: Result) -> list[xr.Dataset]:
@@ -141,8 +140,8 @@ def _at(one: xr.Dataset) -> str:
 
 def _gap(points: list[xr.Dataset]) -> str:
     """The half backlash of jammed points, and where it is used up: each has its own housing."""
-    gaps = span([1e6 * float(one["half_backlash"]) for one in points])
-    jams = span([round(float(one["jam_temperature"]) - ZERO_CELSIUS, 0) for one in points])
+    gaps = span([MICROMETRE(float(one["half_backlash"])) for one in points])
+    jams = span([round(CELSIUS(float(one["jam_temperature"])), 0) for one in points])
     used = f", used up at {jams} °C with the housing of each" * (jams != "–")
     return f", half backlash {gaps} µm{used}"
 
@@ -285,7 +284,7 @@ def _numbers(result: Result, findings: dict[str, str]) -> dict[str, Any]:
         "thermogear": result.text("thermogear"),
         "title": result.title,
         "kind": result.kind,
-        "pinion_speed_rpm": float(mesh["pinion_speed"]) / RPM,
+        "pinion_speed_rpm": SPEED(float(mesh["pinion_speed"])),
         "pinion_torque_Nm": float(mesh["pinion_torque"]),
         "frequency_ratio": float(mesh["frequency_ratio"]),
         "findings": findings,
