@@ -6,8 +6,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from thermogear.base.display import SPEED
-from thermogear.base.units import STANDARD_GRAVITY
 from thermogear.results.result import Result
+from thermogear.views.columns import lines_of
+from thermogear.views.pages.record_tables import comparison_tables, line_table
 
 _TOLD = 5e-4
 """Weight that three digits show."""
@@ -22,10 +23,8 @@ def measured(result: Result) -> list[str]:
     told += [f"{name}: {value}" for name, value in result.table("settings").items()]
     if found.get("shaft_speed") is not None:
         told.append(_shaft(found))
-    head = f"{'channel':12} {'line':22} {'order':>9} {'cyc/sample':>11} {'Hz':>10} {'+- Hz':>9}"
-    told.append(f"{head} {'reading':>10} {'g':>9} {'um':>9} {'u_D %':>7} {'+- %':>7}")
-    told += [_line(one) for one in found["lines"]]
-    return told + slices(found.get("slices"))
+    table = line_table(result)
+    return [*told, *lines_of(*[table] if table else []), *slices(found.get("slices"))]
 
 
 def slices(found: Mapping[str, Any] | None) -> list[str]:
@@ -114,55 +113,7 @@ def _open(verdict: str) -> str:
     return "no gear" if verdict == "no gear found" else "teeth undecided"
 
 
-def _line(one: Mapping[str, Any]) -> str:
-    return (
-        f"{one['channel'][:12]:12} {one['name'][:22]:22} {_cell(one['order'], 9, 3)} "
-        f"{_cell(one['position'], 11, 6)} {_cell(one['frequency'], 10, 3)} "
-        f"{_cell(one['frequency_half_width'], 9, 5)} "
-        f"{_cell(one['reading'], 10, 4)} {_cell(one['acceleration'], 9, 3, 1 / STANDARD_GRAVITY)} "
-        f"{_cell(one['displacement'], 9, 3, 1e6)} "
-        f"{_cell(_share(one, 'standard_uncertainty', 'uncertainty'), 7, 2, 100.0)} "
-        f"{_cell(_share(one, 'half_width', 'half_width'), 7, 2, 100.0)}"
-    )
-
-
-def _share(one: Mapping[str, Any], name: str, before: str) -> float | None:
-    """A relative figure of a line; results of older versions call it otherwise."""
-    found: float | None = one[f"relative_{name}" if f"relative_{name}" in one else before]
-    return found
-
-
-def _cell(value: float | None, width: int, digits: int, factor: float = 1.0) -> str:
-    return "-".rjust(width) if value is None else f"{factor * value:{width}.{digits}f}"
-
-
-UNITS = {"displacement": (1e6, "um"), "frequency": (1.0, "Hz"), "acceleration": (1.0, "m/s^2")}
-
-
 def comparison(result: Result) -> list[str]:
-    """A row for each quantity and speed, what the lines imply, the conclusion."""
-    found = result.table("figures")
+    """Notices, the tables of the page, the conclusion."""
     told = [f"{one.level}: {one.text}" for one in result.notices]
-    for row in found["rows"]:
-        factor, unit = UNITS[row["quantity"]]
-        models = ", ".join(
-            f"{name} {value * factor:.5g} {unit} ({100 * error:+.2f} %)"
-            for name, value, error in zip(
-                found["models"], row["simulated"], row["errors"], strict=True
-            )
-        )
-        named = f"{row['record']}: " if row.get("record") else ""
-        told.append(
-            f"{named}{SPEED(row['speed']):.0f} rpm, {row.get('where') or row['quantity']}: "
-            f"measured {row['measured'] * factor:.5g} {unit}; {models}; u_val {100 * row['u_val']:.2f} % "
-            f"(num {100 * row['u_num']:.2f}, input {100 * row['u_input']:.2f}, data "
-            f"{100 * row['u_data']:.2f}); {row['verdict']}"
-        )
-    for item in found["implied"]:
-        text = f"{SPEED(item['speed']):.0f} rpm: the line implies {item['acceleration_g']:.1f} g"
-        if item["shaft_speed"] is not None:
-            text += f" and {SPEED(item['shaft_speed']):.1f} rpm"
-        if item["offset_bins"] is not None:
-            text += f", {item['offset_bins']:+.2f} bins off the nominal mesh line"
-        told.append(text)
-    return [*told, found["conclusion"]]
+    return [*told, *lines_of(*comparison_tables(result)), result.table("figures")["conclusion"]]

@@ -28,7 +28,7 @@ from thermogear.views.page import (
 )
 from thermogear.views.pages import captions, gear_sections, rig_trains, row_sections
 from thermogear.views.pages.background import background
-from thermogear.views.pages.record import comparison_table, implied_table
+from thermogear.views.pages.record_tables import comparison_table, implied_table
 from thermogear.views.pages.sensitivity import sensitivity_section
 from thermogear.views.plots import claims as plots
 from thermogear.views.plots.sweeps import over_each_other

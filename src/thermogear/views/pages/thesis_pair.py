@@ -18,7 +18,7 @@ from thermogear.views.pages import captions, gear_sections, overlay
 from thermogear.views.pages.background import background
 from thermogear.views.pages.findings import finding
 from thermogear.views.pages.lost_words import lost_words
-from thermogear.views.pages.record import comparison_table
+from thermogear.views.pages.record_tables import comparison_table
 from thermogear.views.pages.sweeps import LOST_DIAGRAM, lost_table
 from thermogear.views.plots import laws
 from thermogear.views.plots.lost_contact import forces_picture

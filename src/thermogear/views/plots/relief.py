@@ -51,4 +51,4 @@ def over_load(data: xr.Dataset, design: float) -> Picture:
 
 def _pairs(panel: Panel, x: xr.DataArray, y: xr.DataArray, shown: Display) -> None:
     for place, name in enumerate(str(n) for n in y["pair_kind"].values):
-        panel.curve(x.values, y.values[place], colour=COLOURS.get(name, INK), label=name)
+        panel.curve(x.values, shown(y.values[place]), colour=COLOURS.get(name, INK), label=name)
