@@ -110,6 +110,14 @@ def declared(
     return Table(caption, [c.title for c in columns], cells, names, stand_out, wordy)
 
 
+def pairs(caption: str, head: tuple[Cell, Cell], values: Mapping[Any, Any]) -> Table:
+    """A table of two columns: what is what."""
+    rows = [{"name": name, "value": value} for name, value in values.items()]
+    name, value = head
+    columns = (Column(name, "name"), Column(value, lambda row: str(row["value"])))
+    return declared(caption, columns, rows)
+
+
 def typed(text: Cell) -> str:
     """A cell of a page as any terminal shows it: no marks, no letters that may be missing."""
     words = text.striptags() if isinstance(text, Markup) else text
