@@ -9,7 +9,7 @@ import numpy as np
 
 from thermogear.base.display import SPEED, number
 from thermogear.results.result import Result
-from thermogear.views import tables
+from thermogear.views.columns import pairs
 from thermogear.views.page import Page, Pictures, Section, Text
 from thermogear.views.pages import record_lines, record_slices, record_tables
 from thermogear.views.picture import Axis, Panel, Picture
@@ -216,7 +216,7 @@ def _settings(results: Result) -> Section | None:
     found = results.table("settings")
     if not found:
         return None
-    table = tables.words("", ["setting", "value"], [[k, v] for k, v in found.items()])
+    table = pairs("", ("setting", "value"), found)
     return Section("settings", "Settings", [table])
 
 

@@ -4,16 +4,28 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermogear.base.display import CELSIUS, MICROMETRE, SPEED, celsius, exactly, number, span
+from thermogear.base.display import (
+    CELSIUS,
+    KELVIN,
+    MICROMETRE,
+    SPEED,
+    celsius,
+    exactly,
+    number,
+    span,
+)
 from thermogear.base.parameters import PARAMETERS
 from thermogear.base.vocabulary import STATUS
 from thermogear.results.result import Result
-from thermogear.views.page import Block, Gallery, Page, Pictures, Section, Table, Text, notice_lines
+from thermogear.results.tables import rows_of
+from thermogear.views.columns import Column, declared
+from thermogear.views.page import Block, Gallery, Page, Pictures, Section, Text, notice_lines
 from thermogear.views.pages import captions, gear_sections, overlay
 from thermogear.views.pages.background import background
 from thermogear.views.pages.findings import finding
@@ -176,7 +188,7 @@ def _diagram(name: str, result: Result, pictures: Pictures) -> Told:
     if kept:
         left = f" {len(rows) - len(kept)} more were not followed." * (len(kept) < len(rows))
         both = Result.of("overlay", "", {"states": data}, matches=kept, states=states)
-        blocks.append(Table(overlay.FOLLOWED + left, *overlay.table_of(both)))
+        blocks.append(replace(overlay.table_of(both), caption=overlay.FOLLOWED + left))
     return _sentence([f"from {' to '.join(ends)} {PARAMETERS[name].shown}".strip(), *told]), blocks
 
 
@@ -200,8 +212,8 @@ def _friction(result: Result, pictures: Pictures) -> Told:
     section = gear_sections.friction(result, pictures)
     galleries = [one for one in section.blocks if isinstance(one, Gallery)] if section else []
     kept = [one for some in galleries for one in some.pictures if one.name in FRICTION]
-    head = ["friction", "mean coefficient", "greatest flash temperature [K]"]
-    table = Table("Along the path of contact, hot.", head, [*zip(names, mean, flash, strict=True)])
+    rows = rows_of({"friction": names, "mean": mean, "flash": flash})
+    table = declared("Along the path of contact, hot.", FRICTION_TABLE, rows)
     return (
         f"Hot, mixed lubrication gives a mean friction coefficient of {mean[0]} and a flash "
         f"temperature of at most {flash[0]} K, dry friction {mean[1]} and {flash[1]} K."
@@ -251,20 +263,24 @@ def _sensors(result: Result) -> Told:
         ), []
     off = span([one["temperature_K"] - one["indicated_K"] for one in read])
     gap = _micro(balance.isel(bundle=0, operating=0), "half_backlash_uncertainty")
-    rows = [
-        [
-            one["node"].replace("_", " "), one["kind"], celsius(one["indicated_K"]),
-            celsius(one["temperature_K"]), number(one["uncertainty_K"]),
-        ]
-        for one in read
-    ]  # fmt: skip
-    head = ["node", "kind", "shown", "corrected", "standard uncertainty [K]"]
     return (
         f"Readings: {len(read)}, corrected by {off} K; what stays uncertain of them moves the half "
         f"backlash by {gap} µm (standard uncertainty)."
-    ), [Table("Readings.", head, rows, names=2)]
+    ), [declared("Readings.", READINGS, read, names=2)]
 
 
+FRICTION_TABLE = (
+    Column("friction", "friction"),
+    Column("mean coefficient", "mean"),
+    Column("greatest flash temperature [K]", "flash"),
+)
+READINGS = (
+    Column("node", lambda row: row["node"].replace("_", " ")),
+    Column("kind", "kind"),
+    Column("shown", lambda row: celsius(row["indicated_K"])),
+    Column("corrected", lambda row: celsius(row["temperature_K"])),
+    Column("standard uncertainty", "uncertainty_K", 3, KELVIN),
+)
 STEPS: tuple[tuple[str, str, Callable[[Result, Pictures], Told]], ...] = (
     ("temperature", "Gear temperature", _warming),
     ("damping", "Damping", partial(_diagram, "damping_ratio")),
