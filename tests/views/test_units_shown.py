@@ -73,6 +73,17 @@ def test_no_unit_is_made_outside_the_display(folder: str) -> None:
     assert found == set()
 
 
+def test_no_page_makes_a_table_by_hand() -> None:
+    made = {
+        str(path.relative_to(SOURCE))
+        for folder in ("views", "front", "thesis")
+        for path in (SOURCE / folder).rglob("*.py")
+        for node in ast.walk(ast.parse(path.read_text("utf-8")))
+        if isinstance(node, ast.Call) and ast.unparse(node.func).rpartition(".")[2] == "Table"
+    }
+    assert made == {"views/columns.py"}
+
+
 def test_conversions_are_seen() -> None:
     seen = "f'{1e6 * x:.2f}', v / RPM, t - 273.15, s / 60.0, w / (2.0 * np.pi), y * 1e-3"
     assert len([*conversions(ast.parse(seen))]) == 6

@@ -11,7 +11,7 @@ import numpy as np
 from thermogear.base.display import PERCENT, exactly, number
 from thermogear.base.vocabulary import ASSUMED, FASTER_RULE
 from thermogear.results.result import Result
-from thermogear.views.columns import Column, Row, declared, pairs
+from thermogear.views.columns import Column, Row, declared, lines_of, pairs
 from thermogear.views.page import LEAD, Block, Page, Pictures, Section, Table, Text
 from thermogear.views.pages.findings import finding, ways_apart
 from thermogear.views.pages.lost_words import lost_words
@@ -73,12 +73,17 @@ def page(result: Result) -> Page:
     data = result.data
     if not result.title:
         result = replace(result, title=TITLES[result.kind])
+    points = _points(data, result)
+    # what loses contact is among the lines
+    located = [
+        block for block in points.blocks if isinstance(block, Table) and block.caption != CONTACT
+    ]
     return Page(
         result,
         _summary(data),
-        [_pictures(data), _points(data, result), _settings(data)],
+        [_pictures(data), points, _settings(data)],
         numbers=lambda: numbers(result),
-        lines=lambda: lines(result),
+        lines=lambda: [*lines(result), *lines_of(*located)],
     )
 
 
@@ -254,9 +259,10 @@ def lost_table(data: xr.Dataset) -> Table:
             }
         )
     columns = (Column(page_words(name, data[name]), "at", exactly), *LOST)
-    return declared("Contact over the parameter; up / down where they differ.", columns, rows)
+    return declared(CONTACT, columns, rows)
 
 
+CONTACT = "Contact over the parameter; up / down where they differ."
 LOST = (
     Column("motion", "motion"),
     Column("up and down", "apart"),
