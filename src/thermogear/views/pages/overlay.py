@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -10,7 +10,7 @@ from typing import Any
 from thermogear.base.display import Display, number
 from thermogear.base.parameters import Parameter
 from thermogear.results.result import Result
-from thermogear.views.columns import Column, Row, declared, lines_of
+from thermogear.views.columns import Column, declared, lines_of
 from thermogear.views.csv_files import table_text
 from thermogear.views.page import LEAD, Page, Pictures, Section, Table, notice_lines
 from thermogear.views.pages.findings import finding
@@ -53,13 +53,9 @@ def page(result: Result) -> Page:
             *notice_lines(result),
         ],
         tables=lambda: {
-            "overlay_bifurcations.csv": _csv(table_of(result, "{:.15g}".format))
+            "overlay_bifurcations.csv": table_text([*map(str, table.head)], table.figures)
         },
     )  # fmt: skip
-
-
-def _csv(table: Table) -> str:
-    return table_text([*map(str, table.head)], [[*map(str, row)] for row in table.rows])
 
 
 def _headline(result: Result) -> str:
@@ -100,24 +96,17 @@ def _moved(result: Result) -> list[dict[str, Any]]:
     return rows
 
 
-def table_of(
-    result: Result, digits: Callable[[float], str] = lambda value: number(value, 9)
-) -> Table:
+def table_of(result: Result) -> Table:
     """The bifurcations of both states, and in words what became of each on the way."""
     unit = Display(_parameter(result).shown)
     names = zip((*result.values("states"), "moved by"), ("one", "other", "moved"), strict=True)
     columns = (
         Column("kind", "kind"),
         Column("period", "period"),
-        *(Column(words, _at(name, digits), 9, unit) for words, name in names),
+        *(Column(words, name, 9, unit) for words, name in names),
         Column("on the way", partial(_became, unit=unit.unit)),
     )
     return declared(FOLLOWED, columns, _moved(result))
-
-
-def _at(name: str, digits: Callable[[float], str]) -> Callable[[Row], str]:
-    """A value in its digits; nothing where there is none."""
-    return lambda row: "" if row[name] is None else digits(row[name])
 
 
 def _became(row: Mapping[str, Any], unit: str) -> str:
