@@ -28,7 +28,7 @@ Row = Mapping[str, Any]
 
 PLAIN = Display("")
 TYPEWRITTEN = str.maketrans(
-    {"µ": "u", "−": "-", "–": "-", "→": "->", "°": "deg", "′": "'", "⁻": "-"}
+    {"µ": "u", "±": "+-", "−": "-", "–": "-", "→": "->", "°": "deg", "′": "'", "⁻": "-"}
     | dict(zip("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789", strict=True))
 )
 """Letters of a page as any terminal has them."""
@@ -117,12 +117,14 @@ def declared(
     return Table(caption, [c.title for c in columns], cells, names, stand_out, wordy, figures)
 
 
-def pairs(caption: str, head: tuple[Cell, Cell], values: Mapping[Any, Any]) -> Table:
-    """A table of two columns: what is what."""
+def pairs(
+    caption: str, head: tuple[Cell, Cell], values: Mapping[Any, Any], *, wordy: bool = False
+) -> Table:
+    """A table of two columns: what is what; ``wordy`` where that is told in words."""
     rows = [{"name": name, "value": value} for name, value in values.items()]
     name, value = head
     columns = (Column(name, "name"), Column(value, lambda row: str(row["value"])))
-    return declared(caption, columns, rows)
+    return declared(caption, columns, rows, names=1 + wordy, wordy=wordy)
 
 
 def typed(text: Cell) -> str:

@@ -216,7 +216,7 @@ def _settings(results: Result) -> Section | None:
     found = results.table("settings")
     if not found:
         return None
-    table = pairs("", ("setting", "value"), found)
+    table = pairs("", ("setting", "value"), found, wordy=True)
     return Section("settings", "Settings", [table])
 
 

@@ -11,7 +11,7 @@ from thermogear.base.display import GRAVITY, MICROMETRE, PERCENT, Display, numbe
 from thermogear.results.result import Result
 from thermogear.views.columns import PLAIN, Column, Row, declared, rows_along
 from thermogear.views.page import Table
-from thermogear.views.typesetting import html_symbol
+from thermogear.views.typesetting import html_symbol, prose
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -47,9 +47,11 @@ def line_table(result: Result, most: int | None = None) -> Table | None:
         Column("off bin", "line_bin_offset", 4),
     )
     return declared(
-        "Peak amplitudes over the record (root mean square of a line's own amplitude); u_D: "
-        "relative standard uncertainty; ±: half width of the 95 % interval. – : the record does "
-        "not tell.",
+        prose(
+            "Peak amplitudes over the record (root mean square of a line's own amplitude); u_D: "
+            "relative standard uncertainty; ±: half width of the 95 % interval. – : the record "
+            "does not tell."
+        ),
         columns,
         rows_along(data.isel(line=strongest), "line"),
         names=2,
