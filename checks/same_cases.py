@@ -326,10 +326,7 @@ CASES = (
     ),
     Case(
         "records",
-        (
-            "measure record.csv louder.csv --teeth 25 -o out --json",
-            "measure record.csv louder.csv --teeth 25 -o again",
-        ),
+        tuple(f"measure record.csv louder.csv --teeth 25 -o {to}" for to in ("out --json", "out")),
         {"record.csv": _table(), "louder.csv": _table(gain=1.3)},
     ),
     Case(
