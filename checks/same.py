@@ -63,8 +63,6 @@ SETTINGS = {
     "COLUMNS": "100",
 }
 """Environment of every command, beside this process's own."""
-SHOWN = 20
-"""So many places of a case where something is told differently are shown."""
 
 
 # --- one side -------------------------------------------------------------------------------
@@ -356,9 +354,7 @@ def _compare_texts(found: Verdict, path: str, old: list[str], new: list[str]) ->
     other = [f"{_told(a)} is {_told(b)} now" for a, b in pairs if a != b]
     found.told += len(pairs)
     found.told_equal += len(pairs) - len(other)
-    if other:
-        count = "" if len(pairs) == 1 else f"{len(other)} of {len(pairs)}, first "
-        found.otherwise.append(f"{path}: {count}{other[0]}")
+    found.otherwise += [f"{path}: {words}" for words in other]
 
 
 def _told(text: str | None) -> str:
@@ -417,7 +413,7 @@ def main(words: Sequence[str]) -> int:
     parser.add_argument("--list", action="store_true", help="print the cases and stop")
     parser.add_argument("--fresh", action="store_true", help="run the reference anew")
     parser.add_argument("--strict", action="store_true", help="told differences fail too")
-    parser.add_argument("--verbose", action="store_true", help="show some that is told differently")
+    parser.add_argument("--verbose", action="store_true", help="show each that is told differently")
     parser.add_argument("--jobs", type=int, default=1, help="cases at once [1]")
     parser.add_argument("--store", type=Path, default=STORE, help="home of the reference [.same]")
     options = parser.parse_args(words)
@@ -437,7 +433,7 @@ def main(words: Sequence[str]) -> int:
     for found, spent in verdicts(cases, reference, fresh=options.fresh, jobs=max(options.jobs, 1)):
         all_found.append(found)
         before += spent
-        _tell(found, SHOWN if options.verbose else 0)
+        _tell(found, each=options.verbose)
     for old, new in RENAMED.items():
         count = sum(new_path(p, {old: new}) == q for f in all_found for p, q in f.renamed.items())
         print(f"renamed {old} -> {new}: {count} variables")
@@ -452,7 +448,7 @@ def main(words: Sequence[str]) -> int:
     return int(different > 0 or (options.strict and otherwise > 0))
 
 
-def _tell(found: Verdict, most: int) -> None:
+def _tell(found: Verdict, *, each: bool) -> None:
     print(
         f"{found.case:<22} variables {found.equal:>4} of {found.variables:<4} "
         f"told {found.told_equal:>6} of {found.told:<6} {found.seconds:6.1f} s",
@@ -460,7 +456,7 @@ def _tell(found: Verdict, most: int) -> None:
     )
     for text in found.differences:
         print(f"    DIFFERENT {text}")
-    for text in found.otherwise[:most]:
+    for text in found.otherwise if each else ():
         print(f"    told {text}")
 
 

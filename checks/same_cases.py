@@ -185,8 +185,8 @@ def _record() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     return t, made + 0.5 * np.random.default_rng(2).standard_normal(t.size)
 
 
-def _table() -> str:
-    rows = "".join(f"{t:.9g},{a:.9g}\n" for t, a in zip(*_record(), strict=True))
+def _table(gain: float = 1.0) -> str:
+    rows = "".join(f"{t:.9g},{gain * a:.9g}\n" for t, a in zip(*_record(), strict=True))
     return f"time [s],acc [m/s^2]\n{rows}"
 
 
@@ -312,6 +312,22 @@ CASES = (
             "check five.toml",
             "answers five.toml -o answers",
         ),
+    ),
+    Case(
+        "third-pair",
+        (
+            "new --teeth 23 71 --module '1.5 mm' --face-width '14 mm' --torque '12 N m' "
+            "--speed '6000 rpm' -o third.toml",
+            f"run third.toml -o run --json {FEW}",
+            "temperature third.toml -o temperature --own --json",
+            "friction third.toml -o friction --json",
+            "contact third.toml -o contact --torques 6,12 --json",
+        ),
+    ),
+    Case(
+        "records",
+        tuple(f"measure record.csv louder.csv --teeth 25 -o {to}" for to in ("out --json", "out")),
+        {"record.csv": _table(), "louder.csv": _table(gain=1.3)},
     ),
     Case(
         "rexs",

@@ -59,7 +59,6 @@ def _scanned(make: Callable[..., str]) -> Callable[..., str]:
 
 tables.csv_text = _scanned(tables.csv_text)
 csv_files.table_text = _scanned(csv_files.table_text)
-csv_files._text = _scanned(csv_files._text)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -121,8 +121,9 @@ def test_told_differences_are_counted_apart(before: Path, tmp_path: Path) -> Non
     found = verdict(before, after)
     assert not found.differences
     assert found.otherwise == [
-        "case/curve.csv:t: 1 of 3, first nothing is '2' now",
-        "case/curve.csv:x: 2 of 3, first '2.5' is '2.6' now",
+        "case/curve.csv:t: nothing is '2' now",
+        "case/curve.csv:x: '2.5' is '2.6' now",
+        "case/curve.csv:x: nothing is '3' now",
         "case/result.zarr:force@units: 'N' is 'kN' now",
         "case/results.nc:motion/force@units: 'N' is 'kN' now",
     ]

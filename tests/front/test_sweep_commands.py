@@ -67,7 +67,7 @@ def test_bifurcation_with_and_without_heat_in_one_table(cases, tmp_path):
     page = (tmp_path / "d" / "overlay.html").read_text(encoding="utf-8")
     assert page.count("<figure") == 1
     table = [line for line in page_of(open_results(tmp_path / "d")).lines() if "doubling" in line]
-    assert re.split(r" {2,}", table[0])[1:3] == ["1", "0.170043027"]
+    assert re.split(r" {2,}", table[0].strip())[1:3] == ["1", "0.170043027"]
 
 
 def test_play_of_a_train_is_swept_in_one_command(tmp_path):

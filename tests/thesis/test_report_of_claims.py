@@ -32,7 +32,7 @@ from thermogear.thesis.claim import Finding, Verdict, rising, verdict_of
 from thermogear.thesis.evidence import Evidence, Size
 from thermogear.thesis.report import CLAIMS, build
 from thermogear.views.page import Code, Table
-from thermogear.views.pages.record import comparison_table
+from thermogear.views.pages.record_tables import comparison_table
 from thermogear.views.pages.thesis import page as page_of_claims
 from thermogear.views.write import save_results, write_report
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import itertools
 import json
 import math
@@ -16,7 +17,7 @@ from thermogear.base.vocabulary import label, status_attributes
 from thermogear.results.files import json_text
 from thermogear.results.tables import rows_of
 from thermogear.views.columns import Column, declared, lines_of, rows_along, typed
-from thermogear.views.csv_files import cell_text
+from thermogear.views.csv_files import cell_text, table_text
 from thermogear.views.page import Text
 
 GAP = np.array([[1.0 / 3e4, -2e-9], [np.nan, 4e-5]])
@@ -93,6 +94,19 @@ def test_the_page_has_units_in_heads_and_digits_as_declared() -> None:
         ["hot", "6000 rpm", "40.0", "80.0", "80.0", "−25.0", "20", "ok"],
     ]
     assert table.marked == {1}
+
+
+def test_csv_gets_the_rows_of_the_page_in_full() -> None:
+    columns = (COLUMNS[0], *COLUMNS[2:])
+    table = declared("Gaps.", columns, rows_along(data(), "state", "operating"))
+    head, *lines = csv.reader(table_text([*map(str, table.head)], table.figures).splitlines())
+    assert head == table.head
+    gaps = [float(line[1] or "nan") for line in lines]
+    assert gaps == pytest.approx(1e6 * GAP.ravel(), rel=1e-14, nan_ok=True)
+    for line, row in zip(lines, table.rows, strict=True):
+        assert (line[0], line[-1]) == (row[0], row[-1])
+        shown = [float(typed(cell)) for cell in row[1:6] if cell != "–"]
+        assert shown == pytest.approx([float(cell) for cell in line[1:6] if cell], abs=0.05)
 
 
 def test_the_terminal_shows_the_cells_of_the_page_in_columns() -> None:

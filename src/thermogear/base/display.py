@@ -7,31 +7,47 @@ import re
 from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass
 from string import Formatter
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import short
-from thermogear.base.units import RPM, ZERO_CELSIUS
+from thermogear.base.units import RPM, STANDARD_GRAVITY, ZERO_CELSIUS
 from thermogear.base.vocabulary import QUANTITIES
 
 
 @dataclass(frozen=True)
 class Display:
-    """How an SI number is shown: ``scale * (value - zero)`` in ``unit``."""
+    """How an SI number is shown: ``scale * (value - zero) / per`` in ``unit``.
+
+    ``per``: the size of the unit in SI where that is the exact number, as of rpm or minutes.
+    """
 
     unit: str
     scale: float = 1.0
     _: KW_ONLY
     zero: float = 0.0
+    per: float = 1.0
 
-    def __call__(self, values: ArrayLike) -> NDArray[np.float64]:
-        return np.asarray(self.scale * (np.asarray(values, dtype=float) - self.zero))
+    @overload
+    def __call__(self, values: float) -> float: ...
+
+    @overload
+    def __call__(self, values: ArrayLike) -> NDArray[np.float64]: ...
+
+    def __call__(self, values: ArrayLike) -> float | NDArray[np.float64]:
+        if isinstance(values, float):
+            return self.scale * (values - self.zero) / self.per
+        return np.asarray(self.scale * (np.asarray(values, dtype=float) - self.zero) / self.per)
+
+    def stored(self, shown: ArrayLike) -> NDArray[np.float64]:
+        """The SI numbers of what is ``shown``."""
+        return np.asarray(np.asarray(shown, dtype=float) * self.per / self.scale + self.zero)
 
     def text(self, value: float, digits: int) -> str:
         """``value`` with its unit, to so many places behind the point."""
-        return f"{float(self(value)):.{digits}f} {self.unit}"
+        return f"{self(value):.{digits}f} {self.unit}"
 
 
 MICROMETRE = Display("µm", 1e6)
@@ -41,12 +57,18 @@ CELSIUS = Display("°C", 1.0, zero=ZERO_CELSIUS)
 NEWTON = Display("N")
 STIFFNESS = Display("10⁸ N/m", 1e-8)
 PER_MICROMETRE = Display("N/µm", 1e-6)
-HERTZ = Display("Hz", 0.5 / math.pi)
+HERTZ = Display("Hz", per=2.0 * math.pi)
 """Of an angular frequency."""
-SPEED = Display("rpm", 1.0 / RPM)
+SPEED = Display("rpm", per=RPM)
+GRAVITY = Display("g", per=STANDARD_GRAVITY)
+LINE_LOAD = Display("N/mm", 1e-3)
+MILLIMETRE_PER_SECOND = Display("mm/s", 1e3)
+STIFFNESS_PER_WIDTH = Display("N/(mm µm)", per=1e9)
+NANOMETRE = Display("nm", 1e9)
+MILLISECOND = Display("ms", 1e3)
 MEGAPASCAL = Display("MPa", 1e-6)
-MINUTE = Display("min", 1.0 / 60.0)
-HOUR = Display("h", 1.0 / 3600.0)
+MINUTE = Display("min", per=60.0)
+HOUR = Display("h", per=3600.0)
 PERCENT = Display("%", 100.0)
 
 _BY_UNIT = {
@@ -57,7 +79,7 @@ _BY_UNIT = {
     "K": CELSIUS,
     "rad/s": SPEED,
     "m/s": Display("m/s"),
-    "s": Display("ms", 1e3),
+    "s": MILLISECOND,
 }
 _DIFFERENCE = re.compile("flash|margin|residual|difference|below_(gears|addendum)")
 """Names of kelvins that are a difference, no temperature."""
@@ -66,9 +88,9 @@ _BY_NAME = {
     "pinion_radius": MILLIMETRE,
     "wheel_radius": MILLIMETRE,
     "reduced_radius": MILLIMETRE,
-    "line_load": Display("N/mm", 1e-3),
-    "velocity": Display("mm/s", 1e3),
-    "section_velocity": Display("mm/s", 1e3),
+    "line_load": LINE_LOAD,
+    "velocity": MILLIMETRE_PER_SECOND,
+    "section_velocity": MILLIMETRE_PER_SECOND,
 }
 
 

@@ -257,8 +257,10 @@ def compare(
 
 def _one_speed(case: Any) -> float | None:
     """The speed [rpm] of a case that has one alone, by which a record's mesh line is found."""
+    from thermogear.base import display
+
     speeds: set[float] = set() if isinstance(case, str) else set(case.stated.speed.tolist())
-    return speeds.pop() / RPM if len(speeds) == 1 else None
+    return display.SPEED(speeds.pop()) if len(speeds) == 1 else None
 
 
 def _tolerance(text: str) -> tuple[str, float]:

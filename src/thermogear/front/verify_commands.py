@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from thermogear.base.errors import InputError
-from thermogear.base.units import ZERO_CELSIUS
 from thermogear.front import delivery
 from thermogear.results.files import json_text
 
@@ -69,6 +68,7 @@ def stiffness(
     as_json: bool,
 ) -> None:
     """Mesh stiffness and load shares of CASE's pair: model, finite elements, difference."""
+    from thermogear.base.display import LINE_LOAD
     from thermogear.verify.checks import check_stiffness, inner_phases
     from thermogear.verify.tooth_mesh import Density
 
@@ -87,7 +87,7 @@ def stiffness(
     _say(
         as_json,
         read.title,
-        f"{moment:g} N m on the pinion, F_n/b = {1e-3 * found.line_load:.4g} N/mm",
+        f"{moment:g} N m on the pinion, F_n/b = {LINE_LOAD(found.line_load):.4g} N/mm",
         *_notes(near),
         "",
         *_stiffness_lines(found),
@@ -108,6 +108,7 @@ def growth(case: str, overrides: tuple[str, ...], bore: str, as_json: bool) -> N
     """Thermal growth of both gears' flanks in CASE: model, finite elements, difference."""
     import numpy as np
 
+    from thermogear.base.display import CELSIUS
     from thermogear.heat.expansion import RadialField
     from thermogear.verify.checks import check_growth
 
@@ -133,9 +134,9 @@ def growth(case: str, overrides: tuple[str, ...], bore: str, as_json: bool) -> N
         _say(
             as_json,
             "",
-            f"{name}: bore {at_bore - ZERO_CELSIUS:.4g} degC, "
-            f"addendum {at_tip - ZERO_CELSIUS:.4g} degC, "
-            f"drawn at {heat.reference - ZERO_CELSIUS:.4g} degC",
+            f"{name}: bore {CELSIUS(at_bore):.4g} degC, "
+            f"addendum {CELSIUS(at_tip):.4g} degC, "
+            f"drawn at {CELSIUS(heat.reference):.4g} degC",
             *_growth_lines(found),
         )
     if as_json:
@@ -148,6 +149,7 @@ def growth(case: str, overrides: tuple[str, ...], bore: str, as_json: bool) -> N
 @delivery.as_json
 def pairs(refine: int, near: str, as_json: bool) -> None:
     """The fixed pairs: a published one, four of our own, and three at the model's edges."""
+    from thermogear.base.display import LINE_LOAD
     from thermogear.verify.checks import check_stiffness, inner_phases
     from thermogear.verify.pairs import far_pairs, own_pairs, published_pair
     from thermogear.verify.tooth_mesh import Density
@@ -171,7 +173,7 @@ def pairs(refine: int, near: str, as_json: bool) -> None:
             )
             content.setdefault(group, {})[checked.name] = _stiffness_numbers(found)
             worst = max(worst, (abs(float(found.difference[found.worst])), checked.name))
-            load = f"{1e-3 * checked.line_load:g} N/mm"
+            load = f"{LINE_LOAD(checked.line_load):g} N/mm"
             _say(as_json, "", f"{checked.name}, {load} ({group})", *_stiffness_lines(found))
         _say(as_json, "", f"worst of the {group} pairs: {worst[1]}, {100.0 * worst[0]:.2f} %")
     if as_json:
@@ -215,7 +217,7 @@ def _growth_numbers(found: GrowthCheck) -> dict[str, Any]:
 
 def _stiffness_lines(found: StiffnessCheck) -> list[str]:
     """The check as a table of the terminal, and where both are farthest apart."""
-    from thermogear.base.display import PERCENT
+    from thermogear.base.display import PERCENT, STIFFNESS_PER_WIDTH
     from thermogear.results.tables import rows_of
     from thermogear.views.columns import Column, declared, lines_of
 
@@ -229,12 +231,11 @@ def _stiffness_lines(found: StiffnessCheck) -> list[str]:
         Column("FE", "finite_share", ".4f"),
         Column("difference", "share_difference", "+.4f"),
     )
-    unit = found.face_width * 1e9
     by_name = {
         "phase": found.phase,
         "pairs": found.pairs,
-        "model": found.model / unit,
-        "finite": found.finite / unit,
+        "model": STIFFNESS_PER_WIDTH(found.model / found.face_width),
+        "finite": STIFFNESS_PER_WIDTH(found.finite / found.face_width),
         "difference": found.difference,
         "share": found.model_share[:, 0],
         "finite_share": found.finite_share[:, 0],
@@ -264,7 +265,8 @@ def _growth_lines(found: GrowthCheck) -> list[str]:
     worst = found.worst
     return [
         *lines_of(declared("", columns, rows_of(by_name))),
-        f"worst {1e6 * found.difference[worst]:+.3f} um at {1e3 * found.radius[worst]:.4f} mm",
+        f"worst {MICROMETRE(found.difference[worst]):+.3f} um "
+        f"at {MILLIMETRE(found.radius[worst]):.4f} mm",
     ]
 
 

@@ -28,7 +28,7 @@ Row = Mapping[str, Any]
 
 PLAIN = Display("")
 TYPEWRITTEN = str.maketrans(
-    {"µ": "u", "−": "-", "–": "-", "→": "->", "°": "deg", "′": "'", "⁻": "-"}
+    {"µ": "u", "±": "+-", "−": "-", "–": "-", "→": "->", "°": "deg", "′": "'", "⁻": "-"}
     | dict(zip("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789", strict=True))
 )
 """Letters of a page as any terminal has them."""
@@ -63,15 +63,21 @@ class Column:
         unit = self.display.unit.strip("–")
         return self.head + f" [{unit}]" if unit else self.head
 
+    def figure(self, row: Row) -> Any:
+        """What it holds in ``row``, in full: a word, a whole number or a number in its unit."""
+        value = self.value(row) if callable(self.value) else row.get(self.value)
+        if value is None or isinstance(value, str | int):
+            return value
+        return float(self.display(value))
+
     def cell(self, row: Row) -> Cell:
         """What stands in it in ``row``."""
-        value = self.value(row) if callable(self.value) else row.get(self.value)
-        if isinstance(value, str):
-            return value
-        if isinstance(value, int):
-            return str(value)
-        figure = math.nan if value is None else float(self.display(value))
-        if not math.isfinite(figure):
+        figure = self.figure(row)
+        if isinstance(figure, str):
+            return figure
+        if isinstance(figure, int):
+            return str(figure)
+        if figure is None or not math.isfinite(figure):
             return "–"
         if callable(self.digits):
             return self.digits(figure)
@@ -107,7 +113,18 @@ def declared(
     there = list(rows)
     cells = [[column.cell(row) for column in columns] for row in there]
     stand_out = frozenset(place for place, row in enumerate(there) if marked(row))
-    return Table(caption, [c.title for c in columns], cells, names, stand_out, wordy)
+    figures = [[column.figure(row) for column in columns] for row in there]
+    return Table(caption, [c.title for c in columns], cells, names, stand_out, wordy, figures)
+
+
+def pairs(
+    caption: str, head: tuple[Cell, Cell], values: Mapping[Any, Any], *, wordy: bool = False
+) -> Table:
+    """A table of two columns: what is what; ``wordy`` where that is told in words."""
+    rows = [{"name": name, "value": value} for name, value in values.items()]
+    name, value = head
+    columns = (Column(name, "name"), Column(value, lambda row: str(row["value"])))
+    return declared(caption, columns, rows, names=1 + wordy, wordy=wordy)
 
 
 def typed(text: Cell) -> str:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermogear.base.units import ZERO_CELSIUS
+from thermogear.base.display import CELSIUS
 from thermogear.results.result import Result
 from thermogear.results.tables import harmless, stretched
 
@@ -29,7 +29,7 @@ CURVES = {
 ROWS = ("operating", "point", "trace")
 """Dimensions whose places stand below each other in one file."""
 
-Column = tuple[str, list[str]]
+Column = tuple[str, list[object]]
 
 
 def curve_tables(result: Result) -> dict[str, str]:
@@ -40,7 +40,9 @@ def curve_tables(result: Result) -> dict[str, str]:
     their own. Figures without a curve stand in ``..._figures.csv``.
     """
     return {
-        f"csv/{_slug(stem)}.csv": _text(columns)
+        f"csv/{_slug(stem)}.csv": table_text(
+            [head for head, _ in columns], zip(*(values for _, values in columns), strict=True)
+        )
         for name, data in result.groups.items()
         for stem, columns in _files(name, data)
     }
@@ -81,7 +83,7 @@ def _place_name(data: xr.Dataset, dimension: str, place: int) -> str:
         return f"{dimension}{place}"
     value = data[dimension].values[place]
     if dimension == "gear_temperature":
-        return f"{float(value) - ZERO_CELSIUS:.4g}degC"
+        return f"{CELSIUS(float(value)):.4g}degC"
     return str(value)
 
 
@@ -91,7 +93,7 @@ def _columns(data: xr.Dataset, dims: list[str]) -> list[Column]:
     values = stretched(data.assign(numbered), dims)
     axes = [str(name) for name, axis in data.coords.items() if axis.dims]
     return [
-        (head_text(data, name), [*map(cell_text, values[name].tolist())])
+        (head_text(data, name), values[name].tolist())
         for name in (*numbered, *axes, *map(str, data.data_vars))
     ]
 
@@ -106,25 +108,18 @@ def cell_text(value: object) -> str:
     """A number to all fifteen digits of a decimal, nothing where there is none; a word, quoted."""
     if isinstance(value, float):
         return f"{value:.15g}" if value == value else ""
-    return quoted(str(value))
+    return "" if value is None else quoted(str(value))
 
 
-def table_text(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A CSV text: one header line, then a line for each row."""
-    return "".join(",".join(map(quoted, line)) + "\n" for line in (head, *rows))
+def table_text(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
+    """A CSV text: one header line, then a line for each row, its numbers in full."""
+    return "".join(",".join(map(cell_text, line)) + "\n" for line in (head, *rows))
 
 
 def quoted(text: str) -> str:
     """A field as a spreadsheet reads it safely: quoted where needed, never a formula."""
     flat = str(harmless(" ".join(text.split())))
     return '"' + flat.replace('"', '""') + '"' if re.search(r'[",;\n]', flat) else flat
-
-
-def _text(columns: list[Column]) -> str:
-    """One header line, then a line for each row."""
-    head = ",".join(quoted(name) for name, _ in columns)
-    lines = map(",".join, zip(*(cells for _, cells in columns), strict=True))
-    return "\n".join([head, *lines]) + "\n"
 
 
 def _slug(text: str) -> str:

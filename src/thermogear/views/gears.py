@@ -17,8 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.display import exactly
-from thermogear.base.units import RPM
+from thermogear.base.display import MILLIMETRE, SPEED, exactly
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -192,8 +191,8 @@ class GearDrawing:
                     "lag": _rounded(one.lag, 6),
                     "outlines": [_flat(points) for points in one.outlines],
                     "share": [_rounded(row, 3) for row in one.share],
-                    "drive_gap": [_rounded(1e3 * row, 2) for row in one.drive_gap],
-                    "back_gap": [_rounded(1e3 * row, 2) for row in one.back_gap],
+                    "drive_gap": [_rounded(MILLIMETRE(row), 2) for row in one.drive_gap],
+                    "back_gap": [_rounded(MILLIMETRE(row), 2) for row in one.back_gap],
                 }
                 for one in self.states
             ],
@@ -219,7 +218,7 @@ def gear_drawing(
     base = MM * float(here["base_radius"].values[PINION])
     turn = cmath.exp(-1j * angle)
     on_path = json.loads(str(data.attrs["path_points"]))
-    speed, torque = float(here["pinion_speed"]) / RPM, float(here["pinion_torque"])
+    speed, torque = SPEED(float(here["pinion_speed"])), float(here["pinion_torque"])
     return GearDrawing(
         words=f"{exactly(speed)} rpm, {exactly(torque)} N m",
         module=module,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermogear.base.display import celsius, number, span
+from thermogear.base.display import MICROMETRE, celsius, number, span
 from thermogear.base.parameters import PARAMETERS
 from thermogear.base.toml import told
 from thermogear.results.result import Result
@@ -77,7 +77,7 @@ def _fixed(result: Result) -> Iterator[str]:
     model = result.table("model")
     if "mesh_frequency" in model:  # a drive train, in SI
         yield f"mesh frequency {number(float(model['mesh_frequency']), 4)} Hz"
-        yield f"half backlash {number(1e6 * float(model['half_backlash']), 4)} µm"
+        yield f"half backlash {number(MICROMETRE(float(model['half_backlash'])), 4)} µm"
         model = {}
     for name, value in model.items():
         if name in MODEL and isinstance(value, int | float):

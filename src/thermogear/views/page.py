@@ -37,7 +37,8 @@ class Text:
 class Table:
     """A table; the first ``names`` columns hold words, the others numbers.
 
-    ``marked`` are the rows that want attention.
+    ``marked`` are the rows that want attention. ``figures`` are the same rows in full: words, and
+    numbers in the units of the head.
     """
 
     caption: str
@@ -46,6 +47,7 @@ class Table:
     names: int = 1
     marked: frozenset[int] = frozenset()
     wordy: bool = False
+    figures: Sequence[Sequence[Any]] = ()
     kind: str = "table"
 
 

@@ -316,9 +316,3 @@ def facts(rows: Sequence[Row]) -> Table:
         for row, last in zip(rows, before, strict=False)
     ]
     return declared("Derived from the case, or read off the results.", FACTS, named, names=2)
-
-
-def words(caption: str, head: Sequence[str], rows: Iterable[Sequence[object]]) -> Table:
-    """A table of texts."""
-    lines = [[cell if isinstance(cell, Markup) else str(cell) for cell in row] for row in rows]
-    return Table(caption, list(head), lines, names=len(head), wordy=True)

@@ -10,8 +10,7 @@ import numpy as np
 from markupsafe import Markup, escape
 from numpy.typing import NDArray
 
-from thermogear.base.display import celsius, display, exactly, raised
-from thermogear.base.units import ZERO_CELSIUS
+from thermogear.base.display import CELSIUS, celsius, display, exactly, raised
 from thermogear.base.vocabulary import QUANTITIES, told_labels
 
 if TYPE_CHECKING:
@@ -83,7 +82,7 @@ def jam_at(kelvin: float, *, without_heat: bool = False, known: bool = True) -> 
         return "without heat"
     if not math.isfinite(kelvin):
         return "never"
-    return celsius(kelvin) if kelvin < ZERO_CELSIUS + FAR else f"> {FAR:.0f} °C"
+    return celsius(kelvin) if CELSIUS(kelvin) < FAR else f"> {FAR:.0f} °C"
 
 
 _GREEK = {"omega": "ω", "lambda": "λ", "delta": "δ", "Delta ": "Δ", "theta": "θ", "eta": "η"}

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from thermogear.base.display import CELSIUS, MILLISECOND, SPEED
 from thermogear.base.errors import ValidityWarning
 from thermogear.base.plan import Alive
 from thermogear.base.progress import asking
-from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.case.dials import dials
 from thermogear.case.thermal_state import HOT
 from thermogear.front.app.given import Given
@@ -53,7 +53,7 @@ class Desk:
                 alive()
             for part in made(look, name):
                 if part.name:
-                    spent = 1e3 * (time.process_time() - start)
+                    spent = MILLISECOND(time.process_time() - start)
                     self.post(
                         f"part {part.name}", part.message(number=show.number, milliseconds=spent)
                     )
@@ -124,7 +124,7 @@ def temperatures(case: GearCase) -> list[list[str]]:
     if not HOT.settled(case, case.models[0]):
         return [[words, "not known"] for words, _ in rows]
     return [
-        [words, f"{float(np.ravel(value)[0]) - ZERO_CELSIUS:.1f} °C".replace("-", "−")]
+        [words, f"{CELSIUS(float(np.ravel(value)[0])):.1f} °C".replace("-", "−")]
         for words, value in rows
     ]
 
@@ -150,10 +150,10 @@ def speeds(case: GearCase) -> dict[str, float]:
 
     points = GearFamily(case, ())(np.empty((1, 0)))
     rate = float(points.rate[0])
-    own = max(case.speeds) / RPM
-    natural = rate / case.pair.pinion.teeth / RPM
+    own = SPEED(max(case.speeds))
+    natural = SPEED(rate / case.pair.pinion.teeth)
     top = max(own, natural) if np.isfinite(natural) and natural > 0.0 else own
     step = 10.0 ** np.floor(np.log10(top))
     high = min(float(np.ceil(1.25 * top / step * 2.0) * step / 2.0), 500_000.0)
-    low = max(0.1, float(f"{min(high / 20.0, min(case.speeds) / RPM):.2g}"))
+    low = max(0.1, float(f"{min(high / 20.0, SPEED(min(case.speeds))):.2g}"))
     return {"low": low, "high": high, "count": 300}

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.display import CELSIUS, MICROMETRE, SPEED
 from thermogear.base.errors import ThermogearError
 from thermogear.base.plan import Alive, slices
-from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import STILL
 from thermogear.case.case import GearCase
 from thermogear.front.app.given import Given
@@ -103,7 +103,7 @@ class Look:
     def speeds(self) -> NDArray[np.float64]:
         """Of the run-up [rad/s]."""
         said = self.show.speeds
-        return RPM * np.linspace(said.low, said.high, said.count)
+        return SPEED.stored(np.linspace(said.low, said.high, said.count))
 
     @property
     def key(self) -> str:
@@ -159,7 +159,7 @@ def _orbit(look: Look, starts: dict[str, tuple[float, float] | None]) -> Part:
             lines.append(f"{name}: the same motion as {twin}")
             shown.pop(name)
             continue
-        swing = 1e6 * float(np.ptp(one.data["displacement"].values))
+        swing = MICROMETRE(float(np.ptp(one.data["displacement"].values)))
         lines.append(f"{name}: {one.words}; peak to peak {swing:.4g} µm")
     first = kept.get("the case's start")
     rows = []
@@ -276,7 +276,7 @@ def record(look: Look) -> Iterator[Part]:
     size = np.array([one.displacement for one in rows])
     half = np.array([one.half_width * one.displacement for one in rows])
     lines = [
-        f"{one.channel}, {one.name}: {1e6 * one.displacement:.4g} µm "
+        f"{one.channel}, {one.name}: {MICROMETRE(one.displacement):.4g} µm "
         f"± {100.0 * one.half_width:.2g} %"
         for one in rows
     ]
@@ -318,7 +318,7 @@ def parameter_map(look: Look) -> Iterator[Part]:
     speeds = look.speeds
     axes = {
         "pinion_speed": np.linspace(speeds[0], speeds[-1], MAP[0]),
-        "gear_temperature": np.linspace(COLDEST, HOTTEST, MAP[1]) + ZERO_CELSIUS,
+        "gear_temperature": CELSIUS.stored(np.linspace(COLDEST, HOTTEST, MAP[1])),
     }
     data = {k: v for k, v in look.case.data.items() if k != "operating"}
     key = json.dumps([data, look.case.torques, *(a.tolist() for a in axes.values())], default=str)

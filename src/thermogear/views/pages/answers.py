@@ -10,6 +10,7 @@ from markupsafe import Markup
 from thermogear.base.limits import FINE, LOOK, OPEN
 from thermogear.results.answer import Answer, worst
 from thermogear.results.result import Result
+from thermogear.views.columns import Column, declared
 from thermogear.views.page import Block, Made, Page, Pictures, Section, Table, notice_lines
 from thermogear.views.pages.background import background
 from thermogear.views.plots.speeds import speeds_picture
@@ -81,20 +82,25 @@ def sections(result: Result, pictures: Pictures) -> list[Section]:
     return [first, Section("answers-each", "Answers at each operating point", each)]
 
 
+ANSWER = (
+    Column("question", lambda row: row["answer"].question if row["first"] else ""),
+    Column("verdict", lambda row: Markup("<b>{}</b>").format(row["answer"].verdict)),
+    Column("answer", lambda row: _sentence(row["answer"])),
+    Column("limit", lambda row: row["answer"].limit),
+    Column("from", lambda row: row["answer"].source),
+)
+
+
 def _table(caption: str, answers: Sequence[Answer]) -> Table:
-    rows = [
-        (
-            one.question if first else "",
-            Markup("<b>{}</b>").format(one.verdict),
-            _sentence(one),
-            one.limit,
-            one.source,
-        )
-        for first, one in _firsts(answers)
-    ]
-    marked = frozenset(i for i, one in enumerate(answers) if one.verdict == LOOK)
-    head = ("question", "verdict", "answer", "limit", "from")
-    return Table(caption, head, rows, names=5, marked=marked, wordy=True)
+    rows = [{"first": first, "answer": answer} for first, answer in _firsts(answers)]
+    return declared(
+        caption,
+        ANSWER,
+        rows,
+        names=5,
+        marked=lambda row: row["answer"].verdict == LOOK,
+        wordy=True,
+    )
 
 
 def _firsts(answers: Sequence[Answer]) -> Iterator[tuple[bool, Answer]]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.display import number, span
+from thermogear.base.display import MICROMETRE, MILLIMETRE, number, span
 from thermogear.base.vocabulary import told_operating
 from thermogear.views.plots.curves import hot_state
 from thermogear.views.plots.path import BAND, own_law
@@ -66,7 +66,7 @@ def place(data: xr.Dataset, position: float) -> str:
     for name, words in PLACES.items():
         if name in points and abs(position - points[name]) <= NEAR * np.ptp(s):
             return words
-    return f"at {number(1e3 * position, 4)} mm"
+    return f"at {number(MILLIMETRE(position), 4)} mm"
 
 
 def top_of(data: xr.Dataset, values: NDArray[np.float64]) -> str:
@@ -107,7 +107,7 @@ def regimes(here: xr.Dataset) -> str:
 def _regime_along(one: xr.Dataset) -> str:
     """ "boundary throughout", or from where to where each regime reaches."""
     names = str(one["regime"].attrs["flag_meanings"]).split()
-    index, s = one["regime"].values.astype(int), 1e3 * one["path_position"].values
+    index, s = one["regime"].values.astype(int), MILLIMETRE(one["path_position"].values)
     cuts = np.flatnonzero(np.diff(index)) + 1
     if not cuts.size:
         return f"{names[index[0]]} throughout"
@@ -141,7 +141,7 @@ def load_share(data: xr.Dataset, bundles: Mapping[str, Any]) -> str:
         words = "More than one pair carries all along the path"
     else:
         pitch = pitch_inside(data) and bool(np.interp(points["C"], s, alone.astype(float)) > 0.5)
-        low, high = (number(1e3 * float(s[alone][end]), 4) for end in (0, -1))
+        low, high = (number(MILLIMETRE(float(s[alone][end])), 4) for end in (0, -1))
         words = f"One pair carries everything from {low} to {high} mm"
         words += ", about the pitch point" if pitch else ""
         words += "; towards A and E two share the force"
@@ -249,7 +249,7 @@ def growth(data: xr.Dataset) -> str:
     if finite and np.array_equal(first.argmin(axis=-1), second.argmax(axis=-1)):
         words += "Where the pinion's flank grows least the wheel's grows most."
     for b, name in enumerate(names_of(data, "bundle")):
-        values = 1e6 * here["deformation_sum"].values[b]
+        values = MICROMETRE(here["deformation_sum"].values[b])
         if np.isfinite(values).all():
             words += f" Sum in the {name} bundle: {span(values, 4)} µm."
     return words.strip()
@@ -275,8 +275,9 @@ def gap_over_phase(mesh: xr.Dataset) -> str:
         cold, hot = curves[b, 0], curves[b, -1]
         shift, breath = float(hot.mean() - cold.mean()), float(np.ptp(hot))
         told[name] = (
-            f"heat shifts the gap by {number(1e6 * shift)} µm; hot it breathes by "
-            f"{number(1e6 * breath) if breath > 1e-3 * abs(shift) else '0'} µm over the period"
+            f"heat shifts the gap by {number(MICROMETRE(shift))} µm; hot it breathes by "
+            f"{number(MICROMETRE(breath)) if breath > 1e-3 * abs(shift) else '0'} µm over the "
+            "period"
         )
     return (
         f"{where(mesh, 'half_backlash')}{_sentence(told)} Below zero a pair is jammed; no motion "

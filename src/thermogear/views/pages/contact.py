@@ -128,8 +128,8 @@ COLUMNS = (
 )
 AGAINST_ISO = (
     Column("torque [N m]", "load", exactly),
-    Column("loaded contact", lambda row: number(1e-8 * row["loaded_stiffness"])),
-    Column("ISO 6336-1 method B", lambda row: number(1e-8 * row["iso_stiffness"])),
+    Column("loaded contact", lambda row: number(STIFFNESS(row["loaded_stiffness"]))),
+    Column("ISO 6336-1 method B", lambda row: number(STIFFNESS(row["iso_stiffness"]))),
     Column(
         "difference",
         lambda row: row["iso_stiffness"] / row["loaded_stiffness"] - 1.0,

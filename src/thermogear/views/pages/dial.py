@@ -5,8 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
-from thermogear.base.display import CELSIUS, number
-from thermogear.base.units import RPM
+from thermogear.base.display import CELSIUS, SPEED, number
 from thermogear.results.result import Result
 from thermogear.views.moving import Dial
 from thermogear.views.page import Pictures, Section
@@ -42,7 +41,7 @@ def section(results: Result, pictures: Pictures) -> Section | None:
 
 def caption(data: xr.Dataset, start: str) -> str:
     """Which operating point, and what is shown without the dial."""
-    torque, speed = float(data.attrs["pinion_torque"]), data.attrs["pinion_speed"] / RPM
+    torque, speed = float(data.attrs["pinion_torque"]), SPEED(data.attrs["pinion_speed"])
     jammed = int(data.attrs["jammed"])
     some = f" {jammed} of {data.sizes['gear_temperature']} temperatures jam." if jammed else ""
     return (

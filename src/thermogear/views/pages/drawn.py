@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermogear.base.display import number
+from thermogear.base.display import MILLIMETRE, number
 from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.results.result import Result
-from thermogear.views.columns import lines_of
+from thermogear.views.columns import Column, declared, lines_of
 from thermogear.views.gears import NEEDS, PINION, WHEEL, GearDrawing, gear_drawing
 from thermogear.views.page import Page, Pictures, Section, Shown, Table
 from thermogear.views.pages.survey import survey
@@ -82,41 +81,40 @@ def caption(drawing: GearDrawing) -> str:
 
 
 def _least(state: Any) -> str:
-    return number(1e3 * float(np.nanmin(state.back_gap)))
+    return number(MILLIMETRE(float(np.nanmin(state.back_gap))))
 
 
-def rows(result: Result, drawing: GearDrawing) -> list[tuple[str, ...]]:
-    """Words, pinion's and wheel's value of what can be measured on a gear."""
-    data = result.groups["drawing"]
-    cold, hot = (drawing.state(name) for name in (UNDEFORMED, "hot"))
-
-    def both(words: str, values: Iterable[float]) -> tuple[str, ...]:
-        return (words, *(number(float(value), 6) for value in values))
-
-    clearance = 1e3 * data["tip_clearance"].isel(operating=0).values
-    return [
-        ("teeth", str(drawing.teeth[PINION]), str(drawing.teeth[WHEEL])),
-        *(
-            both(f"{name} diameter [mm]", (2.0 * drawing.circles[g][name] for g in (0, 1)))
-            for name in ("tip", "pitch", "base", "root")
-        ),
-        both("tip diameter, hot [mm]", (2.0 * np.abs(hot.outlines[g]).max() for g in (0, 1))),
-        both("tooth thickness on the pitch circle [mm]", 1e3 * data["thickness"].values),
-        ("teeth of the span", *(str(int(k)) for k in data["span_teeth"].values)),
-        both("span over these teeth [mm]", 1e3 * data["span"].values),
-        both("tip clearance, cold [mm]", clearance[0]),
-        both("tip clearance, hot [mm]", clearance[-1]),
-        both("centre distance, cold and hot [mm]", (cold.centre_distance, hot.centre_distance)),
-    ]
+SIZES = (
+    Column("", "name"),
+    Column("pinion", lambda row: row["sizes"][PINION], 6),
+    Column("wheel", lambda row: row["sizes"][WHEEL], 6),
+)
 
 
 def table(result: Result, drawing: GearDrawing) -> Table:
-    """Sizes to lay beside a workshop drawing."""
-    return Table(
+    """Sizes to lay beside a workshop drawing: words, pinion's and wheel's value."""
+    data = result.groups["drawing"]
+    cold, hot = (drawing.state(name) for name in (UNDEFORMED, "hot"))
+    clearance = MILLIMETRE(data["tip_clearance"].isel(operating=0).values)
+    sizes = {
+        "teeth": drawing.teeth,
+        **{
+            f"{name} diameter [mm]": [2.0 * drawing.circles[g][name] for g in (PINION, WHEEL)]
+            for name in ("tip", "pitch", "base", "root")
+        },
+        "tip diameter, hot [mm]": [2.0 * np.abs(hot.outlines[g]).max() for g in (PINION, WHEEL)],
+        "tooth thickness on the pitch circle [mm]": MILLIMETRE(data["thickness"].values),
+        "teeth of the span": [int(count) for count in data["span_teeth"].values],
+        "span over these teeth [mm]": MILLIMETRE(data["span"].values),
+        "tip clearance, cold [mm]": clearance[0],
+        "tip clearance, hot [mm]": clearance[-1],
+        "centre distance, cold and hot [mm]": (cold.centre_distance, hot.centre_distance),
+    }
+    return declared(
         "Sizes as drawn, the backlash taken off both gears' flanks alike; hot where it says so. "
         "The span is the base tangent length.",
-        ["", "pinion", "wheel"],
-        rows(result, drawing),
+        SIZES,
+        [{"name": name, "sizes": values} for name, values in sizes.items()],
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from thermogear.base.display import MICROMETRE
+from thermogear.base.display import MICROMETRE, MILLIMETRE
 from thermogear.results.result import Result
 from thermogear.views.columns import Column, declared, rows_along
 from thermogear.views.page import Block, Pictures, Section, Table
@@ -43,14 +43,14 @@ def first(results: Result) -> list[tuple[str]]:
 def caption(data: xr.Dataset) -> str:
     """What the picture shows and what of it the mesh feels."""
     sides = flanks.sides(data)
-    cut = ", ".join(f"{1e3 * float(data[f'{side}_cutoff']):.2g} mm" for side in sides)
-    scatter = ", ".join(f"{1e6 * float(data[f'{side}_scatter']):.2g} µm" for side in sides)
+    cut = ", ".join(f"{MILLIMETRE(float(data[f'{side}_cutoff'])):.2g} mm" for side in sides)
+    scatter = ", ".join(f"{MICROMETRE(float(data[f'{side}_scatter'])):.2g} µm" for side in sides)
     return (
         f"Read from {data.attrs.get('files', 'a chart')}; {' and '.join(sides)} flank. "
         f"What acts is the mean of the teeth below a cut-off of {cut} along the roll path: shorter "
         "waves cannot be told from noise. It is zero at the pitch circle and constant beyond the "
-        f"evaluated range, at most {1e6 * flanks.peak(data):.2g} µm peak to peak. Scatter between "
-        f"the teeth, which no mesh period holds: {scatter}."
+        f"evaluated range, at most {MICROMETRE(flanks.peak(data)):.2g} µm peak to peak. Scatter "
+        f"between the teeth, which no mesh period holds: {scatter}."
     )
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermogear.base.display import celsius, display, number, percent, span
+from thermogear.base.display import MICROMETRE, celsius, display, number, percent, span
 from thermogear.base.vocabulary import STATUS, STILL, is_known, told_labels, told_operating
 from thermogear.results.result import Result
 from thermogear.views.columns import Row, rows_along
@@ -78,8 +78,8 @@ def _bundle(mesh: xr.Dataset, place: int) -> str:
             at = "without heat already"
         at = f" ({at})" if at else ""
         return f"In the {name} bundle the hot pair is jammed at {where}{at}; {stiffness}."
-    before = span(1e6 * cold["half_backlash"].values)
-    after = span(1e6 * hot["half_backlash"].values)
+    before = span(MICROMETRE(cold["half_backlash"].values))
+    after = span(MICROMETRE(hot["half_backlash"].values))
     return (
         f"In the {name} bundle the temperatures take the half backlash from {before} to {after} µm "
         f"and {stiffness}."
@@ -140,7 +140,7 @@ def tiles(results: Result) -> list[Tile]:
     told = mesh.isel(operating=told_operating(mesh))
     cold, hot = (rows_along(told.isel(state=end), "bundle") for end in (0, -1))
     gaps = [
-        "jammed" if row["status"] == "jammed" else f"{number(1e6 * row['half_backlash'])} µm"
+        "jammed" if row["status"] == "jammed" else f"{number(MICROMETRE(row['half_backlash']))} µm"
         for row in hot
     ]
     change = [
@@ -152,7 +152,7 @@ def tiles(results: Result) -> list[Tile]:
         Tile(
             "hot half backlash",
             gaps[0],
-            f"undeformed {number(1e6 * cold[0]['half_backlash'])} µm" + _beside(names, gaps),
+            f"undeformed {number(MICROMETRE(cold[0]['half_backlash']))} µm" + _beside(names, gaps),
         ),
         Tile(
             "mean mesh stiffness, hot against undeformed",

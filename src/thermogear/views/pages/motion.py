@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from operator import itemgetter
 from typing import TYPE_CHECKING, Any
 
-from thermogear.base.display import MICROMETRE, Display, number
+from thermogear.base.display import MICROMETRE, NANOMETRE, PERCENT, Display, number
 from thermogear.results.result import Result
-from thermogear.views.columns import Column, declared, lines_of, typed
+from thermogear.views.columns import Column, declared, lines_of, pairs, typed
 from thermogear.views.csv_files import cell_text, head_text
 from thermogear.views.page import (
     LEAD,
@@ -177,32 +177,33 @@ def _orbit_tables(summary: Summary) -> list[Block]:
     length = MICROMETRE if summary["units"] == "SI" else Display("–")
     share = summary["time_share"]
     factor = summary["dynamic_load_factor"]
-    rows = [
-        ["period n", str(summary["period"]), "mesh periods"],
-        *(
-            [f"multiplier {i}", _complex(mu), f"modulus {mu['modulus']:.9f}"]
+    values = {
+        "period n": (str(summary["period"]), "mesh periods"),
+        **{
+            f"multiplier {i}": (_complex(mu), f"modulus {mu['modulus']:.9f}")
             for i, mu in enumerate(summary["multipliers"], start=1)
+        },
+        "state at phase 0": (
+            prose(f"{summary['state'][0]:.12g}, {summary['state'][1]:.12g}"), "X, X′",
         ),
-        [
-            "state at phase 0",
-            prose(f"{summary['state'][0]:.12g}, {summary['state'][1]:.12g}"),
-            "X, X′",
-        ],
-        ["losses of contact", str(summary["contact_losses"]), "per orbit"],
-        ["back-side impacts", str(summary["back_impacts"]), "per orbit"],
-        ["time in drive contact", f"{100 * share['drive']:.4g}", "%"],
-        ["time in free flight", f"{100 * share['free']:.4g}", "%"],
-        ["time in back contact", f"{100 * share['back']:.4g}", "%"],
-        ["dynamic load factor", "–" if factor is None else number(factor, 5), ""],
-        *(
-            [words, number(float(length(summary[name])), 6), length.unit]
+        "losses of contact": (str(summary["contact_losses"]), "per orbit"),
+        "back-side impacts": (str(summary["back_impacts"]), "per orbit"),
+        **{
+            f"time in {words}": (f"{PERCENT(share[name]):.4g}", "%")
             for words, name in (
-                ("least displacement", "least"),
-                ("greatest displacement", "greatest"),
+                ("drive contact", "drive"), ("free flight", "free"), ("back contact", "back"),
+            )
+        },
+        "dynamic load factor": ("–" if factor is None else number(factor, 5), ""),
+        **{
+            words: (number(float(length(summary[name])), 6), length.unit)
+            for words, name in (
+                ("least displacement", "least"), ("greatest displacement", "greatest"),
                 ("half backlash", "half_backlash"),
             )
-        ),
-    ]
+        },
+    }  # fmt: skip
+    rows = [{"name": k, "value": value, "unit": unit} for k, (value, unit) in values.items()]
     columns = (
         Column("order", "order", 4),
         Column("", lambda line: "half order" if line["half_order"] else ""),
@@ -212,7 +213,7 @@ def _orbit_tables(summary: Summary) -> list[Block]:
     strongest = sorted(summary["lines"], key=lambda line: -float(line["amplitude"]))[:12]
     half = itemgetter("half_order")
     return [
-        Table("Orbit", ["quantity", "value", "unit"], rows, names=1),
+        declared("Orbit", ORBIT, rows),
         declared("Greatest lines", columns, strongest, names=2, marked=half),
     ]
 
@@ -225,18 +226,18 @@ def _complex(mu: dict[str, float]) -> str:
 
 
 def _lyapunov_tables(summary: Summary) -> list[Block]:
-    rows = [
-        ["largest exponent λ₁", f"{summary['exponent']:.6f}"],
-        ["standard error", f"{summary['error']:.6f}"],
-        ["other exponent", f"{summary['second']:.6f}"],
-        ["sum = −2 ζ", f"{summary['sum']:.9g}"],
-        ["Kaplan-Yorke dimension of the section", f"{summary['kaplan_yorke']:.5f}"],
-        ["λ₁ per mesh period", f"{summary['per_mesh_period']:.6f}"],
-        ["batches", f"{summary['batches']} of {summary['batch_periods']} periods"],
-    ]
-    if summary["per_second"] is not None:
-        rows.insert(1, ["λ₁ [1/s]", number(summary["per_second"], 5)])
-    return [Table("Lyapunov exponents", ["quantity", "value"], rows)]
+    per_second = summary["per_second"]
+    values = {
+        "largest exponent λ₁": f"{summary['exponent']:.6f}",
+        **({} if per_second is None else {"λ₁ [1/s]": number(per_second, 5)}),
+        "standard error": f"{summary['error']:.6f}",
+        "other exponent": f"{summary['second']:.6f}",
+        "sum = −2 ζ": f"{summary['sum']:.9g}",
+        "Kaplan-Yorke dimension of the section": f"{summary['kaplan_yorke']:.5f}",
+        "λ₁ per mesh period": f"{summary['per_mesh_period']:.6f}",
+        "batches": f"{summary['batches']} of {summary['batch_periods']} periods",
+    }
+    return [pairs("Lyapunov exponents", ("quantity", "value"), values)]
 
 
 def _branch_tables(summary: Summary) -> list[Block]:
@@ -290,22 +291,34 @@ def _cascade_tables(summary: Summary) -> list[Block]:
 
 def _cascade_table(cascades: list[Summary], most: int) -> Table:
     """Flips of the cascades of one row, one column for each state of heat."""
-    flips = [[*map(_flip_words, c["flips"]), *["–"] * most][:most] for c in cascades]
-    doublings = [f"{2**k} → {2 ** (k + 1)}" for k in range(most)]
-    rows = [*zip(doublings, *flips, strict=True), ("branch then", *(c["ended"] for c in cascades))]
+    rows: list[dict[str, Any]] = [
+        {
+            "name": f"{2**k} → {2 ** (k + 1)}",
+            "cells": [_flip_words(c["flips"], k) for c in cascades],
+        }
+        for k in range(most)
+    ]
+    rows.append({"name": "branch then", "cells": [c["ended"] for c in cascades]})
     first = cascades[0]
     caption = page_words(first["parameter"]) + f", {first['from']:g} to {first['to']:g}"
-    return Table(caption, ["period doubling", *(c["heat"] for c in cascades)], rows)
+    columns = [
+        Column("period doubling", "name"),
+        *(Column(c["heat"], lambda row, k=k: row["cells"][k]) for k, c in enumerate(cascades)),  # type: ignore[misc]
+    ]
+    return declared(caption, columns, rows)
 
 
-def _flip_words(flip: Summary) -> str:
-    """Its value, and whether the doubled motion takes over smoothly."""
+def _flip_words(flips: Sequence[Summary], place: int) -> str:
+    """The value of a flip, and whether the doubled motion takes over smoothly."""
+    if place >= len(flips):
+        return "–"
+    flip = flips[place]
     return f"{flip['value']:.9f} {str(flip.get('note', '')).split(':')[0]}".strip()
 
 
 def _shared_tables(summary: Summary) -> list[Block]:
     rows = [
-        [words, *(_percent(summary.get(f"{name}_{where}_load")) for where in ("mean", "light"))]
+        {"name": words, **{w: summary.get(f"{name}_{w}_load") for w in ("mean", "light")}}
         for words, name in (
             ("mean stiffness", "stiffness_at"),
             ("transmission error at rest, peak to peak", "swing_at_rest"),
@@ -313,11 +326,10 @@ def _shared_tables(summary: Summary) -> list[Block]:
             ("transmission error over speed, peak to peak, greatest", "swing_in_motion"),
         )
     ]
-    head = ["difference", "mean load", "light load"]
-    found: list[Block] = [Table("Load-shared force against the one spring", head, rows)]
+    found: list[Block] = [declared("Load-shared force against the one spring", SHARED, rows)]
     if "mean_clearance_m" in summary:
-        least, mean = (number(1e6 * summary[f"{n}_clearance_m"]) for n in ("least", "mean"))
-        apart = number(1e9 * summary["clearance_apart_m"])
+        least, mean = (number(MICROMETRE(summary[f"{n}_clearance_m"])) for n in ("least", "mean"))
+        apart = number(NANOMETRE(summary["clearance_apart_m"]))
         found.append(
             Text(
                 f"The free play 2b′ is {mean} µm in the mean over a mesh period and {least} µm "
@@ -332,6 +344,12 @@ def _percent(part: float | None) -> str:
     return "–" if part is None else f"{100.0 * part:.2f} %"
 
 
+ORBIT = (Column("quantity", "name"), Column("value", "value"), Column("unit", "unit"))
+SHARED = (
+    Column("difference", "name"),
+    Column("mean load", "mean", ".2f", PERCENT),
+    Column("light load", "light", ".2f", PERCENT),
+)
 _TABLES: dict[str, Callable[[Summary], list[Block]]] = {
     "orbit": _orbit_tables,
     "lyapunov": _lyapunov_tables,

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
-from thermogear.base.display import number
+from thermogear.base.display import Display, number
 from thermogear.base.parameters import Parameter
 from thermogear.results.result import Result
+from thermogear.views.columns import Column, declared, lines_of
 from thermogear.views.csv_files import table_text
 from thermogear.views.page import LEAD, Page, Pictures, Section, Table, notice_lines
 from thermogear.views.pages.findings import finding
@@ -38,20 +40,20 @@ def page(result: Result) -> Page:
         "orbits", "Both orbit diagrams", CAPTION, data, (),
         lambda: overlay_picture(data, states, result.rows("matches")), wide=True,
     )  # fmt: skip
-    head, rows = table_of(result)
+    table = table_of(result)
     sections = [Section(LEAD, "In pictures", pictures.take(), folded=False)]
-    if rows:
-        sections.append(Section("matches", "Bifurcations", [Table(FOLLOWED, head, rows)]))
+    if table.rows:
+        sections.append(Section("matches", "Bifurcations", [table]))
     parts = [f"{words}: {finding(state_of(data, i))}" for i, words in enumerate(states)]
     return Page(
         result, " ".join((*parts, _headline(result))), sections,
         numbers=lambda: _numbers(result),
         lines=lambda: [
-            *parts, _headline(result), *_aligned(table_of(result, "{:.9g}".format)),
+            *parts, _headline(result), *lines_of(*[table] * bool(table.rows)),
             *notice_lines(result),
         ],
         tables=lambda: {
-            "overlay_bifurcations.csv": table_text(*table_of(result, "{:.15g}".format))
+            "overlay_bifurcations.csv": table_text([*map(str, table.head)], table.figures)
         },
     )  # fmt: skip
 
@@ -94,23 +96,17 @@ def _moved(result: Result) -> list[dict[str, Any]]:
     return rows
 
 
-def table_of(
-    result: Result, digits: Callable[[float], str] = lambda value: number(value, 9)
-) -> tuple[list[str], list[list[str]]]:
-    """Head and rows of the bifurcations, and in words what became of each on the way."""
-    unit = _parameter(result).shown
-    tail = f" [{unit}]" * bool(unit)
-    at = [f"{words}{tail}" for words in (*result.values("states"), "moved by")]
-    head = ["kind", "period", *at, "on the way"]
-    rows = [
-        [
-            row["kind"], str(row["period"]),
-            *("" if row[k] is None else digits(row[k]) for k in ("one", "other", "moved")),
-            _became(row, unit),
-        ]
-        for row in _moved(result)
-    ]  # fmt: skip
-    return head, rows
+def table_of(result: Result) -> Table:
+    """The bifurcations of both states, and in words what became of each on the way."""
+    unit = Display(_parameter(result).shown)
+    names = zip((*result.values("states"), "moved by"), ("one", "other", "moved"), strict=True)
+    columns = (
+        Column("kind", "kind"),
+        Column("period", "period"),
+        *(Column(words, name, 9, unit) for words, name in names),
+        Column("on the way", partial(_became, unit=unit.unit)),
+    )
+    return declared(FOLLOWED, columns, _moved(result))
 
 
 def _became(row: Mapping[str, Any], unit: str) -> str:
@@ -124,11 +120,3 @@ def _became(row: Mapping[str, Any], unit: str) -> str:
     if row["partner"] == "leaves the range":
         return f"leaves the range {at}: no partner in it"
     return f"not followed beyond, {at}: {row['why']}"
-
-
-def _aligned(table: tuple[list[str], list[list[str]]]) -> list[str]:
-    """A table with rows as columns of a terminal, two spaces between them."""
-    rows = [table[0], *table[1]]
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    padded = [[cell.ljust(w) for cell, w in zip(row, widths, strict=True)] for row in rows]
-    return ["  ".join(row).rstrip() for row in padded if len(rows) > 1]

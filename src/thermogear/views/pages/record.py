@@ -6,17 +6,14 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
-from markupsafe import Markup
 
-from thermogear.base.display import number
-from thermogear.base.units import RPM, STANDARD_GRAVITY
+from thermogear.base.display import SPEED, number
 from thermogear.results.result import Result
-from thermogear.views import tables
-from thermogear.views.page import Block, Cell, Page, Pictures, Section, Table, Text
-from thermogear.views.pages import record_lines, record_slices
+from thermogear.views.columns import pairs
+from thermogear.views.page import Page, Pictures, Section, Text
+from thermogear.views.pages import record_lines, record_slices, record_tables
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import COLD, HOT, INK, WIDE
-from thermogear.views.typesetting import html_symbol, prose
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -134,7 +131,7 @@ def _spectrum(results: Result) -> Section | None:
 
 def _spectrum_of_run(results: Result, data: xr.Dataset, slices: xr.Dataset) -> Section:
     """Of a run whose speed changes: no line has one frequency, so none is marked."""
-    rate, speed = results.text("rate"), slices["slice_speed"].values / RPM
+    rate, speed = results.text("rate"), SPEED(slices["slice_speed"].values)
     words = "frequency [Hz]" if rate else "frequency [cycles/sample]"
     known = bool(rate) and not int(slices.attrs.get("of_mesh", 0))
     ends = f"from {speed.min():.5g} to {speed.max():.5g} rpm"
@@ -195,47 +192,8 @@ _COLOURS = (COLD, HOT, "#009E73", "#CC79A7")
 
 
 def _lines(results: Result) -> Section | None:
-    data = results.group("lines")
-    if data is None:
-        return None
-    strongest = np.argsort(-data["line_prominence"].values)[:_SHOWN]
-    unit = results.text("unit") or "file's"
-    head: list[Cell] = ["channel", "line", "order", "cycles/sample", "f [Hz]", "± [Hz]"]
-    head += [f"reading [{unit}]", "a [g]", "x [µm]", html_symbol("u_D [%]"), "± [%]"]
-    head += ["over floor", "off bin"]
-    rows: list[list[str | Markup]] = []
-    for place in np.sort(strongest):
-        one = data.isel(line=int(place))
-
-        def value(name: str, factor: float = 1.0, *, digits: int = 4, one: xr.Dataset = one) -> str:
-            if name not in one:  # stored by an older version
-                return "–"
-            found = float(one[name]) * factor
-            return number(found, digits) if np.isfinite(found) else "–"
-
-        rows.append(
-            [
-                str(one["channel"].values),
-                str(one["name"].values),
-                f"{float(one['line_order']):.3f}" if np.isfinite(float(one["line_order"])) else "–",
-                f"{float(one['line_position']):.6f}",
-                value("line_frequency", digits=8),
-                value("line_frequency_half_width", digits=2),
-                value("line_reading"),
-                value("line_acceleration", 1 / STANDARD_GRAVITY),
-                value("line_displacement", 1e6),
-                value("line_uncertainty", 100.0),
-                value("line_half_width", 100.0, digits=3),
-                value("line_prominence"),
-                value("line_bin_offset"),
-            ]
-        )
-    caption = prose(
-        "Peak amplitudes over the record (root mean square of a line's own amplitude); u_D: "
-        "relative standard uncertainty; ±: half width of the 95 % interval. – : the record does "
-        "not tell."
-    )
-    return Section("lines", "Lines", [Table(caption, head, rows, names=2)])
+    table = record_tables.line_table(results, _SHOWN)
+    return None if table is None else Section("lines", "Lines", [table])
 
 
 def _findings(results: Result) -> Section | None:
@@ -258,98 +216,12 @@ def _settings(results: Result) -> Section | None:
     found = results.table("settings")
     if not found:
         return None
-    table = tables.words("", ["setting", "value"], [[k, v] for k, v in found.items()])
+    table = pairs("", ("setting", "value"), found, wordy=True)
     return Section("settings", "Settings", [table])
 
 
-_SHOWN_AS = {
-    "displacement": ("displacement [µm]", 1e6),
-    "frequency": ("frequency [Hz]", 1.0),
-    "acceleration": ("acceleration [m/s²]", 1.0),
-}
-
-
-def comparison_table(data: xr.Dataset) -> Table:
-    """Measured and simulated values with the errors of every model and their uncertainties."""
-    models = [str(name) for name in data["model"].values]
-    beside = {
-        words: [str(one) for one in data[name].values]
-        for words, name in (("record", "record"), ("channel: place, axis; line", "where"))
-        if name in data.coords and any(data[name].values)
-    }
-    head: list[Cell] = [*beside, "speed [rpm]", "quantity", "verdict", "measured", *models]
-    printed, blank = "printed" in data.coords, [""] * len(models)
-    head += [f"error {name} [%]{', printed | recomputed' * printed}" for name in models]
-    head += [html_symbol(f"{u} [%]") for u in ("u_num", "u_input", "u_D", "u_val")]
-    rows: list[list[str | Markup]] = []
-    for place in range(data.sizes["row"]):
-        one = data.isel(row=place)
-        words, factor = _SHOWN_AS[str(one["quantity"].values)]
-        rows.append(
-            [
-                *(texts[place] for texts in beside.values()),
-                number(float(one["pinion_speed"]) / RPM, 4),
-                words,
-                str(one["verdict"].values) or "–",
-                number(float(one["measured_value"]) * factor, 5),
-                *(number(float(v) * factor, 5) for v in one["simulated_value"].values),
-                *(
-                    f"{text} | {100 * v:+.2f}".removeprefix(" | ").replace("-", "−")
-                    for v, text in zip(
-                        one["comparison_error"].values.tolist(),
-                        one["printed"].values if printed else blank,
-                        strict=True,
-                    )
-                ),
-                *(f"{100 * float(one[u]):.2f}" for u in ("u_num", "u_input", "u_data", "u_val")),
-            ]
-        )
-    marked = np.flatnonzero(data["misprinted"].values).tolist() if printed else []
-    wrong = " Marked: a printed error that its entries cannot give, however they were rounded."
-    return Table(
-        f"Error: (simulated − measured)/measured.{wrong * bool(marked)}", head, rows,
-        names=3 + len(beside), marked=frozenset(marked),
-    )  # fmt: skip
-
-
-def implied_table(implied: xr.Dataset) -> Table:
-    """Acceleration, speed and distance from the mesh line that measured lines imply."""
-    lines: list[list[str | Markup]] = [
-        [
-            number(float(implied["pinion_speed"].values[i]) / RPM, 4),
-            f"{float(implied['implied_acceleration'].values[i]) / STANDARD_GRAVITY:.1f}",
-            _maybe(float(implied["implied_shaft_speed"].values[i]) / RPM, 1),
-            _maybe(float(implied["mesh_line_offset"].values[i]), 2),
-            _maybe(float(implied["line_bin_offset"].values[i]), 2),
-        ]
-        for i in range(implied.sizes["speed"])
-    ]
-    names = [
-        "speed [rpm]", "implied a [g]", "implied speed [rpm]", "off mesh [Hz]", "off mesh [bins]",
-    ]  # fmt: skip
-    return Table("What the measured lines imply.", names, lines, names=0)
-
-
 def _comparison(results: Result) -> Section | None:
-    data = results.group("comparison")
-    if data is None:
+    tables = record_tables.comparison_tables(results)
+    if results.group("comparison") is None:
         return None
-    blocks: list[Block] = [comparison_table(data)]
-    heat = results.table("figures").get("heat", ())
-    if heat:
-        told: list[list[str | Markup]] = [
-            [one["bundle"] or "–", one["verdict"], f"{one['nearer']} of {one['rows']}",
-             *(f"{100 * one[name]:+.2f}".replace("-", "−") for name in ("gain", "u_val"))]
-            for one in heat
-        ]  # fmt: skip
-        heads = ["bundle", "nearer", "with heat nearer in", "mean gain [%]", "mean u_val [%]"]
-        blocks.insert(
-            0, Table("Gain: |E without heat| − |E with heat|, over all.", heads, told, names=2)
-        )
-    implied = results.group("implied")
-    blocks += [implied_table(implied)] if implied is not None else []
-    return Section("comparison", "Comparison", blocks, folded=False)
-
-
-def _maybe(value: float, digits: int) -> str:
-    return f"{value:.{digits}f}".replace("-", "−") if np.isfinite(value) else "–"
+    return Section("comparison", "Comparison", tables, folded=False)

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from thermogear.base.units import RPM, STANDARD_GRAVITY
+from thermogear.base.display import SPEED
 from thermogear.results.result import Result
+from thermogear.views.columns import lines_of
+from thermogear.views.pages.record_tables import comparison_tables, line_table
 
 _TOLD = 5e-4
 """Weight that three digits show."""
@@ -21,10 +23,8 @@ def measured(result: Result) -> list[str]:
     told += [f"{name}: {value}" for name, value in result.table("settings").items()]
     if found.get("shaft_speed") is not None:
         told.append(_shaft(found))
-    head = f"{'channel':12} {'line':22} {'order':>9} {'cyc/sample':>11} {'Hz':>10} {'+- Hz':>9}"
-    told.append(f"{head} {'reading':>10} {'g':>9} {'um':>9} {'u_D %':>7} {'+- %':>7}")
-    told += [_line(one) for one in found["lines"]]
-    return told + slices(found.get("slices"))
+    table = line_table(result)
+    return [*told, *lines_of(*[table] if table else []), *slices(found.get("slices"))]
 
 
 def slices(found: Mapping[str, Any] | None) -> list[str]:
@@ -48,18 +48,19 @@ def _greatest(one: Mapping[str, Any]) -> str:
         interval = f"; greatest of {one['steps']} steps {low:.5g}..{high:.5g}"
     return (
         f"{one['channel'][:12]:12} {one['name'][:22]:22} order {one['order']:9.3f}: "
-        f"{one['reading']:.5g} at {one['speed'] / RPM:.5g} rpm, {one['frequency']:.5g} Hz{interval}"
+        f"{one['reading']:.5g} at {SPEED(one['speed']):.5g} rpm, "
+        f"{one['frequency']:.5g} Hz{interval}"
     )
 
 
 def _shaft(found: Mapping[str, Any]) -> str:
     """The shaft's speed with its interval, or as a mean with its range."""
-    speed, half = found["shaft_speed"] / RPM, found["shaft_speed_half_width"]
+    speed, half = SPEED(found["shaft_speed"]), found["shaft_speed_half_width"]
     span = found.get("shaft_speed_range")
     if span is not None:
-        low, high = (one / RPM for one in span)
+        low, high = (SPEED(one) for one in span)
         return f"mean shaft speed over the record: {speed:.6g} rpm (from {low:.5g} to {high:.5g})"
-    around = f" +- {half / RPM:.3g} rpm (95 %)" if half is not None else ""
+    around = f" +- {SPEED(half):.3g} rpm (95 %)" if half is not None else ""
     return f"shaft speed: {speed:.8g} rpm{around}"
 
 
@@ -72,7 +73,7 @@ def resonance(one: Mapping[str, Any]) -> str:
     if one["kind"] == "resonance":
         return f"resonance at {place}{damping}: {seen} peak there at different speeds"
     if one["kind"] == "speed":
-        rpm = one["speed"] / RPM
+        rpm = SPEED(one["speed"])
         return f"at {rpm:.5g} rpm {seen} peak together: the speed's doing, no resonance in hertz"
     return f"{seen} alone peaks, at {place}: one order cannot tell a resonance from a speed"
 
@@ -83,7 +84,7 @@ def given_and_found(figures: Mapping[str, Any]) -> list[str]:
         return []
     given, found = figures["given"], figures["found"]
     said = [f"{given['teeth']} teeth"] if given["teeth"] is not None else []
-    said += [f"{given['speed'] / RPM:.6g} rpm"] if given["speed"] is not None else []
+    said += [f"{SPEED(given['speed']):.6g} rpm"] if given["speed"] is not None else []
     told = [f"given: {', '.join(said) if said else 'neither teeth nor speed'}"]
     if found["teeth"]:
         return [*told, f"found: {_decided(found)}"]
@@ -112,55 +113,7 @@ def _open(verdict: str) -> str:
     return "no gear" if verdict == "no gear found" else "teeth undecided"
 
 
-def _line(one: Mapping[str, Any]) -> str:
-    return (
-        f"{one['channel'][:12]:12} {one['name'][:22]:22} {_cell(one['order'], 9, 3)} "
-        f"{_cell(one['position'], 11, 6)} {_cell(one['frequency'], 10, 3)} "
-        f"{_cell(one['frequency_half_width'], 9, 5)} "
-        f"{_cell(one['reading'], 10, 4)} {_cell(one['acceleration'], 9, 3, 1 / STANDARD_GRAVITY)} "
-        f"{_cell(one['displacement'], 9, 3, 1e6)} "
-        f"{_cell(_share(one, 'standard_uncertainty', 'uncertainty'), 7, 2, 100.0)} "
-        f"{_cell(_share(one, 'half_width', 'half_width'), 7, 2, 100.0)}"
-    )
-
-
-def _share(one: Mapping[str, Any], name: str, before: str) -> float | None:
-    """A relative figure of a line; results of older versions call it otherwise."""
-    found: float | None = one[f"relative_{name}" if f"relative_{name}" in one else before]
-    return found
-
-
-def _cell(value: float | None, width: int, digits: int, factor: float = 1.0) -> str:
-    return "-".rjust(width) if value is None else f"{factor * value:{width}.{digits}f}"
-
-
-UNITS = {"displacement": (1e6, "um"), "frequency": (1.0, "Hz"), "acceleration": (1.0, "m/s^2")}
-
-
 def comparison(result: Result) -> list[str]:
-    """A row for each quantity and speed, what the lines imply, the conclusion."""
-    found = result.table("figures")
+    """Notices, the tables of the page, the conclusion."""
     told = [f"{one.level}: {one.text}" for one in result.notices]
-    for row in found["rows"]:
-        factor, unit = UNITS[row["quantity"]]
-        models = ", ".join(
-            f"{name} {value * factor:.5g} {unit} ({100 * error:+.2f} %)"
-            for name, value, error in zip(
-                found["models"], row["simulated"], row["errors"], strict=True
-            )
-        )
-        named = f"{row['record']}: " if row.get("record") else ""
-        told.append(
-            f"{named}{row['speed'] / RPM:.0f} rpm, {row.get('where') or row['quantity']}: measured "
-            f"{row['measured'] * factor:.5g} {unit}; {models}; u_val {100 * row['u_val']:.2f} % "
-            f"(num {100 * row['u_num']:.2f}, input {100 * row['u_input']:.2f}, data "
-            f"{100 * row['u_data']:.2f}); {row['verdict']}"
-        )
-    for item in found["implied"]:
-        text = f"{item['speed'] / RPM:.0f} rpm: the line implies {item['acceleration_g']:.1f} g"
-        if item["shaft_speed"] is not None:
-            text += f" and {item['shaft_speed'] / RPM:.1f} rpm"
-        if item["offset_bins"] is not None:
-            text += f", {item['offset_bins']:+.2f} bins off the nominal mesh line"
-        told.append(text)
-    return [*told, found["conclusion"]]
+    return [*told, *lines_of(*comparison_tables(result)), result.table("figures")["conclusion"]]

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermogear.base.units import RPM
+from thermogear.base.display import PERCENT, SPEED, Display
 from thermogear.results.result import Result
+from thermogear.views.columns import PLAIN, Column, Row, declared, lines_of
 from thermogear.views.page import Page, Pictures, Section, Table
 from thermogear.views.plots import records as plots
 
@@ -38,40 +40,10 @@ def page(result: Result) -> Page:
             wide=True,
         )
         sections.append(Section("course", "Course", pictures.take(), folded=False))
-    rows: list[list[Any]] = [
-        [
-            one["record"],
-            one["channel"],
-            one["name"],
-            f"{one['reading']:.5g}",
-            f"{100 * one['change']:+.2f}",
-            f"{100 * _half(one, 'change'):.2f}",
-            *_speed(one),
-        ]
-        for one in found.get("changed", [])[:_SHOWN]
+    sections += [
+        Section(name, name.capitalize(), [table], folded=name != "speeds" or not _moved(found))
+        for name, table in _tables(found, _SHOWN).items()
     ]
-    unit = found.get("units", {}).get("reading") or "the file's"
-    head: list[Any] = ["record", "channel", "line", f"reading [{unit}]", "change [%]", "± [%]"]
-    head += ["speed [rpm]", "mesh line [Hz]"]
-    if rows:
-        sections.append(
-            Section("changed", "Changed", [Table("Beyond the 95 % interval.", head, rows, names=3)])
-        )
-    if found.get("speeds"):
-        sections.append(_speeds(found))
-    rows = [
-        [
-            one["channel"],
-            one["name"],
-            f"{100 * one['trend']:+.3g}",
-            f"{100 * _half(one, 'trend'):.2g}",
-        ]
-        for one in found.get("trends", [])[:_SHOWN]
-    ]
-    if rows:
-        words = "A straight line over the records; beyond its 95 % interval."
-        head = ["channel", "line", "trend [%/record]", "± [%/record]"]
-        sections.append(Section("trends", "Trends", [Table(words, head, rows, names=2)]))
     return Page(
         result,
         summary(found),
@@ -87,50 +59,67 @@ def _is_compared(data: xr.Dataset) -> bool:
     return bool(np.any(known.sum(axis=0) > 1))
 
 
-def _speeds(found: dict[str, Any]) -> Section:
-    """Speed and mesh line of every record, and whether its lines are the baseline's."""
-    rows = [
-        [
-            one["record"],
-            *_speed(one),
-            _cell(one["speed_ratio"], 1.0, 4),
-            str(one["compared"]),
-        ]
-        for one in found["speeds"][:_SHOWN]
-    ]
-    words = (
-        "Speed of the first shaft and frequency of the mesh line found. The level of a mesh line "
-        "changes with speed. Where nothing tells whether a line is the baseline's, its change is "
-        "withheld. – : the record does not tell."
-    )
-    ratio = f"speed over that of {found['baseline']} [–]"
-    head: list[Any] = ["record", "speed [rpm]", "mesh line [Hz]", ratio, "lines compared [–]"]
-    off = [one for one in found["speeds"] if abs((one["speed_ratio"] or 1.0) - 1.0) > _STEADY]
-    return Section(
-        "speeds", "Speeds", [Table(words, head, rows)], folded=not (found["apart"] or off)
-    )
-
-
-def _speed(one: dict[str, Any]) -> list[str]:
-    """Speed [rpm] and mesh line [Hz] of a row; results of older versions hold neither."""
-    return [_cell(one.get("shaft_speed"), RPM, 5), _cell(one.get("mesh_frequency"), 1.0, 6)]
-
-
-def _cell(value: float | None, unit: float, digits: int) -> str:
-    return "–" if value is None else f"{value / unit:.{digits}g}"
-
-
-def _half(one: dict[str, Any], name: str) -> float:
+def _half(name: str) -> Callable[[Row], float]:
     """The half width of a change or a trend; results of older versions call it otherwise."""
-    return float(one.get(f"{name}_half_width", one.get("half_width", 0.0)))
+    return lambda row: float(row.get(f"{name}_half_width", row.get("half_width", 0.0)))
 
 
-def _turning(one: dict[str, Any]) -> str:
-    """Speed and mesh line of a row, with their units."""
-    rpm, hertz = _speed(one)
-    told = [f"{rpm} rpm"] if rpm != "–" else []
-    told += [f"mesh line at {hertz} Hz"] if hertz != "–" else []
-    return f" {', '.join(told)}" if told else ""
+# results of older versions hold neither
+TURNS = (Column("speed", "shaft_speed", ".5g", SPEED), Column("mesh line", "mesh_frequency", 6))
+PER_RECORD = Display("%/record", 100.0)
+
+
+def _tables(found: dict[str, Any], most: int | None = None) -> dict[str, Table]:
+    """What changed, speeds, trends, as far as there are any; of each at ``most`` so many rows."""
+    unit = found.get("units", {}).get("reading") or "the file's"
+    ratio = f"speed over that of {found.get('baseline', '')} [–]"
+    line = (Column("channel", "channel"), Column("line", "name"))
+    declarations: dict[str, tuple[str, tuple[Column, ...], int]] = {
+        "changed": (
+            "Beyond the 95 % interval.",
+            (
+                Column("record", "record"),
+                *line,
+                Column("reading", "reading", ".5g", Display(unit)),
+                Column("change", "change", "+.2f", PERCENT),
+                Column("±", _half("change"), ".2f", PERCENT),
+                *TURNS,
+            ),
+            3,
+        ),
+        "speeds": (
+            "Speed of the first shaft and frequency of the mesh line found. The level of a mesh "
+            "line changes with speed. Where nothing tells whether a line is the baseline's, its "
+            "change is withheld. – : the record does not tell.",
+            (
+                Column("record", "record"),
+                *TURNS,
+                Column(ratio, "speed_ratio", ".4g", PLAIN),
+                Column("lines compared [–]", "compared"),
+            ),
+            1,
+        ),
+        "trends": (
+            "A straight line over the records; beyond its 95 % interval.",
+            (
+                *line,
+                Column("trend", "trend", "+.3g", PER_RECORD),
+                Column("±", _half("trend"), ".2g", PER_RECORD),
+            ),
+            2,
+        ),
+    }
+    return {
+        name: declared(caption, columns, found[name][:most], names=names)
+        for name, (caption, columns, names) in declarations.items()
+        if found.get(name)
+    }
+
+
+def _moved(found: dict[str, Any]) -> bool:
+    """Whether a record is apart from the baseline, or runs at another speed."""
+    ratios = [row["speed_ratio"] or 1.0 for row in found["speeds"]]
+    return bool(found["apart"]) or any(abs(ratio - 1.0) > _STEADY for ratio in ratios)
 
 
 def summary(found: dict[str, Any]) -> str:
@@ -149,18 +138,7 @@ def summary(found: dict[str, Any]) -> str:
 
 
 def lines(result: Result) -> list[str]:
-    """Refusals, what changed, trends, the summary."""
+    """Refusals, what changed, speeds, trends, the summary."""
     found = result.table("figures")
     told = [f"{one.level}: {one.text}" for one in result.notices]
-    for one in found["changed"]:
-        told.append(
-            f"{one['record'][:24]:24} {one['channel'][:12]:12} {one['name'][:22]:22} "
-            f"{one['reading']:10.5g} {100 * one['change']:+8.2f} % +- "
-            f"{100 * _half(one, 'change'):<6.2f}{_turning(one)}"
-        )
-    for one in found["trends"]:
-        told.append(
-            f"trend of {one['channel']}, {one['name']}: {100 * one['trend']:+.3g} % a record +- "
-            f"{100 * _half(one, 'trend'):.2g}"
-        )
-    return [*told, summary(found)]
+    return [*told, *lines_of(*_tables(found).values()), summary(found)]

@@ -5,8 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
-from thermogear.base.display import MICROMETRE, MILLIMETRE, exactly
-from thermogear.base.units import ZERO_CELSIUS
+from thermogear.base.display import CELSIUS, MICROMETRE, MILLIMETRE, exactly
 from thermogear.results.result import Result
 from thermogear.views.columns import Column, declared
 from thermogear.views.page import Page, Shown
@@ -20,8 +19,11 @@ KINDS = ("relief",)
 def page(result: Result) -> Page:
     """The relief found, beside the unrelieved pair."""
     torque = float(result.text("torque"))
-    before, after = 1e6 * float(result.text("unrelieved")), 1e6 * float(result.text("relieved"))
-    hot = [float(result.text(f"{gear}_addendum")) - ZERO_CELSIUS for gear in ("pinion", "wheel")]
+    before, after = (
+        MICROMETRE(float(result.text("unrelieved"))),
+        MICROMETRE(float(result.text("relieved"))),
+    )
+    hot = [CELSIUS(float(result.text(f"{gear}_addendum"))) for gear in ("pinion", "wheel")]
     summary = (
         f"Made for {exactly(torque)} N m with teeth at {hot[0]:.0f} °C (pinion) and "
         f"{hot[1]:.0f} °C (wheel): the transmission error goes from {before:.2f} to {after:.2f} "
@@ -82,7 +84,7 @@ def _numbers(result: Result) -> dict[str, Any]:
 
 
 def _lines(result: Result) -> list[str]:
-    before, after = (1e6 * float(result.text(name)) for name in ("unrelieved", "relieved"))
+    before, after = (MICROMETRE(float(result.text(name))) for name in ("unrelieved", "relieved"))
     return [
         f"transmission error at {float(result.text('torque')):g} N m: {before:.3f} um peak to peak "
         f"without, {after:.3f} um with relief",

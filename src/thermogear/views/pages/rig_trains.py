@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from thermogear.base.display import PERCENT
 from thermogear.results.result import Result
 from thermogear.views.columns import Column, Row, declared, rows_along
 from thermogear.views.page import Block, Pictures, Table, Text
@@ -54,22 +56,27 @@ def blocks(results: Result, pictures: Pictures) -> list[Block]:
 
 
 def _shares(data: xr.Dataset) -> Table:
-    limits = [f"within {float(limit):g}" for limit in data["limit"].values]
-    each = [_share(row) for row in rows_along(data, "seen", "limit")]
-    seen = [str(words) for words in data["seen_words"].values]
+    by_limit = {
+        f"within {float(limit):g}": rows_along(data.isel(limit=k), "seen")
+        for k, limit in enumerate(data["limit"].values)
+    }
+    rows = [dict(zip(by_limit, each, strict=True)) for each in zip(*by_limit.values(), strict=True)]
+    columns = [
+        Column("seen by", lambda row: next(iter(row.values()))["seen_words"]),
+        *(Column(limit, partial(_share, limit=limit)) for limit in by_limit),
+    ]
     caption = (
         f"Of {data.attrs['trains']} sampled drive trains so many show 10.4, 19.3 and 48.5 µm "
         "within a factor, growing; in brackets the 95 % interval of the share."
     )
-    count = len(limits)
-    rows = [[words, *each[k * count : (k + 1) * count]] for k, words in enumerate(seen)]
-    return Table(caption, ["seen by", *limits], rows, names=1)
+    return declared(caption, columns, rows)
 
 
-def _share(row: Row) -> str:
+def _share(row: Row, limit: str) -> str:
     """How many trains come within a limit, and the share of all with its interval."""
-    share, low, high = (100.0 * row[name] for name in ("share", "share_low", "share_high"))
-    return f"{int(row['hits'])}: {share:.1f} % ({low:.1f} to {high:.1f} %)"
+    names = ("share", "share_low", "share_high")
+    share, low, high = (PERCENT(row[limit][name]) for name in names)
+    return f"{int(row[limit]['hits'])}: {share:.1f} % ({low:.1f} to {high:.1f} %)"
 
 
 ASSUMED = (

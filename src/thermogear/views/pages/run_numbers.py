@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
-from thermogear.base.units import RPM
+from thermogear.base.display import SPEED
 from thermogear.base.vocabulary import DIMENSIONLESS
 from thermogear.results.result import Result
 from thermogear.views.columns import Row, rows_along
@@ -80,7 +80,7 @@ def _operating_summary(groups: Mapping[str, xr.Dataset]) -> list[dict[str, Any]]
         {
             "bundle": row["bundle"],
             "state": row["state"],
-            "pinion_speed_rpm": row["pinion_speed"] / RPM,
+            "pinion_speed_rpm": SPEED(row["pinion_speed"]),
             "pinion_torque_Nm": row["pinion_torque"],
             "status": row["status"],
             "greatest_flash_temperature_K": row["flash"],
@@ -96,7 +96,7 @@ def _temperature_summary(data: xr.Dataset) -> list[dict[str, Any]]:
         {
             "bundle": row["bundle"],
             "gear_temperature_K": row["gear_temperature"],
-            "pinion_speed_rpm": row["pinion_speed"] / RPM,
+            "pinion_speed_rpm": SPEED(row["pinion_speed"]),
             "status": row["status"],
             "label": row["label"],
             **_of_point(row),

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermogear.base.units import RPM
+from thermogear.base.display import SPEED
 from thermogear.results.result import Result
 from thermogear.views.columns import Column, Row, declared, rows_along
 from thermogear.views.page import Block, Page, Pictures, Section, Text
@@ -41,7 +41,7 @@ def _study_words(results: Result) -> str:
     data = results.groups["sensitivity"]
     return (
         f"{int(data.attrs['evaluations'])} evaluations of the chain from friction to vibration at "
-        f"{float(data.attrs['speed']) / RPM:.0f} rpm in {float(data.attrs['seconds']):.0f} s; "
+        f"{SPEED(float(data.attrs['speed'])):.0f} rpm in {float(data.attrs['seconds']):.0f} s; "
         f"intervals at {100 * float(data.attrs['confidence']):.0f} %. Every input runs through "
         "its whole range, independently of the others."
     )

@@ -16,10 +16,10 @@ from thermogear.base.display import (
     NEWTON,
     PER_MICROMETRE,
     PERCENT,
+    SPEED,
     exactly,
     number,
 )
-from thermogear.base.units import RPM
 from thermogear.results.files import finite
 from thermogear.results.result import Result
 from thermogear.views.columns import OF_STATE, Column, Row, declared, rows_along
@@ -91,7 +91,7 @@ def _statics(result: Result) -> Page:
     hottest = np.nanmax(rings["bearing_load"].values) if rings["bearing_load"].size else 0.0
     summary = (
         f"Bearings carry up to {number(float(hottest))} N; the centres move apart by up to "
-        f"{1e6 * float(np.nanmax(mesh['centre_distance_growth'].values)):.1f} µm."
+        f"{MICROMETRE(float(np.nanmax(mesh['centre_distance_growth'].values))):.1f} µm."
     )
     return survey(result, summary, pictures, _static_tables(result), numbers=_static_numbers)
 
@@ -211,7 +211,7 @@ def _modes(result: Result) -> Page:
     torque, speed = (float(result.text(name)) for name in ("torque", "speed"))
     summary = (
         f"The lowest natural frequency is {float(HERTZ(hertz[states[last]].min())):.4g} Hz "
-        f"{states[last]}, at {exactly(speed / RPM)} rpm and {exactly(torque)} N m."
+        f"{states[last]}, at {exactly(SPEED(speed))} rpm and {exactly(torque)} N m."
     )
     rows = rows_along(table.isel(state=last).assign(hertz), "mode")
     tables = [declared("Natural frequencies and what they are.", columns, rows)]
@@ -221,13 +221,11 @@ def _modes(result: Result) -> Page:
 def _mode_numbers(result: Result) -> dict[str, Any]:
     table = result.groups["modes"]
     return {
-        "speed_rpm": float(result.text("speed")) / RPM,
+        "speed_rpm": SPEED(float(result.text("speed"))),
         "torque_Nm": float(result.text("torque")),
         "states": {
             state: {
-                "natural_frequency_Hz": (
-                    table["natural_frequency"].values[s] / (2 * np.pi)
-                ).tolist(),
+                "natural_frequency_Hz": HERTZ(table["natural_frequency"].values[s]).tolist(),
                 "modal_damping_ratio": table["modal_damping_ratio"].values[s].tolist(),
                 "mesh_share": table["mesh_share"].values[s].tolist(),
                 "mostly": table["mode_name"].values[s].tolist(),
@@ -264,14 +262,14 @@ def criticals(result: Result) -> Iterator[dict[str, Any]]:
                 "state": row["state"],
                 "order": row["line"],
                 "mode": row["mode"],
-                "rpm": row["critical_speed"] / RPM,
-                "rpm_least": row["low"] / RPM,
-                "rpm_greatest": row["high"] / RPM,
-                "frequency_Hz": row["critical_speed"] * row["order"] / 2 / np.pi,
+                "rpm": SPEED(row["critical_speed"]),
+                "rpm_least": SPEED(row["low"]),
+                "rpm_greatest": SPEED(row["high"]),
+                "frequency_Hz": HERTZ(row["critical_speed"] * row["order"]),
                 "participation": row["participation"],
                 "amplification": row["amplification"],
                 "bearing_force_N": finite(row["resonant_force"]),
-                "lifts_off_from_rpm": row["lift_off"] / RPM if lifted else None,
+                "lifts_off_from_rpm": SPEED(row["lift_off"]) if lifted else None,
                 "mostly": row["mode_name"],
             }
 
@@ -279,7 +277,11 @@ def criticals(result: Result) -> Iterator[dict[str, Any]]:
 def _force(row: Row) -> float | str | None:
     """The dynamic force of a resonance on a bearing [N], or why there is none."""
     lifts_off = row["lifts_off_from_rpm"]
-    return row["bearing_force_N"] if lifts_off is None else plots.not_valid(lifts_off * RPM)
+    return (
+        row["bearing_force_N"]
+        if lifts_off is None
+        else plots.not_valid(float(SPEED.stored(lifts_off)))
+    )
 
 
 CRITICAL = (

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from thermogear.base.units import RPM
+from thermogear.base.display import SPEED
 from thermogear.results.result import Result
 from thermogear.results.tables import csv_text, frames
 from thermogear.views.columns import lines_of, typed
@@ -86,7 +86,7 @@ def csv_tables(result: Result) -> dict[str, str]:
 def operating_rows(data: xr.Dataset) -> list[dict[str, float]]:
     """Speed and torque of every operating point."""
     pairs = zip(data["pinion_speed"].values, data["pinion_torque"].values, strict=True)
-    return [{"pinion_speed_rpm": float(s) / RPM, "pinion_torque_Nm": float(t)} for s, t in pairs]
+    return [{"pinion_speed_rpm": SPEED(float(s)), "pinion_torque_Nm": float(t)} for s, t in pairs]
 
 
 def table_of(data: xr.DataArray) -> list[list[float]]:

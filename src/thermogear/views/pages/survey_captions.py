@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.display import exactly, number, span
-from thermogear.base.units import RPM
+from thermogear.base.display import MICROMETRE, MILLIMETRE, SPEED, exactly, number, span
 from thermogear.base.vocabulary import is_known
 
 if TYPE_CHECKING:
@@ -47,7 +46,7 @@ def held(data: xr.Dataset) -> str:
     """The one value of the axis that does not run."""
     if data.sizes["pinion_speed"] > 1:
         return f"{exactly(float(data['pinion_torque'][0]))} N m"
-    return f"{exactly(float(data['pinion_speed'][0]) / RPM)} rpm"
+    return f"{exactly(SPEED(float(data['pinion_speed'][0])))} rpm"
 
 
 def thermal_map(data: xr.Dataset, safe: float) -> str:
@@ -85,7 +84,7 @@ def one_point(data: xr.Dataset) -> str:
 
 def relief_error(data: xr.Dataset) -> str:
     """Of the transmission error under the design load."""
-    spread = 1e6 * np.ptp(data["transmission_error"].values, axis=-1)
+    spread = MICROMETRE(np.ptp(data["transmission_error"].values, axis=-1))
     without, with_it = (number(float(v)) for v in spread)
     return f"Under the design load: {without} µm peak to peak without relief, {with_it} µm with it."
 
@@ -144,7 +143,7 @@ def contact_path(data: xr.Dataset) -> str:
 
 def double_contact(data: xr.Dataset) -> str:
     """Of the length of double contact of unequally hot gears."""
-    length = 1e3 * data["double_contact_length"].values
+    length = MILLIMETRE(data["double_contact_length"].values)
     apart = data["temperature_difference"].values
     equal = length[int(np.argmin(np.abs(apart)))]
     least = np.unravel_index(int(np.argmin(length - equal)), length.shape)

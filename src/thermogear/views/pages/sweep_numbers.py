@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.units import ZERO_CELSIUS
+from thermogear.base.display import CELSIUS, MICROMETRE
 from thermogear.base.vocabulary import ASSUMED, FASTER_RULE
 from thermogear.results.result import Result
 from thermogear.views.pages.findings import ways_apart
@@ -68,7 +68,7 @@ def _bifurcations(data: xr.Dataset, name: str) -> list[dict[str, Any]]:
 
 
 def _degrees(data: xr.Dataset, state: int) -> float:
-    return round(float(data["gear_temperature"].values[state]) - ZERO_CELSIUS, 6)
+    return round(CELSIUS(float(data["gear_temperature"].values[state])), 6)
 
 
 def _diagram(result: Result) -> dict[str, Any]:
@@ -118,8 +118,8 @@ def _run_up(result: Result) -> dict[str, Any]:
             "fold_rpm": rpm("jump_fold", i),
             "return_rpm": rpm("jump_return", i),
             "into_period": int(data["jump_into"].values[i]),
-            "before_um": 1e6 * float(data["jump_before"].values[i]),
-            "after_um": 1e6 * float(data["jump_after"].values[i]),
+            "before_um": MICROMETRE(float(data["jump_before"].values[i])),
+            "after_um": MICROMETRE(float(data["jump_after"].values[i])),
         }
         for i in range(data.sizes["jump"])
     ]
@@ -146,26 +146,26 @@ def numbers(result: Result) -> dict[str, Any]:
     return found | ({"seconds": float(seconds)} if seconds else {})
 
 
+TABLES = ("bifurcations", "jumps", "attractors")
+"""Figures that a terminal shows as the page's tables."""
+
+
 def lines(result: Result) -> list[str]:
-    """The same as a terminal shows it."""
+    """The other figures as a terminal shows them."""
+    told = numbers(result)
+    assumed = told.pop("assumed", {})
     found = []
-    for name, value in numbers(result).items():
-        if name == "labels" and (taken := numbers(result)["assumed"]):
-            each = [f"{k} {n} computed, {taken.get(k, 0)} assumed" for k, n in value.items()]
-            found.append(f"labels: {', '.join(each)}")
-        elif name == "assumed":
-            continue
+    for name, value in told.items():
+        if name == "labels":
+            tail = {k: f" computed, {assumed.get(k, 0)} assumed" * bool(assumed) for k in value}
+            found.append(f"labels: {', '.join(f'{k} {n}{tail[k]}' for k, n in value.items())}")
         elif name == "lost_contact":
             found += [f"- {lost_line(row)}" for row in value] or ["- nothing loses contact"]
         elif name == "ways_apart":
             at = ", ".join(f"{place:.9g}" for place in value)
             found += [f"two motions, up and down, at {at}"] * bool(value)
-        elif isinstance(value, list):
-            found += [f"- {_line(row) if isinstance(row, dict) else row}" for row in value]
-        else:
-            found.append(f"{name}: {_line(value) if isinstance(value, dict) else value}")
+        elif name == "notices":
+            found += [f"- {text}" for text in value]
+        elif name not in TABLES:
+            found.append(f"{name}: {value}")
     return found
-
-
-def _line(row: dict[str, Any]) -> str:
-    return ", ".join(f"{k} {v:.9g}" if isinstance(v, float) else f"{k} {v}" for k, v in row.items())

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermogear.base.display import exactly, number
+from thermogear.base.display import PERCENT, exactly, number
 from thermogear.base.vocabulary import ASSUMED, FASTER_RULE
 from thermogear.results.result import Result
+from thermogear.views.columns import Column, Row, declared, lines_of, pairs
 from thermogear.views.page import LEAD, Block, Page, Pictures, Section, Table, Text
 from thermogear.views.pages.findings import finding, ways_apart
 from thermogear.views.pages.lost_words import lost_words
@@ -72,12 +73,17 @@ def page(result: Result) -> Page:
     data = result.data
     if not result.title:
         result = replace(result, title=TITLES[result.kind])
+    points = _points(data, result)
+    # what loses contact is among the lines
+    located = [
+        block for block in points.blocks if isinstance(block, Table) and block.caption != CONTACT
+    ]
     return Page(
         result,
         _summary(data),
-        [_pictures(data), _points(data, result), _settings(data)],
+        [_pictures(data), points, _settings(data)],
         numbers=lambda: numbers(result),
-        lines=lambda: lines(result),
+        lines=lambda: [*lines(result), *lines_of(*located)],
     )
 
 
@@ -190,33 +196,14 @@ def _points(data: xr.Dataset, result: Result) -> Section:
     told = numbers(result)
     if told.get("bifurcations"):
         found = told["bifurcations"]
-        heat = [name for name in ("gears_degC",) if name in found[0]]
-        rows = [
-            [one["kind"], str(one["period"]), number(one["value"], 8),
-             *(number(one[name], 4) for name in heat)]
-            for one in found
-        ]  # fmt: skip
-        head: list[Any] = ["kind", "period", page_words(parameter, data["bifurcation_value"])]
-        head += ["gears [°C]"] * len(heat)
-        blocks.append(Table("Located bifurcations", head, rows))
-        kinds = {row[0] for row in rows}
+        value = page_words(parameter, data["bifurcation_value"])
+        columns = [KIND, Column("period", "period"), Column(value, "value", 8)]
+        columns += [GEARS] * ("gears_degC" in found[0])
+        blocks.append(declared("Located bifurcations", columns, found))
+        kinds = {row["kind"] for row in found}
         blocks.append(Text(" ".join(w for kind, w in EXPLAINED.items() if kind in kinds)))
     if told.get("jumps"):
-        jumps = [
-            (
-                one["direction"],
-                number(one["gears_degC"], 4),
-                number(one["fold_rpm"], 8),
-                one["at"],
-                _returns(one),
-                number(one["before_um"]),
-                number(one["after_um"]),
-            )
-            for one in told["jumps"]
-        ]
-        head = ["run", "gears [°C]", "jumps at [rpm]", "which is a", "run back jumps at [rpm]",
-                "p-p before [µm]", "p-p after [µm]"]  # fmt: skip
-        blocks.append(Table("Jumps", head, jumps))
+        blocks.append(declared("Jumps", JUMPS, told["jumps"]))
         blocks.append(Text(JUMPS_EXPLAINED))
     elif str(data.attrs["kind"]) == "run-up":
         apart = [n.text for n in result.notices if n.text.startswith("up and down differ")]
@@ -229,22 +216,12 @@ def _points(data: xr.Dataset, result: Result) -> Section:
             )
         )
     if told.get("attractors"):
-        rows_ = [
-            (
-                f"period {one['period']}" if one["period"] else "chaotic, estimate",
-                number(one["x"], 9),
-                number(one["v"], 9),
-                number(float(multiplier), 6),
-                str(one["count"]),
-                number(100.0 * one["fraction"], 5),
-                number(one["border_distance"], 3),
-            )
-            for one, multiplier in zip(
-                told["attractors"], data["attractor_multiplier"].values, strict=True
-            )
+        sizes = data["attractor_multiplier"].values
+        rows = [
+            {**attractor, "multiplier": size}
+            for attractor, size in zip(told["attractors"], sizes, strict=True)
         ]
-        head = ["attractor", "x", "x′", "multiplier", "starts", "share [%]", "to the border [b]"]
-        blocks.append(Table("Attractors", head, rows_))
+        blocks.append(declared("Attractors", ATTRACTORS, rows))
         entropy = data.attrs
         blocks.append(
             Text(
@@ -264,28 +241,67 @@ def lost_table(data: xr.Dataset) -> Table:
     kinds, apart = sweeps.classes_of(data), ways_apart(data)
     rows = []
     for place, at in enumerate(shown(name, data[name])):
-        here = [what for what, flags in things(data).items() if flags[..., place].any()]
         told = (
             [sweeps.CLASSES[int(one)][0] for one in kinds[..., place].ravel()],
-            [number(100.0 * one) for one in free[..., place].ravel()],
+            [number(PERCENT(one)) for one in free[..., place].ravel()],
             [number(one, 4) for one in force[..., place].ravel()],
         )
-        motions, shares, forces = (" / ".join(dict.fromkeys(one)) for one in told)
-        rows.append([
-            exactly(float(at)), motions,
-            "two motions: one of them jumps" if apart[place] else "one motion",
-            "; ".join(here) or "nothing", shares, forces,
-        ])  # fmt: skip
-    head = [page_words(name, data[name]), "motion", "up and down", "what loses contact",
-            "drive flank apart [% of the time]", "greatest force of the teeth [N]"]  # fmt: skip
-    return Table("Contact over the parameter; up / down where they differ.", head, rows)
+        motions, shares, forces = (" / ".join(dict.fromkeys(each)) for each in told)
+        here = [what for what, flags in things(data).items() if flags[..., place].any()]
+        rows.append(
+            {
+                "at": float(at),
+                "motion": motions,
+                "apart": "two motions: one of them jumps" if apart[place] else "one motion",
+                "loses": "; ".join(here) or "nothing",
+                "free": shares,
+                "force": forces,
+            }
+        )
+    columns = (Column(page_words(name, data[name]), "at", exactly), *LOST)
+    return declared(CONTACT, columns, rows)
 
 
-def _returns(jump: dict[str, Any]) -> str:
+CONTACT = "Contact over the parameter; up / down where they differ."
+LOST = (
+    Column("motion", "motion"),
+    Column("up and down", "apart"),
+    Column("what loses contact", "loses"),
+    Column("drive flank apart [% of the time]", "free"),
+    Column("greatest force of the teeth [N]", "force"),
+)
+
+
+def _returns(jump: Row) -> str:
     """Where a run back jumps again, in words where it does not."""
     if np.isfinite(jump["return_rpm"]):
         return number(jump["return_rpm"], 8)
     return "not in range" if jump["into_period"] else "from chaos"
+
+
+KIND = Column("kind", "kind")
+GEARS = Column("gears [°C]", "gears_degC", 4)
+JUMPS = (
+    Column("run", "direction"),
+    GEARS,
+    Column("jumps at [rpm]", "fold_rpm", 8),
+    Column("which is a", "at"),
+    Column("run back jumps at [rpm]", _returns),
+    Column("p-p before [µm]", "before_um"),
+    Column("p-p after [µm]", "after_um"),
+)
+ATTRACTORS = (
+    Column(
+        "attractor",
+        lambda row: f"period {row['period']}" if row["period"] else "chaotic, estimate",
+    ),
+    Column("x", "x", 9),
+    Column("x′", "v", 9),
+    Column("multiplier", "multiplier", 6),
+    Column("starts", "count"),
+    Column("share", "fraction", 5, PERCENT),
+    Column("to the border [b]", "border_distance"),
+)
 
 
 def _settings(data: xr.Dataset) -> Section:
@@ -296,7 +312,6 @@ def _settings(data: xr.Dataset) -> Section:
         "bundle": "bundle of choices",
         "branch_notes": "branches",
     }
-    rows = [(words, str(data.attrs[name])) for name, words in shown.items() if data.attrs.get(name)]
-    return Section(
-        "settings", "How it was computed", [Table("", ["what", "value"], rows)] if rows else []
-    )
+    there = {words: data.attrs[name] for name, words in shown.items() if data.attrs.get(name)}
+    tables = [pairs("", ("what", "value"), there)] if there else []
+    return Section("settings", "How it was computed", tables)

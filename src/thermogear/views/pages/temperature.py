@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermogear.base.display import CELSIUS, KELVIN, exactly, number, reach
-from thermogear.base.units import RPM, ZERO_CELSIUS
+from thermogear.base.display import CELSIUS, KELVIN, MICROMETRE, SPEED, exactly, number, reach
 from thermogear.base.vocabulary import STATUS
 from thermogear.results.result import Result
 from thermogear.views.columns import Column, Row, declared, rows_along
@@ -159,7 +158,7 @@ def _numbers(result: Result) -> dict[str, Any]:
     return {
         "seconds": float(result.text("seconds")),
         "points": int(data["status"].size),
-        "pinion_speed_rpm": [float(v) / RPM for v in data["pinion_speed"].values],
+        "pinion_speed_rpm": [SPEED(float(v)) for v in data["pinion_speed"].values],
         "pinion_torque_Nm": [float(v) for v in data["pinion_torque"].values],
         "status": data["status"].values.tolist(),
         "iterations": data["iterations"].values.tolist(),
@@ -174,9 +173,9 @@ def _lines(result: Result) -> list[str]:
     data = result.groups["map"]
     teeth = data["node_temperature"].sel(node=["pinion_tooth", "wheel_tooth"]).values
     figures = {
-        "teeth [degC]": teeth - ZERO_CELSIUS,
+        "teeth [degC]": CELSIUS(teeth),
         "greatest flash temperature [K]": data["greatest_flash"].values,
-        "least half backlash [um]": 1e6 * data["least_half_backlash"].values,
+        "least half backlash [um]": MICROMETRE(data["least_half_backlash"].values),
         "scuffing margin [K]": data["scuffing_margin"].values,
         "least film parameter": data["least_film_parameter"].values,
         "mean friction coefficient": data["mean_friction"].values,

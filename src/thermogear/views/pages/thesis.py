@@ -12,10 +12,10 @@ from markupsafe import Markup
 
 from thermogear.base.display import celsius
 from thermogear.results.result import Result
+from thermogear.views.columns import PLAIN, Column, Row, declared, rows_along
 from thermogear.views.page import (
     LEAD,
     Block,
-    Cell,
     Code,
     Gallery,
     Page,
@@ -28,7 +28,7 @@ from thermogear.views.page import (
 )
 from thermogear.views.pages import captions, gear_sections, rig_trains, row_sections
 from thermogear.views.pages.background import background
-from thermogear.views.pages.record import comparison_table, implied_table
+from thermogear.views.pages.record_tables import comparison_table, implied_table
 from thermogear.views.pages.sensitivity import sensitivity_section
 from thermogear.views.plots import claims as plots
 from thermogear.views.plots.sweeps import over_each_other
@@ -95,23 +95,12 @@ def _summary(results: Result) -> str:
 def _opening(results: Result, sections: Sequence[Section]) -> Section:
     """The conclusions, those that hold first, one picture, and the same for the reader's gears."""
     claims, verdicts = results.groups["claims"], list(results.table("counts"))
-    rows: list[list[Cell]] = [
-        [
-            Markup("<b>{}</b>").format(str(one["verdict"].item())),
-            Markup('{} <a href="#claim-{}">{}</a>').format(
-                prose(str(one["words"].item())), name, name
-            ),
-            prose(str(one["argument"].item())),
-        ]
-        for place, name in enumerate(_names(claims))
-        for one in (claims.isel(claim=place),)
-        if _section(name) == CONCLUSIONS
-    ]
-    rows.sort(key=lambda row: verdicts.index(Markup(row[0]).striptags()))
+    rows = [row for row in rows_along(claims, "claim") if _section(row["number"]) == CONCLUSIONS]
+    rows.sort(key=lambda row: verdicts.index(row["verdict"]))
     blocks: list[Block] = []
     if rows:
-        head = ["verdict", "conclusion of the document", "why"]
-        blocks.append(Table("Its conclusions, one by one.", head, rows, names=3, wordy=True))
+        caption = "Its conclusions, one by one."
+        blocks.append(declared(caption, CONCLUSION, rows, names=3, wordy=True))
     galleries = [b for one in sections for b in one.blocks if isinstance(b, Gallery)]
     shown = [one for gallery in galleries for one in gallery.pictures if one.name == OPENING]
     blocks += [Gallery(shown)] * bool(shown)
@@ -126,30 +115,30 @@ def _outlook(results: Result) -> Section:
     """What the document leaves to later work: what is computed of it, here and for any pair."""
     path, trains = results.group("path"), results.group("rig_trains")
     film = "" if path is None else captions.regimes(path.isel(bundle=-1, state=-1))
-    rows: list[list[Cell]] = [
-        [
-            "other regimes of lubrication", film or NOT_HERE,
-            "thermogear friction CASE",
-        ],
-        [
-            "shafts that bend, bearings with clearance",
-            NOT_HERE if trains is None else str(trains.attrs["sentence"]),
-            "thermogear run CASE, with [[shafts]] and [[bearings]]",
-        ],
-        [
-            "temperatures measured better",
-            "The rig's temperatures are given. Readings in the case are corrected, and the heat "
-            "balance is held to them.",
-            "thermogear temperature CASE, with [gearbox.readings]",
-        ],
-        [
-            "design, and diagnosis of faults",
-            "An appraisal, not judged here.",
-            "thermogear answers CASE; thermogear measure FILE",
-        ],
-    ]  # fmt: skip
-    head = ["left to later work", "of the rig", "for any gears"]
-    return Section("outlook", "Outlook", [Table("", head, rows, names=3, wordy=True)])
+    rows = [
+        {
+            "left": "other regimes of lubrication",
+            "of_rig": film or NOT_HERE,
+            "for_any": "thermogear friction CASE",
+        },
+        {
+            "left": "shafts that bend, bearings with clearance",
+            "of_rig": NOT_HERE if trains is None else str(trains.attrs["sentence"]),
+            "for_any": "thermogear run CASE, with [[shafts]] and [[bearings]]",
+        },
+        {
+            "left": "temperatures measured better",
+            "of_rig": "The rig's temperatures are given. Readings in the case are corrected, and "
+            "the heat balance is held to them.",
+            "for_any": "thermogear temperature CASE, with [gearbox.readings]",
+        },
+        {
+            "left": "design, and diagnosis of faults",
+            "of_rig": "An appraisal, not judged here.",
+            "for_any": "thermogear answers CASE; thermogear measure FILE",
+        },
+    ]
+    return Section("outlook", "Outlook", [declared("", OUTLOOK, rows, names=3, wordy=True)])
 
 
 def _tiles(results: Result) -> list[Tile]:
@@ -198,47 +187,82 @@ def _counted(results: Result, claims: xr.Dataset) -> Section:
     found = Counter(
         (_section(n), str(v)) for n, v in zip(_names(claims), claims["verdict"].values, strict=True)
     )
-    rows: list[list[Cell]] = []
-    for place, title in SECTIONS.items():
-        numbers = [found[place, verdict] for verdict in verdicts]
-        rows.append([f"{place} {title}", *map(str, numbers), str(sum(numbers))])
-    total = [sum(found[p, v] for p in SECTIONS) for v in verdicts]
-    rows.append(["all", *map(str, total), str(sum(total))])
+    rows: list[Row] = [
+        {"name": f"{place} {title}", **{v: found[place, v] for v in verdicts}}
+        for place, title in SECTIONS.items()
+    ]
+    rows.append({"name": "all", **{v: sum(row[v] for row in rows) for v in verdicts}})
+    columns = [
+        Column("section", "name"),
+        *(Column(verdict, verdict) for verdict in verdicts),
+        Column("claims", lambda row: sum(row[v] for v in verdicts)),
+    ]
     intro = Text(
         "A claim is reproduced where the computation gives it from what the document states; under "
         "a stated assumption where a value or a reading of ours is needed; it cannot be decided "
         "where what is missing decides the result; it is contradicted where the result differs "
         "whatever is assumed."
     )
-    table = Table("Verdicts by section of the document.", ["section", *verdicts, "claims"], rows)
+    table = declared("Verdicts by section of the document.", columns, rows)
     return Section("verdicts", "Verdicts", [intro, table], folded=False)
 
 
 def _claims_table(claims: xr.Dataset, place: int, shown: Collection[str]) -> Table:
-    rows: list[list[Cell]] = []
-    marked: set[int] = set()
-    for k in range(claims.sizes["claim"]):
-        one = {name: str(claims[name].values[k]) for name in claims.data_vars}
-        if one["verdict"] in MARKED:
-            marked.add(k)
-        picture = (
-            Markup('<br/><small><a href="#fig-{}">picture</a></small>').format(one["picture"])
-            if f"fig-{one['picture']}" in shown
-            else Markup("")
-        )
-        rows.append([
-            Markup('<b id="claim-{0}">{0}</b><br/><small>{1}</small>').format(
-                one["number"], one["kind"]),
-            Markup("{}<br/><small>{}</small>{}").format(
-                prose(one["words"]), one["place"], picture),
-            Markup("<b>as in the thesis:</b> {}<br/><b>consistent:</b> {}").format(
-                prose(one["as_in_the_thesis"]), prose(one["consistent"])),
-            Markup("<b>{}</b><br/>{}<br/><small>{}</small>").format(
-                one["verdict"], prose(one["argument"]), _code(one["code"])),
-        ])  # fmt: skip
-    head: list[Cell] = ["no.", "claim, in our words", "computed", "verdict, argument, code"]
-    caption = f"Section {place}, claim by claim; contradicted ones are marked."
-    return Table(caption, head, rows, names=4, marked=frozenset(marked), wordy=True)
+    rows = [
+        row | {"drawn": f"fig-{row['picture']}" in shown} for row in rows_along(claims, "claim")
+    ]
+    return declared(
+        f"Section {place}, claim by claim; contradicted ones are marked.",
+        CLAIM,
+        rows,
+        names=4,
+        marked=lambda row: row["verdict"] in MARKED,
+        wordy=True,
+    )
+
+
+def _number(row: Row) -> Markup:
+    words = Markup('<b id="claim-{0}">{0}</b><br/><small>{1}</small>')
+    return words.format(row["number"], row["kind"])
+
+
+def _words(row: Row) -> Markup:
+    link = Markup('<br/><small><a href="#fig-{}">picture</a></small>').format(row["picture"])
+    words = Markup("{}<br/><small>{}</small>").format(prose(row["words"]), row["place"])
+    return words + link if row["drawn"] else words
+
+
+def _computed(row: Row) -> Markup:
+    words = Markup("<b>as in the thesis:</b> {}<br/><b>consistent:</b> {}")
+    return words.format(prose(row["as_in_the_thesis"]), prose(row["consistent"]))
+
+
+def _judged(row: Row) -> Markup:
+    words = Markup("<b>{}</b><br/>{}<br/><small>{}</small>")
+    return words.format(row["verdict"], prose(row["argument"]), _code(row["code"]))
+
+
+CONCLUSION = (
+    Column("verdict", lambda row: Markup("<b>{}</b>").format(row["verdict"])),
+    Column(
+        "conclusion of the document",
+        lambda row: Markup('{} <a href="#claim-{}">{}</a>').format(
+            prose(row["words"]), row["number"], row["number"]
+        ),
+    ),
+    Column("why", lambda row: prose(row["argument"])),
+)
+OUTLOOK = (
+    Column("left to later work", "left"),
+    Column("of the rig", "of_rig"),
+    Column("for any gears", "for_any"),
+)
+CLAIM = (
+    Column("no.", _number),
+    Column("claim, in our words", _words),
+    Column("computed", _computed),
+    Column("verdict, argument, code", _judged),
+)
 
 
 def _code(names: str) -> Markup:
@@ -310,24 +334,26 @@ def _flip_table(flips: xr.Dataset) -> Table:
         "consistent": "by E(T)",
         "backlash": "closing gap alone",
     }
-    rows: list[list[Cell]] = []
-    for row in flips["row"].values:
-        for heat in flips["heat"].values:
-            one = flips.sel(row=row, heat=heat)
-            cells = [f"{v:.9g}" if np.isfinite(v) else "–" for v in one["value"].values]
-            symbol = {"zeta": "ζ", "omega": "ω_h", "epsilon": "ε"}[str(row)]
-            rows.append([html_symbol(symbol), heats[str(heat)], *cells, str(one["note"].item())])
-    head = [
-        "parameter", "heat", *(f"{2**k} → {2 ** (k + 1)}" for k in range(flips.sizes["flip"])),
-        "why no more",
-    ]  # fmt: skip
     warm = celsius(float(flips.attrs.get("temperature", np.nan)))
     caption = (
         "Period doublings located by continuation, along the document's direction; heat is that "
         f"at {warm}. The gap alone moves nothing as long as no back flank is hit."
     )
-    lines = [[*row[:2], row[-1], *row[2:-1]] for row in rows]
-    return Table(caption, [head[0], head[1], head[-1], *head[2:-1]], lines, names=3)
+    columns = (
+        Column("parameter", lambda row: html_symbol(SYMBOLS[row["row"]])),
+        Column("heat", lambda row: heats[row["heat"]]),
+        Column("why no more", "note"),
+        *(
+            Column(f"{2**k} → {2 ** (k + 1)}", f"flip_{k}", ".9g", PLAIN)
+            for k in range(flips.sizes["flip"])
+        ),
+    )
+    values = {f"flip_{k}": flips["value"].isel(flip=k) for k in range(flips.sizes["flip"])}
+    rows = rows_along(flips.assign(values), "row", "heat")
+    return declared(caption, columns, rows, names=3)
+
+
+SYMBOLS = {"zeta": "ζ", "omega": "ω_h", "epsilon": "ε"}
 
 
 def _tests(results: Result, pictures: Pictures) -> list[Block]:
@@ -352,10 +378,8 @@ def _tests(results: Result, pictures: Pictures) -> list[Block]:
 def _numbers(result: Result) -> dict[str, Any]:
     """Counts, verdicts and the ranking of the inputs, JSON-ready."""
     claims = result.groups["claims"]
-    rows = [
-        {str(name): str(column.values[k]) for name, column in claims.data_vars.items()}
-        for k in range(claims.sizes["claim"])
-    ]
+    names = [*map(str, claims.data_vars)]
+    rows = [{name: str(row[name]) for name in names} for row in rows_along(claims, "claim")]
     found = {
         "thermogear": result.text("thermogear"),
         "title": result.title,

@@ -4,22 +4,33 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermogear.base.display import celsius, exactly, number, span
+from thermogear.base.display import (
+    CELSIUS,
+    KELVIN,
+    MICROMETRE,
+    SPEED,
+    celsius,
+    exactly,
+    number,
+    span,
+)
 from thermogear.base.parameters import PARAMETERS
-from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import STATUS, moves
 from thermogear.results.result import Result
-from thermogear.views.page import Block, Gallery, Page, Pictures, Section, Table, Text, notice_lines
+from thermogear.results.tables import rows_of
+from thermogear.views.columns import Column, declared
+from thermogear.views.page import Block, Gallery, Page, Pictures, Section, Text, notice_lines
 from thermogear.views.pages import captions, gear_sections, overlay
 from thermogear.views.pages.background import background
 from thermogear.views.pages.findings import finding
 from thermogear.views.pages.lost_words import lost_words
-from thermogear.views.pages.record import comparison_table
+from thermogear.views.pages.record_tables import comparison_table
 from thermogear.views.pages.sweeps import LOST_DIAGRAM, lost_table
 from thermogear.views.plots import laws
 from thermogear.views.plots.lost_contact import forces_picture
@@ -70,7 +81,7 @@ def _summary(result: Result) -> str:
     cut = "Stopped on request before the end: what is missing was not computed. "
     return (
         f"{cut if result.interrupted else ''}The steps of the thesis for this pair at "
-        f"{exactly(float(mesh['pinion_speed']) / RPM)} rpm and "
+        f"{exactly(SPEED(float(mesh['pinion_speed'])))} rpm and "
         f"{exactly(float(mesh['pinion_torque']))} N m (ω_h = {at}), "
         f"bundle {mesh['bundle'].item()}."
     )
@@ -87,7 +98,7 @@ def _sentence(parts: Sequence[str]) -> str:
 
 
 def _micro(one: xr.Dataset, name: str) -> str:
-    return number(1e6 * float(one[name]))
+    return number(MICROMETRE(float(one[name])))
 
 
 def _temperatures(result: Result) -> list[xr.Dataset]:
@@ -141,8 +152,8 @@ def _at(one: xr.Dataset) -> str:
 
 def _gap(points: list[xr.Dataset]) -> str:
     """What is left at the tightest phase where it jams, and where: each has its own housing."""
-    gaps = span([1e6 * float(one["least_half_backlash"]) for one in points])
-    jams = span([round(float(one["jam_temperature"]) - ZERO_CELSIUS, 0) for one in points])
+    gaps = span([MICROMETRE(float(one["least_half_backlash"])) for one in points])
+    jams = span([round(CELSIUS(float(one["jam_temperature"])), 0) for one in points])
     used = f", used up at {jams} °C with the housing of each" * (jams != "–")
     return f", least half backlash {gaps} µm{used}"
 
@@ -182,7 +193,7 @@ def _diagram(name: str, result: Result, pictures: Pictures) -> Told:
     if kept:
         left = f" {len(rows) - len(kept)} more were not followed." * (len(kept) < len(rows))
         both = Result.of("overlay", "", {"states": data}, matches=kept, states=states)
-        blocks.append(Table(overlay.FOLLOWED + left, *overlay.table_of(both)))
+        blocks.append(replace(overlay.table_of(both), caption=overlay.FOLLOWED + left))
     return _sentence([f"from {' to '.join(ends)} {PARAMETERS[name].shown}".strip(), *told]), blocks
 
 
@@ -206,8 +217,8 @@ def _friction(result: Result, pictures: Pictures) -> Told:
     section = gear_sections.friction(result, pictures)
     galleries = [one for one in section.blocks if isinstance(one, Gallery)] if section else []
     kept = [one for some in galleries for one in some.pictures if one.name in FRICTION]
-    head = ["friction", "mean coefficient", "greatest flash temperature [K]"]
-    table = Table("Along the path of contact, hot.", head, [*zip(names, mean, flash, strict=True)])
+    rows = rows_of({"friction": names, "mean": mean, "flash": flash})
+    table = declared("Along the path of contact, hot.", FRICTION_TABLE, rows)
     return (
         f"Hot, mixed lubrication gives a mean friction coefficient of {mean[0]} and a flash "
         f"temperature of at most {flash[0]} K, dry friction {mean[1]} and {flash[1]} K."
@@ -257,20 +268,24 @@ def _sensors(result: Result) -> Told:
         ), []
     off = span([one["temperature_K"] - one["indicated_K"] for one in read])
     gap = _micro(balance.isel(bundle=0, operating=0), "half_backlash_uncertainty")
-    rows = [
-        [
-            one["node"].replace("_", " "), one["kind"], celsius(one["indicated_K"]),
-            celsius(one["temperature_K"]), number(one["uncertainty_K"]),
-        ]
-        for one in read
-    ]  # fmt: skip
-    head = ["node", "kind", "shown", "corrected", "standard uncertainty [K]"]
     return (
         f"Readings: {len(read)}, corrected by {off} K; what stays uncertain of them moves the half "
         f"backlash by {gap} µm (standard uncertainty)."
-    ), [Table("Readings.", head, rows, names=2)]
+    ), [declared("Readings.", READINGS, read, names=2)]
 
 
+FRICTION_TABLE = (
+    Column("friction", "friction"),
+    Column("mean coefficient", "mean"),
+    Column("greatest flash temperature [K]", "flash"),
+)
+READINGS = (
+    Column("node", lambda row: row["node"].replace("_", " ")),
+    Column("kind", "kind"),
+    Column("shown", lambda row: celsius(row["indicated_K"])),
+    Column("corrected", lambda row: celsius(row["temperature_K"])),
+    Column("standard uncertainty", "uncertainty_K", 3, KELVIN),
+)
 STEPS: tuple[tuple[str, str, Callable[[Result, Pictures], Told]], ...] = (
     ("temperature", "Gear temperature", _warming),
     ("damping", "Damping", partial(_diagram, "damping_ratio")),
@@ -290,7 +305,7 @@ def _numbers(result: Result, findings: dict[str, str]) -> dict[str, Any]:
         "thermogear": result.text("thermogear"),
         "title": result.title,
         "kind": result.kind,
-        "pinion_speed_rpm": float(mesh["pinion_speed"]) / RPM,
+        "pinion_speed_rpm": SPEED(float(mesh["pinion_speed"])),
         "pinion_torque_Nm": float(mesh["pinion_torque"]),
         "frequency_ratio": float(mesh["frequency_ratio"]),
         "findings": findings,

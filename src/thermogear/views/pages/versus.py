@@ -290,7 +290,7 @@ def _numbers_there(data: xr.Dataset) -> dict[str, str]:
     return {name: str(data[name].attrs.get("units", "1")) for name in names}
 
 
-def _csv_tables(data: xr.Dataset) -> dict[str, tuple[list[str], list[list[str]]]]:
+def _csv_tables(data: xr.Dataset) -> dict[str, tuple[list[str], list[list[Any]]]]:
     titles = names_of(data, "case")
     fields = [
         [r["field"], *map(in_words, r["values"])] for r in json.loads(data.attrs["differences"])
@@ -300,18 +300,12 @@ def _csv_tables(data: xr.Dataset) -> dict[str, tuple[list[str], list[list[str]]]
         for r in json.loads(data.attrs["choices"])
     ]
     units = [f"{name} [{unit}]" for name, unit in _numbers_there(data).items()]
-    rows = [[_cell(value) for value in row.values()] for row in _rows(data)]
+    rows = [[*row.values()] for row in _rows(data)]
     return {
         "differences": (["field", *titles], fields),
         "choices": (["bundle", "choice", *titles], made),
         "figures": (["case", "bundle", "point", "state", "label", *units], rows),
     }
-
-
-def _cell(value: str | float) -> str:
-    if isinstance(value, str):
-        return value
-    return f"{value:.15g}" if value == value else ""
 
 
 # --- figures as JSON wants them ---------------------------------------------------------------

@@ -67,7 +67,7 @@ def page(result: Result) -> Page:
 
 def answer(worst: Mapping[str, Any], cold: float) -> str:
     """When the half backlash is least, how much is left, and how that compares."""
-    least, minutes = 1e6 * float(worst["half_backlash_m"]), float(worst["time_s"]) / 60.0
+    least, minutes = MICROMETRE(float(worst["half_backlash_m"])), MINUTE(float(worst["time_s"]))
     point = (
         f"{exactly(round(float(worst['pinion_speed_rpm']), 6))} rpm and "
         f"{exactly(float(worst['pinion_torque_Nm']))} N m"
@@ -78,12 +78,14 @@ def answer(worst: Mapping[str, Any], cold: float) -> str:
         when = f"at the end, after {number(minutes)} min"
     else:
         when = f"{number(minutes)} min after the start, at {point}"
-    text = f"The half backlash is least {when}: {number(least, 4)} um of {number(1e6 * cold, 4)} um"
+    text = f"The half backlash is least {when}: {number(least, 4)} um of "
+    text += f"{number(MICROMETRE(cold), 4)} um"
     text += " undeformed." if least > 0.0 else " undeformed: the pair is jammed."
     rest, below = worst["steady_half_backlash_m"], worst["below_steady_m"]
     if rest is not None and not worst["at_the_start"]:
         if below > 5e-9 and not worst["at_the_end"]:
-            text += f" That is {number(1e6 * below)} um below the steady {number(1e6 * rest, 4)} um"
+            text += f" That is {number(MICROMETRE(below))} um below the steady "
+            text += f"{number(MICROMETRE(rest), 4)} um"
             if worst["loss_above_steady"] is not None:
                 text += (
                     f"; the loss of backlash is {number(100.0 * worst['loss_above_steady'])} % "
@@ -91,7 +93,7 @@ def answer(worst: Mapping[str, Any], cold: float) -> str:
                 )
             text += "."
         else:
-            text += f" Held for good, this point would leave {number(1e6 * rest, 4)} um."
+            text += f" Held for good, this point would leave {number(MICROMETRE(rest), 4)} um."
     margin = worst["margin_K"]
     if margin is not None and least > 0.0:
         text += (

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from thermogear.base.display import HERTZ, NEWTON, SPEED, number
-from thermogear.base.units import RPM
 from thermogear.base.vocabulary import STATUS, STILL
 from thermogear.results.result import Result
 from thermogear.views.columns import Column, Row, declared
@@ -48,7 +47,7 @@ def page(result: Result) -> Page:
 
 def summary(data: xr.Dataset) -> str:
     """What was found, in a sentence or two."""
-    speeds = data["pinion_speed"].values / RPM
+    speeds = SPEED(data["pinion_speed"].values)
     rms = data["mesh_force_rms"].values
     if not np.isfinite(rms).any():
         why = [STILL[STATUS[code]] for code in np.unique(data["status"].values)]
@@ -73,7 +72,7 @@ def _apart(data: xr.Dataset) -> list[dict[str, Any]]:
     return [
         {
             "state": states[int(one["apart_state"])],
-            **{f"{end}_rpm": float(one[f"apart_{end}"]) / RPM for end in ("from", "to", "at")},
+            **{f"{end}_rpm": SPEED(float(one[f"apart_{end}"])) for end in ("from", "to", "at")},
             "of": parts[int(one["apart_part"])],
             "up_rms_N": float(one["apart_up"]),
             "down_rms_N": float(one["apart_down"]),
@@ -136,7 +135,7 @@ def numbers(result: Result) -> dict[str, Any]:
     """The figures of a run-up, JSON-ready."""
     data = result.data
     return {
-        "speeds_rpm": (data["pinion_speed"].values / RPM).tolist(),
+        "speeds_rpm": (SPEED(data["pinion_speed"].values)).tolist(),
         **{
             state: {
                 way: _of_one_way(data.isel(state=s, direction=d))

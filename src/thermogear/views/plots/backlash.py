@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermogear.base.display import CELSIUS
+from thermogear.base.display import CELSIUS, MICROMETRE
 from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.views.picture import Panel, Picture, Text
 from thermogear.views.plots.curves import axis_of, draw_by_bundle
@@ -51,9 +51,9 @@ def over_temperature(row: xr.Dataset, mesh: xr.Dataset | None) -> Picture:
     """
     panel = Panel(axis_of("gear_temperature"), axis_of("half_backlash", "half backlash"))
     x, bundles = shown(row, "gear_temperature"), names_of(row, "bundle")
-    cold = 1e6 * float(row["cold_half_backlash"].max())
+    cold = MICROMETRE(float(row["cold_half_backlash"].max()))
     if mesh is not None:
-        cold = 1e6 * float(mesh["half_backlash"].isel(state=0, operating=0).max())
+        cold = MICROMETRE(float(mesh["half_backlash"].isel(state=0, operating=0).max()))
     panel.line(y=cold, colour=COLD, width=1.2, label=UNDEFORMED)
     for place, bundle in enumerate(bundles):
         values = shown(row.isel(bundle=place, operating=0), "half_backlash")
@@ -101,4 +101,4 @@ def _way_to_jam(mesh: xr.Dataset, bundle: str, jam: str) -> tuple[list[float], l
     start = float(CELSIUS(here["hot_temperature"].item()))
     if not np.isfinite(end) or end > FAR:
         return None
-    return [start, end], [float(here["half_backlash"]) * 1e6, 0.0]
+    return [start, end], [MICROMETRE(float(here["half_backlash"])), 0.0]

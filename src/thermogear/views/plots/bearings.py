@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.display import number
+from thermogear.base.display import MICROMETRE, MILLIMETRE_PER_SECOND, number
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.shafts import internal_clearance
 from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
@@ -75,8 +75,8 @@ def _axes(words: str, half: float) -> tuple[Axis, Axis]:
 def _in_clearance(here: xr.Dataset, bearing: int) -> Panel:
     """Clearance circles, orbits and the direction of the load of one bearing."""
     states = names_of(here, "state")
-    path = 1e6 * here["journal_path"].values[:, bearing]
-    free = 0.5e6 * internal_clearance(here).values[:, bearing]
+    path = MICROMETRE(here["journal_path"].values[:, bearing])
+    free = 0.5 * MICROMETRE(internal_clearance(here).values[:, bearing])
     far = float(np.nanmax(np.hypot(path[:, 0], path[:, 1]), initial=0.0))
     most = max(far, float(np.nanmax(free, initial=0.0))) or 1.0
     panel = Panel(*_axes("", ROOM * most), names_of(here, "bearing")[bearing], equal=True)
@@ -169,7 +169,7 @@ def _head(panel: Panel, tip: Floats, way: Floats, size: float, colour: str) -> N
 
 def _about_mean(here: xr.Dataset, bearing: int, sample: int) -> Panel:
     """The orbits alone, each less its mean place; a dot at ``sample``, an arrow along the way."""
-    path = 1e6 * here["journal_path"].values[:, bearing]
+    path = MICROMETRE(here["journal_path"].values[:, bearing])
     path = path - path.mean(axis=2, keepdims=True)
     far = float(np.nanmax(np.hypot(path[:, 0], path[:, 1]), initial=0.0))
     half = 1.2 * far or 1.0
@@ -272,14 +272,20 @@ def torus_section(data: xr.Dataset, operating: int) -> Picture:
     for s in turning(data, operating):
         one = here.isel(state=s)
         nu = float(one["second_frequency"])
-        x, y = 1e6 * one["section_deflection"].values, 1e3 * one["section_rate"].values
+        x, y = (
+            MICROMETRE(one["section_deflection"].values),
+            MILLIMETRE_PER_SECOND(one["section_rate"].values),
+        )
         panel = Panel(
             Axis("approach along the drive flank [µm]", margin=0.1),
             Axis("its rate [mm/s]", margin=0.1),
             f"{names_of(here, 'state')[s]}: mesh {mesh:.1f} Hz, second base frequency "
             f"{nu * mesh:.1f} Hz",
         )
-        own = 1e6 * one["torus_deflection"].values, 1e3 * one["torus_rate"].values
+        own = (
+            MICROMETRE(one["torus_deflection"].values),
+            MILLIMETRE_PER_SECOND(one["torus_rate"].values),
+        )
         panel.curve(
             *own, colour=INK, width=0.8, order=2.5, label="closed curve through the sections"
         )

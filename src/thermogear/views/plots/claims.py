@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermogear.base.units import RPM, ZERO_CELSIUS
+from thermogear.base.display import CELSIUS, SPEED
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import (
     COLD,
@@ -34,7 +34,7 @@ HEATS = {
 
 def over_grid(data: xr.Dataset, name: str, unit: str, scale: float = 1.0) -> Picture:
     """One quantity over speed, a curve per torque: temperatures given beside the heat balance."""
-    rpm = data["speed"].values / RPM
+    rpm = SPEED(data["speed"].values)
     torques = data["torque"].values
     titles = {"given": "gear temperature given", "balance": "gear temperature from the balance"}
     kinds: dict[str, tuple[str, tuple[float, ...]]] = {
@@ -58,10 +58,10 @@ def over_grid(data: xr.Dataset, name: str, unit: str, scale: float = 1.0) -> Pic
 def warming(data: xr.Dataset) -> Picture:
     """The largest Floquet multiplier over temperature, and where it reaches the border."""
     panel = Panel(Axis("gear temperature T [°C]"), Axis("largest Floquet multiplier, modulus [–]"))
-    celsius = data["temperature"].values - ZERO_CELSIUS
+    celsius = CELSIUS(data["temperature"].values)
     for row, colour in (("thesis", HOT), ("consistent", MIXED)):
         modulus = data["multiplier"].sel(row=row).values
-        flip = float(data["flip"].sel(row=row)) - ZERO_CELSIUS
+        flip = CELSIUS(float(data["flip"].sel(row=row)))
         x, y = celsius, modulus
         if np.isfinite(flip):
             place = int(np.searchsorted(celsius, flip))
@@ -80,7 +80,7 @@ def warming(data: xr.Dataset) -> Picture:
 def experiment(data: xr.Dataset) -> Picture:
     """Errors of the displacement, printed and recomputed, beside the validation uncertainty."""
     here = data.isel(row=np.flatnonzero(data["quantity"].values == "displacement"))
-    rpm = here["pinion_speed"].values / RPM
+    rpm = SPEED(here["pinion_speed"].values)
     place = np.arange(rpm.size)
     panel = Panel(
         Axis("pinion speed [rpm]", ticks=place, names=[f"{v:.0f}" for v in rpm]),

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.display import MILLIMETRE
 from thermogear.views.picture import Axis, Panel
 from thermogear.views.style import (
     FAINT,
@@ -36,13 +37,13 @@ def axis_of(
 
 def along_path(data: xr.Dataset, y: Axis, *, letters: bool = True) -> Panel:
     """A panel over the path of contact [mm], A..E marked; C, the pitch point, stands out."""
-    s = 1e3 * data["path_position"].values
+    s = MILLIMETRE(data["path_position"].values)
     room = 0.02 * float(np.ptp(s))
     x = axis_of("path_position", "distance from the pinion's tangent point")
     panel = Panel(x, y)
     x.low, x.high, x.grid = float(s.min()) - room, float(s.max()) + room, False
     for name, position in path_points(data).items():
-        pitch, at = name == "C", 1e3 * position
+        pitch, at = name == "C", MILLIMETRE(position)
         panel.line(
             x=at,
             colour=QUIET if pitch else FAINT,

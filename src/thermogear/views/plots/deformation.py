@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thermogear.base.display import MICROMETRE, MILLIMETRE
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.curves import along_path, hot_state
 from thermogear.views.style import HOT, INK, OKABE_ITO, QUIET, bundle_line, names_of
@@ -80,8 +81,8 @@ def profile(data: xr.Dataset, gear: int) -> Picture:
     x0, y0 = here["involute_x"].values, here["involute_y"].values
     curves = {**hot_profiles(data), "involute": ("cold involute", QUIET, (), 1.3)}
     for kind, (words, colour, dash, width) in curves.items():
-        x = 1e3 * (x0 + factor * (here[f"{kind}_x"].values - x0))
-        y = 1e3 * (y0 + factor * (here[f"{kind}_y"].values - y0))
+        x = MILLIMETRE(x0 + factor * (here[f"{kind}_x"].values - x0))
+        y = MILLIMETRE(y0 + factor * (here[f"{kind}_y"].values - y0))
         x, y = np.concatenate([-x, x[::-1]]), np.concatenate([y, y[::-1]])
         panel.curve(x, y, colour=colour, dash=dash, width=width, label=words)
     return Picture([[panel]], size=(4.9, 4.3))
@@ -97,7 +98,7 @@ def profile_growth(data: xr.Dataset, gear: int) -> Picture:
     for kind, (words, colour, dash, _) in hot_profiles(data).items():
         dx = here[f"{kind}_x"].values - x0
         dy = here[f"{kind}_y"].values - y0
-        off = 1e6 * (dx * along - dy * across) / length
-        panel.curve(1e3 * np.hypot(x0, y0), off, colour=colour, dash=dash, label=words)
+        off = MICROMETRE(dx * along - dy * across) / length
+        panel.curve(MILLIMETRE(np.hypot(x0, y0)), off, colour=colour, dash=dash, label=words)
     panel.y.low = min(0.0, panel.extent("y")[0])
     return Picture([[panel]])

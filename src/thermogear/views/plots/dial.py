@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.display import CELSIUS, number
+from thermogear.base.display import CELSIUS, MICROMETRE, STIFFNESS, number
 from thermogear.base.vocabulary import STATUS, STILL, is_known
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.curves import axis_of
@@ -38,8 +38,8 @@ def told(data: xr.Dataset, place: int) -> str:
     state = STATUS[int(one["status"])]
     if not is_known(int(one["status"])):
         return STILL[state]
-    stiffness = f"mean stiffness {number(1e-8 * float(one['mean_stiffness']))}·10⁸ N/m"
-    left = f"half backlash {number(1e6 * float(one['half_backlash']))} µm"
+    stiffness = f"mean stiffness {number(STIFFNESS(float(one['mean_stiffness'])))}·10⁸ N/m"
+    left = f"half backlash {number(MICROMETRE(float(one['half_backlash'])))} µm"
     if state == "jammed":
         return f"{stiffness}; the pair is jammed"
     if state != "ok" or "label" not in data:
@@ -90,7 +90,7 @@ def _orbit(data: xr.Dataset, place: int) -> Panel:
     if "displacement" not in data or not moving(one):
         panel.note(plain(told(data, place)))
         return panel
-    orbit, gap = orbit_of(one), 2e6 * float(one["half_backlash"])
+    orbit, gap = orbit_of(one), 2.0 * MICROMETRE(float(one["half_backlash"]))
     loop = thin(orbit.loop)
     panel.curve(orbit.x[loop], orbit.v[loop], colour=INK, width=1.2, label="here")
     panel.points(orbit.section_x, orbit.section_v, colour=HOT, size=5.0, edge="white",

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thermogear.base.display import MICROMETRE, MILLIMETRE
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import COLD, FAINT, HOT, INK, QUIET
 
@@ -24,9 +25,9 @@ def sides(data: xr.Dataset) -> list[str]:
 def traces(data: xr.Dataset) -> Picture:
     """Each side's traces, the smoothed mean of the teeth and what acts, over the diameter."""
     row = []
-    x = 1e3 * data["diameter"].values
+    x = MILLIMETRE(data["diameter"].values)
     acts_as = data["trace_flank"].values
-    ends = tuple(1e3 * float(data.attrs[f"evaluated_{end}"]) for end in ("from", "to"))
+    ends = tuple(MILLIMETRE(float(data.attrs[f"evaluated_{end}"])) for end in ("from", "to"))
     for side in sides(data):
         panel = Panel(
             Axis("diameter d [mm]", margin=0.02),
@@ -34,13 +35,15 @@ def traces(data: xr.Dataset) -> Picture:
             SIDES[side],
         )
         panel.span(x=(ends[0], ends[1]), colour=FAINT, opacity=0.45, label="evaluated")
-        for number, values in enumerate(1e6 * data["trace_deviation"].values[acts_as == side]):
+        for number, values in enumerate(
+            MICROMETRE(data["trace_deviation"].values[acts_as == side])
+        ):
             label = "" if number else "traces"
             panel.curve(x, values, colour=QUIET, width=0.7, opacity=0.7, label=label)
-        fit, acting = (1e6 * data[f"{side}_{name}"].values for name in ("fit", "acting"))
+        fit, acting = (MICROMETRE(data[f"{side}_{name}"].values) for name in ("fit", "acting"))
         panel.curve(x, fit, colour=COLD, width=1.7, label="fit: mean of the teeth, smoothed")
         panel.curve(x, acting, colour=HOT, width=1.7, dash=(5, 2), label="acts")
-        pitch = 1e3 * float(data.attrs["pitch_diameter"])
+        pitch = MILLIMETRE(float(data.attrs["pitch_diameter"]))
         if x.min() <= pitch <= x.max():
             panel.line(x=pitch, colour=INK, width=0.9, dash=(2, 2), label="pitch circle")
         row.append(panel)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thermogear.base.display import MILLIMETRE
 from thermogear.views.picture import Axis, Picture
 from thermogear.views.plots.curves import along_path
 from thermogear.views.style import DRY, FAINT, INK, OKABE_ITO, QUIET, WIDE, chosen
@@ -34,7 +35,7 @@ def laws(data: xr.Dataset, place: int, means: frozenset[str] = frozenset()) -> P
     panel = along_path(data, Axis("friction coefficient |μ| [–]", low=0.0))
     panel.title = plain(operating_names(data)[place])
     here = data.isel(operating=place)
-    x = 1e3 * here["path_position"].values
+    x = MILLIMETRE(here["path_position"].values)
     for i, name in enumerate(str(n) for n in here["law"].values):
         one = here.isel(law=i)
         mu, outside = one["friction_coefficient"].values, one["outside_range"].values == 1
@@ -62,7 +63,7 @@ def laws(data: xr.Dataset, place: int, means: frozenset[str] = frozenset()) -> P
 def film(data: xr.Dataset) -> Picture:
     """Film parameter along the path at every operating point, with the regimes' borders."""
     panel = along_path(data, Axis("film parameter Λ [–]", low=0.0))
-    x = 1e3 * data["path_position"].values
+    x = MILLIMETRE(data["path_position"].values)
     values = data["film_parameter"].values
     names = operating_names(data)
     for i in chosen(len(names)):

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.display import CELSIUS, number
-from thermogear.base.units import RPM
+from thermogear.base.display import CELSIUS, MICROMETRE, SPEED, STIFFNESS, number
 from thermogear.base.vocabulary import STATUS, STILL, is_known
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.curves import axis_of
@@ -79,30 +78,30 @@ def run_up(states: Mapping[str, xr.Dataset], speed: float) -> Picture:
     ways = (("up", ()), ("down", DASHED))
     for name, data in states.items():
         colour = STATES.get(name, INK)
-        n = data["pinion_speed"].values / RPM
-        error = 1e6 * data["dte_peak_to_peak"].values[0]
+        n = SPEED(data["pinion_speed"].values)
+        error = MICROMETRE(data["dte_peak_to_peak"].values[0])
         for way, (words, dash) in enumerate(ways):
             known = np.isfinite(error[way])
             kept = known if data.attrs.get("preview") else np.ones(n.size, bool)
             above.curve(n[kept], error[way][kept], colour=colour, dash=dash, width=1.3,
                         label=f"{name}, {words}")  # fmt: skip
         leaps = data["leap_fold"].values[0]
-        size = 1e6 * data["leap_before"].values[0]
+        size = MICROMETRE(data["leap_before"].values[0])
         there = np.isfinite(leaps)
         if there.any():
-            above.points(leaps[there] / RPM, size[there], marker="cross", colour=colour, size=7,
+            above.points(SPEED(leaps[there]), size[there], marker="cross", colour=colour, size=7,
                          label=f"{name}, jump")  # fmt: skip
     if "hot" in states:
         _section(below, states["hot"])
     for panel in (above, below):
-        panel.line(x=speed / RPM, colour=QUIET, width=1.2, dash=(1, 2), label="the orbit's speed")
+        panel.line(x=SPEED(speed), colour=QUIET, width=1.2, dash=(1, 2), label="the orbit's speed")
     return Picture([[above], [below]], size=(10.0, 5.2), share_x="column", heights=(3, 2), legend=5)
 
 
 def _section(panel: Panel, data: xr.Dataset) -> None:
     """Sections of the hot run over speed, blue up and red down."""
-    n = data["pinion_speed"].values / RPM
-    scale = float(data.attrs.get("length", 1.0)) * 1e6
+    n = SPEED(data["pinion_speed"].values)
+    scale = MICROMETRE(float(data.attrs.get("length", 1.0)))
     for way, (words, colour) in enumerate((("section, up", COLD), ("section, down", HOT))):
         x = scale * data["section_x"].values[0, way]
         places = np.broadcast_to(n[:, None], x.shape)
@@ -122,7 +121,8 @@ def jumps(data: xr.Dataset) -> list[str]:
         fold = data["leap_fold"].values[0, way]
         for place, k in np.argwhere(np.isfinite(fold)):
             before, after = (
-                1e6 * float(data[f"leap_{n}"].values[0, way, place, k]) for n in ("before", "after")
+                MICROMETRE(float(data[f"leap_{n}"].values[0, way, place, k]))
+                for n in ("before", "after")
             )
             kind = (
                 "at a fold"
@@ -130,7 +130,7 @@ def jumps(data: xr.Dataset) -> list[str]:
                 else ("at a subcritical period doubling")
             )
             found.append(
-                f"running {words}: {fold[place, k] / RPM:.1f} rpm, {kind}: "
+                f"running {words}: {SPEED(fold[place, k]):.1f} rpm, {kind}: "
                 f"{number(before)} to {number(after)} µm peak to peak"
             )
     return found
@@ -158,8 +158,10 @@ def orbits(found: Mapping[str, xr.Dataset]) -> Picture:
             colour=colour, size=5.0, edge="white",
         )  # fmt: skip
     for edge in edges_in_sight(next(iter(found.values()))):
-        phase.line(x=1e6 * edge, colour=QUIET, width=1.0, dash=(4, 2), label="edge of the gap")
-        history.line(y=1e6 * edge, colour=QUIET, width=1.0, dash=(4, 2))
+        phase.line(
+            x=MICROMETRE(edge), colour=QUIET, width=1.0, dash=(4, 2), label="edge of the gap"
+        )
+        history.line(y=MICROMETRE(edge), colour=QUIET, width=1.0, dash=(4, 2))
     panels = [phase, history]
     if spectra:
         panels.append(_spectra(spectra))
@@ -169,7 +171,9 @@ def orbits(found: Mapping[str, xr.Dataset]) -> Picture:
 def _spectra(found: Mapping[str, xr.Dataset]) -> Panel:
     ends = [
         floor_of(
-            1e6 * one["line_amplitude"].values, order=one["order"].values, highest=HIGHEST_ORDER
+            MICROMETRE(one["line_amplitude"].values),
+            order=one["order"].values,
+            highest=HIGHEST_ORDER,
         )
         for one in found.values()
     ]
@@ -180,7 +184,7 @@ def _spectra(found: Mapping[str, xr.Dataset]) -> Panel:
     panel.title = "Spectrum"
     for name, one in found.items():
         draw_lines(
-            panel, order=one["order"].values, amplitude=1e6 * one["line_amplitude"].values,
+            panel, order=one["order"].values, amplitude=MICROMETRE(one["line_amplitude"].values),
             colour=STARTS.get(name, INK), label="",
         )  # fmt: skip
     return panel
@@ -195,10 +199,10 @@ def told_mesh(data: xr.Dataset) -> list[str]:
         if not is_known(int(one["status"])):
             found.append(f"{state}: {STILL[status]}")
             continue
-        stiff = f"mean stiffness {number(1e-8 * float(one['mean_stiffness']), 4)}·10⁸ N/m"
-        left = 1e6 * float(one["half_backlash"])
+        stiff = f"mean stiffness {number(STIFFNESS(float(one['mean_stiffness'])), 4)}·10⁸ N/m"
+        left = MICROMETRE(float(one["half_backlash"]))
         words = f"{state}: {stiff}; half backlash {number(left, 4)} µm"
-        taken = 1e6 * float(data["half_backlash"].values[0]) - left
+        taken = MICROMETRE(float(data["half_backlash"].values[0])) - left
         if place and np.isfinite(taken):
             needed = number(2.0 * max(taken, 0.0), 4)
             words += f"; heat and speed take {number(taken, 4)} µm, so that {needed} µm of total"
@@ -218,10 +222,10 @@ def measured_orders(
     panel.title = ""
     known = np.isfinite(amplitude) & (amplitude > 0.0) & (order > 0.0)
     if known.any():
-        at = 1e6 * amplitude[known]
+        at = MICROMETRE(amplitude[known])
         panel.y.low = min(panel.y.low or at.min(), 0.5 * float(at.min()))
         panel.y.high = max(panel.y.high or at.max(), 2.0 * float(at.max()))
-        room = np.nan_to_num(1e6 * half[known])
+        room = np.nan_to_num(MICROMETRE(half[known]))
         for q, middle, wide in zip(order[known], at, room, strict=True):
             low = max(middle - wide, 1e-3 * middle)
             panel.curve([q, q], [low, middle + wide], colour=HOT, width=2.4)

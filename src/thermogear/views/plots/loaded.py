@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thermogear.base.display import MEGAPASCAL, MILLIMETRE, STIFFNESS
 from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import COLD, HOT, INK, OKABE_ITO, WIDE, ramp
@@ -50,11 +51,11 @@ def along_path(data: xr.Dataset, points: dict[str, float]) -> Picture:
         last = here.sizes["load"] - 1
         for load in sorted({0, last}):
             one, width = here.isel(load=load), 1.8 if load == last else 1.0
-            s = 1e3 * one["pair_position"].values.ravel()
+            s = MILLIMETRE(one["pair_position"].values.ravel())
             order = np.argsort(s)
             words = f"{name}, {float(one['load']):.4g} N m"
             shares = one["load_share"].values.ravel()[order]
-            pressures = 1e-6 * one["contact_pressure"].values.ravel()[order]
+            pressures = MEGAPASCAL(one["contact_pressure"].values.ravel()[order])
             for panel, values in ((share, shares), (pressure, pressures)):
                 panel.curve(s[order], values, colour=colour, dash=dash, width=width, label=words)
     for panel in (share, pressure):
@@ -68,7 +69,7 @@ def _corners(panel: Panel, data: xr.Dataset) -> None:
     positions, flags = data["pair_position"].values, data["edge_contact"].values
     label = "edge contact: pressure not valid"
     for corner in (1, 2):
-        touched = 1e3 * positions[(flags == corner).any(axis=tuple(range(flags.ndim - 2)))]
+        touched = MILLIMETRE(positions[(flags == corner).any(axis=tuple(range(flags.ndim - 2)))])
         if touched.size:
             ends = float(touched.min()), float(touched.max())
             panel.span(x=ends, colour=EDGE, opacity=0.25, order=0.1, label=label)
@@ -77,10 +78,10 @@ def _corners(panel: Panel, data: xr.Dataset) -> None:
 
 def _marks(panel: Panel, points: dict[str, float]) -> None:
     for name, position in points.items():
-        panel.line(x=1e3 * position, colour=INK, width=0.6, dash=(1, 2), order=0.5)
-        panel.text(1e3 * position, 1.015, name, at="x", up="bottom")
+        panel.line(x=MILLIMETRE(position), colour=INK, width=0.6, dash=(1, 2), order=0.5)
+        panel.text(MILLIMETRE(position), 1.015, name, at="x", up="bottom")
     if points:
-        low, high = 1e3 * min(points.values()), 1e3 * max(points.values())
+        low, high = MILLIMETRE(min(points.values())), MILLIMETRE(max(points.values()))
         panel.x.low, panel.x.high = low - 0.12 * (high - low), high + 0.12 * (high - low)
 
 
@@ -102,7 +103,7 @@ def double_contact(data: xr.Dataset, base_pitch: float, name: str) -> Picture:
             label=f"pinion {difference:+.0f} K".replace("-", "−") if difference else "equally hot",
         )
     if name == "double_contact_length":
-        panel.y.high = 1.03e3 * base_pitch
+        panel.y.high = 1.03 * MILLIMETRE(base_pitch)
     return Picture([[panel]])
 
 
@@ -113,7 +114,7 @@ def iso(data: xr.Dataset) -> Picture:
         ("loaded_stiffness", "loaded contact, undeformed", HOT),
         ("iso_stiffness", "ISO 6336-1, method B", COLD),
     ):
-        values = 1e-8 * data[name].values
+        values = STIFFNESS(data[name].values)
         panel.curve(
             data["load"].values, values, colour=colour, marker="circle", size=3.5, label=words
         )

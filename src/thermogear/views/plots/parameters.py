@@ -22,7 +22,8 @@ def parameter_of(name: str, values: object = None) -> Parameter:
     unit = str(getattr(values, "attrs", {}).get("units", "1"))
     how = display(name, unit)
     other = Parameter(
-        name=name, words=name.replace("_", " "), unit=unit, factor=how.scale, zero=how.zero,
+        name=name, words=name.replace("_", " "), unit=unit, factor=how.scale / how.per,
+        zero=how.zero,
         shown="" if unit == "1" else how.unit,
     )  # fmt: skip
     return PARAMETERS.get(long_name(name), other)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermogear.base.units import RPM
+from thermogear.base.display import MICROMETRE, SPEED
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import COLD, FAINT, HOT, INK, OKABE_ITO, SINGLE, WIDE, scale
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 def displacements(data: xr.Dataset) -> Picture:
     """Every train's nearest channel over speed, the spread of the largest, and the printed ones."""
-    rpm = data["rig_speed"].values / RPM
+    rpm = SPEED(data["rig_speed"].values)
     panels = []
     for place, words in zip(data["place"].values, data["place_words"].values, strict=True):
         one = data.sel(place=place)
@@ -25,17 +25,19 @@ def displacements(data: xr.Dataset) -> Picture:
             Axis(log="plain", low=0.01, high=100.0),
             str(words),
         )
-        low, middle, high = (1e6 * one["spread"].values[:, k] for k in range(3))
+        low, middle, high = (MICROMETRE(one["spread"].values[:, k]) for k in range(3))
         panel.band(
             rpm, low=low, high=high, colour=FAINT, order=0.5,
             label="largest of all channels, 5 to 95 % of the trains",
         )  # fmt: skip
-        for number, line in enumerate(1e6 * one["nearest"].values):
+        for number, line in enumerate(MICROMETRE(one["nearest"].values)):
             label = "nearest channel of each train" if number == 0 else ""
             panel.curve(rpm, line, colour=COLD, width=0.25, opacity=0.6, label=label)
         panel.curve(rpm, middle, colour=INK, width=1.6, dash=(4, 3), label="its median")
-        panel.curve(rpm, 1e6 * data["printed"].values, colour=HOT, width=1.6)
-        panel.points(rpm, 1e6 * data["printed"].values, colour=HOT, label="measured, as printed")
+        panel.curve(rpm, MICROMETRE(data["printed"].values), colour=HOT, width=1.6)
+        panel.points(
+            rpm, MICROMETRE(data["printed"].values), colour=HOT, label="measured, as printed"
+        )
         panels.append(panel)
     panels[0].y.words = "displacement at the mesh line [µm]"
     return Picture([panels], size=(WIDE, 3.4), share_y="row", between=0.2, legend=4)

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermogear.base.display import display
-from thermogear.base.units import RPM
+from thermogear.base.display import HERTZ, MICROMETRE, MILLIMETRE, SPEED, display
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import (
     FAINT,
@@ -37,32 +36,44 @@ MOST_MODES = 8
 
 def sketch(said: Mapping[str, Any]) -> Picture:
     """Both shafts side by side, as far apart as their centres are, to one scale, in mm."""
-    shafts, apart = said["shafts"], 1e3 * float(said["centre_distance"])
+    shafts, apart = said["shafts"], MILLIMETRE(float(said["centre_distance"]))
     panel = Panel(
         Axis("along the shafts [mm]", grid=False), Axis("across [mm]", grid=False), equal=True
     )
     for number, shaft in enumerate(shafts):
         centre, colour = -number * apart, SHAFTS[shaft["name"]]
-        ends = [1e3 * shaft["sections"][0][0], 1e3 * shaft["sections"][-1][1]]
+        ends = [MILLIMETRE(shaft["sections"][0][0]), MILLIMETRE(shaft["sections"][-1][1])]
         for start, end, outer, inner in shaft["sections"]:
-            _box(panel, (1e3 * start, 1e3 * end), centre, 1e3 * outer, INK)
+            _box(panel, (MILLIMETRE(start), MILLIMETRE(end)), centre, MILLIMETRE(outer), INK)
             if inner:
-                _box(panel, (1e3 * start, 1e3 * end), centre, 1e3 * inner, FAINT, dash=(3.0, 2.0))
-        face, tip = (1e3 * one for one in shaft["gear"])
+                _box(
+                    panel,
+                    (MILLIMETRE(start), MILLIMETRE(end)),
+                    centre,
+                    MILLIMETRE(inner),
+                    FAINT,
+                    dash=(3.0, 2.0),
+                )
+        face, tip = (MILLIMETRE(one) for one in shaft["gear"])
         _box(panel, (-0.5 * face, 0.5 * face), centre, tip, colour, width=2.2)
         panel.text(
             0.0, centre + 0.5 * tip, shaft["name"], up="bottom", offset=(0.0, 2.0), bold=True
         )
-        size = 0.55 * max(1e3 * one[2] for one in shaft["sections"])
+        size = 0.55 * max(MILLIMETRE(one[2]) for one in shaft["sections"])
         for name, at in shaft["bearings"]:
-            _bearing(panel, 1e3 * at, centre, size, name)
+            _bearing(panel, MILLIMETRE(at), centre, size, name)
         for name, at in shaft["discs"]:
             panel.curve(
-                [1e3 * at] * 2, [centre - 1.6 * size, centre + 1.6 * size], colour=QUIET, width=5.0
+                [MILLIMETRE(at)] * 2,
+                [centre - 1.6 * size, centre + 1.6 * size],
+                colour=QUIET,
+                width=5.0,
             )
-            panel.text(1e3 * at, centre - 1.6 * size, name, up="top", offset=(0.0, -2.0), size=7.5)
+            panel.text(
+                MILLIMETRE(at), centre - 1.6 * size, name, up="top", offset=(0.0, -2.0), size=7.5
+            )
         if shaft["end"]:
-            name, at = shaft["end"][0], 1e3 * shaft["end"][1]
+            name, at = shaft["end"][0], MILLIMETRE(shaft["end"][1])
             side = -1.0 if abs(at - ends[0]) <= abs(at - ends[1]) else 1.0
             long = 0.12 * (ends[1] - ends[0])
             panel.curve([at, at + side * long], [centre] * 2, colour=QUIET, dash=(2.0, 2.0))
@@ -109,10 +120,10 @@ def deflection(data: xr.Dataset, place: int) -> Picture:
             Axis("deflection [µm]"),
             f"{shaft}'s shaft",
         )
-        x = 1e3 * data[f"{shaft}_position"].values
+        x = MILLIMETRE(data[f"{shaft}_position"].values)
         for state, name in enumerate(names_of(data, "state")):
             for c, thick in (("x", 1.0), ("y", 2.0)):
-                values = 1e6 * data[f"{shaft}_{c}"].values[state, place]
+                values = MICROMETRE(data[f"{shaft}_{c}"].values[state, place])
                 panel.curve(
                     x,
                     values,
@@ -161,7 +172,7 @@ def clearances(data: xr.Dataset) -> Picture:
         for point in range(data.sizes["operating"]):
             panel.points(
                 np.arange(len(names)) + (state - 0.5) * 0.25,
-                1e6 * internal_clearance(data).values[state, point],
+                MICROMETRE(internal_clearance(data).values[state, point]),
                 colour=STATES.get(name, INK),
                 marker="circle" if state else "square",
                 open=not state,
@@ -176,7 +187,7 @@ def modes(table: xr.Dataset, shapes: xr.Dataset, state: int) -> Picture:
     """The lowest modes: deflection of both shafts across (full) and their twist (dashed)."""
     panels = []
     for mode in range(min(MOST_MODES, table.sizes["mode"])):
-        both = table["natural_frequency"].values[:, mode] / (2.0 * np.pi)
+        both = HERTZ(table["natural_frequency"].values[:, mode])
         names = names_of(table, "state")
         others = [f"{v:.4g} {n}" for v, n in zip(both, names, strict=True) if n != names[state]]
         panel = Panel(
@@ -185,7 +196,7 @@ def modes(table: xr.Dataset, shapes: xr.Dataset, state: int) -> Picture:
             f"{mode + 1}: {both[state]:.4g} Hz ({', '.join(others)})",
         )
         for shaft, colour in SHAFTS.items():
-            x = 1e3 * shapes[f"{shaft}_position"].values
+            x = MILLIMETRE(shapes[f"{shaft}_position"].values)
             parts = {
                 c: shapes[f"{shaft}_{c}_real"].values[state, mode] for c in ("x", "y", "twist")
             }
@@ -244,7 +255,7 @@ def lift_offs(critical: xr.Dataset) -> Any:
 
 def not_valid(speed: float) -> str:
     """What stands in place of the force of a resonance that lifts off from ``speed`` [rad/s] on."""
-    return f"not valid: lifts off from {speed / RPM:.0f} rpm"
+    return f"not valid: lifts off from {SPEED(speed):.0f} rpm"
 
 
 def campbell(data: xr.Dataset, critical: xr.Dataset, speeds: Sequence[float]) -> Picture:
@@ -258,7 +269,7 @@ def campbell(data: xr.Dataset, critical: xr.Dataset, speeds: Sequence[float]) ->
     known = np.where(inside & np.isfinite(force), force, np.nan)
     most = max(float(np.nanmax(known, initial=0.0)), 1e-12)
     for state, name in enumerate(states):
-        low, mean, high = data["natural_frequency"].values[state] / (2.0 * np.pi)
+        low, mean, high = HERTZ(data["natural_frequency"].values[state])
         top = 1.05 * float(np.nanmax(high))
         panel = Panel(
             Axis("pinion speed [rpm]", low=float(x[0]), high=float(x[-1])),
@@ -270,7 +281,7 @@ def campbell(data: xr.Dataset, critical: xr.Dataset, speeds: Sequence[float]) ->
             panel.curve(x, mean[:, mode], colour=INK, width=1.2)
         for line, words in enumerate(names_of(critical, "line")):
             order = float(critical["order"].values[line])
-            y = order * data["pinion_speed"].values / (2.0 * np.pi)
+            y = HERTZ(order * data["pinion_speed"].values)
             panel.curve(
                 x,
                 np.where(y <= top, y, np.nan),
@@ -286,7 +297,7 @@ def campbell(data: xr.Dataset, critical: xr.Dataset, speeds: Sequence[float]) ->
                 if np.isfinite(speed) and share >= LEAST_FORCE and rpm(speed) <= x[-1]:
                     panel.points(
                         [float(rpm(speed))],
-                        [order * speed / (2.0 * np.pi)],
+                        [HERTZ(order * speed)],
                         colour=OKABE_ITO[line % len(OKABE_ITO)],
                         size=3.0 + 7.0 * float(np.sqrt(share)),
                         edge=INK,

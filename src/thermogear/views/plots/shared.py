@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermogear.base.units import RPM
+from thermogear.base.display import MICROMETRE, SPEED
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import COLD, HOT, INK, QUIET, WIDE
 
@@ -37,7 +37,7 @@ def shared_picture(rest: xr.Dataset, motion: xr.Dataset) -> Picture:
             values = scale * rest[f"{form}_{name}"].values
             panel.curve(load, values, colour=colour, dash=dash, width=1.5, label=words)
         panel.line(x=mean, colour=QUIET, width=1.0, dash=(1, 2))
-    rpm = motion["speed"].values / RPM
+    rpm = SPEED(motion["speed"].values)
     below = []
     for place, part in enumerate(motion["part"].values):
         panel = Panel(
@@ -46,7 +46,7 @@ def shared_picture(rest: xr.Dataset, motion: xr.Dataset) -> Picture:
         )  # fmt: skip
         for form in ("shared", "one_spring"):
             words, colour, dash = FORMS[form]
-            values = 1e6 * motion[f"{form}_swing"].values[:, place]
+            values = MICROMETRE(motion[f"{form}_swing"].values[:, place])
             panel.curve(rpm, values, colour=colour, dash=dash, width=1.3, marker="dot", label=words)
         below.append(panel)
     return Picture([[stiffness, swing], below], size=(WIDE, 6.4), above=0.85, between=0.85)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermogear.base.units import RPM
+from thermogear.base.display import HERTZ, SPEED
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.sweeps import edges
 from thermogear.views.style import OKABE_ITO, WIDE, scale
@@ -22,7 +22,7 @@ MOST = 6
 
 def order_map(data: xr.Dataset, resonances: xr.Dataset | None, unit: str, count: str) -> Picture:
     """Amplitude over order and speed; dotted where a resonance in hertz would be."""
-    rpm, order = data["map_speed"].values / RPM, data["map_order"].values
+    rpm, order = SPEED(data["map_speed"].values), data["map_order"].values
     rising = np.argsort(rpm, kind="stable")
     rpm, values = rpm[rising], data["map_reading"].values[rising]
     kept = np.concatenate([[True], np.diff(rpm) > 1e-9 * rpm[-1]])
@@ -37,7 +37,7 @@ def order_map(data: xr.Dataset, resonances: xr.Dataset | None, unit: str, count:
         for one in range(resonances.sizes["resonance"]):
             if str(resonances["kind"].values[one]) != "resonance":
                 continue
-            along = 60.0 * float(resonances["resonance_frequency"].values[one]) / rpm
+            along = float(resonances["resonance_frequency"].values[one]) / HERTZ(SPEED.stored(rpm))
             inside = (along >= order[0]) & (along <= order[-1])
             panel.curve(
                 rpm[inside], along[inside], colour="white", width=0.8, dash=(1.0, 2.5),
@@ -48,7 +48,7 @@ def order_map(data: xr.Dataset, resonances: xr.Dataset | None, unit: str, count:
 
 def over_speed(data: xr.Dataset, channel: int, unit: str) -> Picture:
     """Amplitudes of the highest orders of a channel over speed, with their 95 % intervals."""
-    rpm = data["slice_speed"].values / RPM
+    rpm = SPEED(data["slice_speed"].values)
     a = data["slice_reading"].values[channel]
     half = data["slice_reading_half_width"].values[channel]
     seen = np.flatnonzero(np.isfinite(a).any(axis=-1))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.units import ZERO_CELSIUS
+from thermogear.base.display import CELSIUS, MICROMETRE
 from thermogear.base.vocabulary import ASSUMED, STATUS, UNDEFORMED
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.parameters import axis_words, parameter_of, shown
@@ -246,7 +246,7 @@ def basins_picture(data: xr.Dataset) -> Picture:
 
 
 def _state_words(data: xr.Dataset, state: int) -> str:
-    return f"{float(data['gear_temperature'].values[state]) - ZERO_CELSIUS:.4g} °C"
+    return f"{CELSIUS(float(data['gear_temperature'].values[state])):.4g} °C"
 
 
 def run_up_picture(data: xr.Dataset) -> Picture:
@@ -284,7 +284,7 @@ def waterfall_picture(data: xr.Dataset) -> Picture:
     borders = (
         edges(shown("pinion_speed", data["pinion_speed"])), edges(data["order"].values)
     )  # fmt: skip
-    lines = 1e6 * data["dte_line"].values[:, 0]
+    lines = MICROMETRE(data["dte_line"].values[:, 0])
     known = lines[np.isfinite(lines) & (lines > 0.0)]
     top = float(known.max()) if known.size else 1.0
     panels = []
@@ -309,7 +309,8 @@ def sweep_picture(data: xr.Dataset) -> Picture:
         above, below = Panel(Axis(), Axis(error)), Panel(_along(here, dims[0]), Axis(factor))
         p = shown(dims[0], here[dims[0]].values)
         for panel, values in (
-            (above, 1e6 * here["dte_peak_to_peak"].values), (below, here["dynamic_factor"].values)
+            (above, MICROMETRE(here["dte_peak_to_peak"].values)),
+            (below, here["dynamic_factor"].values)
         ):  # fmt: skip
             panel.curve(p, values, colour=COLD, marker=_dot(p))
         return Picture([[above], [below]], size=(WIDE, 5.4), above=0.15, share_x="column")

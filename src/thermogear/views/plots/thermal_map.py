@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.display import CELSIUS
-from thermogear.base.units import RPM, ZERO_CELSIUS
+from thermogear.base.display import CELSIUS, MICROMETRE, SPEED
 from thermogear.base.vocabulary import is_known
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import INK, OKABE_ITO, WIDE, scale
@@ -42,12 +41,12 @@ def thermal_map(data: xr.Dataset) -> Picture:
     _lines(boundary, data, film, levels, [f"Λ = {level:.2g}" for level in levels])
     greatest = kept(data["greatest_flash"].values)
     flash = _panel(data, greatest, "greatest flash temperature [K]", "YlOrRd")
-    teeth = kept(data["node_temperature"].sel(node="pinion_tooth").values - ZERO_CELSIUS)
+    teeth = kept(CELSIUS(data["node_temperature"].sel(node="pinion_tooth").values))
     body = _panel(data, teeth, "pinion teeth, body temperature [°C]", "YlOrRd")
     tempering = np.where(data["tempered"].values == 1, 1.0, 0.0)
     if 0.0 < tempering.mean() < 1.0:
         _lines(body, data, tempering, [0.5], ["tempered"])
-    gap = kept(1e6 * data["least_half_backlash"].values)
+    gap = kept(MICROMETRE(data["least_half_backlash"].values))
     left = _panel(data, gap, "half backlash left [µm]", "viridis")
     if min(gap.shape) > 1:
         _jam(left, data, gap)
@@ -75,7 +74,7 @@ def thermal_map(data: xr.Dataset) -> Picture:
 
 
 def _grid(data: xr.Dataset) -> tuple[Floats, Floats]:
-    return data["pinion_speed"].values / RPM, data["pinion_torque"].values
+    return SPEED(data["pinion_speed"].values), data["pinion_torque"].values
 
 
 def _panel(

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.display import MICROMETRE, MILLIMETRE_PER_SECOND
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
 from thermogear.views.style import INK, STATES, WIDE, names_of
@@ -40,8 +41,8 @@ def four_panels(data: xr.Dataset, operating: int) -> Picture:
         places = one["section_deflection"].values
         many = np.isfinite(places).sum() > MANY
         plane.points(
-            1e6 * places,
-            1e3 * one["section_rate"].values,
+            MICROMETRE(places),
+            MILLIMETRE_PER_SECOND(one["section_rate"].values),
             colour=colour,
             open=s == 0 and not many,
             size=2.4 if many else 6.4 if s == 0 else 4.2,

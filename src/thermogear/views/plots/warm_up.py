@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermogear.base.display import CELSIUS, number
+from thermogear.base.display import CELSIUS, MICROMETRE, MINUTE, number
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import HOT, INK, OKABE_ITO, QUIET, WIDE
 
@@ -46,7 +46,7 @@ def course(
     logarithmic: bool,
 ) -> Picture:
     """Node temperatures above, half backlash below, the worst moment marked in both."""
-    minutes = data["time"].values / 60.0
+    minutes = MINUTE(data["time"].values)
     above = Panel(Axis(), Axis("temperature [°C]"))
     below = Panel(_time(minutes, logarithmic), Axis("half backlash b′ [µm]"))
     for name in (str(n) for n in data["node"].values):
@@ -57,17 +57,17 @@ def course(
         above.curve(minutes, values, colour=colour, dash=dash, label=name.replace("_", " "))
     if record is not None:
         _points(above, record, {name: colour for name, (colour, _) in NODE_COLOURS.items()})
-    left = 1e6 * data["half_backlash"].values
+    left = MICROMETRE(data["half_backlash"].values)
     below.curve(minutes, left, colour=INK, label="half backlash left")
-    held = 1e6 * steady["half_backlash"].values
-    ends = np.append(steady["begin"].values[1:] / 60.0, minutes[-1])
-    begins = np.maximum(steady["begin"].values / 60.0, FIRST if logarithmic else 0.0)
+    held = MICROMETRE(steady["half_backlash"].values)
+    ends = np.append(MINUTE(steady["begin"].values[1:]), minutes[-1])
+    begins = np.maximum(MINUTE(steady["begin"].values), FIRST if logarithmic else 0.0)
     for place, (begin, end, value) in enumerate(zip(begins, ends, held, strict=True)):
         if math.isfinite(float(value)) and end > begin:
             label = "" if place else "steady, if held for good"
             level = [value, value]
             below.curve([begin, end], level, colour=QUIET, dash=(4, 2), width=1.2, label=label)
-    below.line(y=1e6 * cold, colour=OKABE_ITO[5], width=1.1, label="undeformed")
+    below.line(y=MICROMETRE(cold), colour=OKABE_ITO[5], width=1.1, label="undeformed")
     if left.min() <= 0.0:
         below.line(y=0.0, colour=HOT, width=1.1, label="jammed below")
     _mark(above, below, worst, logarithmic)
@@ -76,19 +76,19 @@ def course(
 
 def _worst(panel: Panel, worst: Mapping[str, Any], logarithmic: bool) -> float:
     """Mark the worst moment; where it is drawn [min]."""
-    at = max(float(worst["time_s"]) / 60.0, FIRST if logarithmic else 0.0)
+    at = max(MINUTE(float(worst["time_s"])), FIRST if logarithmic else 0.0)
     panel.line(x=at, colour=HOT, width=1.0, dash=(1, 1.5), order=0.6)
     return at
 
 
 def _mark(above: Panel, below: Panel, worst: Mapping[str, Any], logarithmic: bool) -> None:
-    least = 1e6 * float(worst["half_backlash_m"])
+    least = MICROMETRE(float(worst["half_backlash_m"]))
     at = [_worst(panel, worst, logarithmic) for panel in (above, below)][-1]
     below.points([at], [least], colour=HOT, order=5)
     low, high = below.x.low or 0.0, below.x.high or 1.0
     share = np.log(at / low) / np.log(high / low) if below.x.log else (at - low) / (high - low)
     across, away = ("right", -8) if share > 0.75 else ("left", 8)
-    words = f"least: {number(least, 4)} µm\nat {number(float(worst['time_s']) / 60.0)} min"
+    words = f"least: {number(least, 4)} µm\nat {number(MINUTE(float(worst['time_s'])))} min"
     below.text(
         at, least, words, offset=(away, 10), across=across, up="baseline", colour=HOT, box=True,
         order=1.5,
@@ -97,7 +97,7 @@ def _mark(above: Panel, below: Panel, worst: Mapping[str, Any], logarithmic: boo
 
 def mesh(data: xr.Dataset, worst: Mapping[str, Any], *, logarithmic: bool) -> Picture:
     """Flash temperature, film parameter, margin to the jam, mean stiffness over time."""
-    minutes = data["time"].values / 60.0
+    minutes = MINUTE(data["time"].values)
     panels = []
     for name, words, scale, colour in (
         ("greatest_flash", "greatest flash temperature [K]", 1.0, OKABE_ITO[1]),
@@ -118,7 +118,7 @@ def mesh(data: xr.Dataset, worst: Mapping[str, Any], *, logarithmic: bool) -> Pi
 
 def sensors(data: xr.Dataset, record: xr.Dataset | None, *, logarithmic: bool) -> Picture:
     """What every sensor shows (solid) beside the true temperature (dashed), and the error."""
-    minutes = data["time"].values / 60.0
+    minutes = MINUTE(data["time"].values)
     level = Panel(_time(minutes, logarithmic), Axis("temperature [°C]"))
     error = Panel(_time(minutes, logarithmic), Axis("shown less true [K]"))
     for name in (str(n) for n in data["sensor"].values):
@@ -137,7 +137,7 @@ def sensors(data: xr.Dataset, record: xr.Dataset | None, *, logarithmic: bool) -
 
 def _points(panel: Panel, record: xr.Dataset, colours: Mapping[str, str]) -> None:
     """The record's readings of what is drawn here."""
-    minutes = record["time"].values / 60.0
+    minutes = MINUTE(record["time"].values)
     for name in (str(n) for n in record["channel"].values):
         if name in colours:
             values = CELSIUS(record["measured"].sel(channel=name).values)

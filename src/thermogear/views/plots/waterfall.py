@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.units import RPM
+from thermogear.base.display import SPEED
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.sweeps import edges
 from thermogear.views.style import INK, QUIET, STATES, WIDE, scale
@@ -26,7 +26,7 @@ WAYS = ((0, "up", ()), (1, "down", (4.0, 3.0)))
 
 def over_speed(data: xr.Dataset) -> Picture:
     """Vibration of the mesh force, the bearings and the housing over speed, up and down."""
-    rpm = data["pinion_speed"].values / RPM
+    rpm = SPEED(data["pinion_speed"].values)
     panels = []
     wanted = [
         ("mesh_force_rms", "mesh force, rms [N]"),
@@ -49,7 +49,7 @@ def over_speed(data: xr.Dataset) -> Picture:
                     width=1.3, label=f"{state}, {way}",
                 )  # fmt: skip
         for speed in critical(data):
-            panel.line(x=speed / RPM, colour=QUIET, width=0.8, dash=(1.0, 2.5))
+            panel.line(x=SPEED(speed), colour=QUIET, width=0.8, dash=(1.0, 2.5))
         panels.append([panel])
     panels[-1][0].x = Axis("pinion speed [rpm]")
     size = (WIDE, 1.9 * len(panels) + 0.9)
@@ -77,14 +77,14 @@ def critical(data: xr.Dataset) -> list[float]:
 
 def lines(data: xr.Dataset, direction: int) -> Picture:
     """Largest line of any bearing's force over speed and order, one panel a state."""
-    rpm, order = data["pinion_speed"].values / RPM, data["order"].values
+    rpm, order = SPEED(data["pinion_speed"].values), data["order"].values
     values = np.nanmax(data["bearing_force_line"].values[:, direction], axis=2)
     return _field(data, rpm, order, values, "line of bearing force [N]")
 
 
 def sound(data: xr.Dataset, direction: int) -> Picture:
     """Lines of the housing's acceleration over speed and order, one panel a state."""
-    rpm, order = data["pinion_speed"].values / RPM, data["order"].values
+    rpm, order = SPEED(data["pinion_speed"].values), data["order"].values
     return _field(
         data, rpm, order, data["housing_line"].values[:, direction], "acceleration [m/s²]"
     )
