@@ -175,7 +175,7 @@ def compared(
             continue
         simulated = [item for item in found if item is not None]
         u_d, why = _data_uncertainty(line, table, highest, u_data)
-        if why and why not in [text for _, text in notices]:
+        if why and why not in [notice.text for notice in notices]:
             notices.append(Notice("important", why))
         of_inputs = u_input or {line.speed: 0.0}
         entered = of_inputs[min(of_inputs, key=lambda speed: abs(speed - line.speed))]
