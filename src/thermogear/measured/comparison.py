@@ -420,5 +420,5 @@ def figures(found: Comparison) -> dict[str, Any]:
         "heat": [vars(one) for one in found.heat],
         "rows": rows,
         "implied": [vars(item) for item in found.implied],
-        "notices": [list(pair) for pair in found.notices],
+        "notices": [notice.as_dict() for notice in found.notices],
     }
