@@ -31,12 +31,9 @@ def test_every_use_names_a_known_code_with_its_fields() -> None:
 
 def test_data_and_sentence_agree() -> None:
     notice = Notice.of("rate_of_first_rows", rows=12, column="t")
-    assert notice.as_dict() == {
-        "code": "rate_of_first_rows",
-        "level": "info",
-        "data": {"rows": 12, "column": "t"},
-        "text": "the rate is taken from the first 12 rows of 't'",
-    }
+    assert notice.code == "rate_of_first_rows"
+    assert notice.data == {"rows": 12, "column": "t"}
+    assert notice.text == catalogue()[notice.code].sentence.format(rows=12, column="t")
     assert Notice.stored(notice.as_dict()) == notice
 
 
