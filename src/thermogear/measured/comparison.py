@@ -169,13 +169,11 @@ def compared(
     for number, line in enumerate(table.lines):
         found = [models[name].near(line.speed) for name in names]
         if any(item is None for item in found):
-            notices.append(
-                Notice("warning", f"{line.speed / RPM:.0f} rpm: no simulated line at this speed")
-            )
+            notices.append(Notice.of("speed_not_simulated", speed=line.speed))
             continue
         simulated = [item for item in found if item is not None]
         u_d, why = _data_uncertainty(line, table, highest, u_data)
-        if why and why not in [text for _, text in notices]:
+        if why and why not in [notice.text for notice in notices]:
             notices.append(Notice("important", why))
         of_inputs = u_input or {line.speed: 0.0}
         entered = of_inputs[min(of_inputs, key=lambda speed: abs(speed - line.speed))]
@@ -338,13 +336,7 @@ def _doubts(implied: Sequence[Implied]) -> list[Notice]:
                 ),
             )
         )
-    notices.append(
-        Notice(
-            "info",
-            "a housing's acceleration integrated twice is the housing's motion, not the relative "
-            "displacement of the teeth: equal figures prove nothing without the path between",
-        )
-    )
+    notices.append(Notice.of("housing_is_not_mesh"))
     return notices
 
 
@@ -420,5 +412,5 @@ def figures(found: Comparison) -> dict[str, Any]:
         "heat": [vars(one) for one in found.heat],
         "rows": rows,
         "implied": [vars(item) for item in found.implied],
-        "notices": [list(pair) for pair in found.notices],
+        "notices": [notice.as_dict() for notice in found.notices],
     }

@@ -12,7 +12,7 @@ from thermogear.measured.figures import evidence, figures
 from thermogear.measured.lines import MeasuredLine
 from thermogear.measured.reduction import Measurement
 from thermogear.measured.slice_groups import slice_groups
-from thermogear.results.result import Notice, Result, now
+from thermogear.results.result import Result, now
 from thermogear.signals.spectra import amplitude_spectrum
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def result_of(found: Measurement) -> Result:
         "measured",
         f"Record {found.record.source}",
         groups,
-        [Notice(n.level, n.text) for n in found.notices],
+        found.notices,
         created=now(),
         settings=found.settings,
         evidence=evidence(found),

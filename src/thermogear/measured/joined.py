@@ -154,7 +154,7 @@ def _channels(records: Sequence[Record], files: Sequence[str], rate: float | Non
             if tacho is None and c.name == one.tacho:
                 tacho = name
     origin = next((one.rate_origin for one in records if one.rate is not None), "")
-    notes.insert(0, Notice("info", f"{len(files)} files are joined as channels of one run"))
+    notes.insert(0, Notice.of("joined_as_channels", files=len(files)))
     return Record(
         tuple(channels),
         _source(files),
@@ -195,7 +195,7 @@ def _pieces(records: Sequence[Record], files: Sequence[str], rate: float | None)
     channels = tuple(
         replace(c, samples=Joined(parts[c.name]), scale=1.0, offset=0.0) for c in first.channels
     )
-    notes.insert(0, Notice("info", f"{len(files)} files are joined as pieces of one run"))
+    notes.insert(0, Notice.of("joined_as_pieces", files=len(files)))
     return replace(first, channels=channels, source=_source(files), notices=tuple(notes))
 
 
@@ -269,7 +269,7 @@ def _gaps(
             text = f"{between} the clock is off by {lost - gaps[k]:+.2g} samples"
             notes.append(Notice("warning", f"{text}: phases jump there by as much"))
     if not any(gaps):
-        notes.append(Notice("info", "time stamps go on from file to file without a gap"))
+        notes.append(Notice.of("pieces_without_gap"))
     return gaps, notes
 
 

@@ -96,18 +96,10 @@ def find_layout(head: list[str], path: Path, options: ReadOptions) -> Layout:
     layout.commented = comment is not None
     _of_labview(layout, above)
     if paired:
-        layout.notices.append(
-            Notice("warning", "commas part both numbers and decimals: two fields make one number")
-        )
+        layout.notices.append(Notice.of("commas_ambiguous"))
     if len(names) != columns:
         if len(names) > 1:
-            layout.notices.append(
-                Notice(
-                    "important",
-                    f"{len(names)} names over rows of {columns} numbers: the columns are numbered "
-                    "instead",
-                )
-            )
+            layout.notices.append(Notice.of("names_do_not_fit", names=len(names), columns=columns))
         layout.names = [f"column {i + 1}" for i in range(columns)]
         layout.units = [None] * columns
     _facts(layout, above)

@@ -70,9 +70,7 @@ def check_rate(
     text += f"; shafts turn at up to {SPEED.ends[1]}: is the rate right?" if high else ""
     notices.append(Notice("warning" if high else "info", text))
     if 2.56 * gearing.mesh_frequency > 1.0:
-        notices.append(
-            Notice("warning", "the rate is below 2.56 times the mesh line: aliases are possible")
-        )
+        notices.append(Notice.of("aliases_possible"))
     if speed is None:
         return record.rate_doubt
     ratio = implied / shaft

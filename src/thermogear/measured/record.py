@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.bounds import FULL_SCALE, RATE
 from thermogear.base.errors import InputError, printable
+from thermogear.base.notice import Notice as Notice
 from thermogear.measured.options import no_channel, no_tacho, place_of
 from thermogear.measured.units import UNITS, factor_of, kind_of, known_unit
 
@@ -34,17 +35,6 @@ class Samples(Protocol):
     def __len__(self) -> int: ...
 
     def __getitem__(self, key: slice, /) -> Any: ...
-
-
-@dataclass(frozen=True)
-class Notice:
-    """Something the reader saw: ``level`` "info", "warning" or "important", one line of text."""
-
-    level: str
-    text: str
-
-    def __post_init__(self) -> None:
-        _keep_printable(self, "text")
 
 
 @dataclass(frozen=True)

@@ -158,9 +158,7 @@ def measure(
     chosen = chosen_channels(record, channels, notices)
     through = passed(chosen, LONGEST)
     if len(chosen[0]) > LONGEST:
-        notices.append(
-            Notice("info", f"the first {LONGEST} of {len(chosen[0])} samples are reduced to lines")
-        )
+        notices.append(Notice.of("record_cut", used=LONGEST, samples=len(chosen[0])))
     given = teeth, speed
     expected, stated = expected_mesh(record, teeth, speed), stated_of(record, teeth, speed)
     changing, said = read_in_angle(
@@ -381,7 +379,7 @@ def _untold(
         what = f"the unit {strange!r} is not one of {UNITS}" if strange else "no unit is known"
         yield Notice("important", f"{what}: amplitudes are the file's own numbers (give --unit)")
     if sensor_tolerance is None:
-        yield Notice("info", "no sensor tolerance is stated: u_D holds noise and scatter alone")
+        yield Notice.of("sensor_tolerance_not_stated")
 
 
 def _filtered(chain: Chain, rate: float, mesh: float, gearing: Gearing | None) -> Iterator[Notice]:

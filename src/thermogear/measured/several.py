@@ -274,10 +274,9 @@ def result_of_several(found: Several) -> Result:
         channel=("line", [channel for channel, _ in found.keys]),
         name=("line", [name for _, name in found.keys]),
     )
-    notices = [Notice("warning", f"{name} is left out: {why}") for name, why in found.refused]
+    notices = [Notice.of("record_left_out", record=name, reason=why) for name, why in found.refused]
     notices += [
-        Notice("important", f"readings of {name} are withheld: {why}")
-        for name, why in found.withheld
+        Notice.of("readings_withheld", record=name, reason=why) for name, why in found.withheld
     ]
     damaged = [name for name, _ in found.found if name not in dict(found.withheld)]
     if damaged:
@@ -289,9 +288,7 @@ def result_of_several(found: Several) -> Result:
                 f"intervals: {shown} (measure one alone, or see --json, for what it is)",
             )
         )
-    notices += [
-        Notice("important", f"changes of {name} are withheld: {why}") for name, why in found.apart
-    ]
+    notices += [Notice.of("changes_withheld", record=name, reason=why) for name, why in found.apart]
     notices += _of_speeds(found)
     if found.hint:
         notices.append(Notice("info", found.hint))

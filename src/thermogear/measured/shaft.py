@@ -90,7 +90,7 @@ def given_shaft(
     told: list[Notice] = []
     for source, channel, speed in _sources(record, tacho):
         if source.rate is None:
-            told.append(Notice("important", f"tacho {channel.name!r}: its file states no rate"))
+            told.append(Notice.of("tacho_without_rate", channel=channel.name))
             continue
         at = start / record.rate + (record.start - source.start if source is not record else 0.0)
         try:

@@ -226,7 +226,7 @@ def agreed(rates: list[tuple[float, str]], notes: list[Notice]) -> tuple[float |
     """The one rate that every place in the file agrees on, else None with a notice."""
     for rate, origin in rates:
         if not is_possible_rate(rate):
-            notes.append(Notice("important", f"{origin} says {rate:g} samples/s: it is not used"))
+            notes.append(Notice.of("rate_impossible", origin=origin, rate=rate))
     rates = [one for one in rates if is_possible_rate(one[0])]
     if not rates:
         return None, ""
@@ -234,14 +234,17 @@ def agreed(rates: list[tuple[float, str]], notes: list[Notice]) -> tuple[float |
     for other, where in rates[1:]:
         if abs(other / rate - 1.0) > 1e-3:
             notes.append(
-                Notice(
-                    "important",
-                    f"{origin} says {rate:g} samples/s, {where} {other:g} (factor "
-                    f"{rate / other:.4g}): neither is used (give --rate)",
+                Notice.of(
+                    "rate_stated_twice",
+                    origin=origin,
+                    rate=rate,
+                    other_origin=where,
+                    other_rate=other,
+                    ratio=rate / other,
                 )
             )
             return None, ""
-    notes.append(Notice("info", f"rate {rate:g} samples/s from {origin}"))
+    notes.append(Notice.of("rate_read", rate=rate, origin=origin))
     return rate, origin
 
 

@@ -132,13 +132,13 @@ def _encoding(path: Path) -> tuple[str, list[Notice]]:
     except (OSError, EOFError, zlib.error) as error:
         raise refused(path, "text", error) from error
     if head.startswith((b"\xff\xfe", b"\xfe\xff")):
-        return "utf-16", [Notice("info", "the text is UTF-16")]
+        return "utf-16", [Notice.of("text_utf_16")]
     if head.startswith(b"\xef\xbb\xbf"):
         return "utf-8-sig", []
     zeros = head[1::2].count(0), head[0::2].count(0)
     if max(zeros) > 0.4 * len(head) / 2:
         name = "utf-16-le" if zeros[0] >= zeros[1] else "utf-16-be"
-        return name, [Notice("info", "the text is UTF-16 without its mark")]
+        return name, [Notice.of("text_utf_16_unmarked")]
     if b"\0" in head:
         raise refused(path, "text", "it is binary: it holds zero bytes", A_TEXT)
     # a character may be cut at the end of the head
@@ -239,11 +239,9 @@ def _cut_end(block: list[str], layout: Layout) -> None:
     cut = len(row) < layout.columns or (lengths and len(row[-1]) < min(lengths))
     if cut:
         block.pop()
-        layout.notices.append(Notice("warning", "the last row is cut off and is dropped"))
+        layout.notices.append(Notice.of("last_row_dropped"))
     else:
-        layout.notices.append(
-            Notice("info", "the last row has no line end: its last value may be cut")
-        )
+        layout.notices.append(Notice.of("last_row_unended"))
 
 
 def _fields(line: str, layout: Layout) -> list[str]:
@@ -283,7 +281,7 @@ def _table(block: list[str], layout: Layout, path: Path, number: int, last: bool
                 cells.append("")  # an empty last cell, not a missing one
         if len(cells) != layout.columns:
             if last and place == len(block) - 1:
-                layout.notices.append(Notice("warning", "the last row is cut off and is dropped"))
+                layout.notices.append(Notice.of("last_row_dropped"))
                 break
             raise refused(
                 path,
@@ -330,8 +328,7 @@ def _record(
         place = times[best]
         t = np.asarray(columns[place][:MOST_STAMPS])
         if t.size < len(columns[place]):
-            text = f"the rate is taken from the first {t.size} rows of {names[place]!r}"
-            notes.append(Notice("info", text))
+            notes.append(Notice.of("rate_of_first_rows", rows=t.size, column=names[place]))
         repeats, known = _repeats(columns, t.size), rate is not None
         base = read_time(names[place], units[place], t, repeats=repeats, stated=known)
         notes += base.notices
@@ -357,8 +354,7 @@ def _record(
             rate, origin = base.rate, base.origin
             half, note = base.half_width, base.note
         if len(times) > 1 and layout.waves is None:
-            text = f"{len(times)} time columns; {names[place]!r} is used"
-            notes.append(Notice("warning", text))
+            notes.append(Notice.of("several_time_columns", columns=len(times), used=names[place]))
     channels = [
         Channel(name, column, unit_name)
         for i, (name, unit_name, column) in enumerate(zip(names, units, columns, strict=True))

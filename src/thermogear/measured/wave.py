@@ -49,7 +49,7 @@ def read_wave(path: Path, options: ReadOptions) -> Record:
     notes: list[Notice] = []
     size = path.stat().st_size
     if offset + length > size:
-        notes.append(Notice("warning", "the file ends before its data: the cut end is dropped"))
+        notes.append(Notice.of("data_cut_off"))
         length = size - offset
     frames = length // block
     if frames < 1:

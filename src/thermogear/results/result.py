@@ -12,12 +12,14 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import thermogear
 from thermogear.base.errors import InputError, nearest
 from thermogear.base.files import SCHEMA
 from thermogear.base.netcdf import read_tree, write_tree
+from thermogear.base.notice import LEVELS as LEVELS
+from thermogear.base.notice import Notice as Notice
 from thermogear.base.stores import RESULT as STORE
 from thermogear.base.stores import about_store, read_store, require_schema
 from thermogear.results.answer import Answer
@@ -35,17 +37,9 @@ OF_POINTS = ("mesh", "motion")
 """Groups of a run that say something of each operating point, as one table."""
 SHOWN = 6
 """Notices that a notebook shows."""
-LEVELS = ("important", "warning", "info")
 FIX = "name a directory that this command, or `thermogear run CASE -o DIR`, has written"
 
 Plain = str | int | float
-
-
-class Notice(NamedTuple):
-    """What a reader should know beside the numbers; ``level`` one of :data:`LEVELS`."""
-
-    level: str
-    text: str
 
 
 class Later(Mapping[str, "xr.Dataset"]):
@@ -88,7 +82,7 @@ class Result:
         kind: str,
         title: str,
         groups: Mapping[str, xr.Dataset],
-        notices: Iterable[Notice | str | Mapping[str, str]] = (),
+        notices: Iterable[Notice | str | Mapping[str, Any]] = (),
         **provenance: Any,
     ) -> Result:
         """A new result of this version; lists and tables of ``provenance`` become JSON texts.
@@ -96,7 +90,7 @@ class Result:
         A notice that is a bare text is an "info".
         """
         about = {"thermogear": thermogear.__version__, "created": now(), **provenance}
-        told = tuple(_notice(one) for one in notices)
+        told = tuple(Notice.stored(one) for one in notices)
         return cls(kind, title, groups, told, {k: _plain(v) for k, v in about.items()})
 
     def with_(self, **provenance: Any) -> Result:
@@ -184,8 +178,8 @@ class Result:
     @property
     def attrs(self) -> dict[str, Plain]:
         """The root attributes of the stored file."""
-        told = json.dumps([one._asdict() for one in self.notices])
-        about: dict[str, Plain] = {"title": self.title, "kind": self.kind, "notices": told}
+        notices = json.dumps([notice.as_dict() for notice in self.notices])
+        about: dict[str, Plain] = {"title": self.title, "kind": self.kind, "notices": notices}
         return {**self.provenance, **about, "schema": SCHEMA}
 
     def _repr_html_(self) -> str:
@@ -307,7 +301,7 @@ def _from_attributes(attrs: Mapping[Any, Any], groups: Mapping[str, xr.Dataset])
         raise InputError("results attribute notices", "text that is not JSON", fix=FIX) from error
     if not isinstance(told, list) or not all(isinstance(one, str | dict) for one in told):
         raise InputError("results attribute notices", "no list of notices", fix=FIX)
-    notices = tuple(_notice(one) for one in told)
+    notices = tuple(Notice.stored(one) for one in told)
     return Result(kind, title, groups, notices, about)
 
 
@@ -349,15 +343,6 @@ def read_results(directory: Path, kinds: Collection[str] = ("gear", "dimensionle
 def now() -> str:
     """This moment as a result's ``created`` writes it."""
     return datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
-
-
-def _notice(one: Notice | str | Mapping[str, str]) -> Notice:
-    if isinstance(one, Notice):
-        return one
-    if isinstance(one, str):
-        return Notice("info", one)
-    level = str(one.get("level"))
-    return Notice(level if level in LEVELS else "info", str(one.get("text", "")))
 
 
 def _plain(value: Any) -> Plain:

@@ -131,5 +131,5 @@ def numbers(result: Result) -> dict[str, object]:
         "title": result.title,
         "kind": result.kind,
         "answers": [one.row for one in result.answers],
-        "notices": [one._asdict() for one in result.notices],
+        "notices": [one.as_dict() for one in result.notices],
     }

@@ -22,7 +22,7 @@ def numbers(result: Result) -> dict[str, Any]:
         "title": result.title,
         "kind": result.kind,
         "answers": [one.row for one in result.answers],
-        "notices": [one._asdict() for one in result.notices],
+        "notices": [one.as_dict() for one in result.notices],
     }
     groups = result.groups
     if "mesh" in groups:

@@ -57,7 +57,7 @@ def survey(
         numbers=lambda: {
             "title": result.title,
             **numbers(result),
-            "notices": [one._asdict() for one in result.notices],
+            "notices": [one.as_dict() for one in result.notices],
         },
         lines=lambda: [
             *(lines(result) if lines else [typed(summary), *lines_of(*tables)]),
