@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.signals.converter import coarse
 from thermogear.signals.lines import find_line
-from thermogear.signals.quality import damages
+from thermogear.signals.quality import coarse, damages
 
 Floats = NDArray[np.float64]
 SEED = 27_11_2026

@@ -19,8 +19,7 @@ from thermogear.analysis.curve import JUMP, Stretch
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.case.case import GearCase, load_example
 from thermogear.case.one_point import of_case
-from thermogear.study.shafts.branches import Trains, train_branch_results, train_orbit
-from thermogear.study.shafts.grid import TrainGrid
+from thermogear.study.shafts.branches import TrainGrid, Trains, train_branch_results, train_orbit
 from thermogear.views.write import page_of
 
 TRUE = float(TRUTH["Q1"]["values"]["eps"])

@@ -10,8 +10,7 @@ from pathlib import Path
 import pytest
 
 from thermogear.thesis.claim import KINDS
-from thermogear.thesis.document import digest, sentences, table
-from thermogear.thesis.report import CLAIMS
+from thermogear.thesis.report import CLAIMS, digest, sentences, table
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCUMENT = ROOT.parent / "shared" / "thesis.txt"

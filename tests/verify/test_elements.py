@@ -9,9 +9,15 @@ import pytest
 
 from thermogear.base.errors import InputError
 from thermogear.gears.geometry import Gear, Rack
-from thermogear.verify.compliance import ElasticGear
+from thermogear.verify.compliance import (
+    Condensed,
+    ElasticGear,
+    chain,
+    eliminate,
+    open_sector,
+    unknowns_of,
+)
 from thermogear.verify.elements import Patch, library
-from thermogear.verify.substructure import Condensed, chain, eliminate, open_sector, unknowns_of
 from thermogear.verify.tooth_mesh import (
     Density,
     contact_across,

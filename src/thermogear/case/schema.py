@@ -7,6 +7,8 @@ whoever leaves it out finds it among the assumptions of the case, the descriptio
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
+from dataclasses import is_dataclass
 from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import Field, StrictBool, create_model, model_validator
@@ -16,7 +18,6 @@ from thermogear.base import bounds
 from thermogear.base.errors import InputError
 from thermogear.base.toml import at_the_ends
 from thermogear.base.units import ZERO_CELSIUS
-from thermogear.case.backlash_schema import BacklashTable
 from thermogear.case.dimensionless_schema import DimensionlessFile, SimulationTable
 from thermogear.case.fields import (
     BODY,
@@ -25,6 +26,7 @@ from thermogear.case.fields import (
     Count,
     Measure,
     Module,
+    NameOrTable,
     Number,
     Several,
     Words,
@@ -36,9 +38,7 @@ from thermogear.case.flank_schema import (
     ProfileTable,
     ReliefTable,
 )
-from thermogear.case.friction_schema import FRICTION, FrictionTable
 from thermogear.case.gearbox_schema import GearboxTable
-from thermogear.case.material_schema import HousingTable, MaterialTable, OilTable
 from thermogear.case.sensor_schema import SensorsTable
 from thermogear.case.shaft_schema import (
     MOST_BEARINGS,
@@ -51,8 +51,221 @@ from thermogear.case.shaft_schema import (
     TrainTable,
     require_few,
 )
-from thermogear.case.table import Below, Body, Length, Table, one_of
+from thermogear.case.table import Below, Body, Length, Table, not_both, one_of
+from thermogear.heat.friction import LAWS, LUBRICATED
+from thermogear.heat.law_parameters import parameters, ranges, require_known
 from thermogear.mesh.model import CHOICES
+
+
+def _reader(name: str, laws: Sequence[object]) -> Any:
+    """What reads the parameter ``name`` of some ``laws``; each law knows its own range."""
+    having = [law for law in laws if name in parameters(law)]
+    values = [parameters(law)[name] for law in having]
+    inner = [value for value in values if is_dataclass(value)]
+    if inner:
+        return _table(
+            f"{name.capitalize()}Table", "The law inside a law, with its parameters.", inner
+        )
+    if isinstance(values[0], bool):
+        return StrictBool
+    known = [one[name] for one in (ranges(type(law)) for law in having) if name in one]
+    usual = next((f"{value:g}" for value in values if value is not None), "1")
+    if not known:
+        return Annotated[float, Number(example=usual)]
+    low, high = min(one.least for one in known), max(one.most for one in known)
+    return Annotated[float, Number(low=low, high=high, example=usual)]
+
+
+def _usual(name: str, laws: Sequence[Any]) -> str:
+    """The default of a parameter, with the laws that have it."""
+    having: dict[str, list[str]] = {}
+    for law in laws:
+        if name in (known := parameters(law)):
+            value = known[name]
+            words = "by the oil" if value is None else str(getattr(value, "name", value))
+            having.setdefault(words, []).append(law.name)
+    return "; ".join(f"{words} ({', '.join(names)})" for words, names in having.items())
+
+
+def _table(name: str, words: str, laws: Sequence[object], **before: Any) -> type[Table]:
+    fields = dict(before)
+    for law in laws:
+        for parameter in parameters(law):
+            usual = Field(default=None, title=_usual(parameter, laws))
+            fields.setdefault(parameter, (_reader(parameter, laws) | None, usual))
+    return create_model(name, __base__=Table, __doc__=words, **fields)
+
+
+if TYPE_CHECKING:
+    FrictionTable = Table
+else:
+    FrictionTable = _table(
+        "FrictionTable",
+        "The law of friction and its parameters; every law has only some of them.",
+        LUBRICATED,
+        law=(
+            Annotated[str, Choice(*CHOICES["friction"])] | None,
+            Field(default=None, title="as the bundle has it"),
+        ),
+    )
+
+
+def _check(law: str, values: Mapping[str, object]) -> None:
+    require_known(LAWS[law], values)
+
+
+FRICTION = NameOrTable("law", *CHOICES["friction"], check=_check)
+"""A law by its name, or a table with its parameters."""
+
+
+Allowance = Annotated[
+    tuple[float, ...],
+    Several(Measure("length", "-10 mm", "10 mm", example="-0.08 mm"), least=1, most=2),
+]
+
+
+class TolerancesTable(Table):
+    """Backlash out of the drawing: tooth-thickness allowances and centre-distance tolerance."""
+
+    pinion_tooth_thickness: Allowance
+    wheel_tooth_thickness: Allowance
+    centre_distance: Allowance
+
+
+class BacklashTable(Table):
+    """The backlash, with its kind named: a value, or the tolerances it follows from."""
+
+    value: Annotated[
+        float | None,
+        Measure(
+            "length",
+            "1e-5 mm",
+            "50 mm",
+            "a pair without backlash jams as soon as it warms up",
+            example="0.25 mm",
+        ),
+    ] = Field(
+        default=None,
+        description="the least normal backlash that ISO/TR 10064-2 recommends, 2/3 (0.06 mm + "
+        "0.0005 a + 0.03 m). The unit of length of the vibration; decides when the pair jams",
+    )
+    direction: Annotated[str | None, Choice("normal", "circumferential")] = None
+    extent: Annotated[str | None, Choice("total", "half")] = None
+    temperature: Body | None = Field(
+        default=None,
+        description="holds at temperatures.reference. Decides how much growth it has seen",
+    )
+    tolerances: TolerancesTable | None = None
+
+    @model_validator(mode="after")
+    def _complete(self) -> BacklashTable:
+        not_both(self, "value", "tolerances")
+        kinds = {"direction": '"normal" or "circumferential"', "extent": '"total" or "half"'}
+        for name, allowed in kinds.items():
+            given = getattr(self, name) is not None
+            if self.value is not None and not given:
+                raise InputError(
+                    name,
+                    "nothing",
+                    allowed=allowed,
+                    why="a backlash means nothing without its kind",
+                    fix=f"write {name} = {allowed.split(' or ')[0]}",
+                )
+            if self.value is None and given:
+                raise InputError(name, "a kind", why="tolerances need none", fix="leave it out")
+        return self
+
+
+class MaterialTable(Table):
+    """A material of the user's own."""
+
+    youngs_modulus: Annotated[float, measure("pressure", bounds.YOUNGS_MODULUS)]
+    poisson_ratio: Annotated[float, Number(low=0.0, high=0.499, example="0.3")]
+    density: Annotated[float, measure("density", bounds.DENSITY)]
+    thermal_conductivity: Annotated[float, measure("thermal conductivity", bounds.CONDUCTIVITY)]
+    specific_heat: Annotated[float, measure("specific heat", bounds.SPECIFIC_HEAT)]
+    thermal_expansion: Annotated[float, measure("thermal expansion", bounds.EXPANSION)]
+    modulus_slope: Annotated[
+        float, measure("thermal expansion", bounds.MODULUS_SLOPE, example="3.3e-4 1/K")
+    ] = Field(default=0.0, description="Young's modulus taken as independent of temperature")
+    tempering_temperature: Annotated[
+        float | None, measure("temperature", bounds.TEMPERING, example="180 degC")
+    ] = Field(default=None, description="no limit known")
+
+
+class HousingTable(Table):
+    """The housing, which carries the axes."""
+
+    material: Annotated[str, Words('"steel"')] = Field(
+        default="steel",
+        description="expands like the gears. Decides how far the axes move "
+        "apart, and so how much of the backlash heat takes",
+    )
+    mass: Annotated[float, Measure("mass", "0.01 kg", "1e6 kg", example="40 kg")] | None = Field(
+        default=None, title="of the part that vibrates on its feet; left out: it stands still"
+    )
+    mount_stiffness: Annotated[
+        tuple[float, ...] | None,
+        Several(Measure("stiffness", "1 N/m", "1e13 N/m", example="50 N/um"), least=1, most=2),
+    ] = Field(default=None, title="of the feet, along x and y")
+    mount_damping: Annotated[
+        float, Measure("damping", "0 N s/m", "1e8 N s/m", example="2000 N s/m")
+    ] = Field(default=0.0, title="of the feet")
+
+    @model_validator(mode="after")
+    def _on_feet(self) -> HousingTable:
+        if (self.mass is None) != (self.mount_stiffness is None):
+            missing = "mass" if self.mass is None else "mount_stiffness"
+            raise InputError(missing, "nothing", why="mass and mount_stiffness go together")
+        return self
+
+
+class OilTable(Table):
+    """The oil: a named set, or two viscosities."""
+
+    name: Annotated[str, Words('"ISO VG 100"')] = Field(
+        default="ISO VG 100",
+        description="a usual mineral gear oil. Its viscosity decides film, "
+        "friction and flash temperature",
+    )
+    viscosity_40: Annotated[
+        float | None, Measure("kinematic viscosity", "1 mm^2/s", "100000 mm^2/s")
+    ] = Field(default=None, title="from the named set")
+    viscosity_100: Annotated[
+        float | None,
+        Measure("kinematic viscosity", "0.8 mm^2/s", "10000 mm^2/s", example="11 mm^2/s"),
+    ] = Field(default=None, title="from the named set")
+    density_15: Annotated[
+        float | None, measure("density", bounds.OIL_DENSITY, example="885 kg/m^3")
+    ] = Field(default=None, title="from the named set")
+    temperature: Body | None = None
+    temperature_below_addendum: Below | None = None
+    flash_point: Body | None = Field(
+        default=None, title="unknown: no oil bath is taken to exist above 150 degC"
+    )
+    scuffing_load_stage: Annotated[
+        float | None,
+        Number(low=1.0, high=14.0, example="12", why="load stages of the FZG test A/8.3/90"),
+    ] = Field(default=None, title="unknown: no scuffing margin")
+
+    @model_validator(mode="after")
+    def _complete(self) -> OilTable:
+        not_both(self, "temperature", "temperature_below_addendum")
+        own = (self.viscosity_40, self.viscosity_100, self.density_15)
+        if any(v is not None for v in own) and any(v is None for v in own):
+            raise InputError(
+                "",
+                "a part of an oil",
+                allowed="viscosity_40, viscosity_100 and density_15 together, or the name alone",
+            )
+        if own[0] is not None and own[1] is not None and own[1] >= own[0]:
+            raise InputError(
+                "viscosity_100",
+                "a viscosity not below viscosity_40",
+                why="an oil grows thinner as it warms up",
+            )
+        return self
+
 
 PICTURES = ("path", "profile", "stiffness", "motion", "temperature", "base-sets")
 BASE_SETS = ("table-4.2", "section-4.1")
