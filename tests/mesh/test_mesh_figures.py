@@ -15,10 +15,9 @@ from thermogear.gears.loaded import solve_mesh
 from thermogear.heat.friction import LAWS, ROUGHNESS_LIMIT, friction_law
 from thermogear.heat.losses import churning_loss
 from thermogear.heat.lubrication import density, kinematic_viscosity
-from thermogear.mesh.balance import Gearbox, heat_balance
+from thermogear.mesh.balance import Gearbox, aitken, heat_balance
 from thermogear.mesh.elastic import TextbookPair, elastic_pair
 from thermogear.mesh.friction_path import FrictionPath
-from thermogear.mesh.heat_loop import aitken
 from thermogear.mesh.mesh_heat import mesh_heat
 from thermogear.mesh.thermal import HotPair
 

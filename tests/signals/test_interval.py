@@ -10,8 +10,7 @@ from scipy import stats
 from conftest import Compared
 from thermogear.base.errors import InputError
 from thermogear.signals.following import follow_line
-from thermogear.signals.interval import Reading, read_line, student
-from thermogear.signals.left_over import noise_beside
+from thermogear.signals.interval import Reading, noise_beside, read_line, student
 from thermogear.signals.lines import line_spectrum
 from thermogear.signals.strong import dirichlet, strong_lines
 
