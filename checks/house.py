@@ -84,7 +84,7 @@ def page() -> str:
     lines += [
         "", "## Public names", "",
         "What is not listed here is not public. A stable name keeps its arguments, units and",
-        "stored names; where it must change, the old form works for one more release. A changing",
+        "stored names; where it must change, the change log says what to write instead. A changing",
         "one may differ with any release, and the change log says so.", "",
         "| name | where | stability | what it is |", "|---|---|---|---|",
     ]  # fmt: skip

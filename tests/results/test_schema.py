@@ -19,7 +19,7 @@ BEFORE = {
     "thermogear": "0.1.0",
     "created": "2026-11-01T00:00:00+00:00",
     "title": "rig",
-    "notices": '[{"level": "info", "text": "as it was"}]',
+    "notices": '[{"level": "info", "text": "kept"}]',
 }
 """Root attributes as 0.1.0 wrote them, before results had a schema."""
 
@@ -35,7 +35,7 @@ def test_results_without_a_schema_open_and_are_stored_with_it(kind: str, tmp_pat
     path = write_tree(tree(kind), tmp_path / "results.nc")
     result = Result.read(path)
     assert (result.kind, result.title) == (kind, "rig")
-    assert [notice.text for notice in result.notices] == ["as it was"]
+    assert [notice.text for notice in result.notices] == ["kept"]
     assert "schema" not in result.provenance
     again = result.write(tmp_path / "again")
     assert result.attrs["schema"] == SCHEMA
