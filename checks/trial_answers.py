@@ -161,7 +161,8 @@ def _speeds(result: Result) -> Iterator[str]:
     assert data is not None
     rpm = data["pinion_speed"].values / RPM
     by = {one.name: one for one in result.answers}
-    grid, count = np.unique(rpm, return_counts=True)
+    grid, place = np.unique(rpm, return_inverse=True)
+    count = np.bincount(place, np.isfinite(data["contact_loss_share"].values))
     flags = {
         "contact_loss": np.unique(rpm[data["contact_loss_share"].values > LOST]),
         "back_contact": np.unique(rpm[data["mesh_force_min"].values < 0.0]),

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from thermogear.base.files import held
+from thermogear.base.files import SCHEMA, held
 from thermogear.base.netcdf import write_tree
 from thermogear.front.cli import main
 from thermogear.results.files import MARK
@@ -156,4 +156,7 @@ def test_the_summary_is_of_the_results_beside_it(tmp_path: Path, quick: dict[str
     with pytest.raises(ValueError, match="a defect"):
         main(["run", "table-4.2", "-o", str(tmp_path)])
     assert content(tmp_path) == old
-    assert json.loads((tmp_path / "summary.json").read_text()) == {"thermogear": "0"}
+    assert json.loads((tmp_path / "summary.json").read_text()) == {
+        "schema": SCHEMA,
+        "thermogear": "0",
+    }

@@ -220,6 +220,7 @@ DECLARED = {
     "still_air_coefficient": "the earth's gravity, m/s^2; properties of air",
     "oil_expansion": "the oil's own line",
     "oil_prandtl": "the oil's own line",
+    "fluid_from": "the oil's own line",
     "with_free_convection": "the oil's own line",
     "thermal_network": "the oil's own line; its parts are checked one by one",
 }

@@ -240,7 +240,10 @@ def test_refusals_of_tables(tmp_path: Path) -> None:
         read_lines(path)
     with pytest.raises(InputError, match=r"^measured: got nothing; a record, a table or thesis-5"):
         compare({"A": LineTable("A", (SpeedLine(speed=1.0, frequency=1.0, displacement=1.0),))})
-    with pytest.raises(InputError, match=r"^measured: got thesis-5\.3; did you mean 'thesis-5\.2'"):
+    with pytest.raises(
+        InputError,
+        match=r"^measured: got thesis-5\.3; there is no such file; did you mean 'thesis-5\.2'",
+    ):
         compare("thesis-5.2", "thesis-5.3")
     with pytest.raises(InputError, match=r"^line\.displacement: got -1; allowed > 0$"):
         SpeedLine(speed=1.0, frequency=1.0, displacement=-1)

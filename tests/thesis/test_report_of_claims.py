@@ -12,6 +12,7 @@ import xarray as xr
 
 from said import numbers
 from thermogear.analysis.labels import labels
+from thermogear.base.files import SCHEMA
 from thermogear.base.progress import Progress
 from thermogear.dynamics.models import TorsionalModel
 from thermogear.dynamics.return_map import return_map
@@ -256,7 +257,10 @@ def test_report_holds_every_claim_with_verdict_and_working_links(
     summary = save_results(build(SMALL), tmp_path)
     assert summary["claims"] == summary["claims_in_all"] == len(CLAIMS)
     assert summary["claims"] == sum(summary["verdicts"].values())
-    assert json.loads((tmp_path / "summary.json").read_text(encoding="utf-8")) == summary
+    assert json.loads((tmp_path / "summary.json").read_text(encoding="utf-8")) == {
+        "schema": SCHEMA,
+        **summary,
+    }
     verdicts = {row["number"]: row["verdict"] for row in summary["rows"]}
     # misprints and impossibilities that no grid decides
     for number in ("2.1.1", "2.2.3", "2.3.6", "2.3.8", "3.1.2", "3.2.3", "3.2.7", "3.3.5",

@@ -24,7 +24,7 @@ from thermogear.analysis.bifurcations import BIRTH, FLIP, GRAZING, Bifurcation
 from thermogear.analysis.branches import KINDS
 from thermogear.analysis.event_curve import BACK, LEFT, REACHED, event_curve
 from thermogear.analysis.family import Family, dimension_of, model_at
-from thermogear.analysis.orbits import closed
+from thermogear.analysis.orbits import Orbit, closed
 from thermogear.analysis.section import lanes_of
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.base.vocabulary import moves
@@ -44,6 +44,9 @@ Both are zeros of the same functions, located to 1e-9 of the range or better
 (:data:`~thermogear.analysis.curve.FOUND`).
 """
 MOST_FOLLOWED = 64
+COLLAPSED = 1e-4
+"""Of its first value (ours): where the distance between the halves of an orbit is less, it closes
+sooner than at the start: its curve has gone on along the orbits of the shorter period."""
 
 
 class _Event(NamedTuple):
@@ -156,9 +159,22 @@ def _followed(
             Bifurcation(event.kind, name, event.value, orbit), between, (name, "share"),
             start=0.0, asked=[1.0], limits=limits,
         )  # fmt: skip
+        partner = next((word for end, word in ENDS.items() if curve.ended.startswith(end)), UNKNOWN)
+        if partner == MATCHED:
+            model = between(*curve.values[-1])
+            there = closed(return_map(model), curve.states[-1], event.period, model=model)
+            if _sooner(there) < COLLAPSED * _sooner(orbit):
+                return UNKNOWN, None, 1.0, "its orbit closes sooner there"
     except (ConvergenceError, InputError) as error:
         return UNKNOWN, None, 0.0, str(error)
-    partner = next((word for end, word in ENDS.items() if curve.ended.startswith(end)), UNKNOWN)
     farthest = curve.values[:, 1].max() if partner in (JOINED, UNKNOWN) else curve.values[-1, 1]
     why = curve.ended if partner == UNKNOWN else ""
     return partner, float(curve.values[-1, 0]), float(farthest), why
+
+
+def _sooner(orbit: Orbit) -> float:
+    """How far an orbit is from closing sooner than at its end [units of its section]; inf at 1."""
+    lags = [lag for lag in range(1, orbit.period) if orbit.period % lag == 0]
+    unit = orbit.section.unit
+    gaps = [np.max(np.abs(orbit.points[lag] - orbit.points[0]) / unit) for lag in lags]
+    return float(min(gaps, default=np.inf))

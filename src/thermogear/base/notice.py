@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from importlib import resources
@@ -105,6 +105,10 @@ class Notice:
             str(about.get("code", SENTENCE)),
             data if isinstance(data, dict) else {},
         )
+
+    def __iter__(self) -> Iterator[str]:
+        """Level and text, so that a pair of names takes them."""
+        return iter((self.level, self.text))
 
     def as_dict(self) -> dict[str, Any]:
         """Code, level, data and text, as JSON has them."""

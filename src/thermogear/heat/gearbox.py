@@ -222,9 +222,8 @@ def oil_prandtl(lubricant: Lubricant, temperature: ArrayLike) -> Floats:
 def fluid_from(lubricant: Lubricant) -> float:
     """Temperature [K] from which an oil is thin enough for the laws of convection: Pr <= 10^6.
 
-    >>> oil = lubricant("FVA3")
-    >>> f"{oil_prandtl(oil, fluid_from(oil)):.3g}"
-    '1e+06'
+    >>> f"{fluid_from(lubricant('ISO VG 320')) - 273.15:.1f} C"
+    '-13.7 C'
     """
     from scipy.optimize import brentq
 
