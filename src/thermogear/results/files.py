@@ -53,16 +53,27 @@ def claimed(directory: Path) -> Iterator[Path]:
 
     The directory is made if new; one that holds foreign files, or that another process writes
     into, is refused with an InputError. Whatever is written to the folder yielded is put into
-    ``directory`` when the block ends: all of it, or after an error or Ctrl+C nothing.
+    ``directory`` when the block ends: all of it, or after an error or Ctrl+C nothing; then what
+    was made for it, directories, mark and lock, is taken away again.
     """
     require_ours(directory)
+    made = [place for place in (directory, *directory.parents) if not place.exists()]
+    new = bool(made) or not any(directory.iterdir())
     directory.mkdir(parents=True, exist_ok=True)
     with held(directory):
         require_ours(directory)  # it may have come while the lock did
         if not (directory / MARK).is_file():
             put(directory / MARK, _MARKED)
-        with together(directory) as folder:
-            yield folder
+        try:
+            with together(directory) as folder:
+                yield folder
+        except BaseException:
+            if new:
+                for name in (MARK, LOCK):
+                    (directory / name).unlink(missing_ok=True)
+                for place in made:
+                    place.rmdir()
+            raise
 
 
 def is_ours(directory: Path) -> bool:
