@@ -25,6 +25,7 @@ from thermogear.case.fields import (
     Count,
     Measure,
     Module,
+    Name,
     Number,
     Several,
     Words,
@@ -385,7 +386,7 @@ class GearFile(Table):
     )
     kind: Annotated[str, Choice("gear", "dimensionless")] = "gear"
     gears: GearsTable
-    materials: dict[str, MaterialTable] = Field(
+    materials: dict[Name, MaterialTable] = Field(
         default={}, description="no materials of the user's own"
     )
     housing: HousingTable = HousingTable()
@@ -411,7 +412,7 @@ class GearFile(Table):
     grid: GridTable = GridTable()
     simulation: SimulationTable = SimulationTable()
     draw: DrawTable = DrawTable()
-    files: dict[str, EnclosedTable] = Field(
+    files: dict[Name, EnclosedTable] = Field(
         default={}, title="put here when the case is read", exclude=True
     )
     ours: dict[str, Any] = Field(default={}, description="no value is declared as ours")

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from thermogear.base.errors import InputError
+from thermogear.base.errors import InputError, printable
 from thermogear.base.files import LOCK, held, put, require_directory, together
 
 RESULTS = "results.nc"
@@ -19,14 +19,16 @@ _MARKED = "results of thermogear\n"
 
 
 def json_text(summary: Mapping[str, Any]) -> str:
-    """A summary as a JSON text of lines; what is not finite is null."""
+    """A summary as a JSON text of lines; what is not finite is null, texts are printable."""
     return json.dumps(finite(summary), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def finite(value: Any) -> Any:
-    """NaN and infinity as None: JSON has no word for them."""
+    """NaN and infinity as None, which JSON has no word for; texts as a reader may be shown them."""
+    if isinstance(value, str):
+        return "\n".join(map(printable, value.split("\n")))
     if isinstance(value, Mapping):
-        return {k: finite(v) for k, v in value.items()}
+        return {finite(k): finite(v) for k, v in value.items()}
     if isinstance(value, list | tuple):
         return [finite(v) for v in value]
     if isinstance(value, float) and not abs(value) < float("inf"):
