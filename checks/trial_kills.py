@@ -40,7 +40,7 @@ COMMANDS = {
     "runup": "runup rig --rpm 2000:9000:40",
     "basins": "basins table-4.2 --x -2:2:61 --v -2:2:61",
     "bifurcation": "bifurcation table-4.2 --over zeta=0.02:0.2:60",
-    "train": "bifurcation motor-train --over rpm=1000:3000:4",
+    "train": "bifurcation rig-train --over rpm=1000:3000:4 --coordinates 24 --branch-period 0",
     "measure": "measure {records} --unit g",
 }
 STAMPS = re.compile(

@@ -66,11 +66,8 @@ def test_damaged_code_is_compiled_anew_and_stored(ending: str, tmp_path: Path) -
     assert loaded(path)(1.5) == 3.0
     (stored,) = tmp_path.rglob(f"*.{ending}")
     whole = stored.read_bytes()
-    flipped = [bytearray(whole) for _ in range(2)]
-    for number, content in enumerate(flipped):
-        content[len(whole) // (2 + number)] ^= 1 << number
-    for damaged in [whole[:left] for left in (0, len(whole) - 1)] + flipped:
-        stored.write_bytes(damaged)
+    for left in (0, 1, len(whole) // 2, len(whole) - 1):
+        stored.write_bytes(whole[:left])
         with pytest.warns(KernelCacheWarning, match=r"is damaged \(\w+\); it is compiled anew$"):
             assert loaded(path)(1.5) == 3.0
         assert stored.stat().st_size > 0.9 * len(whole)

@@ -5,11 +5,9 @@ from __future__ import annotations
 import errno
 import logging
 import sys
-import threading
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
 from typing import TextIO
 
 import click
@@ -60,8 +58,7 @@ class _Lines(logging.Handler):
             say("warning", text)
 
     def emit(self, record: logging.LogRecord) -> None:
-        library = record.name.partition(".")[0]
-        self.tell(f"the library {library} says: {one_line(record.getMessage())}")
+        self.tell(f"{record.name.partition('.')[0]} says: {one_line(record.getMessage())}")
 
     def show(
         self,
@@ -76,28 +73,16 @@ class _Lines(logging.Handler):
         if category.__module__.startswith("thermogear."):
             self.tell(text)
         elif not issubclass(category, DEVELOPERS):
-            parts = ("", *Path(filename).with_suffix("").parts)
-            inside = parts[parts.index("site-packages") + 1 :] if "site-packages" in parts else ()
-            library = inside[0] if inside and inside[0] != "thermogear" else "of arrays"
-            self.tell(f"the library {library} says ({category.__name__}): {text}")
+            self.tell(f"a library says ({category.__name__}): {text}")
 
 
 @contextmanager
 def warnings_as_lines() -> Iterator[None]:
-    """Print each warning once, as one line, for as long as the block runs; libraries' logs too.
-
-    An exception that nobody can catch, of a thread or of what is being taken away, is one line.
-    """
+    """Print each warning once, as one line, for as long as the block runs; libraries' logs too."""
     from thermogear.base.errors import ValidityWarning
 
     lines, root = _Lines(), logging.getLogger()
-    hooks = threading.excepthook, sys.unraisablehook
-
-    def lost(error: threading.ExceptHookArgs | sys.UnraisableHookArgs) -> None:
-        lines.tell(f"left aside: {error.exc_type.__name__}: {error.exc_value}")
-
     root.addHandler(lines)
-    threading.excepthook, sys.unraisablehook = lost, lost
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("always", ValidityWarning)
@@ -105,4 +90,3 @@ def warnings_as_lines() -> Iterator[None]:
             yield
     finally:
         root.removeHandler(lines)
-        threading.excepthook, sys.unraisablehook = hooks
