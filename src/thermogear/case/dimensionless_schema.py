@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from thermogear.base.errors import InputError
 from thermogear.base.parameters import NUMBERS
-from thermogear.case.fields import Choice, Count, Name, Number, NumberOrTemperature, Several, Words
+from thermogear.case.fields import Choice, Count, Number, NumberOrTemperature, Several, Words
 from thermogear.case.table import Table
 
 
@@ -110,6 +110,6 @@ class DimensionlessFile(Table):
     title: Annotated[str, Words('"table 4.2"')]
     kind: Annotated[str, Choice("dimensionless", "gear")]
     base: BaseTable
-    rows: Annotated[dict[Name, RowTable], Field(min_length=1)]
+    rows: Annotated[dict[str, RowTable], Field(min_length=1)]
     simulation: SimulationTable = SimulationTable()
     ours: dict[str, Any] = Field(default={}, description="no value is declared as ours")

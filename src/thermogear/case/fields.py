@@ -11,7 +11,7 @@ import math
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import KW_ONLY, dataclass
-from typing import Annotated, Any, ClassVar
+from typing import Any, ClassVar
 
 from pydantic import BaseModel, GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
@@ -338,10 +338,6 @@ class Words(Reader):
 
     def schema(self) -> dict[str, Any]:
         return {"type": "string", "maxLength": self.longest}
-
-
-Name = Annotated[str, Words()]
-"""A name that a file gives to a table of its own."""
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,6 @@ from thermogear.case.fields import (
     Count,
     Measure,
     Module,
-    Name,
     Number,
     Several,
     Words,
@@ -386,7 +385,7 @@ class GearFile(Table):
     )
     kind: Annotated[str, Choice("gear", "dimensionless")] = "gear"
     gears: GearsTable
-    materials: dict[Name, MaterialTable] = Field(
+    materials: dict[str, MaterialTable] = Field(
         default={}, description="no materials of the user's own"
     )
     housing: HousingTable = HousingTable()
@@ -412,7 +411,7 @@ class GearFile(Table):
     grid: GridTable = GridTable()
     simulation: SimulationTable = SimulationTable()
     draw: DrawTable = DrawTable()
-    files: dict[Name, EnclosedTable] = Field(
+    files: dict[str, EnclosedTable] = Field(
         default={}, title="put here when the case is read", exclude=True
     )
     ours: dict[str, Any] = Field(default={}, description="no value is declared as ours")
