@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+import logging
 import signal
 import subprocess
 import sys
+import warnings
+from pathlib import Path
 
 import pytest
+
+from thermogear.front.lines import warnings_as_lines
+from thermogear.results.files import claimed
 
 SIGNALS = [getattr(signal, n) for n in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, n)]
 # whoever starts the tests in the background has them ignore SIGINT
@@ -62,3 +68,30 @@ def test_closed_streams_are_said_in_one_line() -> None:
     code, said = ended(run.format(["new"]), "<&-")
     assert code == 2
     assert said.startswith("error: --teeth, --module, --face-width, --torque, --speed: got nothing")
+
+
+def test_what_libraries_say_is_one_line_and_advice_to_programmers_none(
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    with warnings_as_lines():
+        logging.getLogger("some.part").warning("a\x1b[2J\nb")
+        warnings.showwarning("odd\nvalue", RuntimeWarning, "numpy.py", 1)
+        warnings.showwarning("old name", FutureWarning, "pandas.py", 1)
+    assert capfd.readouterr().err.splitlines() == [
+        "warning: some says: a?[2J b",
+        "warning: a library says (RuntimeWarning): odd value",
+    ]
+
+
+def stopped_in(place: Path) -> None:
+    with claimed(place) as folder:
+        (folder / "half.csv").write_text("1")
+        raise KeyboardInterrupt
+
+
+def test_a_run_that_is_stopped_takes_away_what_it_made(tmp_path: Path) -> None:
+    for place in (tmp_path / "new" / "deep", tmp_path / "empty"):
+        (tmp_path / "empty").mkdir(exist_ok=True)
+        with pytest.raises(KeyboardInterrupt):
+            stopped_in(place)
+    assert list(tmp_path.rglob("*")) == [tmp_path / "empty"]

@@ -21,7 +21,7 @@ from thermogear.base.errors import InputError, meant
 SCHEMA = 1
 """Version of what results and JSON outputs call and mean things; without one: before the first."""
 LOCK = "lock"
-"""Stands in every directory that one process at a time writes into; stays there."""
+"""Stands in every directory that one process at a time writes into; stays with what was written."""
 SEAL = ".sha256"
 """Ending of a seal: the digest of the file next to it, as ``sha256sum -c`` reads it."""
 PART = ".part"
@@ -156,6 +156,8 @@ def held(directory: Path, field: str = "output") -> Iterator[None]:
     lock = FileLock(directory / LOCK)
     try:
         lock.acquire(timeout=0)
+        if not Path(lock.lock_file).exists():  # its holder left nothing just now
+            raise Timeout(lock.lock_file)
     except Timeout:
         raise InputError(
             field,

@@ -19,7 +19,7 @@ from pydantic import BaseModel, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
 from thermogear.base.display import in_words
-from thermogear.base.errors import InputError, ValidityWarning, nearest, short
+from thermogear.base.errors import InputError, ValidityWarning, nearest, printable, short
 from thermogear.case.alike import same
 from thermogear.case.fields import Measure
 from thermogear.case.refusals import dotted, table_at
@@ -91,7 +91,8 @@ def _declared(table: dict[str, Any], data: dict[str, Any], file: BaseModel) -> l
         value, reason = _spoken(path, entry)
         if _holds(path, value, data, file):
             real = _real(_read(file, _split(path)))
-            found.append(Assumption(path, _value(data, path), " ".join(reason.split()), real))
+            words = printable(" ".join(reason.split()))
+            found.append(Assumption(path, _value(data, path), words, real))
     if bare:
         warnings.warn(
             f"ours: {len(bare)} reasons without the value they speak of are left out; write "

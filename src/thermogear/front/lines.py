@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import logging
 import sys
 import warnings
 from collections.abc import Iterator
@@ -40,14 +41,27 @@ def system_error(error: OSError) -> str:
     return f"{error.filename}: {reason}" if error.filename is not None else reason
 
 
-@contextmanager
-def warnings_as_lines() -> Iterator[None]:
-    """Print each warning once, as one line, for as long as the block runs."""
-    from thermogear.base.errors import ValidityWarning
+DEVELOPERS = (DeprecationWarning, PendingDeprecationWarning, FutureWarning, ResourceWarning)
+"""What libraries tell programmers: nobody who gave a command can act on it, so it is dropped."""
 
-    said: set[str] = set()
+
+class _Lines(logging.Handler):
+    """What warns, each text once, as one line: warnings of ours and of libraries, their logs."""
+
+    def __init__(self) -> None:
+        super().__init__(logging.WARNING)
+        self.known: set[str] = set()
+
+    def tell(self, text: str) -> None:
+        if text not in self.known:
+            self.known.add(text)
+            say("warning", text)
+
+    def emit(self, record: logging.LogRecord) -> None:
+        self.tell(f"{record.name.partition('.')[0]} says: {one_line(record.getMessage())}")
 
     def show(
+        self,
         message: Warning | str,
         category: type[Warning],
         filename: str,
@@ -56,11 +70,23 @@ def warnings_as_lines() -> Iterator[None]:
         line: str | None = None,
     ) -> None:
         text = one_line(message)
-        if text not in said:
-            said.add(text)
-            say("warning", text)
+        if category.__module__.startswith("thermogear."):
+            self.tell(text)
+        elif not issubclass(category, DEVELOPERS):
+            self.tell(f"a library says ({category.__name__}): {text}")
 
-    with warnings.catch_warnings():
-        warnings.simplefilter("always", ValidityWarning)
-        warnings.showwarning = show
-        yield
+
+@contextmanager
+def warnings_as_lines() -> Iterator[None]:
+    """Print each warning once, as one line, for as long as the block runs; libraries' logs too."""
+    from thermogear.base.errors import ValidityWarning
+
+    lines, root = _Lines(), logging.getLogger()
+    root.addHandler(lines)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("always", ValidityWarning)
+            warnings.showwarning = lines.show
+            yield
+    finally:
+        root.removeHandler(lines)

@@ -253,7 +253,7 @@ def bound(port: int | None, *, usual: int) -> socket.socket:
 def server_of(app: App) -> uvicorn.Server:
     """What serves ``app``; its limits are those of one person's page."""
     config = uvicorn.Config(
-        app.asgi(), log_level="error", access_log=False, http="h11", ws="websockets-sansio",
+        app.asgi(), log_config=None, access_log=False, http="h11", ws="websockets-sansio",
         ws_max_size=MOST_BYTES, ws_ping_interval=20.0, server_header=False, date_header=False,
         timeout_graceful_shutdown=1, limit_concurrency=4 * MOST_CLIENTS, lifespan="on",
     )  # fmt: skip
