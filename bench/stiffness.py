@@ -8,11 +8,10 @@ from typing import Any
 import numpy as np
 
 from thermogear.gears import ring
-from thermogear.gears.body import sainsot_compliance
 from thermogear.gears.geometry import Gear
 from thermogear.gears.loaded import LoadedModel, solve_mesh
 from thermogear.gears.pair import GearPair
-from thermogear.gears.stiffness import mesh_stiffness
+from thermogear.gears.stiffness import mesh_stiffness, sainsot_compliance
 from thermogear.gears.tooth import tooth_compliances
 
 WIDTH, MODULE, E, NU = 20e-3, 5e-3, 206e9, 0.3

@@ -7,7 +7,7 @@ import pytest
 
 from conftest import Compared
 from thermogear.gears.contact import hertz_half_width, reduced_modulus
-from thermogear.gears.contact_compliance import (
+from thermogear.gears.stiffness import (
     palmgren_approach,
     weber_approach,
     yang_sun_stiffness,

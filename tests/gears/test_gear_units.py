@@ -17,9 +17,7 @@ import pytest
 
 from thermogear.base.materials import MATERIALS
 from thermogear.gears import (
-    body,
     contact,
-    contact_compliance,
     corner,
     loaded,
     ring,
@@ -129,11 +127,11 @@ FORMULAS: dict[str, tuple[tuple[int, int, int], Formula]] = {
     "hertz_pressure": (STRESS, lambda g: contact.hertz_pressure(g.load, g.radius, g.young)),
     "yang_sun_stiffness": (
         STIFFNESS,
-        lambda g: contact_compliance.yang_sun_stiffness(g.young, g.width),
+        lambda g: stiffness.yang_sun_stiffness(g.young, g.width),
     ),
     "weber_approach": (
         LENGTH,
-        lambda g: contact_compliance.weber_approach(
+        lambda g: stiffness.weber_approach(
             g.force,
             depth=g.depth,
             half_width=g.half,
@@ -144,7 +142,7 @@ FORMULAS: dict[str, tuple[tuple[int, int, int], Formula]] = {
     ),
     "palmgren_approach": (
         LENGTH,
-        lambda g: contact_compliance.palmgren_approach(g.force, g.young, g.width),
+        lambda g: stiffness.palmgren_approach(g.force, g.young, g.width),
     ),
     "contact_point": (LENGTH, lambda g: corner.contact_point(g.pair, 1.02 * g.s)),
     "off_path": (NUMBER, lambda g: corner.off_path(g.pair, 1.02 * g.s)),
@@ -159,12 +157,12 @@ FORMULAS: dict[str, tuple[tuple[int, int, int], Formula]] = {
     "sainsot_coefficients": (
         NUMBER,
         lambda g: list(
-            body.sainsot_coefficients(
+            stiffness.sainsot_coefficients(
                 g.gear.root_half_angle, ratio=g.gear.root_radius / g.gear.bore_radius
             ).values()
         ),
     ),
-    "sainsot_compliance": (COMPLIANCE, lambda g: body.sainsot_compliance(g.gear, g.t)),
+    "sainsot_compliance": (COMPLIANCE, lambda g: stiffness.sainsot_compliance(g.gear, g.t)),
     "rim_compliance": (
         NUMBER,
         lambda g: ring.rim_compliance(
@@ -194,9 +192,7 @@ FORMULAS: dict[str, tuple[tuple[int, int, int], Formula]] = {
     ),
 }
 MODULES = (
-    body,
     contact,
-    contact_compliance,
     corner,
     loaded,
     ring,

@@ -11,13 +11,12 @@ import pytest
 from conftest import Compared
 from thermogear.base.errors import InputError
 from thermogear.gears.contact import back_flank_position
-from thermogear.gears.contact_compliance import CONTACT_LAWS, weber_approach
 from thermogear.gears.deviations import BasePitchDifference, PathTable, Relief
 from thermogear.gears.geometry import Gear
 from thermogear.gears.loaded import LoadedModel, loaded_contact, mesh_force, solve_mesh
 from thermogear.gears.pair import GearPair
 from thermogear.gears.ring import ring_compliance
-from thermogear.gears.stiffness import Moduli
+from thermogear.gears.stiffness import CONTACT_LAWS, Moduli, weber_approach
 from thermogear.gears.tooth import flank_point, tooth_compliances
 
 WIDTH = 20e-3

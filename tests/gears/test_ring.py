@@ -9,9 +9,9 @@ import pytest
 
 from conftest import Compared
 from thermogear.base.materials import MATERIALS
-from thermogear.gears.body import sainsot_coefficients
 from thermogear.gears.geometry import Gear
 from thermogear.gears.ring import body_matrices, rim_compliance, ring_compliance
+from thermogear.gears.stiffness import sainsot_coefficients
 
 PINION = Gear(25, 5e-3, face_width=20e-3, bore_radius=20e-3)
 WHEEL = Gear(75, 5e-3, face_width=20e-3, bore_radius=60e-3)

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from thermogear.gears.contact_compliance import weber_approach
 from thermogear.gears.sharing_kernel import _approach, _share_one, _solve_spd
+from thermogear.gears.stiffness import weber_approach
 
 LINEAR = np.zeros(6)
 """A contact law of nothing: the springs stand in the compliance alone."""

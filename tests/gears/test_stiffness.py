@@ -7,8 +7,6 @@ import pytest
 
 from conftest import Compared
 from thermogear.base.errors import InputError, ValidityWarning
-from thermogear.gears.body import sainsot_compliance
-from thermogear.gears.contact_compliance import yang_sun_stiffness
 from thermogear.gears.geometry import Gear
 from thermogear.gears.pair import GearPair
 from thermogear.gears.sharing import equal_share, stiffness_share
@@ -18,6 +16,8 @@ from thermogear.gears.stiffness import (
     mesh_stiffness,
     pair_compliances,
     pair_stiffness,
+    sainsot_compliance,
+    yang_sun_stiffness,
 )
 
 

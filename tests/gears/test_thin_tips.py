@@ -12,10 +12,10 @@ from scipy.optimize import brentq
 
 from conftest import Compared
 from thermogear.base.errors import GeometryError, InputError
-from thermogear.gears.contact_compliance import CONTACT_LAWS
 from thermogear.gears.geometry import Gear, Rack
 from thermogear.gears.loaded import LoadedModel, solve_mesh
 from thermogear.gears.pair import GearPair
+from thermogear.gears.stiffness import CONTACT_LAWS
 from thermogear.gears.tooth import (
     SHEAR_FACTOR,
     flank_point,

@@ -9,7 +9,7 @@ from scipy.special import ndtri
 from conftest import Compared
 from thermogear.base.errors import InputError
 from thermogear.heat.contact_state import ContactState, PitchPoint
-from thermogear.heat.film import film_parameter, mean_roughness_film_parameter
+from thermogear.heat.film import film_parameter, mean_roughness_film_parameter, rms_roughness
 from thermogear.heat.friction import (
     LAWS,
     LUBRICATED,
@@ -31,7 +31,6 @@ from thermogear.heat.laws import (
     schlenk,
     xu_kahraman,
 )
-from thermogear.heat.roughness import rms_roughness
 
 MEAN = {  # FZG C, 200 Nm, 1500 rpm, b 14: F_bt/b, sum speed and radius at the pitch point
     "line_load": 5912.1 / 0.014,

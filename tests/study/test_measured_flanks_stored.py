@@ -18,7 +18,7 @@ from thermogear.study.measured_flanks import measured_flanks, measured_notices
 from thermogear.study.run import run
 from thermogear.views.page import Gallery, Pictures, Table
 from thermogear.views.pages.background import case_file
-from thermogear.views.pages.flank_sections import measured
+from thermogear.views.pages.gear_sections import measured
 
 RHO = np.linspace(START, END, 181)
 SHARE = (RHO - START) / (END - START)

@@ -9,9 +9,9 @@ import pytest
 from scipy.optimize import brentq
 
 from conftest import Compared
-from thermogear.gears.contact_compliance import weber_approach
 from thermogear.gears.geometry import Gear
 from thermogear.gears.ring import ring_compliance
+from thermogear.gears.stiffness import weber_approach
 from thermogear.gears.tooth import flank_point, tooth_compliances
 from thermogear.verify import gear_compliance
 from thermogear.verify.tooth_mesh import Profile

@@ -7,7 +7,7 @@ from functools import lru_cache
 from typing import Any
 
 from thermogear.base.errors import ValidityWarning
-from thermogear.case.alike import same
+from thermogear.case.assumptions import same
 from thermogear.case.base import Case
 from thermogear.case.case import DimensionlessCase, GearCase, load_example
 from thermogear.case.schema import BASE_SETS

@@ -1,7 +1,7 @@
 """Many return maps side by side, each with a state of its own: what analysis knows of them.
 
 Lanes of one mass with clearance run in compiled blocks
-(:mod:`~thermogear.dynamics.exact_bundle`); any other return maps run one after the other.
+(:mod:`~thermogear.dynamics.exact_map`); any other return maps run one after the other.
 """
 
 from __future__ import annotations

@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
 from thermogear.dynamics.bundle import Prepared
-from thermogear.dynamics.exact_bundle import exact_bundles
-from thermogear.dynamics.exact_map import Ensemble, ExactMap
+from thermogear.dynamics.exact_map import Ensemble, ExactMap, exact_bundles
 from thermogear.dynamics.tables import LaneTables
 
 Floats = NDArray[np.float64]

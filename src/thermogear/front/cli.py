@@ -21,7 +21,6 @@ from thermogear.base.parameters import long_name
 from thermogear.front import (
     app_command,
     delivery,
-    draw_command,
     gear_commands,
     measure_commands,
     motion_commands,
@@ -280,7 +279,6 @@ for _list in (
     app_command,
     new_command,
     rexs_commands,
-    draw_command,
     gear_commands,
     shaft_commands,
     motion_commands,

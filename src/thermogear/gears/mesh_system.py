@@ -19,16 +19,16 @@ from numpy.typing import ArrayLike, NDArray
 from thermogear.base.errors import InputError, nearest
 from thermogear.gears.candidates import MeshPoints, mesh_points
 from thermogear.gears.contact import reduced_modulus
-from thermogear.gears.contact_compliance import (
-    CONTACT_LAWS,
-    palmgren_approach,
-    yang_sun_stiffness,
-)
 from thermogear.gears.deviations import Deviation
 from thermogear.gears.geometry import Gear
 from thermogear.gears.pair import GearPair
 from thermogear.gears.ring import body_matrices, foot_load
-from thermogear.gears.stiffness import Moduli
+from thermogear.gears.stiffness import (
+    CONTACT_LAWS,
+    Moduli,
+    palmgren_approach,
+    yang_sun_stiffness,
+)
 from thermogear.gears.tooth import STARTS, flank_point, unit_compliance
 from thermogear.gears.touch import first_touch
 

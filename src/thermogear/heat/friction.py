@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import InputError, nearest
 from thermogear.heat.contact_state import ContactState, PitchPoint
+from thermogear.heat.film import RMS_OF_MEAN_ROUGHNESS, rms_roughness
 from thermogear.heat.law_parameters import (
     Bounded,
     Coefficient,
@@ -36,7 +37,6 @@ from thermogear.heat.laws import (
     schlenk,
     xu_kahraman,
 )
-from thermogear.heat.roughness import RMS_OF_MEAN_ROUGHNESS, rms_roughness
 
 Floats = NDArray[np.float64]
 

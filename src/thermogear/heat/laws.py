@@ -219,7 +219,7 @@ def xu_kahraman(
     ``pressure`` P_h [Pa] greatest Hertz pressure, ``sliding_speed`` v_s [m/s] of either sign,
     ``entrainment`` v_e [m/s], ``viscosity`` eta [Pa s] of the oil at inlet, ambient pressure,
     ``reduced_radius`` [m], ``roughness`` rms Rq [m], from Ra by
-    :func:`~thermogear.heat.roughness.rms_roughness` (0 for a smooth contact). Times
+    :func:`~thermogear.heat.film.rms_roughness` (0 for a smooth contact). Times
     tanh(|v_s|/(``pitch_floor`` v_e)), which takes it to 0 at pure rolling. Any shape; 0 at zero
     load. Fitted to one oil (75W90); the roughness term grows as exp(S) and is meant for
     smooth flanks. Source: Xu and Kahraman, J. Mech. Des. 129 (2007) 58-68; coefficients as in

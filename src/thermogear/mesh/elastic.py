@@ -13,13 +13,12 @@ from numpy.typing import NDArray
 
 from thermogear.gears.contact import curvature_radii, hertz_half_width, reduced_radius
 from thermogear.gears.contact import reduced_modulus as _reduced_modulus
-from thermogear.gears.contact_compliance import weber_approach
 from thermogear.gears.deviations import Deviation
 from thermogear.gears.loaded import LEAST_LINE_LOAD, LoadedMesh, solve_mesh
 from thermogear.gears.pair import GearPair
 from thermogear.gears.ring import ring_compliance
 from thermogear.gears.sharing import equal_share, stiffness_share
-from thermogear.gears.stiffness import Moduli, mesh_stiffness, pair_compliances
+from thermogear.gears.stiffness import Moduli, mesh_stiffness, pair_compliances, weber_approach
 from thermogear.gears.tooth import ToothCompliances, flank_point, tooth_compliances
 from thermogear.mesh.thermal import HotPair, ThermalDeviation
 

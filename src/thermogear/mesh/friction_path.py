@@ -28,6 +28,7 @@ from thermogear.heat.film import (
     mean_roughness_film_parameter,
     pressure_viscosity,
     regime,
+    rms_roughness,
     thermal_reduction,
 )
 from thermogear.heat.friction import (
@@ -45,7 +46,6 @@ from thermogear.heat.lubrication import (
     walther_slope,
 )
 from thermogear.heat.moving_source import flash_temperature
-from thermogear.heat.roughness import rms_roughness
 from thermogear.heat.temperature import flank_exchange, frictional_heat, heat_partition
 from thermogear.mesh.elastic import ElasticPair, PathShare
 from thermogear.mesh.thermal import HotPair
