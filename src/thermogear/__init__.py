@@ -5,8 +5,9 @@ The public names are loaded when first used, so that importing the package is ch
 
 from __future__ import annotations
 
-import importlib
-from typing import Any
+TYPE_CHECKING = False
+if TYPE_CHECKING:  # nothing is loaded here before the command line answers signals
+    from typing import Any
 
 __version__ = "0.1.0"
 
@@ -92,6 +93,8 @@ __all__ = ["__version__", *_HOME]
 def __getattr__(name: str) -> Any:
     if name not in _HOME:
         raise AttributeError(f"module 'thermogear' has no attribute {name!r}")
+    import importlib
+
     return getattr(importlib.import_module(_HOME[name]), name)
 
 

@@ -37,7 +37,7 @@ def tables(name: str, text: str) -> dict[str, Any]:
     if not text.strip():
         raise InputError(name, "an empty file", fix="`thermogear example rig` shows a case file")
     try:
-        found = tomllib.loads(text)
+        return tomllib.loads(text)
     except tomllib.TOMLDecodeError as cause:
         match = re.fullmatch(r"(?P<what>.*) \(at (?P<where>.*)\)", str(cause), re.DOTALL)
         what, where = (match["what"], match["where"]) if match else (str(cause), "some line")
@@ -50,21 +50,6 @@ def tables(name: str, text: str) -> dict[str, Any]:
         raise InputError(name, f"invalid TOML at {where}", why=what, fix=fix) from cause
     except (ValueError, RecursionError) as cause:
         raise InputError(name, "a number or a nesting beyond reason", allowed="TOML") from cause
-    for key in _keys(found):
-        if not key.isprintable():
-            raise InputError(name, f"the key {short(key)}", allowed="keys of printable characters")
-    return found
-
-
-def _keys(value: Any) -> Iterator[str]:
-    """All keys of nested tables and lists."""
-    if isinstance(value, dict):
-        yield from value
-        value = value.values()
-    elif not isinstance(value, list):
-        return
-    for inner in value:
-        yield from _keys(inner)
 
 
 def pairs(overrides: Mapping[str, str] | Sequence[str]) -> tuple[tuple[str, str], ...]:

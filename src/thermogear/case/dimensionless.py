@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TypeVar
 
-from thermogear.base.errors import InputError
+from thermogear.base.errors import InputError, printable, short
 from thermogear.base.parameters import NUMBERS
 from thermogear.case.allowed import dimensionless_reader, positive_stiffness, within
 from thermogear.case.dimensionless_schema import DimensionlessFile, RowTable
@@ -40,6 +40,8 @@ def points_of(file: DimensionlessFile) -> tuple[Point, ...]:
     """Every point of every row, in the file's order."""
     points: list[Point] = []
     for name, row in file.rows.items():
+        if not name.isprintable():
+            raise InputError(f"rows.{printable(name)}", short(name), allowed="a name of one line")
         points += _row(name, row, file)
     return tuple(points)
 

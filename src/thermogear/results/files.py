@@ -64,7 +64,7 @@ def claimed(directory: Path) -> Iterator[Path]:
     """
     require_ours(directory)
     made = [place for place in (directory, *directory.parents) if not place.exists()]
-    new = bool(made) or not any(directory.iterdir())
+    new = made or not any(directory.iterdir())
     directory.mkdir(parents=True, exist_ok=True)
     with held(directory):
         require_ours(directory)  # it may have come while the lock did
