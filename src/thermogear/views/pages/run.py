@@ -18,7 +18,6 @@ from thermogear.views.pages import (
     answers,
     dial,
     drawn,
-    flank_sections,
     gear_sections,
     headline,
     row_sections,
@@ -146,7 +145,7 @@ def _point_summary(points: xr.Dataset) -> list[dict[str, Any]]:
 ORDER = (
     shafts.section,
     drawn.section,
-    flank_sections.measured,
+    gear_sections.measured,
     gear_sections.friction,
     gear_sections.heat,
     gear_sections.gap,
@@ -188,7 +187,7 @@ def page(result: Result) -> Page:
             *notice_lines(result, OPEN if result.answers else None),
         ],
         tables=lambda: curve_tables(result),
-        first=(*FIRST, *flank_sections.first(result)),
+        first=(*FIRST, *gear_sections.first(result)),
     )
 
 
