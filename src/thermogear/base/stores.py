@@ -34,12 +34,12 @@ FORMAT = 2
 _AGAIN = "repeat the command that began it"
 
 
-def require_schema(found: object, *, newest: int, what: str, version: str) -> None:
-    """Refuse ``what`` whose schema ``found`` is above the ``newest`` known here.
+def require_schema(stated: object, *, newest: int, what: str, version: str) -> None:
+    """Refuse ``what`` whose schema ``stated`` is above the ``newest`` known here.
 
     Raises InputError, one line with the schema and the ``version`` of thermogear that wrote it.
     """
-    schema = int(found) if isinstance(found, int | np.integer) else 0
+    schema = int(stated) if isinstance(stated, int | np.integer) else 0
     if schema > newest:
         raise InputError(
             what,

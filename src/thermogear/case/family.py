@@ -357,8 +357,9 @@ class GearFamily:
         """Quantities of the mesh cycle of every row of a group, and its status."""
         case = group.case
         # by its place where a choice that varies changes the name
-        names = [m.name for m in (*case.models, *self.case.models)]
-        model = case.models[names.index(self.bundle) % len(case.models)]
+        known = [m.name for m in case.models]
+        names = known if self.bundle in known else [m.name for m in self.case.models]
+        model = case.models[names.index(self.bundle)]
 
         def sample(case: GearCase, columns: Columns, count: int) -> Samples:
             """The same for the motion and for the answers: its heat balance is solved once."""

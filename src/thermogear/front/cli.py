@@ -53,6 +53,10 @@ GROUPS = {
         "check": "Check CASE without running it, and list its defaults.",
         "app": "Open CASE in the browser and turn its dials.",
         "draw": "Draw the gears of CASE in mesh, cold and hot.",
+        "versus": "Set two to six cases side by side.",
+        "report": "Draw the page of stored results anew.",
+        "import": "List a REXS model, or write one of its stages as a case.",
+        "export": "Write CASE and its results as a REXS model.",
     },
     "One pair": {
         "answers": "Answer the usual questions on CASE, each with a verdict.",
@@ -83,10 +87,6 @@ GROUPS = {
     "Records": {
         "measure": "Read a record and print its lines with their uncertainty.",
         "compare": "Compare CASE with records or tables of lines.",
-        "import": "List a REXS model, or write one of its stages as a case.",
-        "export": "Write CASE and its results as a REXS model.",
-        "report": "Draw the page of stored results anew.",
-        "versus": "Set two to six cases side by side.",
     },
     "Research": {
         "sensitivity": "Rank the inputs that decide the results.",

@@ -83,7 +83,9 @@ def run(case: Case, *, progress: Progress = silent, alive: Alive = keep_going) -
             from thermogear.study.shafts.motion import train_motion
 
             groups["train_motion"], told = train_motion(case, progress=progress)
-        notices = chain(run_notices.notices(case, groups), answer_notices(case, found), told)
+        notices = chain(
+            run_notices.notices(case, groups), answer_notices(case, found, speeds), told
+        )
         own = {
             "facts": run_notices.facts(case, groups),
             "bundles": {model.name: model.choices() for model in case.models},

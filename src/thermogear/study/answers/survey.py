@@ -63,7 +63,7 @@ def answers(case: GearCase, *, progress: Progress = silent) -> Result:
         KIND,
         case.title,
         {} if speeds is None else Later(speeds=lambda: speeds.data),
-        notices(case, found),
+        notices(case, found, speeds),
         **case.provenance,
         bundle=model.name,
         choices=model.choices(),
@@ -74,8 +74,8 @@ def answers(case: GearCase, *, progress: Progress = silent) -> Result:
     )
 
 
-def notices(case: GearCase, found: Sequence[Answer]) -> Iterator[Notice]:
-    """What limits the answers ``found`` as a whole."""
+def notices(case: GearCase, found: Sequence[Answer], speeds: Speeds | None) -> Iterator[Notice]:
+    """What limits the answers ``found`` as a whole, and the look over ``speeds``."""
     count = case.stated.speed.size
     if count > MOST_POINTS:
         yield Notice(
@@ -93,11 +93,9 @@ def notices(case: GearCase, found: Sequence[Answer]) -> Iterator[Notice]:
             "flanks. They repeat in every mesh period; pitch errors over a whole turn, which "
             "bring lines of the shaft, are not modelled.",
         )
-    yield Notice(
-        "info",
-        "Speeds: one hot mesh at every speed, in steps of 2.5 %, without branches between the "
-        "steps; `thermogear runup` follows them.",
-    )
+    if speeds is not None:
+        looked = speeds.column("pinion_speed")
+        yield Notice.of("speeds_looked_at", least=looked.min(), greatest=looked.max())
 
 
 def answered(
