@@ -14,7 +14,6 @@ import h5py
 import numpy as np
 import pytest
 
-from said import facts
 from thermogear import load_case
 from thermogear.base.errors import InputError
 from thermogear.case.rexs.container import read_rexs
@@ -55,7 +54,8 @@ def test_a_time_that_stands_still_gives_no_rate(tmp_path: Path, values: str) -> 
     path.write_text("time [s],acc [g]\n" + f"{values}\n" * 400, encoding="utf-8")
     record = read_record(path)
     assert (record.rate, record.samples) == (None, 400)
-    assert facts(record.notices[0].text) == ["time"]
+    told = record.notices[0]
+    assert (told.code, told.data) == ("time_stands_still", {"column": "time"})
 
 
 def test_a_long_time_that_stands_still_is_seen_at_once(tmp_path: Path) -> None:
@@ -74,7 +74,10 @@ def test_a_time_whose_steps_are_no_record_gives_no_rate(tmp_path: Path, step: st
     path.write_text("time [s],acc [g]\n" + rows, encoding="utf-8")
     record = read_record(path)
     assert record.rate is None
-    assert facts(record.notices[0].text)[0] == "time"
+    told = record.notices[0]
+    codes = "time_stands_still", "time_step_impossible", "time_too_large", "time_holds_gaps"
+    assert told.code in codes
+    assert told.data["column"] == "time"
 
 
 def test_rates_that_are_none_are_told_and_left(tmp_path: Path) -> None:
@@ -82,7 +85,7 @@ def test_rates_that_are_none_are_told_and_left(tmp_path: Path) -> None:
     np.savez(path, a=np.sin(np.arange(400.0)), fs=1e308)
     record = read_record(path)
     assert record.rate is None
-    assert [facts(n.text)[-1] for n in record.notices] == [1e308]
+    assert [(n.code, n.data["rate"]) for n in record.notices] == [("rate_impossible", 1e308)]
 
 
 @pytest.mark.parametrize("packing", [{}, {"compression": "gzip"}])

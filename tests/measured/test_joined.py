@@ -11,7 +11,6 @@ import pytest
 from click.testing import CliRunner, Result
 from numpy.typing import NDArray
 
-from said import facts, numbers
 from thermogear.base.errors import InputError
 from thermogear.front.measure_commands import measure
 from thermogear.measured.joined import join_records, named, only
@@ -94,9 +93,10 @@ def test_a_gap_between_pieces_is_a_finding_of_the_gate(tmp_path: Path) -> None:
     write(tmp_path / "b.csv", x[3100:], start=3100 / RATE)
     done = found_in(asked(tmp_path, "--join", "time", "--json"))
     (finding,) = done["findings"]  # type: ignore[misc]
-    assert (finding["first"], finding["last"], finding["count"]) == (3000, 3099, 100)
-    said = [numbers(one["text"]) for one in done["notices"]]  # type: ignore[attr-defined]
-    assert [100.0, 0.01953] in said
+    lost = finding["data"]
+    assert (lost["first"], lost["last"], lost["samples"]) == (3000, 3099, 100)
+    missing = {"samples": 100, "time": 100 / RATE, "before": "a.csv", "after": "b.csv"}
+    assert missing in [one["data"] for one in done["notices"]]  # type: ignore[attr-defined]
     same = found_in(asked(tmp_path, "--join", "time", "--channel", "acc", "--json"))
     assert same["lines"] == done["lines"]
     (line,) = [one for one in done["lines"] if one["name"] == "mesh x 1"]  # type: ignore[attr-defined]
@@ -148,7 +148,7 @@ def test_other_rates_units_channels_and_equal_files_are_refused(tmp_path: Path) 
     # a copy beside its own: the gate leaves it out
     copies = found_in(asked(a, twice, "--join", "channels", "--json"))
     (finding,) = copies["findings"]  # type: ignore[misc]
-    assert facts(finding["kind"]) == ["a.csv::acc"]
+    assert (finding["code"], finding["data"]["original"]) == ("copy_left_out", "a.csv::acc")
 
 
 def test_channels_and_tacho_are_named_across_files(tmp_path: Path) -> None:
@@ -187,7 +187,9 @@ def test_short_last_blocks_and_late_starts_are_cut(tmp_path: Path) -> None:
     found = join_records([a, b], "channels")
     assert found.samples == 5950
     np.testing.assert_allclose(found.channel("a.csv::acc").values(), x[40:5990], rtol=1e-8)
-    assert sum("cut" in one.text for one in found.notices) == 2
+    cut = {one.code: one.data for one in found.notices}
+    assert cut["cut_to_common_start"] == {"samples": 40}
+    assert cut["cut_to_shortest"] == {"file": "b.csv", "longest": "a.csv", "samples": 10}
     assert only(found, ["b.csv"]).names == ("b.csv::acc",)
     assert named(found, "2") == ["b.csv::acc"]
 

@@ -82,8 +82,8 @@ class _Sentence(Formatter):
         form, _, unit = format_spec.partition(" ")
         values = value if isinstance(value, list) else [value]
         if unit in _UNITS:
-            values = [float(_UNITS[unit](each)) for each in values]
-        shown = [f"{each:{form}}" for each in values[:_LISTED]]
+            values = [None if v is None else float(_UNITS[unit](v)) for v in values]
+        shown = ["no number" if v is None else f"{v:{form}}" for v in values[:_LISTED]]
         return f"{', '.join(shown + ['...'] * (len(values) > _LISTED))} {unit}".rstrip()
 
     def vformat(self, text: str, args: Sequence[Any], kwargs: Mapping[str, Any]) -> str:

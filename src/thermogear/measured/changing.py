@@ -171,15 +171,14 @@ def read_in_angle(
         tacho=tacho,
     )
     if shaft is None and pulses_per_turn is not None:
-        text = f"pulses per turn given: {pulses_per_turn:g}; no tacho is found: they are not used"
-        notices.append(Notice("important", f"{text} (name it: --tacho NAME)"))
+        notices.append(Notice.of("pulses_without_tacho", given=pulses_per_turn))
     if shaft is not None and shaft.turns.size == 0:
         notices += shaft.told
         shaft = None
-    if shaft is not None and shaft.origin.startswith("speed"):
+    if shaft is not None and shaft.by_speed:
         if shaft.span < VARIES:
-            text = f"{shaft.origin}: steady within {100 * (shaft.span - 1):.2g} %"
-            return None, [*notices, Notice("info", text)]
+            told = Notice.of("speed_steady", channel=shaft.channel, within=shaft.span - 1.0)
+            return None, [*notices, told]
         shaft = locked(shaft, table, teeth)
     if shaft is None:
         shaft = tracked_shaft(table)
@@ -217,7 +216,7 @@ def _steady(shaft: Shaft, angle: OrderAngle, notices: list[Notice]) -> Changing:
         frequency=mean,
         half_width=mean / cycles.size,
         turning=turning,
-        said=f"lines are read in angle, by the {shaft.origin}",
+        told=(Notice.of("read_in_angle", channel=shaft.channel),),
         phase_noise=2.0 * np.pi * angle.mesh * angle.noise,
     )
     return Changing(
@@ -465,16 +464,15 @@ def harmonics_told(mesh: Gearing | float | None, asked: int, rate: float | None)
 
     ``mesh`` line [cycles/sample], or the gearing that has it; ``rate`` [samples/s].
 
-    >>> print(*(one.text for one in harmonics_told(0.0596, 20, 10_000.0)))
-    6 of 20 mesh harmonics are read: the others are above the rate/2.56, 3906 Hz
+    >>> [told.data["read"] for told in harmonics_told(0.0596, 20, 10_000.0)]
+    [6]
     """
     line = mesh.mesh_frequency if isinstance(mesh, Gearing) else mesh
     fit = asked if line is None else max(int(_HIGHEST / line), 1)
     if fit >= asked:
         return []
-    top = f"{_HIGHEST:.4g} cycles/sample" if rate is None else f"{_HIGHEST * rate:.4g} Hz"
-    text = f"{fit} of {asked} mesh harmonics are read: the others are above the rate/2.56, {top}"
-    return [Notice("info", text)]
+    top = None if rate is None else _HIGHEST * rate
+    return [Notice.of("harmonics_above_rate", read=fit, asked=asked, highest=top)]
 
 
 def _apart(beside: Sequence[float]) -> list[float]:

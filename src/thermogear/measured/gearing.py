@@ -452,9 +452,12 @@ def told_of_mate(gearing: Gearing, *, teeth: int | None, samples: int) -> list[N
     turns = gearing.mesh_frequency * samples / known[0] if known else np.inf
     if len(known) != 1 or turns >= _SLOWEST:
         return []
-    text = (
-        f"the record holds {turns:.3g} turns of the gear of {known[0]} teeth; what a mate that is "
-        f"not known, of more than {turns * known[0] / _FEW:.0f} teeth, changes of the mesh line "
-        "counts as the line's own: it turned fewer than four times"
-    )
-    return [Notice("warning" if turns < SLOW else "info", text)]
+    return [
+        Notice.of(
+            "mate_turned_little" if turns < SLOW else "mate_may_have_turned_little",
+            turns=turns,
+            teeth=known[0],
+            mate=round(turns * known[0] / _FEW),
+            least=_FEW,
+        )
+    ]

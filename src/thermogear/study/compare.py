@@ -94,7 +94,7 @@ def compare(
             case, read[0], at, u_data=u_data, u_num=u_num, tolerances=tolerances, samples=samples,
             seed=seed,
         )  # fmt: skip
-    damage = [Notice(*told) for one in read if isinstance(one, Measurement) for told in one.damage]
+    damage = [told for one in read if isinstance(one, Measurement) for told in one.findings]
     printed = [
         Printed(table_of(one, turns), {}) if isinstance(one, Measurement) else one
         for one, turns in zip(read, speeds, strict=True)

@@ -129,7 +129,7 @@ def compare_sensors(
         names,
         tuple(made),
         (_implied(measured, rows, base, place, speed),),
-        (*_seen(own), *(Notice(*one) for one in measured.damage), *notices),
+        (*_seen(own), *measured.findings, *notices),
         f"within {AGREES:g} u_val: {', '.join(counts)} of {len(made)}",
     )
 
