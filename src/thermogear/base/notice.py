@@ -83,7 +83,7 @@ class _Sentence(Formatter):
         values = value if isinstance(value, list) else [value]
         if unit in _UNITS:
             values = [None if v is None else float(_UNITS[unit](v)) for v in values]
-        shown = ["no number" if v is None else f"{v:{form}}" for v in values[:_LISTED]]
+        shown = ["none" if v is None else f"{v:{form}}" for v in values[:_LISTED]]
         return f"{', '.join(shown + ['...'] * (len(values) > _LISTED))} {unit}".rstrip()
 
     def vformat(self, text: str, args: Sequence[Any], kwargs: Mapping[str, Any]) -> str:

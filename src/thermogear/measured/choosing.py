@@ -77,7 +77,7 @@ def chosen_channels(
                 "several_units",
                 unit=first,
                 channels=[c.name for c in others],
-                units=[c.unit or "no unit" for c in others],
+                units=[c.unit for c in others],
             )
         )
     return [c for c in alive if c.unit == first]

@@ -83,9 +83,10 @@ def turned_by(share: float, *, samples: int) -> float:
 def require_sampling_rate(record: Record) -> None:
     """Refuse a rate so low that it may be a shaft's."""
     if record.rate is not None and record.rate < LEAST_RATE:
-        fix = "give the samples per second by --rate, the shaft's speed by --speed"
-        if "time column" in record.rate_origin:
-            fix += "; if the time column counts milliseconds, name it 'time [ms]'"
+        fix = (
+            "give the samples per second by --rate, the shaft's speed by --speed; if a time column "
+            "counts milliseconds, name it 'time [ms]'"
+        )
         raise InputError(
             "rate",
             f"{record.rate:g} samples/s",

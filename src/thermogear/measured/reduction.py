@@ -237,12 +237,11 @@ def measure(
         gearing, teeth, turns = changing.gearing, changing.teeth, changing.turns
     else:
         gearing = stated_gearing(through.table, notices, expected, stated)
+        teeth = settled_teeth(gearing, teeth, notices)
     if changing is not None and changing.slices is not None:
         return _of_slices(record, through, chain, changing, notices, given)
     through.findings += events_of(through)
     chosen, start, table = through.channels, through.start, through.table
-    if changing is None:
-        teeth = settled_teeth(gearing, teeth, notices)
     doubt, undecided = record.rate_doubt, None
     if gearing is not None and turns is None:
         turns = mesh_turns(table, gearing, teeth=teeth, harmonics=harmonics)
@@ -268,7 +267,6 @@ def measure(
     if doubt:
         through.findings.append(Notice.of("rate_or_speed_doubtful"))
     notices += through.findings
-    notices += turns.told if turns is not None else ()
     rate = record.rate or 1.0
     mesh = (gearing.mesh_frequency if gearing else 0.05) * rate
     wanted = (chain or Chain()).settled(rate=rate, samples=table.shape[-1], mesh=mesh)
@@ -301,9 +299,8 @@ def measure(
             ),
         )
     notices += harmonics_told(gearing, harmonics, record.rate)
-    if turns is not None and turns.withheld is not None and turns.withheld not in notices:
-        beside = [line.position for line in lines if line.kind != "mesh"]
-        notices += [turns.withheld] if any(map(turns.why_withheld, beside)) else []
+    beside = [line.position for line in lines if line.kind != "mesh"]
+    notices += turns.told_of(beside) if turns is not None else []
     lines = [of_velocity(line, record.channel(line.channel)) for line in lines]
     notices += _untold(record, chosen, sensor_tolerance)
     notices += _filtered(wanted, rate, mesh, gearing)

@@ -46,7 +46,7 @@ class Several:
     unit: str
     hint: Notice | None = None
     withheld: tuple[tuple[str, str], ...] = ()
-    found: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    found: tuple[tuple[str, tuple[Notice, ...]], ...] = ()
     same: NDArray[np.bool_]
     apart: tuple[tuple[str, str], ...] = ()
     turns: tuple[Turns, ...]
@@ -360,7 +360,7 @@ def figures_of_several(found: Several) -> dict[str, Any]:
         "apart": [list(pair) for pair in found.apart],
         "refused": [list(pair) for pair in found.refused],
         "withheld": [list(pair) for pair in found.withheld],
-        "findings": [[name, list(texts)] for name, texts in found.found],
+        "findings": [[name, [one.as_dict() for one in told]] for name, told in found.found],
         "units": {
             "reading": found.unit,
             "shaft_speed": "rad/s",

@@ -79,6 +79,12 @@ class MeshTurns:
         change = np.linalg.norm([reading.changing, reading.turning, _of_neighbours(reading)])
         return max(LEAK * float(change) - told, 0.0)
 
+    def told_of(self, positions: Sequence[float]) -> list[Notice]:
+        """What is told, with that lines at the ``positions`` are withheld, where some are."""
+        near = any(map(self.why_withheld, positions))
+        more = [self.withheld] if self.withheld is not None and near else []
+        return list(dict.fromkeys((*self.told, *more)))
+
     def why_withheld(self, position: float) -> str:
         """Why a line at this place [cycles/sample], no harmonic itself, is withheld, or ''."""
         harmonic = max(1.0, float(np.rint(position / self.frequency))) * self.frequency
