@@ -48,7 +48,7 @@ class Several:
     withheld: tuple[tuple[str, str], ...] = ()
     found: tuple[tuple[str, tuple[Notice, ...]], ...] = ()
     same: NDArray[np.bool_]
-    apart: tuple[tuple[str, str], ...] = ()
+    apart: tuple[tuple[str, Notice], ...] = ()
     turns: tuple[Turns, ...]
     ratio: Floats
 
@@ -186,9 +186,9 @@ def several(
         baseline=first,
         same=np.array([one.same for one in compared], dtype=bool).reshape(len(kept), len(keys)),
         apart=tuple(
-            (names[row.file], one.words(names[good[place].file]))
+            (names[row.file], told)
             for row, one in zip(kept, compared, strict=True)
-            if one.why or one.moved
+            if (told := one.told(names[row.file], names[good[place].file])) is not None
         ),
         turns=tuple(one.turns for one in compared),
         ratio=np.array([one.ratio for one in compared]),
@@ -285,7 +285,7 @@ def result_of_several(found: Several) -> Result:
                 damaged=damaged,
             )
         )
-    notices += [Notice.of("changes_withheld", record=name, reason=why) for name, why in found.apart]
+    notices += [told for _, told in found.apart]
     off = [k for k, ratio in enumerate(found.ratio) if abs(ratio - 1.0) > ALIKE]
     if off:
         speeds = [found.turns[k].shaft for k in off]
@@ -357,7 +357,7 @@ def figures_of_several(found: Several) -> dict[str, Any]:
         "changed": rows,
         "trends": trends,
         "speeds": speeds,
-        "apart": [list(pair) for pair in found.apart],
+        "apart": [[name, told.text] for name, told in found.apart],
         "refused": [list(pair) for pair in found.refused],
         "withheld": [list(pair) for pair in found.withheld],
         "findings": [[name, [one.as_dict() for one in told]] for name, told in found.found],
