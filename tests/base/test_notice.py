@@ -2,11 +2,12 @@
 
 import ast
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import thermogear
-from thermogear.base.notice import LEVELS, SENTENCE, Notice, catalogue
+from thermogear.base.notice import LEVELS, SENTENCE, Entry, Notice, catalogue
 
 
 def test_every_entry_has_a_level_a_sentence_and_advice() -> None:
@@ -35,6 +36,25 @@ def test_data_and_sentence_agree() -> None:
     assert notice.data == {"rows": 12, "column": "t"}
     assert notice.text == catalogue()[notice.code].sentence.format(rows=12, column="t")
     assert Notice.stored(notice.as_dict()) == notice
+
+
+@pytest.mark.parametrize(
+    ("data", "text"),
+    [
+        ({"rows": 1, "names": ["a"]}, "1 row is left out: name a"),
+        ({"rows": 2, "names": ["a", "b"]}, "2 rows are left out: names a, b"),
+        ({"rows": 0, "names": []}, "0 rows are left out: names "),
+    ],
+)
+def test_words_follow_a_count(
+    data: dict[str, Any], text: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    entry = Entry(
+        "info", "{rows:d} {rows|row is|rows are} left out: {names|name|names} {names}", "Nothing."
+    )
+    monkeypatch.setattr("thermogear.base.notice.catalogue", lambda: {"rows_left": entry})
+    assert entry.fields == {"rows", "names"}
+    assert Notice.of("rows_left", **data).text == text
 
 
 def test_a_wrong_code_or_field_is_an_error() -> None:

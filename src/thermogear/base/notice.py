@@ -1,7 +1,8 @@
 """What a reader should know beside the numbers: a code with data, its sentence from a catalogue.
 
-The catalogue is ``notices.toml`` beside this module: of each code the level, the sentence with the
-fields of the data in braces, and what the reader can do. A sentence is made here and nowhere else.
+The catalogue is the folder ``notices`` beside this module: of each code the level, the sentence
+with the fields of the data in braces, and what the reader can do. A sentence is made here and
+nowhere else.
 """
 
 from __future__ import annotations
@@ -38,18 +39,39 @@ class Entry:
     @property
     def fields(self) -> frozenset[str]:
         """Names of the data that the sentence holds."""
-        return frozenset(name for _, name, _, _ in Formatter().parse(self.sentence) if name)
+        parts = Formatter().parse(self.sentence)
+        return frozenset(name.partition("|")[0] for _, name, _, _ in parts if name)
 
 
 @cache
 def catalogue() -> Mapping[str, Entry]:
-    """Every code with its entry, as the file has them."""
-    text = resources.files(__package__).joinpath("notices.toml").read_text(encoding="utf-8")
-    return {code: Entry(**entry) for code, entry in tomllib.loads(text).items()}
+    """Every code with its entry, as the files ``notices/*.toml`` have them.
+
+    Raises ValueError for a code that two files have.
+    """
+    entries: dict[str, Entry] = {}
+    for file in resources.files(__package__).joinpath("notices").iterdir():
+        if file.name.endswith(".toml"):
+            read = tomllib.loads(file.read_text(encoding="utf-8"))
+            if twice := entries.keys() & read.keys():
+                raise ValueError(f"{file.name}: codes of another file: {', '.join(twice)}")
+            entries |= {code: Entry(**entry) for code, entry in read.items()}
+    return dict(sorted(entries.items()))
 
 
 class _Sentence(Formatter):
-    """Fields as ``{speed:.0f rpm}``: SI data in the unit named; a list is parted by commas."""
+    """Fields as ``{speed:.0f rpm}``: SI data in the unit named; a list is parted by commas.
+
+    ``{count|point has|points have}`` chooses words by a number (or the length of a list): the first
+    where it is one or true, else the second.
+    """
+
+    def get_value(self, key: int | str, args: Any, kwargs: Mapping[str, Any]) -> Any:
+        name, *words = str(key).split("|")
+        value = kwargs[name]
+        if not words:
+            return value
+        return words[(len(value) if isinstance(value, list) else value) != 1]
 
     def format_field(self, value: Any, format_spec: str) -> str:
         form, _, unit = format_spec.partition(" ")
