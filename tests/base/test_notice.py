@@ -1,6 +1,7 @@
 """A notice is a code with data; its sentence comes from the catalogue."""
 
 import ast
+import math
 from pathlib import Path
 from typing import Any
 
@@ -24,9 +25,11 @@ def test_every_use_names_a_known_code_with_its_fields() -> None:
             continue
         for node in ast.walk(ast.parse(text)):
             if isinstance(node, ast.Call) and ast.unparse(node.func) == "Notice.of":
-                code = ast.literal_eval(node.args[0])
-                assert {each.arg for each in node.keywords} == catalogue()[code].fields, path
-                used.add(code)
+                first = node.args[0]  # a code, or one of two
+                codes = [first.body, first.orelse] if isinstance(first, ast.IfExp) else [first]
+                for code in map(ast.literal_eval, codes):
+                    assert {each.arg for each in node.keywords} == catalogue()[code].fields, path
+                    used.add(code)
     assert used == set(catalogue())
 
 
@@ -55,6 +58,29 @@ def test_words_follow_a_count(
     monkeypatch.setattr("thermogear.base.notice.catalogue", lambda: {"rows_left": entry})
     assert entry.fields == {"rows", "names"}
     assert Notice.of("rows_left", **data).text == text
+
+
+@pytest.mark.parametrize(
+    ("names", "speed", "text"),
+    [
+        (["a"], None, "left out: a"),
+        (
+            list("abcdefghi"),
+            [math.pi, 2.0 * math.pi],
+            "left out: a, b, c, d, e, f, g, h, ... at 30, 60 rpm",
+        ),
+    ],
+)
+def test_a_clause_without_its_number_is_left_out_and_a_long_list_is_cut(
+    names: list[str], speed: list[float] | None, text: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    entry = Entry("info", "left out: {names}[ at {speed:.0f rpm}]", "Nothing.")
+    monkeypatch.setattr("thermogear.base.notice.catalogue", lambda: {"left_out": entry})
+    notice = Notice.of("left_out", names=names, speed=speed)
+    assert (notice.text, notice.data) == (text, {"names": names, "speed": speed})
+    of_files = notice.of_files(["r1.csv", "r2.csv"])
+    assert of_files.text == f"r1.csv, r2.csv: {text}"
+    assert of_files.data == {**notice.data, "files": ["r1.csv", "r2.csv"]}
 
 
 def test_a_wrong_code_or_field_is_an_error() -> None:

@@ -8,9 +8,10 @@ nowhere else.
 from __future__ import annotations
 
 import math
+import re
 import tomllib
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cache
 from importlib import resources
 from string import Formatter
@@ -18,14 +19,17 @@ from typing import Any
 
 import numpy as np
 
-from thermogear.base.display import CELSIUS, MICROMETRE, MINUTE, PERCENT, SPEED
+from thermogear.base.display import CELSIUS, GRAVITY, MICROMETRE, MINUTE, PERCENT, SPEED
 from thermogear.base.errors import printable
 
 LEVELS = ("important", "warning", "info")
 """From what must be known to what is good to know."""
 SENTENCE = "sentence"
 """Code of a notice that is known by its sentence alone: of results of older versions."""
-_UNITS = {shown.unit: shown for shown in (CELSIUS, MICROMETRE, MINUTE, PERCENT, SPEED)}
+_UNITS = {shown.unit: shown for shown in (CELSIUS, GRAVITY, MICROMETRE, MINUTE, PERCENT, SPEED)}
+_CLAUSE = re.compile(r"\[([^\[\]]*)\]")
+_LISTED = 8
+"""Entries of a list that a sentence shows; its data have all."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +64,8 @@ def catalogue() -> Mapping[str, Entry]:
 
 
 class _Sentence(Formatter):
-    """Fields as ``{speed:.0f rpm}``: SI data in the unit named; a list is parted by commas.
+    """Fields as ``{speed:.0f rpm}``: SI data in the unit named; a list is parted by commas, of a
+    long one the first are shown. A clause in ``[brackets]`` of which a field is None is left out.
 
     ``{count|point has|points have}`` chooses words by a number (or the length of a list): the first
     where it is one or true, else the second.
@@ -75,11 +80,18 @@ class _Sentence(Formatter):
 
     def format_field(self, value: Any, format_spec: str) -> str:
         form, _, unit = format_spec.partition(" ")
-        if isinstance(value, list):
-            return ", ".join(self.format_field(each, form) for each in value) + f" {unit}".rstrip()
+        values = value if isinstance(value, list) else [value]
         if unit in _UNITS:
-            return f"{float(_UNITS[unit](value)):{form}} {unit}"
-        return f"{value:{form}} {unit}".rstrip()
+            values = [float(_UNITS[unit](each)) for each in values]
+        shown = [f"{each:{form}}" for each in values[:_LISTED]]
+        return f"{', '.join(shown + ['...'] * (len(values) > _LISTED))} {unit}".rstrip()
+
+    def vformat(self, text: str, args: Sequence[Any], kwargs: Mapping[str, Any]) -> str:
+        def clause(found: re.Match[str]) -> str:
+            names = Entry("", found[1], "").fields
+            return "" if any(kwargs[name] is None for name in names) else found[1]
+
+        return super().vformat(_CLAUSE.sub(clause, text), args, kwargs)
 
 
 @dataclass(frozen=True)
@@ -110,6 +122,12 @@ class Notice:
             raise TypeError(f"notice {code}: missing or unknown data: {wrong}")
         plain = {name: _plain(value) for name, value in data.items()}
         return cls(entry.level, _Sentence().vformat(entry.sentence, (), plain), code, plain)
+
+    def of_files(self, files: Sequence[str]) -> Notice:
+        """The same of the ``files`` named, which come first in the text."""
+        named = _plain(list(files))
+        text = f"{_Sentence().format_field(named, '')}: {self.text}"
+        return replace(self, text=text, data={**self.data, "files": named})
 
     @classmethod
     def stored(cls, told: Notice | str | Mapping[str, Any]) -> Notice:
