@@ -168,7 +168,7 @@ LONG_FUNCTIONS = {
     "gears.touch._least_advance": 43,
     "heat.gearbox.thermal_network": 42,
     "heat.transient.follow": 51,
-    "measured.changing._sliced": 51,
+    "measured.changing._sliced": 48,
     "measured.hypotheses._screened": 44,
     "measured.lines.channel_lines": 77,
     "measured.order_angle.order_angle": 48,

@@ -437,7 +437,7 @@ def test_an_index_is_no_vibration(tmp_path: Path, index: np.ndarray, rate: float
     assert names == ["acc"]
     assert [n.code for n in notices] == ["channel_counts", "several_units"]
     assert notices[0].data == {"channel": "sample"}
-    assert notices[1].data == {"unit": "m/s^2", "channels": ["raw"], "units": [None]}
+    assert notices[1].data == {"unit": "m/s^2", "channels": ["raw"], "units": None}
     with pytest.raises(InputError, match=r"^channel: got 'sample'; channel 'sample' .*") as refused:
         chosen_channels(record, ["sample"], [])
     assert str(refused.value).endswith("--rate") == (rate is None)

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from coded import coded
 from conftest import Compared
 from said import numbers
 from thermogear.base.errors import InputError
@@ -180,8 +181,8 @@ def test_no_drawing_of_the_flanks_reverses_the_verdict_of_another(
         assert not set(better) <= verdicts, measured
         said.append(verdicts)
     assert (said[0], said[-1]) == ({better[0]}, {better[1]})
-    (told,) = (one.text for one in found[0].notices if "drawings" in one.text)
-    assert numbers(told) == [8.0, 6.0]
+    (told,) = coded(found[0].notices)["u_input_of_drawings"]
+    assert told == {"drawings": 8, "accuracy": 6}
     row = found[0].row(3000 * RPM, "displacement")
     most = np.abs(swings[1:] / swings[1] - 1.0).max()
     assert row.u_input == pytest.approx(most * max(row.simulated) / row.measured, rel=1e-9)

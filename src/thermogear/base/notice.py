@@ -7,10 +7,11 @@ nowhere else.
 
 from __future__ import annotations
 
+import json
 import math
 import re
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
 from importlib import resources
@@ -19,14 +20,25 @@ from typing import Any
 
 import numpy as np
 
-from thermogear.base.display import CELSIUS, GRAVITY, MICROMETRE, MINUTE, PERCENT, SPEED
+from thermogear.base.display import (
+    CELSIUS,
+    GRAVITY,
+    MICROMETRE,
+    MILLIMETRE,
+    MINUTE,
+    PERCENT,
+    SPEED,
+)
 from thermogear.base.errors import printable
 
 LEVELS = ("important", "warning", "info")
 """From what must be known to what is good to know."""
 SENTENCE = "sentence"
 """Code of a notice that is known by its sentence alone: of results of older versions."""
-_UNITS = {shown.unit: shown for shown in (CELSIUS, GRAVITY, MICROMETRE, MINUTE, PERCENT, SPEED)}
+_UNITS = {
+    shown.unit: shown
+    for shown in (CELSIUS, GRAVITY, MICROMETRE, MILLIMETRE, MINUTE, PERCENT, SPEED)
+}
 _CLAUSE = re.compile(r"\[([^\[\]]*)\]")
 _LISTED = 8
 """Entries of a list that a sentence shows; its data have all."""
@@ -49,23 +61,17 @@ class Entry:
 
 @cache
 def catalogue() -> Mapping[str, Entry]:
-    """Every code with its entry, as the files ``notices/*.toml`` have them.
-
-    Raises ValueError for a code that two files have.
-    """
-    entries: dict[str, Entry] = {}
-    for file in resources.files(__package__).joinpath("notices").iterdir():
-        if file.name.endswith(".toml"):
-            read = tomllib.loads(file.read_text(encoding="utf-8"))
-            if twice := entries.keys() & read.keys():
-                raise ValueError(f"{file.name}: codes of another file: {', '.join(twice)}")
-            entries |= {code: Entry(**entry) for code, entry in read.items()}
-    return dict(sorted(entries.items()))
+    """Every code with its entry, as the files ``notices/*.toml`` have them, each code in one."""
+    files = resources.files(__package__).joinpath("notices").iterdir()
+    texts = [file.read_text(encoding="utf-8") for file in files if file.name.endswith(".toml")]
+    entries = {code: entry for text in texts for code, entry in tomllib.loads(text).items()}
+    return {code: Entry(**entries[code]) for code in sorted(entries)}
 
 
 class _Sentence(Formatter):
     """Fields as ``{speed:.0f rpm}``: SI data in the unit named; a list is parted by commas, of a
-    long one the first are shown. A clause in ``[brackets]`` of which a field is None is left out.
+    long one the first are shown. A list [least, greatest] in a list is a range, as "60 to 80". A
+    clause in ``[brackets]`` of which a field is None is left out.
 
     ``{count|point has|points have}`` chooses words by a number (or the length of a list): the first
     where it is one or true, else the second.
@@ -74,16 +80,13 @@ class _Sentence(Formatter):
     def get_value(self, key: int | str, args: Any, kwargs: Mapping[str, Any]) -> Any:
         name, *words = str(key).split("|")
         value = kwargs[name]
-        if not words:
-            return value
-        return words[(len(value) if isinstance(value, list) else value) != 1]
+        count = len(value) if isinstance(value, list) else value
+        return words[count != 1] if words else value
 
     def format_field(self, value: Any, format_spec: str) -> str:
         form, _, unit = format_spec.partition(" ")
         values = value if isinstance(value, list) else [value]
-        if unit in _UNITS:
-            values = [None if v is None else float(_UNITS[unit](v)) for v in values]
-        shown = ["none" if v is None else f"{v:{form}}" for v in values[:_LISTED]]
+        shown = [_shown(each, form, unit) for each in values[:_LISTED]]
         return f"{', '.join(shown + ['...'] * (len(values) > _LISTED))} {unit}".rstrip()
 
     def vformat(self, text: str, args: Sequence[Any], kwargs: Mapping[str, Any]) -> str:
@@ -92,6 +95,15 @@ class _Sentence(Formatter):
             return "" if any(kwargs[name] is None for name in names) else found[1]
 
         return super().vformat(_CLAUSE.sub(clause, text), args, kwargs)
+
+
+def _shown(value: Any, form: str, unit: str) -> str:
+    """A datum in its unit; of a list its ends."""
+    if value is None:
+        return "no number"
+    if isinstance(value, list):
+        return " to ".join(dict.fromkeys(_shown(end, form, unit) for end in value))
+    return format(float(_UNITS[unit](value)) if unit in _UNITS else value, form)
 
 
 @dataclass(frozen=True)
@@ -110,8 +122,11 @@ class Notice:
         object.__setattr__(self, "text", printable(self.text))
 
     @classmethod
-    def of(cls, code: str, /, **data: Any) -> Notice:
+    def of(cls, code: str, /, *, about: str = "", **data: Any) -> Notice:
         """The notice ``code`` of the catalogue with its ``data``, in SI units.
+
+        ``about``: the name of what it is about where there are several, as a bundle or a state; it
+        begins the text, and is in the data.
 
         Raises KeyError for a code that there is not, TypeError where the data are not the fields
         of its sentence.
@@ -121,7 +136,10 @@ class Notice:
             wrong = ", ".join(sorted(data.keys() ^ entry.fields))
             raise TypeError(f"notice {code}: missing or unknown data: {wrong}")
         plain = {name: _plain(value) for name, value in data.items()}
-        return cls(entry.level, _Sentence().vformat(entry.sentence, (), plain), code, plain)
+        text = _Sentence().vformat(entry.sentence, (), plain)
+        if about:
+            plain["about"], text = about, f"{about}: {text}"
+        return cls(entry.level, text, code, plain)
 
     def of_files(self, files: Sequence[str]) -> Notice:
         """The same of the ``files`` named, which come first in the text."""
@@ -153,6 +171,11 @@ class Notice:
     def as_dict(self) -> dict[str, Any]:
         """Code, level, data and text, as JSON has them."""
         return {"code": self.code, "level": self.level, "data": self.data, "text": self.text}
+
+
+def stored_notices(notices: Iterable[Notice]) -> str:
+    """Notices as the JSON text that a store holds."""
+    return json.dumps([notice.as_dict() for notice in notices])
 
 
 def _plain(value: Any) -> Any:

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from scipy import signal
 
 from thermogear.base.errors import InputError
-from thermogear.base.units import RPM
 from thermogear.measured.chain import Turning
 from thermogear.measured.evidence import Evidence
 from thermogear.measured.gate import Passed
@@ -323,18 +322,15 @@ def _sliced(
     )
     if record.rate is not None:
         slices = replace(slices, resonances=resonances_of(slices, record.rate_share))
-    low, high = shafts_speed.min(), shafts_speed.max()
-    what = "the mesh line" if angle.of_mesh else "the shaft"
-    span = (
-        f"from {low / RPM:.5g} to {high / RPM:.5g} rpm"
-        if record.rate is not None
-        else f"by a factor {high / low:.3g}"
+    low, high = float(shafts_speed.min()), float(shafts_speed.max())
+    notices.append(
+        Notice.of(
+            "mesh_speed_changes" if angle.of_mesh else "speed_changes",
+            lowest=low if record.rate is not None else None,
+            highest=high if record.rate is not None else None,
+            ratio=high / low,
+        )
     )
-    text = (
-        f"the speed of {what} changes {span}: orders are read slice by slice; an amplitude of the "
-        "table of lines is the root mean square over the turns"
-    )
-    notices.append(Notice("important", text))
     lines = _lines(slices, wanted, angle, mean, rate, record.rate is not None)
     return Changing(
         gearing=gearing,

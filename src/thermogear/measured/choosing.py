@@ -72,12 +72,13 @@ def chosen_channels(
     first = alive[0].unit or next(moving, None)
     others = [c for c in alive if c.unit != first]
     if others:
+        units = [c.unit for c in others]
         notices.append(
             Notice.of(
                 "several_units",
                 unit=first,
                 channels=[c.name for c in others],
-                units=[c.unit for c in others],
+                units=units if all(units) else None,
             )
         )
     return [c for c in alive if c.unit == first]

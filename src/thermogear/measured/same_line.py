@@ -43,7 +43,7 @@ class Turns:
         """Frequency of the mesh line [Hz]; nan: not known."""
         return self.mesh * (self.rate or float("nan"))
 
-    def figures(self, prefix: str) -> dict[str, float | None]:
+    def figures(self, prefix: str) -> dict[str, Any]:
         """Place of the mesh line [Hz], or [cycles/sample] where no rate is known, and the shaft's
         speed [rad/s], by names with the ``prefix``."""
         return {
@@ -222,7 +222,9 @@ class Compared:
                 baseline=baseline,
                 **self.turns.figures(""),
                 **self.base.figures("base_"),
-                **(dict.fromkeys(("by_tacho", "teeth", "base_teeth")) | self.why),
+                by_tacho=self.why.get("by_tacho"),
+                teeth=self.why.get("teeth"),
+                base_teeth=self.why.get("base_teeth"),
             )
         if not self.moved:
             return None
