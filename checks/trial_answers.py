@@ -143,7 +143,7 @@ def _each_other(answers: tuple[Answer, ...]) -> Iterator[str]:
 
 def _drawn(result: Result) -> Iterator[str]:
     """The notice on other drawings of flanks has the range of the answer."""
-    told = [one.data for one in result.notices if one.code == "drawings_apart"]
+    told = [one.data for one in result.notices if one.code == "flanks_are_one_drawing"]
     figures = [one.figures for one in result.answers if "drawings" in getattr(one, "figures", {})]
     for data in told if figures else ():
         known = [float(figures[0][name]) for name in ("drawings", "least", "greatest", "hot")]

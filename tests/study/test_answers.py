@@ -414,7 +414,7 @@ def test_the_range_of_drawings_is_that_of_other_seeds() -> None:
     assert own["drawings"] == 16
     assert (own["least"], own["greatest"]) == pytest.approx((min(swings), max(swings)), rel=0.03)
     assert own["greatest"] > 4.0 * own["least"]
-    (told,) = coded(result_of("plain").notices)["drawings_apart"]
+    (told,) = coded(result_of("plain").notices)["flanks_are_one_drawing"]
     assert told["drawings"] == 16
     assert told["errors"] == [[1e-6 * own["least"], 1e-6 * own["greatest"]]]
 

@@ -79,15 +79,15 @@ def notices(case: GearCase, found: Sequence[Answer], speeds: Speeds | None) -> I
     if count > MOST_POINTS:
         yield Notice.of("some_points_answered", answered=MOST_POINTS, points=count)
     if case.accuracy is not None:
-        yield Notice.of("flanks_are_one_drawing", accuracy=case.accuracy)
-        drawn = next((one.figures for one in found if "drawings" in one.figures), None)
-        if drawn is not None:
-            yield Notice.of(
-                "drawings_apart",
-                drawings=drawn["drawings"],
-                errors=[[1e-6 * drawn["least"], 1e-6 * drawn["greatest"]]],
-                this=1e-6 * drawn["hot"],
-            )
+        drawn = next((one.figures for one in found if "drawings" in one.figures), {})
+        errors = [1e-6 * drawn[name] for name in ("least", "greatest", "hot") if drawn]
+        yield Notice.of(
+            "flanks_are_one_drawing",
+            accuracy=case.accuracy,
+            drawings=drawn.get("drawings"),
+            errors=[errors[:2]] if drawn else None,
+            this=errors[2] if drawn else None,
+        )
     if speeds is not None:
         looked = speeds.column("pinion_speed")
         yield Notice.of("speeds_looked_at", least=looked.min(), greatest=looked.max())
