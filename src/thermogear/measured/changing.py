@@ -204,7 +204,6 @@ def _steady(shaft: Shaft, angle: OrderAngle, notices: list[Notice]) -> Changing:
     )
     gearing = angle.gearing or Gearing(
         mesh_frequency=mean,
-        mesh_frequency_error=0.5 / cycles.size,
         harmonics=(),
         shafts=(),
         meshes=(),

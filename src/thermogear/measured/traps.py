@@ -314,7 +314,6 @@ class Health:
     longest_gap: int
     zeros: bool
     constant: bool
-    rms: float
     peak: float
 
     def told(self, channel: str) -> Notice | None:
@@ -334,8 +333,7 @@ class Health:
 
 def health(channel: Channel) -> Health:
     """One pass over a channel, block by block."""
-    missing = gap = longest = count = 0
-    total = square = 0.0
+    missing = gap = longest = 0
     low, high = np.inf, -np.inf
     for block in channel.blocks():
         good = np.isfinite(block)
@@ -355,21 +353,13 @@ def health(channel: Channel) -> Health:
         else:
             gap = 0
         if values.size:
-            count += values.size
-            with np.errstate(over="ignore", invalid="ignore"):
-                total += float(values.sum())
-                square += float(np.dot(values, values))
             low, high = min(low, float(values.min())), max(high, float(values.max()))
-    mean = total / count if count else 0.0
-    peak = float(max(abs(low), abs(high))) if count else 0.0
-    rms = float(np.sqrt(max(square / count - mean**2, 0.0))) if count and peak < HUGE else peak
     return Health(
         missing=missing,
         longest_gap=longest,
-        zeros=count > 0 and low == high == 0.0,
-        constant=count > 0 and low == high,
-        rms=rms,
-        peak=peak,
+        zeros=low == high == 0.0,
+        constant=low == high,
+        peak=float(max(abs(low), abs(high))) if low <= high else 0.0,
     )
 
 
