@@ -106,7 +106,7 @@ def test_a_clause_without_its_number_is_left_out_and_a_long_list_is_cut(
     assert (notice.text, notice.data) == (text, {"names": names, "speed": speed})
     of_files = notice.of_files(["r1.csv", "r2.csv"])
     assert of_files.text == f"r1.csv, r2.csv: {text}"
-    assert of_files.data == {**notice.data, "files": ["r1.csv", "r2.csv"]}
+    assert of_files.data == {**notice.data, "in_files": ["r1.csv", "r2.csv"]}
 
 
 def test_a_range_in_a_list_and_what_a_notice_is_about(monkeypatch: pytest.MonkeyPatch) -> None:

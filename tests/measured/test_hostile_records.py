@@ -21,7 +21,6 @@ from thermogear.measured import options, store
 from thermogear.measured.optional import _Clipped
 from thermogear.measured.options import LEAST_DECODED, UNPACKED, decoded_limit
 from thermogear.measured.readers import read_record
-from thermogear.measured.record import Record
 
 
 def spent() -> float:
@@ -36,10 +35,6 @@ def refusal(path: Path, limit: int | None = None) -> str:
         read_record(path, limit=limit)
     assert spent() - begun < 2.0
     return str(caught.value)
-
-
-def words(record: Record) -> str:
-    return " | ".join(n.text for n in record.notices)
 
 
 def test_a_packed_file_may_become_thirty_two_times_its_size() -> None:

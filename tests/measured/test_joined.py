@@ -15,7 +15,7 @@ from thermogear.base.errors import InputError
 from thermogear.front.measure_commands import measure
 from thermogear.measured.joined import join_records, named, only
 from thermogear.measured.readers import read_record
-from thermogear.measured.record import Channel, Record
+from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.resonances import resonances_of
 
 Floats = NDArray[np.float64]
@@ -192,6 +192,22 @@ def test_short_last_blocks_and_late_starts_are_cut(tmp_path: Path) -> None:
     assert cut["cut_to_shortest"] == {"file": "b.csv", "longest": "a.csv", "samples": 10}
     assert only(found, ["b.csv"]).names == ("b.csv::acc",)
     assert named(found, "2") == ["b.csv::acc"]
+
+
+def test_what_several_files_tell_alike_is_told_once_with_their_names() -> None:
+    silent = Notice.of("channel_constant", channel="b")
+    lost = [Notice.of("samples_missing", channel="a", samples=n, longest=1) for n in (2, 3, 2)]
+    records = [
+        Record((Channel(name, signal(k), "g"),), f"{name}.csv", RATE, notices=(lost[k], *more))
+        for k, (name, more) in enumerate((("a", ()), ("b", (silent,)), ("c", (silent, silent))))
+    ]
+    told = join_records(records, "channels").notices
+    assert [(n.code, n.data.get("in_files"), n.data.get("samples")) for n in told] == [
+        ("samples_missing", ["a.csv", "c.csv"], 2),
+        ("samples_missing", ["b.csv"], 3),
+        ("channel_constant", ["b.csv", "c.csv"], None),
+        ("joined_as_channels", None, None),
+    ]
 
 
 def test_joined_samples_are_read_slice_by_slice() -> None:

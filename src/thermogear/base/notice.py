@@ -145,7 +145,7 @@ class Notice:
         """The same of the ``files`` named, which come first in the text."""
         named = _plain(list(files))
         text = f"{_Sentence().format_field(named, '')}: {self.text}"
-        return replace(self, text=text, data={**self.data, "files": named})
+        return replace(self, text=text, data={**self.data, "in_files": named})
 
     @classmethod
     def stored(cls, told: Notice | str | Mapping[str, Any]) -> Notice:
