@@ -197,7 +197,8 @@ def report(directory: str, of: str, pictures: str | None, kind: str | None) -> N
         raise InputError("--kind", kind, why="no picture is saved", fix="add --pictures FOLDER")
     if pictures is not None:
         written = write_pictures(place, Path(pictures), kind or "png", of)
-    for path in (write_report(place, of, hidden=delivery.hidden()), *written):
+    hidden = click.get_current_context().meta.get(delivery.HIDDEN, ())
+    for path in (write_report(place, of, hidden=hidden), *written):
         show_path(path)
 
 

@@ -85,17 +85,11 @@ hide = click.option(
 )
 
 
-def hidden() -> Collection[str]:
-    """The codes that ``--hide`` names."""
-    codes: Collection[str] = click.get_current_context().meta.get(HIDDEN, ())
-    return codes
-
-
 def without_hidden(page: Page) -> Page:
     """The page without the notices that ``--hide`` names; one says how many there were."""
     from thermogear.views.write import page_of
 
-    shown = page.result.hiding(hidden())
+    shown = page.result.hiding(click.get_current_context().meta.get(HIDDEN, ()))
     return page if shown is page.result else page_of(shown)
 
 

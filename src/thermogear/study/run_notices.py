@@ -35,6 +35,10 @@ if TYPE_CHECKING:
 STUDIED_FREQUENCIES = (1.1, 1.3)
 """Frequency ratios of the thesis's bifurcation study."""
 
+HOTTEST_JAM = ZERO_CELSIUS + 400.0
+"""Jam temperature [K] below which that of a pair with backlash left is of interest: ours, hotter
+than any gear runs."""
+
 MOST_POINTS = 12
 """The heat balance is told point by point up to so many; the stored group has them all."""
 
@@ -156,7 +160,7 @@ def _jammed(case: GearCase, mesh: xr.Dataset) -> Iterator[Notice]:
         least = np.nanmin(here["jam_temperature"].values, initial=np.inf)
         if jammed:
             yield Notice.of("jammed_hot", about=bundle, jammed=jammed, points=count)
-        if jammed or least < ZERO_CELSIUS + 400.0:
+        if jammed or least < HOTTEST_JAM:
             yield from jam_notices(here, case.stated.temperatures.reference, bundle)
 
 
