@@ -143,14 +143,13 @@ def _each_other(answers: tuple[Answer, ...]) -> Iterator[str]:
 
 def _drawn(result: Result) -> Iterator[str]:
     """The notice on other drawings of flanks has the range of the answer."""
-    told = [one.text for one in result.notices if "drawing" in one.text]
+    told = [one.data for one in result.notices if one.code == "flanks_are_one_drawing"]
     figures = [one.figures for one in result.answers if "drawings" in getattr(one, "figures", {})]
-    for text in told if figures else ():
+    for data in told if figures else ():
         known = [float(figures[0][name]) for name in ("drawings", "least", "greatest", "hot")]
-        first = re.search(r"(\d+) drawings have a static error of (\S+) to (\S+) µm hot, this one "
-                          r"(\S+) µm", text)  # fmt: skip
-        if first is None or not all(map(shown_as, first.groups(), known)):
-            yield f"'{text}' beside {known}"
+        stated = [data["drawings"], *(1e6 * end for end in (*data["errors"][0], data["this"]))]
+        if not np.allclose(stated, known):
+            yield f"{stated} beside {known}"
         if not known[1] <= known[3] <= known[2]:
             yield f"this drawing's {known[3]:.4g} um is outside {known[1]:.4g} to {known[2]:.4g}"
 

@@ -276,7 +276,7 @@ def _row(found: Measurement, mesh: float, first: float, seen: bool) -> Row:
 
 def withheld(found: Measurement) -> bool:
     """Whether any number of a record is."""
-    return any(one.withholds for one in found.findings)
+    return any(one.level == "important" for one in found.findings)
 
 
 def undamaged(kind: str, count: int, first: int = 0) -> tuple[int, int, int]:

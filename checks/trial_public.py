@@ -126,7 +126,7 @@ def rows(one: Said) -> list[str]:
     if not figures["findings"]:
         row("findings of the gate", "none")
     for notice in figures["notices"]:
-        if notice["level"] == "important" and notice["text"] not in str(figures["findings"]):
+        if notice["level"] == "important" and notice not in figures["findings"]:
             row("important", notice["text"])
     per = one.seconds / (samples * max(len(channels), 1)) * 1e6
     row("cost", f"{one.seconds:.1f} s of processor, {per:.0f} s per million samples of a channel, "

@@ -16,6 +16,7 @@ from _site.case_file import case_file
 from _site.command_pages import commands
 from _site.errata_page import errata_page
 from _site.limits_page import limits
+from _site.notices_page import notices
 from _site.validation_page import validation
 
 Pages = dict[str, str]
@@ -89,6 +90,7 @@ MAKERS: tuple[Callable[[], Pages], ...] = (
     commands,
     case_file,
     limits,
+    notices,
     validation,
     errata_page,
 )

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import math
 
 import numpy as np
 import pytest
 import xarray as xr
 
+from coded import coded
 from thermogear.base.errors import GeometryError, InputError
 from thermogear.case.case import GearCase, load_example
 from thermogear.case.flanks import relief_text
@@ -135,7 +135,7 @@ def test_a_relief_of_nothing_changes_nothing(plain: xr.Dataset) -> None:
 
 def test_a_bundle_that_does_not_feel_deviations_is_named() -> None:
     tree = run(rig(*TIP, 'draw.pictures=["path"]'))
-    assert any("textbook" in one["text"] for one in json.loads(tree.attrs["notices"]))
+    assert coded(str(tree.attrs["notices"]))["deviations_not_felt"] == [{"bundles": ["thesis"]}]
 
 
 def test_a_relief_pasted_into_a_case_is_the_same_relief() -> None:

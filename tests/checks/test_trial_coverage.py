@@ -77,7 +77,6 @@ def test_a_line_that_wanders_far_is_no_noise(seed: int) -> None:
     (channel,) = made.record.channels
     gearing = Gearing(
         mesh_frequency=made.frequency / law.rate,
-        mesh_frequency_error=0.0,
         harmonics=(),
         shafts=(),
         meshes=(),

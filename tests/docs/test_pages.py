@@ -18,6 +18,7 @@ from pathlib import Path
 import click
 import pytest
 
+from thermogear.base.notice import catalogue
 from thermogear.front.cli import cli, main
 from thermogear.thesis.report import CLAIMS
 
@@ -228,6 +229,19 @@ def test_the_validation_page_is_that_of_the_tests() -> None:
     assert noted == comparing, "run `make validation`"
     assert all(0.0 <= one["worst"] <= one["tolerance"] for one in stored)
     assert len(stored) >= 40
+
+
+def test_the_page_of_notices_has_every_code_with_what_to_do(texts: dict[str, str]) -> None:
+    lines = texts["generated/notices.md"].splitlines()
+    rows = [line.strip("| ").split(" | ") for line in lines if line.startswith("| `")]
+    assert sorted(code.strip("`") for code, _, _ in rows) == list(catalogue())
+    for code, sentence, to_do in rows:
+        entry = catalogue()[code.strip("`")]
+        assert to_do.replace("\\*", "*") == entry.to_do
+        assert all(
+            f"*{name}*" in sentence for name in entry.fields if f"{{{name}|" not in entry.sentence
+        )
+        assert not re.search(r"[{}\[\]]", sentence)
 
 
 def test_the_claims_shown_are_those_of_the_package() -> None:

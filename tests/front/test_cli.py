@@ -8,7 +8,7 @@ import re
 import subprocess
 import sys
 import types
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from pathlib import Path
 from typing import Any
 
@@ -62,7 +62,9 @@ def pretended(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
         return seen["result"]
 
     def page_of(result: Result) -> Any:
-        page = types.SimpleNamespace(lines=lambda: ["- two lines"], numbers=lambda: {"kind": "0"})
+        page = types.SimpleNamespace(
+            result=result, lines=lambda: ["- two lines"], figures={"kind": "0"}
+        )
         page.showing = lambda which, every: page
         return page
 
@@ -74,7 +76,7 @@ def pretended(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     def clear_tables(directory: Path, kept: list[Path]) -> None:
         seen["directory"] = directory
 
-    def write_report(directory: Path, of: str) -> Path:
+    def write_report(directory: Path, of: str, *, hidden: Collection[str]) -> Path:
         seen["reported"] = directory
         return directory / "report.html"
 

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from thermogear.base.notice import Notice
 from thermogear.front.cli import main
 from thermogear.results.result import open_results
 
@@ -44,6 +45,34 @@ def test_orbit_prints_stores_and_draws(tmp_path: Path, capsys: pytest.CaptureFix
     # the directory is ours, so a second command may write there
     assert main(["orbit", *NUMBERS, "-o", str(out), "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["contact_losses"] == 2
+
+
+def test_hidden_notices_are_counted_and_stay_stored(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "orbit"
+    asked = ["orbit", *NUMBERS, "--period", "4", "-o", str(out)]
+    assert main([*asked, "--json"]) == 0
+    codes = [one["code"] for one in json.loads(capsys.readouterr().out)["notices"]]
+    assert codes == ["other_period", "back_flank_not_reached"]
+    hidden = ["--hide", "other_period", "--hide", "back_flank_not_reached,orbit_unstable"]
+    count = Notice.of("notices_hidden", hidden=2, important=0)
+    assert main([*asked, "--json", *hidden]) == 0
+    assert json.loads(capsys.readouterr().out)["notices"] == [count.as_dict()]
+    stored = open_results(out, "orbit")
+    assert [one.code for one in stored.notices] == codes
+    page = (out / "orbit.html").read_text(encoding="utf-8")
+    assert count.text in page
+    assert stored.notices[0].text not in page
+    assert main(["report", str(out)]) == 0
+    assert stored.notices[0].text in (out / "orbit.html").read_text(encoding="utf-8")
+    assert main(["report", str(out), *hidden]) == 0
+    assert (out / "orbit.html").read_text(encoding="utf-8") == page
+    capsys.readouterr()
+    assert main([*asked, "--hide", "other_perod"]) == 2
+    assert capsys.readouterr().err == (
+        "error: --hide: got 'other_perod'; no notice has this code; did you mean 'other_period'?\n"
+    )
 
 
 def test_lyapunov_as_json(capsys: pytest.CaptureFixture[str]) -> None:

@@ -83,7 +83,7 @@ def test_sidebands_not_told_from_a_speed_that_wanders_are_withheld(turns: float)
     for seed in range(2):
         found, truth, _ = drawn(turns, 0.006, seed)
         lines = {line.name: line for line in found.lines}
-        assert "important" in [one.level for one in found.notices]
+        assert "few_turns" in [one.code for one in found.notices]
         for name in truth:
             assert bool(lines[name].withheld) == ("shaft/" in name)
             assert np.isnan(lines[name].reading) == ("shaft/" in name)

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from said import numbers
 from thermogear.base.errors import InputError
 from thermogear.measured.comparison import table_of
 from thermogear.measured.figures import figures
@@ -54,7 +53,10 @@ def test_every_limit_of_a_channel_is_found() -> None:
 
     assert found(np.clip(x, -1.15, 2.0)) == [-1.15, 2.0]
     told = measured(np.clip(x, -2.2, 2.1)).findings
-    assert [numbers(one.kind) for one in told] == [[2.1], [-2.2]]
+    assert [(one.data["damage"], one.data["value"]) for one in told] == [
+        ("clipping", 2.1),
+        ("clipping", -2.2),
+    ]
 
 
 @pytest.mark.parametrize("kind", ["missing", "sentinel", "zeros", "held", "spikes"])
@@ -72,7 +74,10 @@ def test_little_damage_is_filled_and_the_interval_holds_it(kind: str) -> None:
     assert line.reading == pytest.approx(1.0, abs=1.5 * line.half_width)
     assert line.half_width < 0.02
     assert line.withheld == ""
-    assert [one.channel for one in found.findings] == ["a0"]
+    (finding,) = found.findings
+    assert finding.code == "damage_filled_in"
+    assert (finding.data["channel"], finding.data["damage"]) == ("a0", kind)
+    assert (finding.data["first"], finding.data["samples"]) == (damage.first, damage.count)
 
 
 def test_filled_samples_are_those_of_the_lines() -> None:
@@ -92,7 +97,7 @@ def test_much_clipping_withholds_amplitudes_and_keeps_the_frequency() -> None:
     assert line.withheld.startswith("clipping")
     told = figures(found)
     assert told["lines"][0]["reading"] is None
-    assert told["findings"][0]["withholds"]
+    assert told["findings"][0]["code"] == "amplitudes_withheld"
     with pytest.raises(InputError, match="its lines are withheld: clipping"):
         table_of(found)
 
@@ -101,7 +106,8 @@ def test_much_clipping_withholds_amplitudes_and_keeps_the_frequency() -> None:
 def test_coarse_levels_widen_intervals_or_withhold(step: float, stated: float) -> None:
     found = measured(np.round(channel() / step) * step)
     line = found.lines[0]
-    assert len(found.findings) == 1
+    codes = ["levels_too_coarse" if np.isnan(stated) else "levels_coarse"]
+    assert [one.code for one in found.findings] == codes
     assert np.isnan(line.reading) == np.isnan(stated)
     if np.isfinite(stated):
         assert abs(line.reading - 1.0) < line.half_width < stated
@@ -126,7 +132,10 @@ def test_copies_and_means_are_named() -> None:
     x = channel()
     found = measured(x, 2.0 * x + 5.0, channel(2) + 1e3)
     assert found.channels == ("a0", "a2")
-    assert [one.channel for one in found.findings] == ["a1", "a2"]
+    assert [(one.code, one.data["channel"]) for one in found.findings] == [
+        ("copy_left_out", "a1"),
+        ("mean_taken_away", "a2"),
+    ]
 
 
 def test_a_shaft_rate_is_no_sampling_rate() -> None:
@@ -189,9 +198,9 @@ def test_a_limit_with_noise_behind_it_is_clipping(rounded: float) -> None:
     x = np.minimum(x, np.quantile(x, 0.93)) + 4e-4 * random.normal(size=x.size)
     x = np.round(x / rounded) * rounded if rounded else x
     found = measured(x)
-    assert [one.kind.split()[0] for one in found.findings] == ["clipping"]
-    assert found.findings[0].withholds
-    assert found.findings[0].share == pytest.approx(0.07, abs=0.01)
+    (finding,) = found.findings
+    assert (finding.code, finding.data["damage"]) == ("amplitudes_withheld", "clipping")
+    assert finding.data["share"] == pytest.approx(0.07, abs=0.01)
 
 
 def test_peaks_of_undamaged_lines_are_no_limit() -> None:
@@ -244,7 +253,7 @@ def test_where_a_sensor_dies_the_record_ends() -> None:
     x = channel()
     x[6000:] = 1e-3 * np.random.default_rng(9).normal(size=COUNT - 6000)
     found = measured(x)
-    assert len(found.findings) == 1
+    assert [one.code for one in found.findings] == ["damage_cut_away"]
     assert (found.start, found.start + found.samples) == (0, pytest.approx(6000, abs=COUNT // 200))
     line = found.lines[0]
     assert abs(line.reading - 1.0) < line.half_width < 0.03
@@ -254,5 +263,5 @@ def test_a_blow_is_told_with_its_place() -> None:
     x = channel()
     x[3000:3100] += 12.0 * np.sin(1.1 * np.arange(100)) * np.exp(-np.arange(100) / 25.0)
     (event,) = measured(x).findings
-    assert not event.withholds
-    assert 2950 < event.first <= 3010 < event.last < 3150
+    assert (event.code, event.level) == ("short_event", "warning")
+    assert 2950 < event.data["first"] <= 3010 < event.data["last"] < 3150

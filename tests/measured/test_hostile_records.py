@@ -14,7 +14,6 @@ import h5py
 import numpy as np
 import pytest
 
-from said import facts
 from thermogear import load_case
 from thermogear.base.errors import InputError
 from thermogear.case.rexs.container import read_rexs
@@ -22,7 +21,6 @@ from thermogear.measured import options, store
 from thermogear.measured.optional import _Clipped
 from thermogear.measured.options import LEAST_DECODED, UNPACKED, decoded_limit
 from thermogear.measured.readers import read_record
-from thermogear.measured.record import Record
 
 
 def spent() -> float:
@@ -39,10 +37,6 @@ def refusal(path: Path, limit: int | None = None) -> str:
     return str(caught.value)
 
 
-def words(record: Record) -> str:
-    return " | ".join(n.text for n in record.notices)
-
-
 def test_a_packed_file_may_become_thirty_two_times_its_size() -> None:
     assert decoded_limit(1000) == LEAST_DECODED
     assert decoded_limit(1 << 24) == UNPACKED << 24
@@ -55,7 +49,8 @@ def test_a_time_that_stands_still_gives_no_rate(tmp_path: Path, values: str) -> 
     path.write_text("time [s],acc [g]\n" + f"{values}\n" * 400, encoding="utf-8")
     record = read_record(path)
     assert (record.rate, record.samples) == (None, 400)
-    assert facts(record.notices[0].text) == ["time"]
+    told = record.notices[0]
+    assert (told.code, told.data) == ("time_stands_still", {"column": "time"})
 
 
 def test_a_long_time_that_stands_still_is_seen_at_once(tmp_path: Path) -> None:
@@ -74,7 +69,10 @@ def test_a_time_whose_steps_are_no_record_gives_no_rate(tmp_path: Path, step: st
     path.write_text("time [s],acc [g]\n" + rows, encoding="utf-8")
     record = read_record(path)
     assert record.rate is None
-    assert facts(record.notices[0].text)[0] == "time"
+    told = record.notices[0]
+    codes = "time_stands_still", "time_step_impossible", "time_too_large", "time_holds_gaps"
+    assert told.code in codes
+    assert told.data["column"] == "time"
 
 
 def test_rates_that_are_none_are_told_and_left(tmp_path: Path) -> None:
@@ -82,7 +80,7 @@ def test_rates_that_are_none_are_told_and_left(tmp_path: Path) -> None:
     np.savez(path, a=np.sin(np.arange(400.0)), fs=1e308)
     record = read_record(path)
     assert record.rate is None
-    assert [facts(n.text)[-1] for n in record.notices] == [1e308]
+    assert [(n.code, n.data["rate"]) for n in record.notices] == [("rate_impossible", 1e308)]
 
 
 @pytest.mark.parametrize("packing", [{}, {"compression": "gzip"}])

@@ -11,12 +11,11 @@ import pytest
 from click.testing import CliRunner, Result
 from numpy.typing import NDArray
 
-from said import facts, numbers
 from thermogear.base.errors import InputError
 from thermogear.front.measure_commands import measure
 from thermogear.measured.joined import join_records, named, only
 from thermogear.measured.readers import read_record
-from thermogear.measured.record import Channel, Record
+from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.resonances import resonances_of
 
 Floats = NDArray[np.float64]
@@ -94,9 +93,10 @@ def test_a_gap_between_pieces_is_a_finding_of_the_gate(tmp_path: Path) -> None:
     write(tmp_path / "b.csv", x[3100:], start=3100 / RATE)
     done = found_in(asked(tmp_path, "--join", "time", "--json"))
     (finding,) = done["findings"]  # type: ignore[misc]
-    assert (finding["first"], finding["last"], finding["count"]) == (3000, 3099, 100)
-    said = [numbers(one["text"]) for one in done["notices"]]  # type: ignore[attr-defined]
-    assert [100.0, 0.01953] in said
+    lost = finding["data"]
+    assert (lost["first"], lost["last"], lost["samples"]) == (3000, 3099, 100)
+    missing = {"samples": 100, "time": 100 / RATE, "before": "a.csv", "after": "b.csv"}
+    assert missing in [one["data"] for one in done["notices"]]  # type: ignore[attr-defined]
     same = found_in(asked(tmp_path, "--join", "time", "--channel", "acc", "--json"))
     assert same["lines"] == done["lines"]
     (line,) = [one for one in done["lines"] if one["name"] == "mesh x 1"]  # type: ignore[attr-defined]
@@ -148,7 +148,7 @@ def test_other_rates_units_channels_and_equal_files_are_refused(tmp_path: Path) 
     # a copy beside its own: the gate leaves it out
     copies = found_in(asked(a, twice, "--join", "channels", "--json"))
     (finding,) = copies["findings"]  # type: ignore[misc]
-    assert facts(finding["kind"]) == ["a.csv::acc"]
+    assert (finding["code"], finding["data"]["original"]) == ("copy_left_out", "a.csv::acc")
 
 
 def test_channels_and_tacho_are_named_across_files(tmp_path: Path) -> None:
@@ -187,9 +187,27 @@ def test_short_last_blocks_and_late_starts_are_cut(tmp_path: Path) -> None:
     found = join_records([a, b], "channels")
     assert found.samples == 5950
     np.testing.assert_allclose(found.channel("a.csv::acc").values(), x[40:5990], rtol=1e-8)
-    assert sum("cut" in one.text for one in found.notices) == 2
+    cut = {one.code: one.data for one in found.notices}
+    assert cut["cut_to_common_start"] == {"samples": 40}
+    assert cut["cut_to_shortest"] == {"file": "b.csv", "longest": "a.csv", "samples": 10}
     assert only(found, ["b.csv"]).names == ("b.csv::acc",)
     assert named(found, "2") == ["b.csv::acc"]
+
+
+def test_what_several_files_tell_alike_is_told_once_with_their_names() -> None:
+    silent = Notice.of("channel_constant", channel="b")
+    lost = [Notice.of("samples_missing", channel="a", samples=n, longest=1) for n in (2, 3, 2)]
+    records = [
+        Record((Channel(name, signal(k), "g"),), f"{name}.csv", RATE, notices=(lost[k], *more))
+        for k, (name, more) in enumerate((("a", ()), ("b", (silent,)), ("c", (silent, silent))))
+    ]
+    told = join_records(records, "channels").notices
+    assert [(n.code, n.data.get("in_files"), n.data.get("samples")) for n in told] == [
+        ("samples_missing", ["a.csv", "c.csv"], 2),
+        ("samples_missing", ["b.csv"], 3),
+        ("channel_constant", ["b.csv", "c.csv"], None),
+        ("joined_as_channels", None, None),
+    ]
 
 
 def test_joined_samples_are_read_slice_by_slice() -> None:

@@ -213,8 +213,10 @@ def test_too_few_pulses_are_counted(count: int) -> None:
     pulses[500 * np.arange(1, count + 1)] = 5.0
     shaft = shaft_of(pulses)
     assert shaft.turns.size == 0
+    (told,) = shaft.told
     noun = "pulse" if count == 1 else "pulses"
-    assert f"got {count} {noun}; allowed >= 8 " in shaft.told[0].text
+    assert told.code == "tacho_not_used"
+    assert f"got {count} {noun}; allowed >= 8 " in told.data["reason"]
 
 
 @pytest.mark.parametrize(("width", "spike"), [(200, 5.0), (200, 90.0), (3, 5.0)])

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
 import pytest
 from scipy import stats
 
-from said import facts, numbers
+from said import numbers
 from thermogear.base.errors import InputError
 from thermogear.base.units import RPM
 from thermogear.measured.contradictions import of_line, of_pulses, of_speed, of_teeth
@@ -58,10 +58,9 @@ def run() -> Measurement:
     return measure(run_up(), pulses_per_turn=3.0, speed=5000.0 * RPM, harmonics=2, sidebands=1)
 
 
-def important(found: Measurement, word: str) -> str:
-    """The important notice that begins with ``word``; empty where there is none."""
-    texts = [one.text for one in found.notices if one.level == "important"]
-    return next((text for text in texts if text.startswith(word)), "")
+def important(found: Measurement) -> dict[str, Mapping[str, Any]]:
+    """Data of the important notices by their codes."""
+    return {one.code: one.data for one in found.notices if one.level == "important"}
 
 
 # --- given and found -----------------------------------------------------------------------------
@@ -69,16 +68,22 @@ def important(found: Measurement, word: str) -> str:
 
 def test_pulses_and_speed_that_contradict_a_run_are_told_with_what_fits(run: Measurement) -> None:
     # three given, 20 teeth found, the mesh line at order 30: two would fit, or a mate of 30 teeth
-    assert numbers(important(run, "pulses")) == [3.0, 20.0, 30.0, 2.0, 20.0, 3.0, 30.0]
+    told = important(run)
+    pulses = told["pulses_contradict_teeth"]
+    assert (pulses["given"], pulses["teeth_given"], pulses["teeth_found"]) == (3.0, None, [20])
+    assert (pulses["fitting"], pulses["of_teeth"], pulses["mate"]) == ([2], [20], 30)
+    assert pulses["order"] == pytest.approx(30.0, rel=1e-4)
     assert run.slices is not None
     ends = run.slices.speed.min() / RPM, run.slices.speed.max() / RPM
-    assert numbers(important(run, "speed")) == pytest.approx([5000.0, *ends], rel=1e-3)
+    speed = told["speed_contradicted"]
+    given_and_found = np.array([speed["given"], speed["lowest"], speed["highest"]]) / RPM
+    assert given_and_found == pytest.approx([5000.0, *ends], rel=1e-3)
 
 
 def test_teeth_that_contradict_a_run_are_told_and_a_tacho_in_volts_is_a_speed() -> None:
     named = run_up().supplied(tacho="n")
     found = measure(named.with_speed("n", 300.0), teeth=15, harmonics=1, sidebands=0)
-    assert numbers(important(found, "teeth"))[:2] == [15.0, 20.0]
+    assert important(found)["teeth_contradicted"] == {"given": 15, "found": [20]}
     assert found.slices is not None
     assert "n" not in found.channels
     # the fifteen given count the turns: four thirds of those of the shaft
@@ -92,28 +97,26 @@ def test_a_speed_in_volts_without_its_scale_asks_for_it() -> None:
     assert shaft is not None
     (told,) = shaft.told
     assert shaft.turns.size == 0
-    assert (told.level, facts(told.text)[0]) == ("important", "n")
-    assert "--tacho-scale" in told.text
+    assert (told.code, told.data["channel"], told.data["unit"]) == ("tacho_not_used", "n", "V")
 
 
 def test_a_wrong_speed_is_told_before_the_rate_and_a_right_one_blames_the_teeth() -> None:
-    told = important(measure(steady(), speed=3100.0 * RPM, harmonics=1, sidebands=0), "speed")
-    assert numbers(told)[:2] == [3100.0, 1200.0]
-    blamed = told.partition(".")[2]
-    assert 0 <= blamed.index("speed") < blamed.index("rate")
+    told = important(measure(steady(), speed=3100.0 * RPM, harmonics=1, sidebands=0))
+    speed = told["speed_contradicts_rate"]
+    both = speed["given"] / RPM, speed["found"] / RPM
+    assert both == pytest.approx((3100.0, 1200.0), rel=1e-4)
     found = measure(steady(), teeth=30, speed=1200.0 * RPM, harmonics=1, sidebands=0)
-    assert numbers(important(found, "teeth"))[:2] == [30.0, 25.0]
-    assert important(found, "speed") == important(found, "rate") == ""
+    assert important(found) == {"teeth_contradicted": {"given": 30, "found": [25]}}
     assert np.isfinite(found.lines[0].frequency)
 
 
 def test_a_speed_twice_too_fast_with_the_right_teeth_is_told() -> None:
     """Twice the mesh line stands there as well, and is read."""
     found = measure(steady(), teeth=25, speed=2400.0 * RPM, harmonics=1, sidebands=0)
-    told = important(found, "teeth and speed")
-    assert numbers(told)[-1] == 0.5  # times the speed given would fit
+    # times the speed given would fit
+    assert important(found)["mesh_line_contradicted"]["ratio"] == pytest.approx(0.5, rel=1e-4)
     right = measure(steady(), teeth=25, speed=1200.0 * RPM, harmonics=1, sidebands=0)
-    assert important(right, "teeth and speed") == important(right, "speed") == ""
+    assert important(right) == {}
 
 
 def test_what_agrees_or_is_open_is_no_contradiction() -> None:
@@ -126,7 +129,8 @@ def test_what_agrees_or_is_open_is_no_contradiction() -> None:
     assert of_line(0.2, found=0.202, weight=1.0) is None
     both = of_pulses(1.0, [20, 41], 7.3, teeth=None)
     assert both is not None
-    assert numbers(both.text) == [1.0, 20.0, 41.0, 7.3, 1.0]
+    assert (both.data["teeth_found"], both.data["order"]) == ([20, 41], 7.3)
+    assert both.data["fitting"] is both.data["mate"] is None
 
 
 def pair(random: np.random.Generator, teeth: tuple[int, int], rpm: float) -> Record:
@@ -166,7 +170,7 @@ def test_teeth_of_one_gear_with_the_speed_of_the_other_are_told_and_right_ones_a
                 found = measure(
                     record, teeth=teeth[own], speed=nominal * RPM, harmonics=1, sidebands=0
                 )
-                told = [n.text for n in found.notices if n.level in ("important", "warning")]
+                told = [n.code for n in found.notices if n.level in ("important", "warning")]
                 case = f"{teeth}, {rpm}: --teeth {teeth[own]} --speed {nominal}: {told}"
                 if own == whose:
                     assert told == [], case
@@ -174,12 +178,12 @@ def test_teeth_of_one_gear_with_the_speed_of_the_other_are_told_and_right_ones_a
                     continue
                 assert told, case
                 assert np.isnan(found.lines[0].shaft_speed), case
-                crossed = important(found, "teeth given")
-                if crossed:
+                if crossed := important(found).get("speed_is_of_mate"):
                     two_gears += 1
-                    expected = [teeth[own], nominal, teeth[whose], speeds[whose], teeth[own]]
-                    assert numbers(crossed)[:5] == pytest.approx(expected, rel=1e-3), case
-                    assert f"--teeth {teeth[own]} --speed {speeds[own]:.5g}" in crossed
+                    assert (crossed["teeth"], crossed["mate"]) == (teeth[own], teeth[whose]), case
+                    told_speeds = [crossed[k] for k in ("speed", "mate_speed", "teeth_speed")]
+                    expected = [nominal, speeds[whose], speeds[own]]
+                    assert np.array(told_speeds) / RPM == pytest.approx(expected, rel=1e-3), case
     assert two_gears >= 9  # of 12: elsewhere the mate is not decided, and the speed alone is told
 
 
@@ -197,20 +201,25 @@ def with_tacho() -> Record:
 def test_pulses_and_speed_that_contradict_each_other_are_told() -> None:
     told = measure(with_tacho(), pulses_per_turn=2.0, speed=900.0 * RPM, harmonics=1, sidebands=0)
     # two given make 450 of 900 rpm: one would fit
-    expected = [2.0, 450.0, 900.0, 1.0]
-    assert numbers(important(told, "pulses")) == pytest.approx(expected, rel=1e-4)
+    data = important(told)["pulses_contradict_speed"]
+    assert (data["given"], data["fitting"]) == (2.0, 1)
+    speeds = data["speed_found"] / RPM, data["speed_given"] / RPM
+    assert speeds == pytest.approx((450.0, 900.0), rel=1e-4)
     right = measure(with_tacho(), pulses_per_turn=1.0, speed=900.0 * RPM, harmonics=1, sidebands=0)
-    assert important(right, "pulses") == ""
+    assert "pulses_contradict_speed" not in important(right)
 
 
 def test_a_stated_speed_tells_the_pulses_and_given_teeth_are_not_found_ones() -> None:
-    for speed, pulses in ((900.0, "1 pulse "), (450.0, "2 pulses ")):
+    for speed, pulses in ((900.0, 1), (450.0, 2)):
         found = measure(with_tacho(), speed=speed * RPM, harmonics=1, sidebands=0)
-        assert any(pulses in one.text for one in found.notices)
-    assert numbers(important(measure(steady(), pulses_per_turn=2.0), "pulses")) == [2.0]
-    said = important(measure(with_tacho(), teeth=25, pulses_per_turn=1.0), "pulses")
-    assert numbers(said)[:3] == [1.0, 25.0, 20.0]
-    assert "found" in said.partition("25")[2]
+        (told,) = (one.data for one in found.notices if one.code == "pulses_by_speed")
+        assert told["pulses"] == pulses
+    unused = important(measure(steady(), pulses_per_turn=2.0))
+    assert unused["pulses_without_tacho"] == {"given": 2.0}
+    contradicted = important(measure(with_tacho(), teeth=25, pulses_per_turn=1.0))
+    data = contradicted["pulses_contradict_teeth"]
+    assert (data["given"], data["teeth_given"], data["teeth_found"]) == (1.0, 25, None)
+    assert data["order"] == pytest.approx(20.0, rel=1e-4)
 
 
 # --- weights -------------------------------------------------------------------------------------
@@ -380,8 +389,8 @@ def test_orders_and_harmonics_of_a_run_that_it_cannot_hold() -> None:
     assert numbers(str(it.value).replace("..", " .. "))[2] == pytest.approx(top, rel=0.05)
     found = measure(run_up(), pulses_per_turn=PULSES, harmonics=64, sidebands=0)
     read = [line.name for line in found.lines if line.kind == "mesh"]
-    (told,) = [n.text for n in found.notices if "harmonics" in n.text]
-    assert numbers(told)[:2] == [len(read), 64]
+    (told,) = [n.data for n in found.notices if n.code == "harmonics_above_rate"]
+    assert (told["read"], told["asked"]) == (len(read), 64)
 
 
 def test_orders_of_a_run_whose_shaft_is_not_known_are_refused() -> None:

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from said import numbers
 from thermogear.base.errors import InputError
+from thermogear.base.units import RPM
 from thermogear.front.measure_commands import measure
 from thermogear.front.measuring import measured_among
 from thermogear.measured import at_once, reduction
@@ -187,12 +187,10 @@ def test_a_second_stage_that_grew_is_no_change_of_the_first(
     assert abs(mesh_change(found, 2)) < 0.01
     ((name, why),) = found.apart
     assert name == "r1"
-    assert f"{hertz[1]:.6g} Hz" in why
+    assert (why.code, why.data["baseline"]) == ("mesh_line_may_be_another", "r0")
+    assert [why.data["base_frequency"], why.data["frequency"]] == hertz[:2]
     result = result_of_several(found)
-    (told,) = [one.text for one in result.notices if one.text.startswith("changes of r1")]
-    assert f"{hertz[0]:.6g} Hz" in told
-    assert f"{hertz[1]:.6g} Hz" in told
-    assert "--teeth" in told
+    assert why in result.notices
     figures = page_of(result).numbers()
     assert [name for name, _ in figures["apart"]] == ["r1"]
     assert [one["mesh_frequency"] for one in figures["speeds"]] == pytest.approx(hertz)
@@ -230,7 +228,7 @@ def test_another_speed_is_told_where_the_teeth_decide_and_withheld_where_nothing
         ]
         found = compared(runs)
         result = result_of_several(found)
-        speeds = [one.text for one in result.notices if "another speed" in one.text]
+        speeds = [one.data for one in result.notices if one.code == "speeds_differ"]
         if swell == 0.0:
             assert np.isnan(mesh_change(found))
             assert [name for name, _ in found.apart] == ["r1"]
@@ -238,7 +236,10 @@ def test_another_speed_is_told_where_the_teeth_decide_and_withheld_where_nothing
             continue
         assert mesh_change(found) == pytest.approx(0.2, abs=0.02)
         (told,) = speeds
-        assert {900.0, float(f"{900.0 * ratio:.5g}")} <= set(numbers(told))
+        assert (told["baseline"], told["others"]) == ("r0", ["r1"])
+        assert told["ratios"] == pytest.approx([ratio], rel=1e-4)
+        both = [told["baseline_speed"], *told["speeds"]]
+        assert np.array(both) / RPM == pytest.approx([900.0, 900.0 * ratio], rel=1e-4)
         assert f"{900 * ratio:.5g} rpm" in "\n".join(page_of(result).lines())
 
 
@@ -284,4 +285,5 @@ def test_a_record_of_another_rate_is_at_its_own_speed_and_one_without_is_not_com
         found = several(list(records), lambda path, of=records: reduction.measure(of[path]))  # type: ignore[misc]
         assert found.ratio[1] == pytest.approx(ratio, rel=1e-3, nan_ok=True)
         assert np.isnan(mesh_change(found)) == (rate is None)
-        assert ["--rate" in why for _, why in found.apart] == [True] * (rate is None)
+        apart = [told.data["frequency"] for _, told in found.apart]
+        assert apart == [None] * (rate is None)

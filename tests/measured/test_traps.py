@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import warnings
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from scipy import io
 
-from said import facts
 from thermogear.base.errors import InputError
 from thermogear.measured.choosing import chosen_channels, counts
 from thermogear.measured.readers import read_record
@@ -24,13 +24,9 @@ def read(tmp_path: Path, text: str | bytes, name: str = "r.csv", **said: object)
     return read_record(path, **said)  # type: ignore[arg-type]
 
 
-def notes(record: Record) -> str:
-    return "\n".join(n.text for n in record.notices)
-
-
-def told(record: Record) -> list[tuple[str, list[str | float]]]:
-    """Level of every notice, and the names and figures it says."""
-    return [(n.level, facts(n.text)) for n in record.notices]
+def told(record: Record) -> list[tuple[str, dict[str, Any]]]:
+    """Code and data of every notice."""
+    return [(n.code, dict(n.data)) for n in record.notices]
 
 
 def rows(count: int = 30, time: str | None = "s", step: float = 0.001) -> list[str]:
@@ -52,14 +48,14 @@ def test_nothing_is_guessed_where_nothing_is_stated(tmp_path: Path) -> None:
 def test_time_in_milliseconds(tmp_path: Path) -> None:
     record = read(tmp_path, lines(rows(time="ms", step=0.5)))
     assert record.rate == pytest.approx(2000.0)
-    assert told(record) == [("info", ["time"])]
+    assert told(record) == [("time_unit", {"column": "time", "unit": "ms"})]
 
 
 def test_time_without_a_unit_gives_no_rate(tmp_path: Path) -> None:
     text = lines(["time,a"] + [f"{j},{j * j}.0" for j in range(20)])
     record = read(tmp_path, text)
     assert record.rate is None
-    assert told(record) == [("important", ["time"])]
+    assert told(record) == [("time_unit_not_known", {"column": "time", "unit": None})]
     assert record.names == ("a",)
 
 
@@ -69,7 +65,7 @@ def test_a_row_written_twice_is_dropped_and_named(tmp_path: Path) -> None:
     record = read(tmp_path, lines(text))
     assert record.samples == 30
     assert record.rate == pytest.approx(1000.0)
-    assert told(record) == [("warning", ["time", 1.0, 11.0])]
+    assert told(record) == [("rows_written_twice", {"column": "time", "rows": 1, "first": 11})]
 
 
 def test_a_stamp_written_twice_with_other_values_gives_no_rate(tmp_path: Path) -> None:
@@ -77,7 +73,7 @@ def test_a_stamp_written_twice_with_other_values_gives_no_rate(tmp_path: Path) -
     text[11] = text[10].split(",")[0] + ",0.123456"
     record = read(tmp_path, lines(text))
     assert record.rate is None
-    assert told(record) == [("important", ["time", 11.0])]
+    assert told(record) == [("time_stamp_twice", {"column": "time", "row": 11})]
 
 
 def test_a_missing_row_is_seen_in_the_time_column(tmp_path: Path) -> None:
@@ -88,7 +84,8 @@ def test_a_missing_row_is_seen_in_the_time_column(tmp_path: Path) -> None:
     assert record.samples == 200
     values = record.channels[0].values()
     assert np.flatnonzero(np.isnan(values)).tolist() == [49]
-    assert record.notices[0].level == "warning"
+    lost = {"column": "time", "places": 1, "first": 50, "samples": 1}
+    assert told(record)[0] == ("samples_lost", lost)
 
 
 def test_time_running_backwards_gives_no_rate(tmp_path: Path) -> None:
@@ -96,14 +93,17 @@ def test_time_running_backwards_gives_no_rate(tmp_path: Path) -> None:
     text[10], text[11] = text[11], text[10]
     record = read(tmp_path, lines(text))
     assert record.rate is None
-    assert told(record) == [("important", ["time", 11.0])]
+    assert told(record) == [("time_falls", {"column": "time", "row": 11})]
 
 
 def test_a_rate_off_by_ten_in_the_header_is_used_by_neither(tmp_path: Path) -> None:
     text = lines(["Sampling rate: 10000 Hz", *rows()])
     record = read(tmp_path, text)
     assert record.rate is None
-    assert told(record) == [("important", [10000.0, "time", 1000.0, 10.0])]
+    ((code, data),) = told(record)
+    assert (code, data["rate"]) == ("rate_stated_twice", 10000.0)
+    assert data["other_rate"] == pytest.approx(1000.0)
+    assert data["ratio"] == pytest.approx(10.0)
     given = read(tmp_path, text, rate=1000.0)
     assert given.rate == 1000.0
 
@@ -114,25 +114,27 @@ def test_a_header_rate_needs_its_unit(tmp_path: Path) -> None:
     assert (stated.rate, stated.rate_origin) == (25600.0, "header")
     bare = read(tmp_path, lines(["fs: 25600", "a [g]", *body]))
     assert bare.rate is None
-    assert told(bare) == [("important", [25600.0])]
+    assert told(bare) == [("rate_without_unit", {"name": "fs", "value": 25600.0})]
 
 
 def test_a_contradicted_rate_is_said(tmp_path: Path) -> None:
     record = read(tmp_path, lines(rows()), rate=10000.0)
     assert record.rate == 10000.0
-    assert told(record) == [("important", [10000.0, 1000.0, "time", 10.0])]
+    ((code, data),) = told(record)
+    assert (code, data["given"]) == ("rate_given_differs", 10000.0)
+    assert (data["stated"], data["ratio"]) == pytest.approx((1000.0, 10.0))
 
 
 def test_truncated_last_row(tmp_path: Path) -> None:
     whole = lines(rows())
     few_fields = read(tmp_path, whole + "0.03")
     assert few_fields.samples == 30
-    assert told(few_fields) == [("warning", [])]
+    assert told(few_fields) == [("last_row_dropped", {})]
     cut_number = read(tmp_path, whole[:-4])
     assert cut_number.samples == 29
     no_end = read(tmp_path, whole[:-1])
     assert no_end.samples == 30
-    assert told(no_end) == [("info", [])]
+    assert told(no_end) == [("last_row_unended", {})]
 
 
 def test_a_short_row_inside_is_refused(tmp_path: Path) -> None:
@@ -149,7 +151,7 @@ def test_gaps_are_counted_and_not_filled(tmp_path: Path) -> None:
     text = rows()
     text[5], text[6], text[20] = "0.004,", "0.005,NaN", "0.019,n/a"
     record = read(tmp_path, lines(text))
-    assert told(record) == [("important", ["a", 3.0, 2.0])]
+    assert told(record) == [("samples_missing", {"channel": "a", "samples": 3, "longest": 2})]
     assert np.isnan(record.channels[0].values()[[4, 5, 19]]).all()
 
 
@@ -168,7 +170,7 @@ def test_comma_decimals_with_comma_separators(tmp_path: Path) -> None:
     paired = read(tmp_path, lines(["a [g],b [g]", *body]))
     assert paired.names == ("a", "b")
     np.testing.assert_allclose(paired.channels[0].values(), np.arange(20) + 0.25)
-    assert told(paired) == [("warning", [])]
+    assert told(paired) == [("commas_ambiguous", {})]
     with pytest.raises(InputError, match=r"may be 4 integers or 2 numbers with a decimal comma"):
         read(tmp_path, lines(body))
     given = read(tmp_path, lines(body), decimal=",")
@@ -241,23 +243,23 @@ def test_points_are_named_where_commas_are_asked_for(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("encoding", "said"),
+    ("encoding", "codes"),
     [
-        ("utf-8", ""),
-        ("utf-8-sig", ""),
-        ("utf-16", "UTF-16"),
-        ("utf-16-le", "UTF-16 without its mark"),
-        ("gbk", "GBK"),
+        ("utf-8", []),
+        ("utf-8-sig", []),
+        ("utf-16", ["text_utf_16"]),
+        ("utf-16-le", ["text_utf_16_unmarked"]),
+        ("gbk", ["text_not_utf_8"]),
     ],
 )
-def test_encodings(tmp_path: Path, encoding: str, said: str) -> None:
+def test_encodings(tmp_path: Path, encoding: str, codes: list[str]) -> None:
     text = "时间(s),加速度(m/s²)\n".replace("²", "2")
     text += "".join(f"{j / 1000:.4f},{j}.5\n" for j in range(40))
     record = read(tmp_path, text.encode(encoding))
     assert record.names == ("加速度",)
     assert record.channels[0].unit == "m/s^2"
     assert record.rate == pytest.approx(1000.0)
-    assert said in notes(record)
+    assert [code for code, _ in told(record)] == codes
 
 
 def test_units_row_and_comment_lines(tmp_path: Path) -> None:
@@ -274,10 +276,10 @@ def test_more_channels_than_the_text_says(tmp_path: Path) -> None:
     record = read(tmp_path, lines([names, *body]))
     assert len(record.channels) == 28
     assert record.names[0] == "column 1"
-    assert told(record) == [("important", [27.0, 28.0])]
+    assert told(record) == [("names_do_not_fit", {"names": 27, "columns": 28})]
     header = ",".join(f"c{i}" for i in range(28))
     counted = read(tmp_path, lines(["Channels: 27", header, *body]))
-    assert told(counted) == [("important", [27.0, 28.0])]
+    assert told(counted) == [("channel_count_wrong", {"stated": 27.0, "channels": 28})]
 
 
 def test_a_variable_stored_twice_the_first_all_zeros(tmp_path: Path) -> None:
@@ -290,21 +292,23 @@ def test_a_variable_stored_twice_the_first_all_zeros(tmp_path: Path) -> None:
     record = read_record(both, rate=1000, unit="g")
     assert record.names == ("acc",)
     np.testing.assert_array_equal(record.channels[0].values(), data)
-    assert told(record) == [("warning", ["acc"])]
+    assert told(record) == [("twin_zero", {"channel": "acc"})]
     both.write_bytes(two.read_bytes() + one.read_bytes()[128:])
     np.testing.assert_array_equal(read_record(both).channels[0].values(), data)
     io.savemat(one, {"acc": data + 1.0}, do_compression=False)
     both.write_bytes(one.read_bytes() + two.read_bytes()[128:])
     differing = read_record(both)
     assert differing.names == ("acc", "acc (2)")
-    assert told(differing) == [("important", ["acc", "acc (2)"])]
+    assert told(differing) == [("twin_renamed", {"channel": "acc", "renamed": "acc (2)"})]
 
 
 def test_zero_and_constant_channels_are_named(tmp_path: Path) -> None:
     text = lines(["a,b,c"] + [f"0.0,3.5,{j}.5" for j in range(20)])
     record = read(tmp_path, text)
-    assert told(record) == [("important", ["a"]), ("important", ["b"])]
-    assert told(record) == [("important", ["a"]), ("important", ["b"])]
+    assert told(record) == [
+        ("channel_zero", {"channel": "a"}),
+        ("channel_constant", {"channel": "b"}),
+    ]
 
 
 def test_two_rates_in_one_file_are_used_by_neither(tmp_path: Path) -> None:
@@ -314,7 +318,9 @@ def test_two_rates_in_one_file_are_used_by_neither(tmp_path: Path) -> None:
         warnings.simplefilter("error")
         record = read_record(path)
     assert record.rate is None
-    assert told(record) == [("important", [1000.0, 10000.0, 0.1])]
+    ((code, data),) = told(record)
+    assert code == "rate_stated_twice"
+    assert (data["rate"], data["other_rate"], data["ratio"]) == (1000.0, 10000.0, 0.1)
 
 
 def test_arrays_of_other_lengths_are_left_aside_by_name(tmp_path: Path) -> None:
@@ -322,7 +328,7 @@ def test_arrays_of_other_lengths_are_left_aside_by_name(tmp_path: Path) -> None:
     np.savez(path, a=np.arange(50.0), b=np.arange(20.0))
     record = read_record(path)
     assert record.names == ("a",)
-    assert told(record) == [("warning", [50.0])]
+    assert told(record) == [("shorter_left_aside", {"samples": 50, "channels": ["b"]})]
 
 
 @pytest.mark.parametrize(
@@ -353,7 +359,9 @@ def test_spellings_of_units() -> None:
 def test_a_supplied_unit_that_contradicts_is_said(tmp_path: Path) -> None:
     record = read(tmp_path, lines(rows()), unit="m/s^2")
     assert record.channels[0].unit == "m/s^2"
-    assert told(record) == [("important", [])]
+    assert told(record) == [
+        ("unit_replaced", {"given": "m/s^2", "channels": ["a"], "units": ["g"]})
+    ]
 
 
 def test_tacho_is_recognised_by_name_and_can_be_named(tmp_path: Path) -> None:
@@ -400,23 +408,25 @@ def test_of_several_times_the_one_that_tells_the_rate_is_used(tmp_path: Path) ->
     text = columns(heads, noise, noise, STAMPS, 1000.0 * STAMPS, WAVE)
     record = read(tmp_path, text)
     assert (record.names, record.rate) == (("T", "acc"), pytest.approx(1000.0))
-    assert ("warning", [3.0, "run"]) in told(record)
+    assert ("several_time_columns", {"columns": 3, "used": "run"}) in told(record)
     unsaid = read(tmp_path, columns("delay [ms],acc [g]", noise, WAVE))
     assert (unsaid.names, unsaid.rate) == (("acc",), None)
-    assert [level for level, facts in told(unsaid) if "delay" in facts] == ["important"]
+    assert [code for code, data in told(unsaid) if data.get("column") == "delay"] == ["time_falls"]
 
 
 def test_an_unknown_unit_of_time_is_named(tmp_path: Path) -> None:
     record = read(tmp_path, columns("time [weeks],T [K],acc (h)", STAMPS, WAVE, WAVE))
     assert (record.names, record.rate) == (("T [K]", "acc (h)"), None)
-    assert told(record) == [("important", ["time [weeks]", "weeks"])]
+    assert told(record) == [("time_unit_not_known", {"column": "time [weeks]", "unit": "weeks"})]
 
 
 def test_a_rate_that_no_sensor_has_asks_for_the_unit(tmp_path: Path) -> None:
     record = read(tmp_path, columns("time [ms],acc [g]", STAMPS / 10.0, WAVE))
-    assert told(record) == [("warning", ["time", 1e7, 10000.0])]
+    ((code, data),) = told(record)
+    assert (code, data["column"], data["other_units"]) == ("time_unit_doubtful", "time", ["s"])
+    assert [data["rate"], *data["other_rates"]] == pytest.approx([1e7, 1e4])
     plain = read(tmp_path, columns("time [us],acc [g]", STAMPS * 1e6, WAVE))
-    assert told(plain) == [("info", ["time"])]
+    assert told(plain) == [("time_unit", {"column": "time", "unit": "us"})]
 
 
 @pytest.mark.parametrize("index", [np.arange(200.0), np.arange(1.0, 201.0), 200.0 - np.arange(200)])
@@ -425,14 +435,12 @@ def test_an_index_is_no_vibration(tmp_path: Path, index: np.ndarray, rate: float
     record = read(tmp_path, columns("sample,raw,acc [m/s^2]", index, WAVE, WAVE), rate=rate)
     names, notices = chosen(record)
     assert names == ["acc"]
-    assert [(n.level, facts(n.text)) for n in notices] == [
-        ("warning", ["sample"]),
-        ("info", ["raw"]),
-    ]
-    assert ("--rate" in notices[0].text) == (rate is None)
-    assert "None" not in notices[1].text
-    with pytest.raises(InputError, match=r"^channel: got 'sample'; no signal: "):
+    assert [n.code for n in notices] == ["channel_counts", "several_units"]
+    assert notices[0].data == {"channel": "sample"}
+    assert notices[1].data == {"unit": "m/s^2", "channels": ["raw"], "units": None}
+    with pytest.raises(InputError, match=r"^channel: got 'sample'; channel 'sample' .*") as refused:
         chosen_channels(record, ["sample"], [])
+    assert str(refused.value).endswith("--rate") == (rate is None)
 
 
 def test_a_drift_of_a_known_unit_is_a_channel() -> None:
@@ -450,7 +458,7 @@ def test_volts_do_not_take_the_place_of_a_channel_without_a_unit() -> None:
     channels = Channel("acc", WAVE), Channel("trigger", 2.0 * WAVE, "V")
     names, notices = chosen(Record(channels, "x"))
     assert names == ["acc"]
-    assert facts(notices[0].text) == ["trigger"]
+    assert (notices[0].code, notices[0].data["channels"]) == ("several_units", ["trigger"])
 
 
 def test_a_dead_channel_is_told_once(tmp_path: Path) -> None:
@@ -458,5 +466,7 @@ def test_a_dead_channel_is_told_once(tmp_path: Path) -> None:
     text = columns("time [s],acc [g],b [g],c [g]", STAMPS, WAVE, nothing, 0.0 * WAVE)
     names, notices = chosen(read(tmp_path, text))
     assert names == ["acc"]
-    assert [facts(n.text) for n in notices] == [["b"], ["c"]]
-    assert {n.level for n in notices} == {"important"}
+    assert [(n.code, n.data["channel"]) for n in notices] == [
+        ("channel_empty", "b"),
+        ("channel_zero", "c"),
+    ]

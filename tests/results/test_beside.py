@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import pytest
 import xarray as xr
 
-from said import numbers
+from coded import coded
+from thermogear.base.notice import SENTENCE
 from thermogear.base.vocabulary import STATUS
-from thermogear.results.beside import NO_BACK_IMPACT, with_notices
-from thermogear.study.notices import NOT_DECIDED, contact_notices
+from thermogear.results.beside import with_notices
+from thermogear.study.notices import contact_notices
 
 JAMMED = STATUS.index("jammed")
 
@@ -23,20 +26,21 @@ def store(shares: list[float], status: int = JAMMED, last: float = np.nan) -> xr
 
 
 def test_backlash_without_effect_is_told_from_the_data_alone() -> None:
-    def told(data: xr.Dataset) -> list[str]:
-        found: list[str] = json.loads(with_notices(data).attrs["notices"])
-        return found
+    def told(data: xr.Dataset) -> dict[str, list[Mapping[str, Any]]]:
+        return coded(str(with_notices(data).attrs["notices"]))
 
-    assert told(store([0.0, 0.0])) == [NO_BACK_IMPACT]
-    assert told(store([0.0, 0.1])) == told(store([np.nan])) == []
+    free: dict[str, list[Mapping[str, Any]]] = {"backlash_without_effect": [{}]}
+    assert told(store([0.0, 0.0])) == free
+    assert told(store([0.0, 0.1])) == told(store([np.nan])) == {}
     # what was not computed, or did not settle, may reach the back flanks; what jams lacks a gap
     for place, status in enumerate(STATUS):
         if status not in ("ok", "no_oil_bath"):
-            assert told(store([0.0, 0.0, np.nan], place)) == []
-    bath, gap = told(store([0.0, 0.0, np.nan], STATUS.index("no_oil_bath"), 0.0))
-    assert (numbers(bath), gap) == ([1.0, 3.0, 150.0], NO_BACK_IMPACT)
+            assert told(store([0.0, 0.0, np.nan], place)) == {}
+    bath = {"hot": 1, "points": 3, "hottest": 423.15}
+    hot = store([0.0, 0.0, np.nan], STATUS.index("no_oil_bath"), 0.0)
+    assert told(hot) == {"no_oil_bath": [bath], **free}
     own = store([0.0, 0.0]).assign_attrs(notices=json.dumps(["mine"]))
-    assert told(own) == ["mine"]
+    assert told(own) == {SENTENCE: [{}]}
 
 
 @pytest.mark.parametrize(
@@ -62,8 +66,8 @@ def test_contact_is_kept_only_where_points_are_valid(
         },
         {"pinion_speed": [1.0, 2.0]},
     )
-    (words,) = contact_notices(data)
-    assert (words == NOT_DECIDED.format(2)) == (valid == 0)
-    assert numbers(words) == [float(valid), 2.0]
+    never = {"contact_never_lost": [{"valid": valid, "points": 2}]}
+    open_ = {"contact_loss_not_decided": [{"valid": 0, "points": 2}]}
+    assert coded(contact_notices(data)) == (never if valid else open_)
     alone = store([0.0, 0.0, np.nan], STATUS.index("no_oil_bath"), 0.0).isel(row=[2])
-    assert NO_BACK_IMPACT not in json.loads(with_notices(alone).attrs["notices"])
+    assert set(coded(str(with_notices(alone).attrs["notices"]))) == {"no_oil_bath"}

@@ -15,7 +15,7 @@ from own_pair import OWN_PAIR
 from thermogear.base.display import display
 from thermogear.base.errors import InputError
 from thermogear.base.netcdf import read_tree, write_tree
-from thermogear.results.result import Result
+from thermogear.results.result import Notice, Result
 from thermogear.results.tables import csv_text, frames
 
 pytestmark = pytest.mark.filterwarnings("ignore::thermogear.ValidityWarning")
@@ -135,7 +135,7 @@ def test_no_text_is_a_formula_or_a_tag() -> None:
     assert csv_text(frame).splitlines()[1:] == [
         "'=1+1,-1", "'-x,-1", "plain,-1", "'+2,-1", "'@a,-1"
     ]  # fmt: skip
-    shown = Result.of("gear", "<script>x</script>", {}, ["<b>"])._repr_html_()
+    shown = Result.of("gear", "<script>x</script>", {}, [Notice("info", "<b>")])._repr_html_()
     assert not re.search(r"<script|<b>(?!&lt;)(?=<)", shown)
     assert "&lt;script&gt;" in shown
 

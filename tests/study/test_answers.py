@@ -17,6 +17,7 @@ import numpy as np
 import pytest
 from scripts import script
 
+from coded import coded
 from said import numbers
 from thermogear.base.limits import FINE, LIMITS, LOOK, OPEN, Limit
 from thermogear.base.materials import NO_BATH
@@ -413,9 +414,9 @@ def test_the_range_of_drawings_is_that_of_other_seeds() -> None:
     assert own["drawings"] == 16
     assert (own["least"], own["greatest"]) == pytest.approx((min(swings), max(swings)), rel=0.03)
     assert own["greatest"] > 4.0 * own["least"]
-    (notice,) = (one.text for one in result_of("plain").notices if one.level == "warning")
-    shown = [float(f"{own[end]:.2g}") for end in ("least", "greatest")]
-    assert numbers(notice)[1:4] == [16.0, *shown]
+    (told,) = coded(result_of("plain").notices)["flanks_are_one_drawing"]
+    assert told["drawings"] == 16
+    assert told["errors"] == [[1e-6 * own["least"], 1e-6 * own["greatest"]]]
 
 
 def test_a_jam_is_not_told_beyond_what_the_materials_bear() -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from coded import coded
 from conftest import Compared
 from said import numbers
 from thermogear.base.errors import InputError
@@ -58,8 +59,10 @@ def test_the_thesis_table_recomputed(compared: Compared) -> None:
 
 
 def test_the_entry_that_no_rounding_explains_and_nothing_else_is_named() -> None:
-    notices = [text for _, text in compare("thesis-5.2").notices if "printed" in text]
-    assert [numbers(text) for text in notices] == [[2000.0, 18.5, 21.5, 21.27, 21.73]]
+    wrong = [n.data for n in compare("thesis-5.2").notices if n.code == "printed_error_wrong"]
+    assert [one["speed"] / RPM for one in wrong] == pytest.approx([2000.0])
+    shares = [[one[k] for k in ("printed", "error", "least", "greatest")] for one in wrong]
+    assert shares == [pytest.approx([0.185, 0.215, 0.2127, 0.2173], abs=5e-5)]
 
 
 def test_what_its_lines_imply() -> None:
@@ -74,9 +77,11 @@ def test_its_frequency_column_is_impossible() -> None:
     found = compare("thesis-5.2")
     verdict, _, why = found.row(1000 * RPM, "frequency").verdict.partition(":")
     assert (verdict, numbers(why)) == ("impossible", [413.0, 411.0, 416.667, 0.72])
-    texts = "\n".join(text for _, text in found.notices)
-    assert "frequency" in texts
-    assert "53.9 g at 2000 rpm, 305.9 g at 3000 rpm" in texts
+    told = {notice.code: notice.data for notice in found.notices}
+    assert 1000 * RPM in told["frequency_impossible"]["speeds"]
+    high = told["acceleration_implausible"]
+    assert np.array(high["speeds"]) / RPM == pytest.approx([2000.0, 3000.0])
+    assert np.array(high["accelerations"]) / 9.80665 == pytest.approx([53.9, 305.9], abs=0.05)
 
 
 def test_its_conclusion_is_not_resolvable_by_u_val() -> None:
@@ -176,8 +181,8 @@ def test_no_drawing_of_the_flanks_reverses_the_verdict_of_another(
         assert not set(better) <= verdicts, measured
         said.append(verdicts)
     assert (said[0], said[-1]) == ({better[0]}, {better[1]})
-    (told,) = (one.text for one in found[0].notices if "drawings" in one.text)
-    assert numbers(told) == [8.0, 6.0]
+    (told,) = coded(found[0].notices)["u_input_of_drawings"]
+    assert told == {"drawings": 8, "accuracy": 6}
     row = found[0].row(3000 * RPM, "displacement")
     most = np.abs(swings[1:] / swings[1] - 1.0).max()
     assert row.u_input == pytest.approx(most * max(row.simulated) / row.measured, rel=1e-9)
@@ -227,7 +232,8 @@ def test_a_table_file_against_tables(encoding: str, tmp_path: Path) -> None:
     row = found.row(1000 * RPM, "displacement")
     assert row.verdict == "A better"
     assert row.u_val == pytest.approx(0.02)
-    assert [2000.0] in [numbers(text) for _, text in found.notices]
+    skipped = [n.data["speed"] for n in found.notices if n.code == "speed_not_simulated"]
+    assert skipped == pytest.approx([2000.0 * RPM])
     assert all(row.speed == pytest.approx(1000.0 * RPM) for row in found.rows)
     assert set(found.row(1000 * RPM, "frequency").errors) == {0.0}
     assert figures(found)["rows"][1]["verdict"] == "A better"

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from coded import coded
 from conftest import Compared
 from own_trains import OWN, PAIR, bare, bearing
 from thermogear.base.errors import InputError
@@ -115,9 +116,9 @@ def test_an_exchanged_axis_is_seen_and_said(rig: Rig) -> None:
     rows = [row for row in found.rows if row.where.startswith("a1")]
     strongest = max(rows, key=lambda row: row.measured)
     assert abs(strongest.errors[hot]) > 10.0 * strongest.u_val
-    (told,) = (one.text for one in found.notices if one.level == "important")
-    assert "'a1'" in told
-    assert wrong[0].split(":")[1] in told
+    (told,) = coded(found.notices)["axes_exchanged"]
+    assert told["channel"] == "a1"
+    assert wrong[0].split(":")[1] in told["along"]
 
 
 def test_an_axis_at_an_angle_shows_the_projection(rig: Rig) -> None:

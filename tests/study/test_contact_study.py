@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from said import numbers
+from coded import coded
 from thermogear.base.errors import InputError
 from thermogear.case.case import GearCase, load_example
 from thermogear.case.thermal_state import UNDEFORMED
@@ -144,13 +144,13 @@ def test_a_pressure_on_a_tip_corner_is_left_out_with_its_reason(contact: xr.Data
     light = contact["base_pitch"]["edge_contact_share"].sel(temperature_difference=0.0).values
     assert np.all(np.diff(light) >= 0.0)
     state, load = np.unravel_index(shares.argmax(), shares.shape)
-    (told,) = (
-        one for one in json.loads(contact.attrs["notices"]) if one["text"].startswith("Tip corners")
-    )
-    assert told["level"] == "important"
-    assert str(data["temperature"].values[state]) in told["text"]
-    most, torque = f"{100 * shares.max():.3g}", f"{data['load'].values[load]:.4g}"
-    assert {float(most), float(torque)} <= set(numbers(told["text"]))
+    assert coded(str(contact.attrs["notices"]))["edge_contact_at_most"] == [
+        {
+            "state": str(data["temperature"].values[state]),
+            "share": shares.max(),
+            "torque": data["load"].values[load],
+        }
+    ]
 
 
 def test_relief_takes_load_off_the_corners(relief: xr.DataTree) -> None:
@@ -162,5 +162,5 @@ def test_relief_takes_load_off_the_corners(relief: xr.DataTree) -> None:
     assert 0.0 <= relieved < 0.5 * plain
     over = relief["loads"]["edge_contact_share"].values
     assert np.all(over[1] <= over[0])
-    texts = [one["text"] for one in json.loads(relief.attrs["notices"])]
-    assert any(float(f"{100 * plain:.3g}") in numbers(text) for text in texts)
+    (told,) = coded(str(relief.attrs["notices"]))["edge_contact_of_relief"]
+    assert told == {"without": plain, "relieved": relieved}

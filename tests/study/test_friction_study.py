@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import json
-
 import numpy as np
 import pytest
 import xarray as xr
 
+from coded import coded
 from thermogear.case.case import GearCase, load_example
 from thermogear.heat.friction import LAWS
 from thermogear.mesh.cycle import mesh_cycle
@@ -61,5 +60,6 @@ def test_a_law_without_a_value_says_why_and_the_others_stay() -> None:
     assert np.isnan(data["friction_coefficient"].sel(law="benedict-kelley").values).all()
     assert np.isfinite(data["friction_coefficient"].sel(law="iso-13989-2").values).all()
     assert np.all(data["outside_range"].sel(law="xu-kahraman").values == 1)
-    texts = [notice["text"] for notice in json.loads(tree.attrs["notices"])]
-    assert any(text.startswith("benedict-kelley: roughness: got 1.2 um") for text in texts)
+    told = coded(str(tree.attrs["notices"]))["law_without_value"]
+    (reason,) = (one["reason"] for one in told if one["about"] == "benedict-kelley")
+    assert reason.startswith("roughness: got 1.2 um")

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import own_chart
+from coded import coded
 from own_chart import END, START, chart, diameter
 from said import numbers
 from thermogear.case.case import GearCase, load_case
@@ -69,22 +70,25 @@ def test_what_acts_is_zero_at_the_pitch_circle_whatever_the_level_of_the_chart(
 
 
 def test_the_notices_tell_what_was_decided(tmp_path: Path) -> None:
-    told = [one.text for one in measured_notices(charted(tmp_path))]
-    assert len(told) == 2
-    assert "pinion.csv" in told[0]
-    assert numbers(told[0])[0] == 3.0  # teeth
-    assert "positive" in told[0]
-    assert "pitch" in told[1]
+    told = coded(measured_notices(charted(tmp_path)))
+    assert [(one["flank"], one["traces"]) for one in told["flank_as_measured"]] == [
+        ("drive", 3),
+        ("back", 3),
+    ]
+    assert told["flanks_evaluated"][0]["files"] == ["pinion.csv"]
+    assert {"sign_not_stated", "pitch_not_used"} <= set(told)
+    assert told["flanks_evaluated"][0]["stated"] is None
     lines = ("drive: right", "sign: material outside is positive", "evaluate: 58..65 mm")
-    told = [one.text for one in measured_notices(charted(tmp_path, *lines))]
-    assert {58.0, 65.0} <= set(numbers(told[0]))
-    assert "positive" not in told[0]
+    told = coded(measured_notices(charted(tmp_path, *lines)))
+    assert told["flanks_evaluated"][0]["diameters"] == [pytest.approx([58e-3, 65e-3])]
+    assert "sign_not_stated" not in told
     lines = ("drive: right", "evaluate: 56.5..65 mm")
-    told = [one.text for one in measured_notices(charted(tmp_path, *lines))]
-    assert 65.0 in numbers(told[0])
-    assert 56.5 not in numbers(told[0])  # the trace begins later
+    told = coded(measured_notices(charted(tmp_path, *lines)))
+    low, high = told["flanks_evaluated"][0]["diameters"][0]
+    assert 56.5e-3 < low < high == pytest.approx(65e-3)  # the trace begins later
+    assert told["flanks_evaluated"][0]["stated"] == [pytest.approx([56.5e-3, 65e-3])]
     only = own_chart.case(tmp_path, chart({"tooth 1 left [um]": SHARE}, diameter(RHO)))
-    assert any("back" in one.text for one in measured_notices(only))
+    assert [one["flank"] for one in coded(measured_notices(only))["flank_not_measured"]] == ["back"]
 
 
 def test_the_section_is_drawn_from_what_is_stored_alone(tmp_path: Path) -> None:
@@ -115,11 +119,11 @@ def test_a_page_shows_the_case_and_not_every_row_of_its_charts(tmp_path: Path) -
 
 
 def test_a_relief_beside_a_chart_is_told(tmp_path: Path) -> None:
-    plain = len(list(measured_notices(charted(tmp_path))))
+    assert "relief_on_traces" not in coded(measured_notices(charted(tmp_path)))
     relief = 'gears.pinion.tip_relief={amount="5 um", length="2 mm"}'
     case = load_case(tmp_path / "mine.toml", [relief])
     assert isinstance(case, GearCase)
-    assert len(list(measured_notices(case))) == plain + 1
+    assert "relief_on_traces" in coded(measured_notices(case))
 
 
 def test_charts_side_by_side_differ_by_their_digest(tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from coded import coded
 from said import numbers
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.base.parameters import NUMBERS, long_name
@@ -77,7 +78,8 @@ def test_orbit_of_plain_numbers_is_the_published_one() -> None:
     square = lines[0] ** 2 + 0.5 * np.sum(lines[1:] ** 2)
     assert np.sqrt(square) == pytest.approx(truth["x_rms"], rel=1e-8)
     assert {line["order"] for line in summary["lines"] if line["half_order"]} >= {0.5, 1.5, 2.5}
-    assert 0.706922 in numbers(summary["notices"][0])
+    (told,) = coded(found.notices)["back_flank_not_reached"]
+    assert told["down_to"] == pytest.approx(0.706922, abs=5e-7)
 
 
 def test_a_motion_that_closes_sooner_has_its_least_period() -> None:
@@ -86,7 +88,7 @@ def test_a_motion_that_closes_sooner_has_its_least_period() -> None:
     assert asked.summary["multipliers"][0]["real"] == pytest.approx(
         least.summary["multipliers"][0]["real"], abs=1e-9
     )
-    assert numbers(asked.summary["notices"][0]) == [4.0, 2.0]
+    assert coded(asked.notices)["other_period"] == [{"asked": 4, "period": 2}]
 
 
 def test_direct_newton_reaches_an_unstable_orbit() -> None:
@@ -99,10 +101,11 @@ def test_direct_newton_reaches_an_unstable_orbit() -> None:
             strict=True,
         )
     }
-    summary = orbit_results(of_numbers(numbers, (0.78, 0.045)), 1, transient=False).summary
+    found = orbit_results(of_numbers(numbers, (0.78, 0.045)), 1, transient=False)
+    summary = found.summary
     assert summary["state"] == pytest.approx(truth["poincare_points"][0], abs=1e-9)
     assert not summary["stable"]
-    assert "unstable" in [notice.partition(":")[0] for notice in summary["notices"]]
+    assert "orbit_unstable" in coded(found.notices)
 
 
 def test_no_closed_orbit_inside_chaos_says_so() -> None:
@@ -137,9 +140,9 @@ def test_chaos_that_has_ended_by_the_end_of_its_record_is_said() -> None:
         "half_backlash": 1.0579260211766828,
     }
     subject = of_numbers(values, (-0.22516572016971326, -1.704480535133318))
-    found = lyapunov_results(subject).summary
-    assert numbers(found["verdict"]) == [5.0, 22000.0]
-    assert len(found["notices"]) > 0
+    found = lyapunov_results(subject)
+    assert numbers(found.summary["verdict"]) == [5.0, 22000.0]
+    assert set(coded(found.notices)) == {"exponent_of_transient"}
 
 
 def test_an_interrupted_exponent_keeps_its_batches() -> None:
@@ -187,10 +190,9 @@ def test_cascades_of_the_table_cold() -> None:
 def test_heat_moves_a_cascade_by_scaling_alone() -> None:
     """Without back-side impacts eps_T acts by scaling and b' not at all (M2, M5)."""
     (sweep,) = sweeps_of(table(), "zeta")
-    summary = cascade_results([sweep], 2, title="", hot=True).summary
-    cold, thesis, consistent = summary["cascades"]
-    (notice,) = summary["notices"]
-    assert "ε_T" in notice
+    found = cascade_results([sweep], 2, title="", hot=True)
+    cold, thesis, consistent = found.summary["cascades"]
+    assert coded(found.notices) == {"backlash_without_effect": [{}]}
     for entry in (thesis, consistent):
         s = np.sqrt(1.0 + entry["heat_numbers"]["thermal_stiffness"])
         numbers = {

@@ -9,14 +9,13 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from said import numbers
+from coded import coded
 from thermogear import InputError, run
-from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import FLAGS, STATUS
 from thermogear.case.case import load_example
 from thermogear.results.files import RESULTS, SUMMARY
 from thermogear.results.result import Result
-from thermogear.study.run_notices import _jams
+from thermogear.study.notices import jam_notices
 from thermogear.thesis.errata import with_errata
 from thermogear.views.pages.run import page
 from thermogear.views.write import save_results
@@ -140,10 +139,13 @@ def test_jammed_points_are_a_status_and_the_rest_goes_on() -> None:
     assert np.all(motion["label"].sel(state="hot").values == "jammed")
     assert np.all(motion["label"].sel(state="undeformed").values == "period-1")
     assert np.all(np.isnan(motion["displacement"].sel(state="hot").values))
-    texts = [notice["text"] for notice in json.loads(tree.attrs["notices"])]
-    assert any("jammed" in text and "°C" in text for text in texts)
     row = tree["temperature"].sel(bundle="consistent")
     jam = float(hot["proportional_jam_temperature"].min())
+    codes = coded(str(tree.attrs["notices"]))
+    both = {"about": "consistent", "jammed": 2, "points": 2}
+    assert both in codes["jammed_hot"]
+    (told,) = (data for data in codes["jam_in_proportion"] if data["about"] == "consistent")
+    assert told["temperature"] == jam
     beyond = row["gear_temperature"].values > jam
     assert 0 < beyond.sum() < beyond.size
     assert np.all((row["label"].values == "jammed") == beyond[:, None])
@@ -182,23 +184,23 @@ def test_table_4_2_and_section_4_1_as_their_files_expect() -> None:
 
 
 def test_notices_name_the_regime(small: Result) -> None:
-    texts = [notice["text"] for notice in json.loads(small.attrs["notices"])]
-    assert any("regimes" in text for text in texts)
-    assert any("textbook" in text for text in texts)
-    (film,) = (text for text in texts if "viscosity" in text)
-    assert (film.partition(":")[0], numbers(film)) == ("consistent", [-20.0, 150.0, 2.0, 160.0])
+    codes = coded(small.notices)
+    assert {"two_regimes", "stiffness_is_textbook_sum"} <= set(codes)
+    (film,) = codes["film_beyond_oil"]
+    assert (film["about"], film["hot"]) == ("consistent", False)
+    assert film["range"] == [pytest.approx([253.15, 423.15])]
+    assert film["temperatures"] == pytest.approx([433.15])
 
 
 def test_a_law_outside_its_range_says_so() -> None:
     changes = ('model.bundle="consistent"', 'gears.pinion.roughness="1.7 um"')
     quiet = ("temperatures.row=[]", "draw.base_sets=[]", 'model.friction="xu-kahraman"')
     case = load_example("rig", [*SMALL, *changes, *quiet])
-    notices = json.loads(run(case).attrs["notices"])
-    said = {notice["text"]: notice["level"] for notice in notices}
-    own = "the friction law xu-kahraman is outside its range on 100 % of the path"
-    assert [level for text, level in said.items() if own in text] == ["important"]
-    band = "the band of friction laws leaves out, where they are outside their range: xu-kahraman"
-    assert [level for text, level in said.items() if band in text] == ["info"]
+    codes = coded(run(case).notices)
+    (outside,) = codes["friction_law_outside"]
+    assert (outside["law"], outside["share"]) == ("xu-kahraman", 1.0)
+    (band,) = codes["friction_laws_left_out"]
+    assert "xu-kahraman" in band["laws"]
 
 
 def test_errata_carry_both_values_of_the_flash_temperature(small: Result) -> None:
@@ -216,25 +218,24 @@ def test_progress_names_its_stages(small: Result, stages: list[str]) -> None:
     assert any(stage.endswith("temperature") for stage in stages)
 
 
-def test_both_jams_are_those_of_named_points() -> None:
+def test_both_jams_are_those_of_the_points() -> None:
     """In proportion the jam nearest to the drawing counts, on whichever side it lies."""
 
-    def point(alone: list[float], together: list[float]) -> str:
-        axis = ("operating",)
+    def jams(alone: list[float], together: list[float]) -> dict[str, float]:
         data = xr.Dataset(
             {
-                "jam_temperature": (axis, np.array(alone) + ZERO_CELSIUS),
-                "proportional_jam_temperature": (axis, np.array(together) + ZERO_CELSIUS),
-            },
-            {
-                "pinion_speed": (axis, RPM * np.array([800.0, 4000.0])),
-                "pinion_torque": (axis, np.array([60.0, 60.0])),
-            },
+                "jam_temperature": ("operating", np.array(alone)),
+                "proportional_jam_temperature": ("operating", np.array(together)),
+            }
         )
-        return _jams(data, ZERO_CELSIUS + 20.0)[1]
+        codes = coded(jam_notices(data, 293.15))
+        return {code: told[0].get("temperature", nan) for code, told in codes.items()}
 
     nan = float("nan")
-    words = point([405.0, 281.0], [nan, -42.0])
-    assert numbers(words) == [281.0, 4000.0, 60.0, -42.0, 4000.0, 60.0]
-    assert numbers(point([200.0, 200.0], [130.0, 180.0]))[-3:-1] == [130.0, 800.0]
-    assert numbers(point([200.0, 200.0], [nan, nan])) == [200.0]
+    assert jams([678.0, 554.0], [nan, 231.0]) == {
+        "jam_of_gears_alone": 554.0,
+        "jam_in_proportion": 231.0,
+    }
+    assert jams([473.0, 473.0], [403.0, 453.0])["jam_in_proportion"] == 403.0
+    assert set(jams([473.0, 473.0], [nan, nan])) == {"jam_of_gears_alone", "no_jam_in_proportion"}
+    assert jams([nan], [nan]) == {}

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import thermogear as tg
-from said import numbers
+from coded import coded
 from thermogear.analysis.maps import parameter_map
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import STATUS
@@ -165,8 +165,9 @@ def test_a_row_without_an_oil_bath_says_so_and_keeps_its_numbers() -> None:
         assert (same["status"] == 0).all()
         for name in set(there.data_vars) - {"status"}:
             np.testing.assert_array_equal(there[name].values, same[name].values)
-    assert numbers(hot[0].notices[0].text) == [2.0, 2.0, 150.0]
-    assert 150.0 not in numbers(known[0].notices[0].text)
+    bath = {"hot": 2, "points": 2, "hottest": 423.15}
+    assert coded(hot[0].notices)["no_oil_bath"] == [bath]
+    assert "no_oil_bath" not in coded(known[0].notices)
 
 
 def test_motion_and_answers_of_a_sweep_share_one_heat_balance(

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from said import numbers
-from thermogear.base.display import reach
+from coded import coded
+from thermogear.base.display import span
 from thermogear.base.errors import InputError
 from thermogear.base.materials import MATERIALS
 from thermogear.base.vocabulary import STATUS
@@ -86,9 +86,7 @@ def test_without_a_load_stage_the_margin_is_that_of_the_stage_the_answers_assume
     grid = bare["map"]
     left = scuffing_temperature(load_stage(case).stage) - grid["greatest_contact_temperature"]
     np.testing.assert_allclose(grid["scuffing_margin"].values, left.values, rtol=1e-12)
-    texts = [one["text"] for one in json.loads(bare.attrs["notices"])]
-    (told,) = (one for one in texts if "scuffing_load_stage" in one)
-    assert "stage 12, assumed" in told
+    assert coded(bare.notices)["scuffing_stage_assumed"] == [{"stage": 12}]
     # the stage is one of steel on steel
     soft = replace(case.pair.wheel, material=replace(STEEL, youngs_modulus=3e9))
     other = replace(case, pair=replace(case.pair, wheel=soft))
@@ -189,18 +187,17 @@ def test_one_point_that_cannot_be_computed_does_not_cost_the_map() -> None:
     np.testing.assert_array_equal(grid["status"].values == lost, [[True, True], [False, False]])
     for name in ("greatest_flash", "least_half_backlash", "mean_friction"):
         np.testing.assert_array_equal(np.isnan(grid[name].values), grid["status"].values == lost)
-    texts = [one["text"] for one in json.loads(tree.attrs["notices"])]
-    assert any(numbers(one)[:2] == [2.0, 4.0] for one in texts)
-    assert any("prandtl: got" in one for one in texts)
+    (told,) = coded(tree.notices)["heat_not_settled"]
+    assert (told["lost"], told["points"]) == (2, 4)
+    assert {reason.partition(":")[0] for reason in told["reasons"]} == {"prandtl"}
 
 
 def test_the_map_says_where_two_states_are_steady() -> None:
     case = rig('model.friction="benedict-kelley"', 'model.inlet="oil"')
     tree = thermal_map(case, tuple(RPM * np.array([1000.0, 4085.0])), (20.0,))
     assert tree["map"]["several"].values.tolist() == [[0], [1]]
-    texts = [one["text"] for one in json.loads(tree.attrs["notices"])]
-    (told,) = (one for one in texts if "another steady state" in one)
-    assert numbers(told)[:2] == [2.0, 1.0]
+    (told,) = coded(tree.notices)["second_steady_state"]
+    assert (told["several"], told["points"]) == (1, 2)
 
 
 @pytest.mark.filterwarnings("ignore::thermogear.base.errors.ValidityWarning")
@@ -227,7 +224,7 @@ def test_a_point_that_does_not_settle_has_a_status_and_no_number() -> None:
     assert int(rows.sum()) == int(lost.sum())
     assert frame.loc[rows, "greatest_flash [K]"].isna().all()
     (line,) = (one for one in page(tree).lines() if one.startswith("greatest flash"))
-    assert line.endswith(reach(grid["greatest_flash"].values[~lost]))
+    assert line.endswith(span(grid["greatest_flash"].values[~lost], 4))
 
 
 @pytest.mark.filterwarnings("ignore::thermogear.ValidityWarning")
@@ -239,4 +236,4 @@ def test_a_point_without_an_oil_bath_has_its_status() -> None:
     oil = there["node_temperature"].sel(node="oil").values
     assert np.all(oil > case.stated.lubricant.hottest_bath)
     assert np.all(there["status"].values == STATUS.index("no_oil_bath"))
-    assert numbers(result.notices[0].text)[:2] == [1.0, 1.0]
+    assert coded(result.notices)["no_oil_bath"] == [{"hot": 1, "points": 1, "hottest": 423.15}]

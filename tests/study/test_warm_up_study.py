@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from coded import coded
 from own_pair import OWN_PAIR
 from said import numbers
 from thermogear.base.errors import InputError
@@ -68,7 +69,7 @@ def test_a_stop_has_no_flash_no_film_and_no_stiffness(tree: xr.DataTree) -> None
         assert np.isnan(data[name].values[idle]).all()
         assert np.isfinite(data[name].values[~idle]).all()
     assert np.all(data["loss"].sel(loss_kind="churning").values[still] == 0.0)
-    assert any("convection" in one["text"] for one in json.loads(tree.attrs["notices"]))
+    assert "free_convection_at_rest" in coded(str(tree.attrs["notices"]))
 
 
 def test_each_piece_held_for_good_is_the_heat_balance(tree: xr.DataTree) -> None:
@@ -278,8 +279,7 @@ def test_rows_after_the_end_are_left_out_with_a_word() -> None:
     short = until(WORK, 60.0)
     tree = warm_up_survey(rig(), short, measured=record, moments=12)
     assert tree["record"].sizes["row"] == 2
-    texts = [one["text"] for one in json.loads(tree.attrs["notices"])]
-    assert any(numbers(text)[:1] == [1.0] and "record" in text for text in texts)
+    assert coded(tree.notices)["rows_after_end"] == [{"rows": 1}]
     late = Measured(time=np.array([1e4]), names=("oil",), values=np.full((1, 1), 300.0))
     with pytest.raises(InputError, match=r"^measured: got no row within the course"):
         warm_up_survey(rig(), short, measured=late)
@@ -295,8 +295,8 @@ def test_a_course_says_from_when_on_it_has_no_oil_bath() -> None:
     course = found.groups["course"]
     oil = course["node_temperature"].sel(node="oil").values
     hot = oil > case.stated.lubricant.hottest_bath
-    told = [round(float(course["time"].values[hot][0]) / 60.0, 2), 40.0]
-    assert told in [numbers(one.text) for one in found.notices]
+    (told,) = coded(found.notices)["no_bath_from"]
+    assert told == {"time": course["time"].values[hot][0], "hottest": pytest.approx(313.15)}
 
 
 # --- in words, and another pair --------------------------------------------------------------

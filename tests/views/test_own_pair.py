@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from coded import coded
 from in_words import in_words
 from own_pair import OWN_PAIR
 from said import numbers
@@ -109,10 +110,8 @@ def test_the_textbook_stiffness_is_held_against_this_pair(bundle: str) -> None:
         float(cold["mean_stiffness"] / cold[f"{body}_stiffness"]) - 1.0
         for body in ("rim", "bore_clamped")
     ]
-    words = [f"{100.0 * abs(v):.0f} % {'above' if v > 0.0 else 'below'} " for v in over]
-    (text,) = [n["text"] for n in json.loads(tree.attrs["notices"]) if "textbook" in n["text"]]
-    assert all(one in text for one in words)
-    assert text.index(words[0]) <= text.rindex(words[1])
+    (told,) = coded(tree.notices)["stiffness_is_textbook_sum"]
+    assert [told["over_rim"], told["over_clamped"]] == over
     text = prose(page(tree))
     # the bundle is called by its name; nothing is said of the thesis's claims
     for found in FOREIGN.findall(text):
@@ -125,10 +124,10 @@ def test_a_copy_of_the_rig_with_other_gears_is_no_rig() -> None:
     changed = ["gears.wheel.teeth=60", "gears.wheel.tip_diameter=310 mm",
                "operating.speed=1000 rpm", 'draw.pictures=["base-sets"]']  # fmt: skip
     tree = run(load_example("rig", [*SMALL, *changed]))
-    texts = " ".join(notice["text"] for notice in json.loads(tree.attrs["notices"]))
-    assert "draw.base_sets" in texts
+    codes = coded(tree.notices)
+    assert "base_sets_left_out" in codes
     assert "base_sets" not in tree.tree.children
-    assert "thesis's bifurcation" not in texts
+    assert "two_regimes" not in codes
     assert "thesis's study" not in prose(page(tree))
 
 

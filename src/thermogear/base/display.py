@@ -206,16 +206,6 @@ def stretches(values: ArrayLike, flags: NDArray[np.bool_], most: int = 3) -> str
     return ", ".join(words[a] if b - a == 1 else f"{words[a]} to {words[b - 1]}" for a, b in edges)
 
 
-def reach(values: ArrayLike, form: str = ".4g", between: str = " .. ") -> str:
-    """The least and the greatest of ``values`` in the format ``form``; "-" without any."""
-    found = np.asarray(values, dtype=float)
-    found = found[np.isfinite(found)]
-    if not found.size:
-        return "-"
-    low, high = format(found.min(), form), format(found.max(), form)
-    return low if low == high else f"{low}{between}{high}"
-
-
 def in_words(value: object) -> str:
     """A value of a case file as a reader would write it on one line, without quotes."""
     if isinstance(value, dict):

@@ -1,15 +1,18 @@
 """What a reader should know beside the numbers: a code with data, its sentence from a catalogue.
 
-The catalogue is ``notices.toml`` beside this module: of each code the level, the sentence with the
-fields of the data in braces, and what the reader can do. A sentence is made here and nowhere else.
+The catalogue is the folder ``notices`` beside this module: of each code the level, the sentence
+with the fields of the data in braces, and what the reader can do. A sentence is made here and
+nowhere else.
 """
 
 from __future__ import annotations
 
+import json
 import math
+import re
 import tomllib
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cache
 from importlib import resources
 from string import Formatter
@@ -17,14 +20,28 @@ from typing import Any
 
 import numpy as np
 
-from thermogear.base.display import CELSIUS, MICROMETRE, MINUTE, PERCENT, SPEED
+from thermogear.base.display import (
+    CELSIUS,
+    GRAVITY,
+    MICROMETRE,
+    MILLIMETRE,
+    MINUTE,
+    PERCENT,
+    SPEED,
+)
 from thermogear.base.errors import printable
 
 LEVELS = ("important", "warning", "info")
 """From what must be known to what is good to know."""
 SENTENCE = "sentence"
 """Code of a notice that is known by its sentence alone: of results of older versions."""
-_UNITS = {shown.unit: shown for shown in (CELSIUS, MICROMETRE, MINUTE, PERCENT, SPEED)}
+_UNITS = {
+    shown.unit: shown
+    for shown in (CELSIUS, GRAVITY, MICROMETRE, MILLIMETRE, MINUTE, PERCENT, SPEED)
+}
+_CLAUSE = re.compile(r"\[([^\[\]]*)\]")
+_LISTED = 8
+"""Entries of a list that a sentence shows; its data have all."""
 
 
 @dataclass(frozen=True)
@@ -38,26 +55,55 @@ class Entry:
     @property
     def fields(self) -> frozenset[str]:
         """Names of the data that the sentence holds."""
-        return frozenset(name for _, name, _, _ in Formatter().parse(self.sentence) if name)
+        parts = Formatter().parse(self.sentence)
+        return frozenset(name.partition("|")[0] for _, name, _, _ in parts if name)
 
 
 @cache
 def catalogue() -> Mapping[str, Entry]:
-    """Every code with its entry, as the file has them."""
-    text = resources.files(__package__).joinpath("notices.toml").read_text(encoding="utf-8")
-    return {code: Entry(**entry) for code, entry in tomllib.loads(text).items()}
+    """Every code with its entry, as the files ``notices/*.toml`` have them, each code in one."""
+    files = resources.files(__package__).joinpath("notices").iterdir()
+    texts = [file.read_text(encoding="utf-8") for file in files if file.name.endswith(".toml")]
+    entries = {code: entry for text in texts for code, entry in tomllib.loads(text).items()}
+    return {code: Entry(**entries[code]) for code in sorted(entries)}
 
 
 class _Sentence(Formatter):
-    """Fields as ``{speed:.0f rpm}``: SI data in the unit named; a list is parted by commas."""
+    """Fields as ``{speed:.0f rpm}``: SI data in the unit named; a list is parted by commas, of a
+    long one the first are shown. A list [least, greatest] in a list is a range, as "60 to 80". A
+    clause in ``[brackets]`` of which a field is None is left out.
+
+    ``{count|point has|points have}`` chooses words by a number (or the length of a list): the first
+    where it is one or true, else the second.
+    """
+
+    def get_value(self, key: int | str, args: Any, kwargs: Mapping[str, Any]) -> Any:
+        name, *words = str(key).split("|")
+        value = kwargs[name]
+        count = len(value) if isinstance(value, list) else value
+        return words[count != 1] if words else value
 
     def format_field(self, value: Any, format_spec: str) -> str:
         form, _, unit = format_spec.partition(" ")
-        if isinstance(value, list):
-            return ", ".join(self.format_field(each, form) for each in value) + f" {unit}".rstrip()
-        if unit in _UNITS:
-            return f"{float(_UNITS[unit](value)):{form}} {unit}"
-        return f"{value:{form}} {unit}".rstrip()
+        values = value if isinstance(value, list) else [value]
+        shown = [_shown(each, form, unit) for each in values[:_LISTED]]
+        return f"{', '.join(shown + ['...'] * (len(values) > _LISTED))} {unit}".rstrip()
+
+    def vformat(self, text: str, args: Sequence[Any], kwargs: Mapping[str, Any]) -> str:
+        def clause(found: re.Match[str]) -> str:
+            names = Entry("", found[1], "").fields
+            return "" if any(kwargs[name] is None for name in names) else found[1]
+
+        return super().vformat(_CLAUSE.sub(clause, text), args, kwargs)
+
+
+def _shown(value: Any, form: str, unit: str) -> str:
+    """A datum in its unit; of a list its ends."""
+    if value is None:
+        return "no number"
+    if isinstance(value, list):
+        return " to ".join(dict.fromkeys(_shown(end, form, unit) for end in value))
+    return format(float(_UNITS[unit](value)) if unit in _UNITS else value, form)
 
 
 @dataclass(frozen=True)
@@ -76,8 +122,11 @@ class Notice:
         object.__setattr__(self, "text", printable(self.text))
 
     @classmethod
-    def of(cls, code: str, /, **data: Any) -> Notice:
+    def of(cls, code: str, /, *, about: str = "", **data: Any) -> Notice:
         """The notice ``code`` of the catalogue with its ``data``, in SI units.
+
+        ``about``: the name of what it is about where there are several, as a bundle or a state; it
+        begins the text, and is in the data.
 
         Raises KeyError for a code that there is not, TypeError where the data are not the fields
         of its sentence.
@@ -87,7 +136,16 @@ class Notice:
             wrong = ", ".join(sorted(data.keys() ^ entry.fields))
             raise TypeError(f"notice {code}: missing or unknown data: {wrong}")
         plain = {name: _plain(value) for name, value in data.items()}
-        return cls(entry.level, _Sentence().vformat(entry.sentence, (), plain), code, plain)
+        text = _Sentence().vformat(entry.sentence, (), plain)
+        if about:
+            plain["about"], text = about, f"{about}: {text}"
+        return cls(entry.level, text, code, plain)
+
+    def of_files(self, files: Sequence[str]) -> Notice:
+        """The same of the ``files`` named, which come first in the text."""
+        named = _plain(list(files))
+        text = f"{_Sentence().format_field(named, '')}: {self.text}"
+        return replace(self, text=text, data={**self.data, "in_files": named})
 
     @classmethod
     def stored(cls, told: Notice | str | Mapping[str, Any]) -> Notice:
@@ -113,6 +171,11 @@ class Notice:
     def as_dict(self) -> dict[str, Any]:
         """Code, level, data and text, as JSON has them."""
         return {"code": self.code, "level": self.level, "data": self.data, "text": self.text}
+
+
+def stored_notices(notices: Iterable[Notice]) -> str:
+    """Notices as the JSON text that a store holds."""
+    return json.dumps([notice.as_dict() for notice in notices])
 
 
 def _plain(value: Any) -> Any:

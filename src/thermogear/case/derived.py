@@ -123,7 +123,7 @@ def _train(case: GearCase) -> list[Fact]:
         if np.isfinite(play):
             text += f", radial internal clearance {1e6 * play:.3g} um mounted and cold"
         found.append(Fact(group, one.name, text))
-    return found + [Fact(group, "unusual", words) for words in plan.misfits()]
+    return found + [Fact(group, "unusual", notice.text) for notice in plan.misfits()]
 
 
 def _oil(oil: Lubricant) -> list[Fact]:

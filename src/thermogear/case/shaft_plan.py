@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.materials import MATERIALS
+from thermogear.base.notice import Notice
 from thermogear.gears.pair import GearPair
 from thermogear.heat.shaft_heat import CoefficientFriction, Friction, HeatedBearing, ShaftHeat
 from thermogear.shafts.bearings.clearance import Fit, mounted_clearance
@@ -290,19 +291,18 @@ class TrainPlan:
                 found["life"][place] = rating_life(one.rolling, load) / turns
         return found
 
-    def misfits(self) -> Iterator[str]:
-        """What of the bearings is unusual, in words: bores beside the shaft's size, preloads."""
+    def misfits(self) -> Iterator[Notice]:
+        """What of the bearings is unusual: bores that differ from the shaft's size, preloads."""
         for one in self.bearings:
             if one.rolling is None:
                 continue
             under = section_at(self.shafts[SHAFTS.index(one.shaft)], one.position).outer_diameter
             if abs(under / one.rolling.bore - 1.0) > MISFIT:
-                yield (
-                    f"{one.name} has a bore of {1e3 * one.rolling.bore:.4g} mm on a shaft of "
-                    f"{1e3 * under:.4g} mm"
+                yield Notice.of(
+                    "bore_unlike_shaft", about=one.name, bore=one.rolling.bore, shaft=under
                 )
             if one.play < 0.0:
-                yield f"{one.name} is preloaded: a play of {1e6 * one.play:.4g} um as delivered"
+                yield Notice.of("bearing_preloaded_as_delivered", about=one.name, play=one.play)
 
 
 def loaded_stiffness(law: BearingLaw, load: float) -> float:

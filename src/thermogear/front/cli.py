@@ -187,6 +187,7 @@ def run(
 @click.option("--of", default="", metavar="KIND", help="Which results, where DIR holds several.")
 @click.option("--pictures", metavar="FOLDER", help="Save the page's pictures to FOLDER as well.")
 @click.option("--kind", metavar="KIND", help="Of the pictures: png [the default], svg or pdf.")
+@delivery.hide
 def report(directory: str, of: str, pictures: str | None, kind: str | None) -> None:
     """Draw the page anew, with every picture, from the results of any command stored in DIR."""
     from thermogear.views.write import write_pictures, write_report
@@ -196,14 +197,15 @@ def report(directory: str, of: str, pictures: str | None, kind: str | None) -> N
         raise InputError("--kind", kind, why="no picture is saved", fix="add --pictures FOLDER")
     if pictures is not None:
         written = write_pictures(place, Path(pictures), kind or "png", of)
-    for path in (write_report(place, of), *written):
+    hidden = click.get_current_context().meta.get(delivery.HIDDEN, ())
+    for path in (write_report(place, of, hidden=hidden), *written):
         show_path(path)
 
 
 @cli.command()
 @delivery.case
 @delivery.overrides
-@delivery.as_json
+@delivery.plain_json
 def check(case: str, overrides: tuple[str, ...], as_json: bool) -> None:
     """Check CASE without running it: the numbers it amounts to, the defaults it has taken."""
     from thermogear.case.derived import facts

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from thermogear.base.errors import InputError, printable
+from thermogear.base.errors import InputError, meant, printable
 from thermogear.base.progress import Progress
 from thermogear.front.lines import show_path
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from thermogear.results.result import Result
     from thermogear.views.page import Page
 
-CSV = "thermogear.csv"
+CSV, HIDDEN = "thermogear.csv", "thermogear.hidden"
 _Command = TypeVar("_Command", bound=Callable[..., Any])
 
 overrides = click.option(
@@ -63,7 +63,45 @@ def put_csv(result: Result) -> None:
         put(path, csv_text(result.to_frame(units="display")))
 
 
-as_json = click.option("--json", "as_json", is_flag=True, help="Print the figures as JSON.")
+def _hidden(context: click.Context, _: click.Parameter, given: tuple[str, ...]) -> None:
+    """Keep the codes of ``--hide`` for the end; refuse one that no notice has."""
+    from thermogear.base.notice import catalogue
+
+    codes = [code for text in given for code in text.split(",")]
+    for code in codes:
+        if code not in catalogue():
+            why, fix = "no notice has this code", meant(code, catalogue(), cutoff=0.0)
+            raise InputError("--hide", repr(code), why=why, fix=fix)
+    context.meta[HIDDEN] = codes
+
+
+hide = click.option(
+    "--hide",
+    metavar="CODE[,CODE]",
+    multiple=True,
+    expose_value=False,
+    callback=_hidden,
+    help="Leave out the notices of this code. May be repeated.",
+)
+
+
+def without_hidden(page: Page) -> Page:
+    """The page without the notices that ``--hide`` names; one says how many there were."""
+    from thermogear.views.write import page_of
+
+    shown = page.result.hiding(click.get_current_context().meta.get(HIDDEN, ()))
+    return page if shown is page.result else page_of(shown)
+
+
+plain_json = click.option("--json", "as_json", is_flag=True, help="Print the figures as JSON.")
+"""Of commands that have no notices."""
+
+
+def as_json(command: _Command) -> _Command:
+    """``--json``, and ``--hide`` of the notices that page, terminal and JSON show."""
+    return plain_json(hide(command))
+
+
 case = click.argument("case", metavar="CASE")
 
 
@@ -124,7 +162,7 @@ def deliver(
         from thermogear.views.write import clear_tables, page_of, write
 
         put_csv(result)
-        page = page_of(result)
+        page = without_hidden(page_of(result))
         if folder is not None:
             result.put(folder)
             every = f"All of them: thermogear report {printable(str(place))}"
@@ -142,8 +180,9 @@ def tell(page: Page, path: Path | None, *, as_json: bool) -> None:
     """Print a page as a terminal or a script wants it, and its path."""
     from thermogear.results.files import json_text
 
+    page = without_hidden(page)
     if as_json:
-        click.echo(json_text(page.numbers()), nl=False)
+        click.echo(json_text(page.figures), nl=False)
         return
     for line in page.lines():
         click.echo(line)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 @click.option("-o", "--output", metavar="FILE", help="Write the case to a new FILE.")
 @click.option("--speed", metavar="SPEED", help='Speed of the pinion, "3000 rpm", if FILE has none.')
 @click.option("--torque", metavar="TORQUE", help='Its torque, "80 N m", if FILE has none.')
-@delivery.as_json
+@delivery.plain_json
 def import_(
     file: str,
     stage: int | None,

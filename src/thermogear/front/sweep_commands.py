@@ -454,7 +454,7 @@ def _compute(plan: Plan, directory: Path, title: str, options: dict[str, Any]) -
         about.pop("title", None)
         took = round(time.monotonic() - begun, 3)
         result = finished(data, title).with_(**about, seconds=took)
-        write(page_of(result), directory)
+        write(delivery.without_hidden(page_of(result)), directory)
     except KeyboardInterrupt:
         from thermogear.front.progress import Stopped
 

@@ -57,7 +57,7 @@ def verify() -> None:
 )
 @_refine
 @_near
-@delivery.as_json
+@delivery.plain_json
 def stiffness(
     case: str,
     overrides: tuple[str, ...],
@@ -103,7 +103,7 @@ def stiffness(
 @click.option(
     "--bore", default="free", show_default=True, help="Support of the bores: free, rigid, shaft."
 )
-@delivery.as_json
+@delivery.plain_json
 def growth(case: str, overrides: tuple[str, ...], bore: str, as_json: bool) -> None:
     """Thermal growth of both gears' flanks in CASE: model, finite elements, difference."""
     import numpy as np
@@ -146,7 +146,7 @@ def growth(case: str, overrides: tuple[str, ...], bore: str, as_json: bool) -> N
 @verify.command()
 @_refine
 @_near
-@delivery.as_json
+@delivery.plain_json
 def pairs(refine: int, near: str, as_json: bool) -> None:
     """The fixed pairs: a published one, four of our own, and three at the model's edges."""
     from thermogear.base.display import LINE_LOAD

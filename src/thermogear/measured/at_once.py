@@ -18,6 +18,7 @@ import numpy as np
 
 from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.base.progress import Progress
+from thermogear.measured.record import Notice
 from thermogear.measured.reduction import Measurement
 from thermogear.measured.same_line import Place, places_of
 
@@ -42,7 +43,7 @@ class Row:
     signals: int = 0
     refused: str = ""
     withheld: str = ""
-    found: tuple[str, ...] = ()
+    found: tuple[Notice, ...] = ()
     warned: tuple[str, ...] = ()
 
 
@@ -70,7 +71,7 @@ def row_of(read: Read, file: Path) -> Row:
         samples=found.record.samples,
         signals=len(found.record.vibrating()),
         withheld="; ".join(f"channel {name!r}: {said}" for name, said in why.items() if said),
-        found=tuple(one.text for one in found.findings),
+        found=found.findings,
         warned=tuple(str(one.message) for one in caught),
     )
 

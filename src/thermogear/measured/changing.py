@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from scipy import signal
 
 from thermogear.base.errors import InputError
-from thermogear.base.units import RPM
 from thermogear.measured.chain import Turning
 from thermogear.measured.evidence import Evidence
 from thermogear.measured.gate import Passed
@@ -171,15 +170,14 @@ def read_in_angle(
         tacho=tacho,
     )
     if shaft is None and pulses_per_turn is not None:
-        text = f"pulses per turn given: {pulses_per_turn:g}; no tacho is found: they are not used"
-        notices.append(Notice("important", f"{text} (name it: --tacho NAME)"))
+        notices.append(Notice.of("pulses_without_tacho", given=pulses_per_turn))
     if shaft is not None and shaft.turns.size == 0:
         notices += shaft.told
         shaft = None
-    if shaft is not None and shaft.origin.startswith("speed"):
+    if shaft is not None and shaft.by_speed:
         if shaft.span < VARIES:
-            text = f"{shaft.origin}: steady within {100 * (shaft.span - 1):.2g} %"
-            return None, [*notices, Notice("info", text)]
+            told = Notice.of("speed_steady", channel=shaft.channel, within=shaft.span - 1.0)
+            return None, [*notices, told]
         shaft = locked(shaft, table, teeth)
     if shaft is None:
         shaft = tracked_shaft(table)
@@ -206,7 +204,6 @@ def _steady(shaft: Shaft, angle: OrderAngle, notices: list[Notice]) -> Changing:
     )
     gearing = angle.gearing or Gearing(
         mesh_frequency=mean,
-        mesh_frequency_error=0.5 / cycles.size,
         harmonics=(),
         shafts=(),
         meshes=(),
@@ -217,7 +214,7 @@ def _steady(shaft: Shaft, angle: OrderAngle, notices: list[Notice]) -> Changing:
         frequency=mean,
         half_width=mean / cycles.size,
         turning=turning,
-        said=f"lines are read in angle, by the {shaft.origin}",
+        told=(Notice.of("read_in_angle", channel=shaft.channel),),
         phase_noise=2.0 * np.pi * angle.mesh * angle.noise,
     )
     return Changing(
@@ -324,18 +321,15 @@ def _sliced(
     )
     if record.rate is not None:
         slices = replace(slices, resonances=resonances_of(slices, record.rate_share))
-    low, high = shafts_speed.min(), shafts_speed.max()
-    what = "the mesh line" if angle.of_mesh else "the shaft"
-    span = (
-        f"from {low / RPM:.5g} to {high / RPM:.5g} rpm"
-        if record.rate is not None
-        else f"by a factor {high / low:.3g}"
+    low, high = float(shafts_speed.min()), float(shafts_speed.max())
+    notices.append(
+        Notice.of(
+            "mesh_speed_changes" if angle.of_mesh else "speed_changes",
+            lowest=low if record.rate is not None else None,
+            highest=high if record.rate is not None else None,
+            ratio=high / low,
+        )
     )
-    text = (
-        f"the speed of {what} changes {span}: orders are read slice by slice; an amplitude of the "
-        "table of lines is the root mean square over the turns"
-    )
-    notices.append(Notice("important", text))
     lines = _lines(slices, wanted, angle, mean, rate, record.rate is not None)
     return Changing(
         gearing=gearing,
@@ -465,16 +459,15 @@ def harmonics_told(mesh: Gearing | float | None, asked: int, rate: float | None)
 
     ``mesh`` line [cycles/sample], or the gearing that has it; ``rate`` [samples/s].
 
-    >>> print(*(one.text for one in harmonics_told(0.0596, 20, 10_000.0)))
-    6 of 20 mesh harmonics are read: the others are above the rate/2.56, 3906 Hz
+    >>> [told.data["read"] for told in harmonics_told(0.0596, 20, 10_000.0)]
+    [6]
     """
     line = mesh.mesh_frequency if isinstance(mesh, Gearing) else mesh
     fit = asked if line is None else max(int(_HIGHEST / line), 1)
     if fit >= asked:
         return []
-    top = f"{_HIGHEST:.4g} cycles/sample" if rate is None else f"{_HIGHEST * rate:.4g} Hz"
-    text = f"{fit} of {asked} mesh harmonics are read: the others are above the rate/2.56, {top}"
-    return [Notice("info", text)]
+    top = None if rate is None else _HIGHEST * rate
+    return [Notice.of("harmonics_above_rate", read=fit, asked=asked, highest=top)]
 
 
 def _apart(beside: Sequence[float]) -> list[float]:

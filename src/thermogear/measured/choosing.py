@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -15,7 +14,6 @@ from thermogear.signals.stamps import grain_of, pace_of
 
 _FIRST = 1 << 10  # samples in which nearly every vibration turns back
 _STRAIGHT = 0.05  # of its rise: how far a clock or a counter may be off a straight line
-_NAMED = 5
 _MOTION = ("acceleration", "velocity", "displacement")
 
 
@@ -52,47 +50,50 @@ def chosen_channels(
     """The channels to reduce: those named, else all of one unit that hold a vibration.
 
     The unit is the first channel's, of those without one the first of motion. What is left out is
-    told in ``notices``, once: in place of what the reader has told of it.
+    told in ``notices``, once.
     """
     if channels:
         picked = [record.channel(name) for name in channels]
         for channel in picked:
-            if why := _nothing(channel, record):
-                raise InputError("channel", repr(channel.name), why=f"no signal: {why}")
+            if (told := _nothing(channel)) is not None:
+                raise InputError("channel", repr(channel.name), why=told.text, fix=_advice(record))
         return picked
     alive, silent = [], []
     for channel in record.signals():
-        if why := _nothing(channel, record):
-            silent.append(f"channel {channel.name!r} holds no signal: {why}")
-            told = Notice("important", f"channel {channel.name!r} {health(channel).state}")
-            if told in notices:
-                notices.remove(told)
-            else:
-                told = Notice("warning", silent[-1])
-            notices.append(replace(told, text=f"{told.text}; left out"))
-        else:
+        if (told := _nothing(channel)) is None:
             alive.append(channel)
+            continue
+        silent.append(told)
+        notices += [told] if told not in notices else []
     if not alive:
-        raise InputError("record", record.source, why="; ".join(silent[:3]))
+        why = "; ".join(told.text for told in silent[:3])
+        raise InputError("record", record.source, why=why, fix=_advice(record))
     moving = (c.unit for c in alive if c.unit is not None and kind_of(c.unit) in _MOTION)
     first = alive[0].unit or next(moving, None)
-    others = [f"{c.name!r} ({c.unit or 'no unit'})" for c in alive if c.unit != first]
+    others = [c for c in alive if c.unit != first]
     if others:
-        shown = ", ".join(others[:_NAMED]) + (", ..." if len(others) > _NAMED else "")
-        kept = f"those in {first}" if first else "those without a unit"
-        text = f"channels of several units: {kept} are reduced; left aside: {shown}"
-        notices.append(Notice("info", text))
+        units = [c.unit for c in others]
+        notices.append(
+            Notice.of(
+                "several_units",
+                unit=first,
+                channels=[c.name for c in others],
+                units=units if all(units) else None,
+            )
+        )
     return [c for c in alive if c.unit == first]
 
 
-def _nothing(channel: Channel, record: Record) -> str:
-    """Why no vibration can be read from a channel, "" where there may be one."""
-    if why := health(channel).silent:
-        return why
-    if not counts(channel):
-        return ""
-    advice = "" if record.rate is not None else " (if it is the time, give --rate)"
-    return f"it rises (or falls) evenly, as a clock or a counter does{advice}"
+def _nothing(channel: Channel) -> Notice | None:
+    """Why no vibration can be read from a channel, None where there may be one."""
+    told = health(channel).told(channel.name)
+    if told is None and counts(channel):
+        return Notice.of("channel_counts", channel=channel.name)
+    return told
+
+
+def _advice(record: Record) -> str:
+    return "" if record.rate is not None else "if it is the time, give --rate"
 
 
 def counts(channel: Channel) -> bool:

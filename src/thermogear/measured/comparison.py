@@ -164,7 +164,7 @@ def compared(
     if not names:
         raise InputError("simulated", "nothing", allowed="at least one model", fix="name a case")
     rows: list[Row] = []
-    notices: list[Notice] = list(said)
+    notices, wrong = list(said), list[float]()
     highest = max(line.frequency for line in table.lines)
     for number, line in enumerate(table.lines):
         found = [models[name].near(line.speed) for name in names]
@@ -172,9 +172,8 @@ def compared(
             notices.append(Notice.of("speed_not_simulated", speed=line.speed))
             continue
         simulated = [item for item in found if item is not None]
-        u_d, why = _data_uncertainty(line, table, highest, u_data)
-        if why and why not in [notice.text for notice in notices]:
-            notices.append(Notice("important", why))
+        u_d, told = _data_uncertainty(line, table, highest, u_data)
+        notices += [told] if told is not None and told not in notices else []
         of_inputs = u_input or {line.speed: 0.0}
         entered = of_inputs[min(of_inputs, key=lambda speed: abs(speed - line.speed))]
         swing, turns = (
@@ -198,7 +197,7 @@ def compared(
             replace(
                 turns,
                 u_data=(table.bin_width or 0.0) / np.sqrt(12.0) / line.frequency,
-                verdict=_frequency_verdict(simulated, line, table, names),
+                verdict=_frequency_verdict(simulated, line, table, names, wrong),
             ),
             replace(swing, verdict=verdict(swing, names)),
         ]
@@ -210,32 +209,35 @@ def compared(
             fix="give the case one of them within 5 %: --set 'operating.speed=... rpm'",
         )
     implied = tuple(_implied(line, table) for line in table.lines)
-    notices += _misprints(rows, names) + _doubts(implied)
+    notices += _misprints(rows, names)
+    notices += [Notice.of("frequency_impossible", speeds=wrong)] if wrong else []
+    notices += _doubts(implied)
     return Comparison(table.name, names, tuple(rows), implied, tuple(notices))
 
 
 def _data_uncertainty(
     line: SpeedLine, table: LineTable, highest: float, given: float | None
-) -> tuple[float, str]:
+) -> tuple[float, Notice | None]:
     if given is not None:
-        return float(given), ""
+        return float(given), None
     if line.uncertainty is not None:
-        return line.uncertainty, ""
+        return line.uncertainty, None
     if table.processing_stated:
-        return 0.0, "the measurement states no uncertainty: u_D is taken as 0"
+        return 0.0, Notice.of("uncertainty_not_stated")
     parts = unstated_processing(line.frequency, highest=highest)
-    return (
-        float(np.sqrt(sum(part**2 for part in parts.values()))),
-        "window, rate and integration of the measurement are not stated: u_D holds a Hann "
-        "window's scalloping (0..15.1 %) and what the trapezoid loses at 2.56 times the highest "
-        "line; state u_D to replace it",
-    )
+    size = float(np.sqrt(sum(part**2 for part in parts.values())))
+    return size, Notice.of("processing_not_stated")
 
 
 def _frequency_verdict(
-    simulated: Sequence[SpeedLine], line: SpeedLine, table: LineTable, names: Sequence[str]
+    simulated: Sequence[SpeedLine],
+    line: SpeedLine,
+    table: LineTable,
+    names: Sequence[str],
+    wrong: list[float],
 ) -> str:
-    """A model forced at the mesh frequency answers at j/n of it and nowhere else.
+    """A model forced at the mesh frequency answers at j/n of it and nowhere else; the speed goes
+    to ``wrong`` where one does not.
 
     A speed is known no better than the measured line shows it: by how far that line is off j/n of
     the speed stated for it, and by half a line of its spectrum.
@@ -244,15 +246,14 @@ def _frequency_verdict(
     if teeth is None:
         return "no tooth number: nothing to tell"
     known = max(_ROUNDING, _off(line, teeth), 0.5 * (table.bin_width or 0.0) / line.frequency)
-    impossible = [
-        f"{name} ({item.frequency:g} Hz)"
-        for name, item in zip(names, simulated, strict=True)
-        if _off(item, teeth) > known
-    ]
+    models = zip(names, simulated, strict=True)
+    impossible = {name: item for name, item in models if _off(item, teeth) > known}
     if impossible:
+        which = ", ".join(f"{name} ({item.frequency:g} Hz)" for name, item in impossible.items())
+        wrong.append(line.speed)
         forced = teeth * line.speed / (2.0 * np.pi)
         return (
-            f"impossible: {', '.join(impossible)} is no line j/n of the {forced:.3f} Hz that "
+            f"impossible: {which} is no line j/n of the {forced:.3f} Hz that "
             f"forces the model, known to {100.0 * known:.2g} %"
         )
     if len({item.frequency for item in simulated}) == 1:
@@ -283,29 +284,20 @@ def _misprinted(row: Row) -> dict[int, tuple[float, float]]:
 
 
 def _misprints(rows: Sequence[Row], names: Sequence[str]) -> list[Notice]:
-    notices = [
-        Notice(
-            "important",
-            f"{row.speed / RPM:.0f} rpm, {row.quantity}, {names[place]}: printed "
-            f"{row.printed[place]} %, recomputed {100.0 * abs(row.errors[place]):.2f} %, "
-            f"{low:.2f} to {high:.2f} % as the entries are rounded",
+    return [
+        Notice.of(
+            "printed_error_wrong",
+            speed=row.speed,
+            quantity=row.quantity,
+            model=names[place],
+            printed=float(row.printed[place]) / 100.0,
+            error=abs(row.errors[place]),
+            least=low / 100.0,
+            greatest=high / 100.0,
         )
         for row in rows
         for place, (low, high) in _misprinted(row).items()
     ]
-    wrong = [row for row in rows if row.verdict.startswith("impossible")]
-    if wrong:
-        notices.append(
-            Notice(
-                "important",
-                "the frequency column carries no thermal information: at "
-                + ", ".join(f"{row.speed / RPM:.0f}" for row in wrong)
-                + " rpm the simulated main frequency is "
-                + wrong[0].verdict.split(" is ", 1)[-1].split(" of the ")[0]
-                + " of the mesh frequency",
-            )
-        )
-    return notices
 
 
 def _implied(line: SpeedLine, table: LineTable) -> Implied:
@@ -324,20 +316,13 @@ def _implied(line: SpeedLine, table: LineTable) -> Implied:
 
 
 def _doubts(implied: Sequence[Implied]) -> list[Notice]:
-    notices = []
     large = [item for item in implied if item.acceleration_g > _IMPLAUSIBLE_G]
-    if large:
-        notices.append(
-            Notice(
-                "important",
-                "implausible on a housing: "
-                + ", ".join(
-                    f"{item.acceleration_g:.1f} g at {item.speed / RPM:.0f} rpm" for item in large
-                ),
-            )
-        )
-    notices.append(Notice.of("housing_is_not_mesh"))
-    return notices
+    implausible = Notice.of(
+        "acceleration_implausible",
+        accelerations=[item.acceleration_g * STANDARD_GRAVITY for item in large],
+        speeds=[item.speed for item in large],
+    )
+    return [*([implausible] if large else []), Notice.of("housing_is_not_mesh")]
 
 
 def result_of(found: Comparison) -> Result:

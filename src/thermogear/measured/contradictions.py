@@ -7,9 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
-from thermogear.base.units import RPM
 from thermogear.measured.record import Notice
 
 NEAR = 0.1
@@ -21,16 +18,7 @@ def of_teeth(given: int | None, found: Sequence[int]) -> Notice | None:
     """Teeth ``given`` that are none of those ``found`` on the mesh line (none: undecided)."""
     if given is None or not found or given in found:
         return None
-    other = (
-        "a gear of another mesh"
-        if len(found) > 1
-        else "the other gear of the mesh, whose sidebands do not show"
-    )
-    return Notice(
-        "important",
-        f"teeth given: {given}; teeth found: {_both(found)}. The {given} may be those of {other}, "
-        f"or they are wrong; orders count the turns of a gear of {given}",
-    )
+    return Notice.of("teeth_contradicted", given=given, found=found)
 
 
 def of_pulses(
@@ -41,21 +29,18 @@ def of_pulses(
     known = list(found) or ([teeth] if teeth else [])
     if given is None or not known or any(abs(mesh / z - 1.0) < _WHOLE for z in known):
         return None
-    said = f"found: {_both(known)} teeth, and" if found else f"teeth given: {teeth}; found:"
-    fitting = [(given * z / mesh, z) for z in known]
-    ways = [
-        f"{round(p)} would fit a tacho on the shaft of {z} teeth"
-        for p, z in fitting
-        if abs(p - round(p)) < _WHOLE * p
-    ]
-    other = f"the other gear, of {round(mesh)} teeth, or on "
+    pulses = {z: given * z / mesh for z in known}
+    fitting = {z: round(p) for z, p in pulses.items() if abs(p - round(p)) < _WHOLE * p}
     whole = len(known) == 1 and abs(mesh - round(mesh)) < _WHOLE
-    fits = f"{given:g} {'fits' if given == 1.0 else 'fit'} one on the shaft of"
-    ways.append(f"{fits} {other if whole else ''}no gear of this mesh")
-    return Notice(
-        "important",
-        f"pulses per turn given: {given:g}; {said} the mesh line at order {mesh:.5g} of the "
-        f"tacho's shaft: {', '.join(ways)}",
+    return Notice.of(
+        "pulses_contradict_teeth",
+        given=given,
+        teeth_given=None if found else teeth,
+        teeth_found=found or None,
+        order=mesh,
+        fitting=list(fitting.values()) or None,
+        of_teeth=list(fitting) or None,
+        mate=round(mesh) if whole else None,
     )
 
 
@@ -70,12 +55,13 @@ def of_tacho_speed(
     if any(abs(given / one - 1.0) <= NEAR for one in shafts):
         return None
     would = round(pulses * own / given)
-    ways = [f"{would} would fit"] if would and abs(pulses * own / given / would - 1) < NEAR else []
-    ways += ["the speed given may be wrong or that of another shaft, or the rate is wrong"]
-    return Notice(
-        "important",
-        f"pulses per turn given: {pulses:g}, with which the tacho's shaft turns at "
-        f"{own / RPM:.6g} rpm; speed given: {given / RPM:.6g} rpm: {', '.join(ways)}",
+    fits = would and abs(pulses * own / given / would - 1) < NEAR
+    return Notice.of(
+        "pulses_contradict_speed",
+        given=pulses,
+        speed_found=own,
+        speed_given=given,
+        fitting=would if fits else None,
     )
 
 
@@ -83,37 +69,31 @@ def of_speed(given: float | None, *, lowest: float, highest: float) -> Notice | 
     """A speed ``given`` [rad/s] that the first shaft, from ``lowest`` to ``highest``, never has."""
     if given is None or (1.0 - NEAR) * lowest <= given <= (1.0 + NEAR) * highest:
         return None
-    span = f"{lowest / RPM:.5g} to {highest / RPM:.5g} rpm over the record"
-    return Notice(
-        "important",
-        f"speed given: {given / RPM:.6g} rpm; found: {span}. The speed given may be wrong, or "
-        "teeth, pulses per turn or the rate are",
-    )
+    return Notice.of("speed_contradicted", given=given, lowest=lowest, highest=highest)
 
 
-def of_mate(teeth: int, *, speed: float, shaft: float, found: Sequence[int]) -> tuple[str, str]:
+def of_mate(teeth: int, *, speed: float, shaft: float, found: Sequence[int]) -> Notice | None:
     """Which gear turns at the ``speed`` [rad/s] given, where that of the ``teeth`` given turns at
-    ``shaft`` [rad/s], and what to state instead; both empty where none of the teeth ``found`` on
-    the same mesh line turns so, or the gear of the teeth given does.
+    ``shaft`` [rad/s]; None where none of the teeth ``found`` on the same mesh line turns so, or
+    the gear of the teeth given does.
 
-    >>> of_mate(71, speed=129.12, shaft=52.74, found=[29, 71])[1]
-    'give teeth and speed of one gear: --teeth 29 --speed 1233 or --teeth 71 --speed 503.63'
+    >>> of_mate(71, speed=129.12, shaft=52.74, found=[29, 71]).data["mate"]
+    29
     """
     if abs(shaft / speed - 1.0) <= NEAR:
-        return "", ""
-    others = [(z, shaft * teeth / z) for z in found if z != teeth]
-    fitting = [(abs(own / speed - 1.0), z, own) for z, own in others]
-    off, mate, own = min(fitting, default=(np.inf, 0, 0.0))
-    if off > NEAR:
-        return "", ""
-    rpm = f"{own / RPM:.5g}", f"{shaft / RPM:.5g}"
-    text = (
-        f"teeth given: {teeth}; speed given: {speed / RPM:.6g} rpm; found: that is the speed of "
-        f"the gear of {mate} teeth, which turns at {rpm[0]} rpm; the gear of {teeth} teeth turns "
-        f"at {rpm[1]} rpm"
+        return None
+    others = {z: shaft * teeth / z for z in found if z != teeth}
+    mate = min(others, key=lambda z: abs(others[z] / speed - 1.0), default=None)
+    if mate is None or abs(others[mate] / speed - 1.0) > NEAR:
+        return None
+    return Notice.of(
+        "speed_is_of_mate",
+        teeth=teeth,
+        speed=speed,
+        mate=mate,
+        mate_speed=others[mate],
+        teeth_speed=shaft,
     )
-    ways = f"--teeth {mate} --speed {rpm[0]} or --teeth {teeth} --speed {rpm[1]}"
-    return text, f"give teeth and speed of one gear: {ways}"
 
 
 def of_line(given: float, *, found: float, weight: float) -> Notice | None:
@@ -121,13 +101,6 @@ def of_line(given: float, *, found: float, weight: float) -> Notice | None:
     nearly all the ``weight`` has another."""
     if abs(found / given - 1.0) <= NEAR:
         return None
-    return Notice(
-        "important",
-        f"teeth and speed given put the mesh line at {given:.6f} cycles/sample, where it is read; "
-        f"found: {found:.6f} (weight {weight:.4g}). {found / given:.4g} times the speed given "
-        "would fit",
+    return Notice.of(
+        "mesh_line_contradicted", given=given, found=found, weight=weight, ratio=found / given
     )
-
-
-def _both(teeth: Sequence[int]) -> str:
-    return " and ".join(map(str, teeth))

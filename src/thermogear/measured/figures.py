@@ -69,10 +69,10 @@ def figures(found: Measurement) -> dict[str, Any]:
         "given": {"teeth": found.given[0], "speed": found.given[1]},
         "found": _found(gearing),
         "swelling": vars(found.swelling) if found.swelling else None,
-        "findings": [{**vars(one), "text": one.text} for one in found.findings],
+        "findings": [one.as_dict() for one in found.findings],
         "lines": [_line(line, found.record) for line in found.lines],
         "slices": None if run is None else _slices(run, found.record),
-        "notices": [vars(notice) for notice in found.notices],
+        "notices": [notice.as_dict() for notice in found.notices],
         "units": units(found.record, found.channels),
     }
 

@@ -1,13 +1,14 @@
 """The gate that a record passes before any number: damage found, what is done, what it may do.
 
-Each finding says where, how much, what was done and what it may do to the result. Either the
-stated uncertainty holds it, or the number is withheld with the reason.
+Each finding is a notice: where, how much, what was done and what it may do to the result. Either
+the stated uncertainty holds it, or the number is withheld with the reason.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,38 +39,6 @@ _COPY = 1e-9  # 1 - |correlation| of a copy
 _UNSURE = 0.2  # of a filled share: how far its own line may differ from that of the rest
 
 
-@dataclass(frozen=True, kw_only=True)
-class Finding:
-    """One damage: ``kind``, ``channel`` ("" for all), samples ``first``..``last`` of the record,
-    how many and which ``share``; what was ``done``, its ``effect``, whether it ``withholds``."""
-
-    kind: str
-    channel: str = ""
-    first: int = 0
-    last: int = 0
-    count: int = 0
-    share: float = 0.0
-    done: str = ""
-    effect: str = ""
-    withholds: bool = False
-
-    @property
-    def text(self) -> str:
-        """One line."""
-        where = f"channel {self.channel!r}: " if self.channel else ""
-        much = ""
-        if self.count:
-            percent = 100.0 * self.share
-            share = f"{percent:.2g} %" if percent < 99.5 else f"{percent:.0f} %"
-            much = f", {self.count} samples ({share}) in {self.first}..{self.last}"
-        return f"{where}{self.kind}{much}; {self.done}; {self.effect}"
-
-    @property
-    def notice(self) -> Notice:
-        """The finding as a notice: important where a number is withheld."""
-        return Notice("important" if self.withholds else "warning", self.text)
-
-
 @dataclass(kw_only=True)
 class Passed:
     """What came through: ``table`` (channel, sample) from sample ``start`` on, nothing missing.
@@ -82,7 +51,7 @@ class Passed:
     channels: list[Channel]
     table: Floats
     start: int = 0
-    findings: list[Finding] = field(default_factory=list)
+    findings: list[Notice] = field(default_factory=list)
     extra: dict[str, float] = field(default_factory=dict)
     clipped: dict[str, float] = field(default_factory=dict)
     withheld: dict[str, str] = field(default_factory=dict)
@@ -114,9 +83,10 @@ def turned_by(share: float, *, samples: int) -> float:
 def require_sampling_rate(record: Record) -> None:
     """Refuse a rate so low that it may be a shaft's."""
     if record.rate is not None and record.rate < LEAST_RATE:
-        fix = "give the samples per second by --rate, the shaft's speed by --speed"
-        if "time column" in record.rate_origin:
-            fix += "; if the time column counts milliseconds, name it 'time [ms]'"
+        fix = (
+            "give the samples per second by --rate, the shaft's speed by --speed; if a time column "
+            "counts milliseconds, name it 'time [ms]'"
+        )
         raise InputError(
             "rate",
             f"{record.rate:g} samples/s",
@@ -220,19 +190,25 @@ class _Channel:
         for one, count in kept:
             share = count / size
             if stretch and count == 0:
-                self.say(one, f"only the longest whole stretch is used, samples "
-                         f"{stretch[0]}..{stretch[1] - 1}", "none on that stretch")  # fmt: skip
+                self.through.findings.append(
+                    Notice.of(
+                        "damage_cut_away",
+                        value=one.value,
+                        stretch_first=stretch[0],
+                        stretch_last=stretch[1] - 1,
+                        **self.where(one),
+                    )
+                )
                 continue
             if total <= FILLED:
                 missing |= one.samples
                 continue
-            if one.kind in _TOO_MUCH and not (one.kind == "held" and _in_blocks(one)):
-                effect = _TOO_MUCH[one.kind]
-            else:
+            if one.kind != "clipping" and (one.kind != "held" or _in_blocks(one)):
                 missing |= one.samples  # a number must stand there
-                effect = "more is lost than can be filled in"
             withhold = withhold or f"{one.kind}, {100 * share:.2g} % of the samples"
-            self.say(one, "amplitudes are withheld", effect, withholds=True)
+            self.through.findings.append(
+                Notice.of("amplitudes_withheld", value=one.value, **self.where(one))
+            )
         if stretch:
             missing[: stretch[0]] = missing[stretch[1] :] = False
             outside = np.ones(values.size, dtype=bool)
@@ -260,10 +236,10 @@ class _Channel:
         self.more_of_strongest(own)
         self.more(own)
         if own > COARSE:
-            self.through.withheld.setdefault(self.channel.name, _WORDS[one.kind])
-            self.say(one, "amplitudes are withheld", _TOO_MUCH[one.kind], withholds=True)
+            self.through.withheld.setdefault(self.channel.name, "coarse levels")
+            self.through.findings.append(Notice.of("levels_too_coarse", **self.where(one)))
         else:
-            self.say(one, "kept", f"adds {100 * own:.2g} % to the half width of amplitudes")
+            self.through.findings.append(Notice.of("levels_coarse", adds=own, **self.where(one)))
 
     def more(self, own: float) -> None:
         """Add to the relative half width of the channel's amplitudes."""
@@ -287,48 +263,32 @@ class _Channel:
             share = count / size * (2.0 if one.kind == "clipping" else 1.0)
             own = share * (_UNSURE + (1.0 - _UNSURE) * (1.0 - explained))
             extra += own
-            whole = one.kind == "clipping"
-            if whole:
+            clipped = one.kind == "clipping"
+            if clipped:
                 self.more_of_strongest(own)
-            self.say(one, "filled in by the channel's own lines",
-                     f"adds {100 * own:.2g} % {'of the strongest line ' if whole else ''}"
-                     "to the half width of amplitudes")  # fmt: skip
+            self.through.findings.append(
+                Notice.of(
+                    "clipping_filled_in" if clipped else "damage_filled_in",
+                    adds=own,
+                    value=one.value,
+                    **self.where(one),
+                )
+            )
         self.more(extra)
 
-    def say(self, one: Damage, done: str, effect: str, *, withholds: bool = False) -> None:
-        value = "" if one.value is None or one.kind == "coarse" else f" {one.value:g}"
-        self.through.findings.append(
-            Finding(
-                kind=f"{_WORDS[one.kind]}{value}",
-                channel=self.channel.name,
-                first=one.first,
-                last=one.last,
-                count=one.count,
-                share=one.count / one.samples.size,
-                done=done,
-                effect=effect,
-                withholds=withholds,
-            )
-        )
+    def where(self, one: Damage) -> dict[str, Any]:
+        """Which damage of which samples of the channel."""
+        return {
+            "channel": self.channel.name,
+            "damage": one.kind,
+            "samples": one.count,
+            "share": one.count / one.samples.size,
+            "first": one.first,
+            "last": one.last,
+        }
 
 
-_WORDS = {
-    "missing": "no number (NaN)",
-    "sentinel": "the value",
-    "zeros": "blocks of zeros",
-    "held": "held samples",
-    "spikes": "spikes",
-    "clipping": "clipping at",
-    "coarse": "coarse levels",
-    "quiet": "no vibration",
-}
 _GONE = ("missing", "sentinel", "zeros", "quiet")
-_TOO_MUCH = {
-    "clipping": "lines are too small, and harmonics are made, by an unknown amount",
-    "held": "a sample that repeats the one before weakens lines and makes images",
-    "coarse": "rounding to few levels is no noise, and falsifies every line (use more of the "
-    "converter's range)",
-}
 
 
 def _without_copies(through: Passed) -> Passed:
@@ -349,11 +309,10 @@ def _without_copies(through: Passed) -> Passed:
             units.append(own)
             continue
         through.findings.append(
-            Finding(
-                kind=f"a copy of {through.channels[twin].name!r}",
+            Notice.of(
+                "copy_left_out",
                 channel=through.channels[place].name,
-                done="left out",
-                effect="it holds nothing of its own",
+                original=through.channels[twin].name,
             )
         )
     through.channels = [through.channels[k] for k in kept]
@@ -371,17 +330,16 @@ def _proportions(through: Passed) -> None:
         for name, size in (("mean", abs(mean)), ("trend", span)):
             if size > _PROPORTION * moving > 0.0:
                 through.findings.append(
-                    Finding(
-                        kind=f"a {name} of {size / moving:.3g} times the rms that vibrates",
+                    Notice.of(
+                        "mean_taken_away" if name == "mean" else "trend_taken_away",
                         channel=channel.name,
-                        done="taken away",
-                        effect="the sensor's range may be used up: see clipping",
+                        ratio=size / moving,
                     )
                 )
         through.table[place] = straight if span > moving else values - mean
 
 
-def events_of(through: Passed) -> list[Finding]:
+def events_of(through: Passed) -> list[Notice]:
     """Short events of a record at one speed; they are kept. A run passes resonances as short."""
     findings = []
     for channel, values in zip(through.channels, through.table, strict=True):
@@ -389,16 +347,14 @@ def events_of(through: Passed) -> list[Finding]:
         if event is not None:
             count = event.last - event.first + 1
             findings.append(
-                Finding(
-                    kind=f"a short event, {event.times:.2g} times the usual range",
+                Notice.of(
+                    "short_event",
                     channel=channel.name,
+                    ratio=event.times,
+                    samples=count,
+                    share=count / through.table.shape[-1],
                     first=through.start + event.first,
                     last=through.start + event.last,
-                    count=count,
-                    share=count / through.table.shape[-1],
-                    done="kept",
-                    effect="sidebands' intervals hold what it adds, a mesh line's do not "
-                    "(cut it out)",
                 )
             )
     return findings

@@ -221,7 +221,6 @@ class Gearing:
     decided (the fastest first), further meshes, the hypotheses and the evidence in words."""
 
     mesh_frequency: float
-    mesh_frequency_error: float
     harmonics: tuple[float, ...]
     shafts: tuple[Shaft, ...]
     meshes: tuple[Mesh, ...]
@@ -319,9 +318,8 @@ def _of_family(table: Floats, family: _Family, weighed: Evidence, told_as: float
     angle_of = _angle(table, mesh)
     shafts: tuple[Shaft, ...] = ()
     meshes: tuple[Mesh, ...] = ()
-    error = 0.5 / table.shape[-1]
     if angle_of is not None:
-        cycles, dropped, mesh, error = angle_of
+        cycles, dropped, mesh = angle_of
         kept = table[:, dropped : dropped + cycles.size]
         top = max(1, min(_HARMONICS, int(0.45 / mesh)))
         per_cycle = samples_per_cycle(mesh)
@@ -346,7 +344,6 @@ def _of_family(table: Floats, family: _Family, weighed: Evidence, told_as: float
         )
     return Gearing(
         mesh_frequency=mesh,
-        mesh_frequency_error=error,
         harmonics=heights,
         shafts=shafts,
         meshes=meshes,
@@ -405,8 +402,8 @@ def _family(raw: Prominence, near: float) -> _Family:
     )
 
 
-def _angle(table: Floats, mesh: float) -> tuple[Floats, int, float, float] | None:
-    """Cycles of the mesh line at each sample, samples dropped, mean mesh line and its error."""
+def _angle(table: Floats, mesh: float) -> tuple[Floats, int, float] | None:
+    """Cycles of the mesh line at each sample, samples dropped and the mean mesh line."""
     half = max(_NARROW * mesh, 12.0 / table.shape[-1])
     if half > 0.2 * mesh:
         return None
@@ -417,12 +414,9 @@ def _angle(table: Floats, mesh: float) -> tuple[Floats, int, float, float] | Non
     ]
     best = table[int(np.argmax(heights))]
     cycles, dropped = line_angle(best, frequency=mesh, half_width=half)
-    place = np.arange(cycles.size)
-    slope, offset = np.polyfit(place, cycles, 1)
-    wander = float(np.std(cycles - slope * place - offset))
     if np.any(np.diff(cycles) <= 0):
         return None
-    return cycles, dropped, float(slope), max(wander, 0.01) / cycles.size * float(np.sqrt(12.0))
+    return cycles, dropped, float(np.polyfit(np.arange(cycles.size), cycles, 1)[0])
 
 
 def _near(count: int, frequency: float) -> slice:
@@ -452,9 +446,12 @@ def told_of_mate(gearing: Gearing, *, teeth: int | None, samples: int) -> list[N
     turns = gearing.mesh_frequency * samples / known[0] if known else np.inf
     if len(known) != 1 or turns >= _SLOWEST:
         return []
-    text = (
-        f"the record holds {turns:.3g} turns of the gear of {known[0]} teeth; what a mate that is "
-        f"not known, of more than {turns * known[0] / _FEW:.0f} teeth, changes of the mesh line "
-        "counts as the line's own: it turned fewer than four times"
-    )
-    return [Notice("warning" if turns < SLOW else "info", text)]
+    return [
+        Notice.of(
+            "mate_turned_little" if turns < SLOW else "mate_may_have_turned_little",
+            turns=turns,
+            teeth=known[0],
+            mate=round(turns * known[0] / _FEW),
+            least=_FEW,
+        )
+    ]

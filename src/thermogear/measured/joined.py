@@ -47,13 +47,8 @@ def join_records(records: Sequence[Record], how: str, *, names: Sequence[str] = 
     rate = _one_rate(records, files)
     join = _channels if how == "channels" else _pieces
     found = join(records, files, rate)
-    told = [
-        replace(notice, text=f"{file}: {notice.text}")
-        for file, one in zip(files, records, strict=True)
-        for notice in one.notices
-    ]
     doubt = next((one.rate_doubt for one in records if one.rate_doubt), "")
-    return replace(found, notices=(*_merged(told, files), *found.notices), rate_doubt=doubt)
+    return replace(found, notices=(*_merged(records, files), *found.notices), rate_doubt=doubt)
 
 
 def _short(names: Sequence[str]) -> list[str]:
@@ -66,16 +61,13 @@ def _short(names: Sequence[str]) -> list[str]:
     return [str(path) if alike else path.name for path in paths]
 
 
-def _merged(told: Sequence[Notice], files: Sequence[str]) -> list[Notice]:
-    """Notices; what every file says is said once."""
-    texts = Counter(one.text.partition(": ")[2] for one in told)
-    found: dict[str, Notice] = {}
-    for one in told:
-        text = one.text.partition(": ")[2]
-        if texts[text] == len(files):
-            one = replace(one, text=f"every file: {text}")
-        found.setdefault(one.text, one)
-    return list(found.values())
+def _merged(records: Sequence[Record], files: Sequence[str]) -> list[Notice]:
+    """The records' notices with the files of each; what several files have is told once."""
+    places: dict[Notice, list[str]] = {}
+    for file, record in zip(files, records, strict=True):
+        for notice in dict.fromkeys(record.notices):
+            places.setdefault(notice, []).append(file)
+    return [notice.of_files(those) for notice, those in places.items()]
 
 
 def _one_rate(records: Sequence[Record], files: Sequence[str]) -> float | None:
@@ -121,13 +113,7 @@ def _channels(records: Sequence[Record], files: Sequence[str], rate: float | Non
             fix="leave one out, or join pieces with --join time",
         )
     if late:
-        notes.append(
-            Notice(
-                "warning",
-                f"by their time stamps the files start up to {max(shifts)} samples apart: all are "
-                f"cut to their common start",
-            )
-        )
+        notes.append(Notice.of("cut_to_common_start", samples=max(shifts)))
     count, most = min(left), max(left)
     if count < most:
         short, long = files[left.index(count)], files[left.index(most)]
@@ -139,8 +125,7 @@ def _channels(records: Sequence[Record], files: Sequence[str], rate: float | Non
                 f"{records[files.index(long)].samples}: channels of one run are equally long",
                 fix="leave it out, or join pieces with --join time",
             )
-        text = f"{short} is {most - count} samples shorter than {long}: all are cut to its length"
-        notes.append(Notice("warning", text))
+        notes.append(Notice.of("cut_to_shortest", file=short, longest=long, samples=most - count))
     names = Counter(c.name for one in records for c in one.channels)
     channels: list[Channel] = []
     tacho = None
@@ -238,14 +223,12 @@ def _gaps(
     gaps = [0] * len(records)
     starts = [one.start for one in records]
     if rate is None or len(set(starts)) == 1:
-        text = "no time stamps go on from file to file: that no samples are missing is not checked"
-        return gaps, [Notice("warning", text)]
+        return gaps, [Notice.of("pieces_without_time")]
     notes: list[Notice] = []
     total = sum(one.samples for one in records)
     for k in range(1, len(records)):
         end = starts[k - 1] + records[k - 1].samples / rate
         lost = (starts[k] - end) * rate
-        between = f"between {files[k - 1]} and {files[k]}"
         if lost < -0.5:
             raise InputError(
                 "file",
@@ -263,11 +246,20 @@ def _gaps(
             )
         gaps[k] = max(0, round(lost))
         if gaps[k]:
-            text = f"{gaps[k]} samples ({gaps[k] / rate:.4g} s) are missing {between}"
-            notes.append(Notice("important", text))
+            notes.append(
+                Notice.of(
+                    "samples_missing_between",
+                    samples=gaps[k],
+                    time=gaps[k] / rate,
+                    before=files[k - 1],
+                    after=files[k],
+                )
+            )
         if abs(lost - gaps[k]) > _OFF:
-            text = f"{between} the clock is off by {lost - gaps[k]:+.2g} samples"
-            notes.append(Notice("warning", f"{text}: phases jump there by as much"))
+            off = lost - gaps[k]
+            notes.append(
+                Notice.of("clock_off_between", samples=off, before=files[k - 1], after=files[k])
+            )
     if not any(gaps):
         notes.append(Notice.of("pieces_without_gap"))
     return gaps, notes

@@ -14,7 +14,6 @@ from thermogear.signals.stamps import usual_rate
 _PRINTED = 6
 """Decimals from which a step without an exponent is taken as rounded to them, as "%f" does."""
 _SAME = 1e-6  # of a step: steps and starts nearer than this are the same
-_NAMED = 4
 
 
 @dataclass(frozen=True)
@@ -100,15 +99,17 @@ class Waves:
         if not steps:
             return Stated()
         if not self.of_time:
-            text = f"X_Dimension says {self.dimension!r}: Delta_X is no time between samples"
-            return Stated(notices=(Notice("important", text),))
+            return Stated(notices=(Notice.of("step_is_no_time", dimension=self.dimension),))
         wrong = next((name for name, step in steps.items() if step is None), None)
         if wrong is not None:
-            text = f"Delta_X of {wrong!r} is {own[wrong].step[:20]!r}: it gives no rate"
-            return Stated(notices=(Notice("important", text),))
+            told = Notice.of("step_gives_no_rate", channel=wrong, step=_number(own[wrong].step))
+            return Stated(notices=(told,))
         known = [step for step in steps.values() if step is not None]
         if max(known) - min(known) > _SAME * min(known):
-            return Stated(several=True, notices=(_several(steps),))
+            told = Notice.of(
+                "steps_differ", channels=list(steps), rates=[1.0 / one for one in known]
+            )
+            return Stated(several=True, notices=(told,))
         return _one(next(iter(own.values())), _starts(own, known[0]))
 
 
@@ -138,23 +139,13 @@ def _number(text: str) -> float:
     return float(plain) if NUMBER.match(plain) else 0.0
 
 
-def _several(steps: dict[str, float | None]) -> Notice:
-    shown = ", ".join(
-        f"{name!r} {1.0 / (step or 1.0):g}" for name, step in list(steps.items())[:_NAMED]
-    )
-    more = ", ..." if len(steps) > _NAMED else ""
-    text = f"Delta_X differs: samples/s of {shown}{more}; no rate is taken (name channels of one "
-    return Notice("important", f"{text}rate by --channel, or give --rate)")
-
-
 def _starts(own: dict[str, Wave], step: float) -> tuple[float, tuple[Notice, ...]]:
     """The first start [s], and a word where the channels do not start together."""
     starts = [_number(wave.start) for wave in own.values()]
     apart = max(starts) - min(starts)
     if apart <= max(_SAME * step, 1e-12 * max(map(abs, starts))):
         return starts[0], ()
-    text = f"channels start up to {apart:.3g} s apart (X0): they are taken as sampled together"
-    return starts[0], (Notice("warning", text),)
+    return starts[0], (Notice.of("channels_start_apart", time=apart),)
 
 
 def _one(wave: Wave, start: tuple[float, tuple[Notice, ...]]) -> Stated:

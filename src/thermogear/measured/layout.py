@@ -241,11 +241,7 @@ def _facts(layout: Layout, above: list[str]) -> None:
             said = unit(tail) or key_unit
             if said is None or kind_of(said) != "frequency":
                 layout.notices.append(
-                    Notice(
-                        "important",
-                        f"the header says {key.strip()} = {value} without a unit: it is not used "
-                        "(give --rate)",
-                    )
+                    Notice.of("rate_without_unit", name=key.strip(), value=float(number))
                 )
             elif is_possible_rate(float(number) * factor_of(said)):
                 layout.rate = float(number) * factor_of(said)
@@ -256,10 +252,7 @@ def _facts(layout: Layout, above: list[str]) -> None:
             signals = sum(not is_time_column(*column) for column in columns)
             if number.lstrip("0") not in (str(signals), str(layout.columns)):
                 layout.notices.append(
-                    Notice(
-                        "important",
-                        f"the header says {number[:20]} channels, the rows hold {signals}",
-                    )
+                    Notice.of("channel_count_wrong", stated=float(number[:20]), channels=signals)
                 )
         elif key_name.strip().lower() in ("unit", "units", "单位") and unit(value):
             layout.units = [u or unit(value) for u in layout.units]

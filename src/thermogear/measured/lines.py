@@ -12,7 +12,7 @@ from thermogear.base.units import STANDARD_GRAVITY
 from thermogear.measured.chain import Chain, reduced
 from thermogear.measured.gate import turned_by
 from thermogear.measured.gearing import Gearing, known_teeth, sides_of
-from thermogear.measured.record import Channel, Notice, Record
+from thermogear.measured.record import Channel, Record
 from thermogear.measured.turns import MeshTurns, unfollowed
 from thermogear.measured.units import kind_of
 from thermogear.signals.interval import APART, REACH, Reading, read_line
@@ -365,13 +365,6 @@ def channel_lines(
             )
         )
     return found
-
-
-def told_withheld(lines: Sequence[MeasuredLine], turns: MeshTurns | None) -> list[Notice]:
-    """That lines near the mesh line are withheld, where some are."""
-    if turns is None or not any(turns.withheld and turns.withheld in o.withheld for o in lines):
-        return []
-    return [Notice("important", f"lines near the mesh line are withheld: {turns.withheld}")]
 
 
 def jittered(position: ArrayLike, jitter: float) -> Floats:

@@ -37,10 +37,10 @@ def bounded(*, memory: int, seconds: int) -> None:
 
 
 def found_in(asammdf: Any, path: Path, folder: Path) -> dict[str, Any]:
-    """Names, units, rates and remarks; the samples go to ``folder``."""
+    """Names, units, rates, and which channels have an uneven time; the samples go to ``folder``."""
     channels: list[dict[str, str]] = []
     rates: list[tuple[float, str]] = []
-    remarks: list[str] = []
+    uneven: list[str] = []
     with asammdf.MDF(str(path)) as file:
         for item in file.iter_channels():
             samples = np.asarray(item.samples)
@@ -53,10 +53,10 @@ def found_in(asammdf: Any, path: Path, folder: Path) -> dict[str, Any]:
             if step > 0 and np.max(np.abs(steps - step)) <= 0.5 * step:
                 rates.append((1.0 / step, f"time base of {name}"))
             else:
-                remarks.append(f"{name}: its time base is not uniform")
+                uneven.append(name)
             np.save(folder / f"{len(channels)}.npy", samples)
             channels.append({"name": name, "unit": str(item.unit or "")})
-    return {"channels": channels, "rates": rates, "remarks": remarks}
+    return {"channels": channels, "rates": rates, "uneven": uneven}
 
 
 def main(words: list[str]) -> int:

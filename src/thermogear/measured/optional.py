@@ -23,7 +23,7 @@ import numpy as np
 from thermogear.base.errors import of_extra
 from thermogear.measured.options import ReadOptions, refused
 from thermogear.measured.record import Channel, Notice, Record
-from thermogear.measured.tables import agreed
+from thermogear.measured.tables import agreed, of_one_length
 from thermogear.measured.traps import is_tacho_name, without_doubles
 from thermogear.measured.units import unit
 
@@ -148,7 +148,7 @@ def read_mdf(path: Path, options: ReadOptions) -> Record:
             samples = np.load(folder / f"{number}.npy", allow_pickle=False)
             parts.channels.append(Channel(one["name"], samples, unit(one["unit"])))
         parts.rates += [(rate, where) for rate, where in found["rates"]]
-        parts.notes += [Notice("important", text) for text in found["remarks"]]
+        parts.notes += [Notice.of("time_base_uneven", channel=name) for name in found["uneven"]]
     return _record(path, "MDF", parts.channels, parts.rates, parts.notes)
 
 
@@ -189,11 +189,7 @@ def _record(
     if not channels:
         raise refused(path, kind, "it holds no channel of numbers")
     said = list(notes)
-    longest = max(map(len, channels))
-    aside = [c.name for c in channels if len(c) != longest]
-    if aside:
-        said.append(Notice("warning", f"of another length, left aside: {', '.join(aside[:5])}"))
-    kept, doubled = without_doubles([c for c in channels if len(c) == longest], path.name)
+    kept, doubled = without_doubles(of_one_length(channels, said), path.name)
     rate, origin = agreed(rates, said)
     tacho = next((c.name for c in kept if is_tacho_name(c.name)), None)
     return Record(tuple(kept), path.name, rate, origin, 0.0, tacho, (*said, *doubled))

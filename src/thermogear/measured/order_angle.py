@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
-from thermogear.base.units import RPM
 from thermogear.measured.contradictions import of_pulses, of_speed, of_tacho_speed, of_teeth
 from thermogear.measured.gearing import Gearing, find_gearing
 from thermogear.measured.meshes import Stated
@@ -23,10 +22,6 @@ Floats = NDArray[np.float64]
 MESHES = 16.0
 """Mesh cycles that stand for a turn where no shaft is known."""
 
-_UNDECIDED = (
-    "which line is the mesh line of the gear of {} teeth is not decided: orders and the speed are "
-    "those of the line that was followed (--speed, or a tacho, decides)"
-)
 _NEAR, _MOST = 0.04, 10  # of pulses told by a stated speed
 
 
@@ -58,7 +53,7 @@ def order_angle(
     the mesh line of known teeth tells, else those of a steady stated speed, else one; what
     contradicts goes to ``notices``.
     """
-    turns, told = shaft.turns, []
+    turns = shaft.turns
     mean = float((turns[-1] - turns[0]) / (turns.size - 1))
     steady = shaft.span < VARIES and rate is not None
     own = 2.0 * np.pi * mean * rate if rate is not None else mean
@@ -94,30 +89,20 @@ def order_angle(
         pulses = z / mesh
         if abs(pulses - round(pulses)) < 0.02 * pulses and pulses > 0.5:
             factor = 1.0 / round(pulses)
-            told.append(f"{_pulses(round(pulses))}, by the mesh line of {z} teeth")
+            notices.append(Notice.of("pulses_by_mesh_line", pulses=round(pulses), teeth=z))
         else:
-            told.append(
-                f"pulses per turn are not stated: 1 is taken ({pulses:.4g} by the mesh line)"
-            )
+            notices.append(Notice.of("pulses_not_stated", pulses=pulses))
     elif not shaft.sure and steady and speed and (by := _pulses_of(own, speed)):
         factor = 1.0 / by
-        made = own / by / RPM
-        told.append(f"{_pulses(by)}, by the speed given; the tacho makes it {made:.6g} rpm")
+        notices.append(Notice.of("pulses_by_speed", pulses=by, speed=own / by))
     elif not shaft.sure:
-        told.append("pulses per turn are not stated: 1 is taken (give --pulses)")
+        notices.append(Notice.of("pulses_not_stated", pulses=None))
     elif mesh is not None and teeth and abs(mesh / teeth - 1.0) > 0.02:
         factor = mesh / teeth
-        told.append(
-            f"the mesh line stands at order {mesh:.4g} of the tacho's shaft: the shaft of {teeth} "
-            f"teeth turns {factor:.5g} times as fast"
-        )
+        notices.append(Notice.of("teeth_on_other_shaft", order=mesh, teeth=teeth, ratio=factor))
     elif mesh is not None and not teeth and abs(mesh - round(mesh)) < 0.02 and mesh > 4.5:
         z = round(mesh)
-        sure = "" if not decided or z in decided else ", if its gear is one of this mesh"
-        told.append(
-            f"the mesh line stands at order {mesh:.4f} of the tacho's shaft: {z} teeth{sure}"
-        )
-    notices += [Notice("important" if "taken" in t else "info", f"tacho: {t}") for t in told]
+        notices.append(Notice.of("teeth_by_tacho", order=mesh, teeth=z))
     return OrderAngle(
         turns=turns * factor,
         first=shaft.first,
@@ -154,7 +139,7 @@ def _teeth_of(
     least = teeth / shaft.turns.size
     if gearing.weighed.share_of(line, teeth=teeth, least=least) >= SURE:
         return teeth
-    notices.append(Notice("important", _UNDECIDED.format(teeth)))
+    notices.append(Notice.of("followed_line_undecided", teeth=teeth))
     return None
 
 
@@ -173,7 +158,3 @@ def _pulses_of(own: float, speed: float) -> int:
     pulses = round(ratio)
     # a stated speed is nominal: of more pulses than ten it could be one more or less
     return pulses if 0 < pulses <= _MOST and abs(ratio / pulses - 1.0) <= _NEAR else 0
-
-
-def _pulses(number: int) -> str:
-    return f"{number} pulse{'' if number == 1 else 's'} per turn"

@@ -12,20 +12,6 @@ from thermogear.measured.record import Notice, Record
 SURE = 0.9
 """Weight of all that has one line, from which that line is beyond doubt."""
 _TOLD = 0.005
-_FACTORS = {
-    10.0: "ten times too high",
-    0.1: "ten times too low",
-    100.0: "a hundred times too high",
-    0.01: "a hundred times too low",
-    1000.0: "a thousand times too high (milliseconds read as seconds?)",
-    0.001: "a thousand times too low (seconds read as milliseconds?)",
-    2.0: "twice too high",
-    0.5: "twice too low",
-    2.56: "2.56 times too high (bandwidth and rate exchanged?)",
-    1 / 2.56: "2.56 times too low (bandwidth and rate exchanged?)",
-    60.0: "sixty times too high (turns per minute and per second exchanged?)",
-    1 / 60.0: "sixty times too low (turns per minute and per second exchanged?)",
-}
 
 
 def check_rate(
@@ -50,25 +36,29 @@ def check_rate(
     turns = gearing.mesh_frequency / teeth  # turns per sample
     if record.rate is None:
         if speed is not None:
-            notices.append(
-                Notice(
-                    "info",
-                    f"if the shaft turns at the {speed * 30 / np.pi:.6g} rpm given, the rate is "
-                    f"{speed / (2 * np.pi) / turns:.6g} samples/s (not adopted)",
-                )
-            )
+            rate = speed / (2.0 * np.pi) / turns
+            notices.append(Notice.of("rate_by_speed", speed=speed, rate=rate))
         return ""
     implied = turns * record.rate
     shaft = implied if speed is None else speed / (2.0 * np.pi)
-    nominal = f"; the {60 * shaft:.6g} rpm given count as nominal"
-    told = _TOLD < abs(implied / shaft - 1.0) <= NEAR
-    if undecided:
-        nominal, told = ", if this mesh line is theirs", True
-    text = f"the rate {record.rate:g}/s and {teeth} teeth make the shaft turn at "
-    text += f"{60 * implied:.6g} rpm{nominal if told else ''}"
-    high = 60 * implied > SPEED.high
-    text += f"; shafts turn at up to {SPEED.ends[1]}: is the rate right?" if high else ""
-    notices.append(Notice("warning" if high else "info", text))
+    found = 2.0 * np.pi * implied
+    if found > SPEED.most:
+        notices.append(
+            Notice.of(
+                "speed_impossible", rate=record.rate, teeth=teeth, speed=found, most=SPEED.most
+            )
+        )
+    else:
+        nominal = not undecided and _TOLD < abs(implied / shaft - 1.0) <= NEAR
+        notices.append(
+            Notice.of(
+                "speed_if_mesh_line" if undecided else "speed_by_rate",
+                rate=record.rate,
+                teeth=teeth,
+                speed=found,
+                given=speed if nominal else None,
+            )
+        )
     if 2.56 * gearing.mesh_frequency > 1.0:
         notices.append(Notice.of("aliases_possible"))
     if speed is None:
@@ -85,28 +75,19 @@ def check_rate(
     if weighed.verdict != "decided" and not doubtless:
         # what the mesh line is, is open: it contradicts nobody
         notices.append(
-            Notice(
-                "warning",
-                f"the mesh line read at {gearing.mesh_frequency:.6f} cycles/sample does not fit "
-                f"the {speed * 30 / np.pi:.6g} rpm given, and the record does not decide that it "
-                "is one",
-            )
+            Notice.of("mesh_line_does_not_fit", line=gearing.mesh_frequency, given=speed)
         )
         return record.rate_doubt
-    named = min(_FACTORS, key=lambda factor: abs(np.log(ratio / factor)))
-    what = (
-        f"the rate looks {_FACTORS[named]}"
-        if abs(ratio / named - 1.0) <= NEAR
-        else f"the rate is wrong by a factor {ratio:.4g}"
+    told = Notice.of(
+        "speed_contradicts_rate",
+        given=speed,
+        found=found,
+        line=gearing.mesh_frequency,
+        teeth=teeth,
+        rate=record.rate,
+        ratio=ratio,
+        fitting=record.rate / ratio,
+        teeth_given=None if given in (None, *weighed.teeth) else given,
     )
-    both = f"speed given: {speed * 30 / np.pi:.6g} rpm; found: {60 * implied:.6g} rpm"
-    or_teeth = "" if given in (None, *weighed.teeth) else ", the teeth given"
-    notices.append(
-        Notice(
-            "important",
-            f"{both} (mesh line at {gearing.mesh_frequency:.6f} cycles/sample over {teeth} teeth, "
-            f"{record.rate:g} samples/s). The speed given may be wrong{or_teeth}, or {what}: a "
-            f"rate of {record.rate / ratio:.6g} would fit",
-        )
-    )
-    return both
+    notices.append(told)
+    return told.text

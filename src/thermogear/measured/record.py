@@ -199,9 +199,13 @@ class Record:
             RATE.require("rate", rate)
             if self.rate is not None and abs(rate / self.rate - 1.0) > 1e-3 + self.rate_share:
                 record = record.noting(
-                    "important",
-                    f"the rate given, {rate:g}/s, is not the file's, {self.rate:g}/s "
-                    f"({self.rate_origin}): factor {rate / self.rate:.4g}",
+                    Notice.of(
+                        "rate_given_differs",
+                        given=rate,
+                        stated=self.rate,
+                        origin=self.rate_origin,
+                        ratio=rate / self.rate,
+                    )
                 )
                 text = f"{rate:g}/s is given, the file says {self.rate:g}/s"
                 record = replace(record, rate_doubt=text)
@@ -217,7 +221,7 @@ class Record:
             for c in record.channels:
                 if c.name in vibrating:
                     if name is not None and c.unit not in (None, name):
-                        contradicted.append(f"{c.name} ({c.unit})")
+                        contradicted.append(c)
                     c = replace(c, unit=name or c.unit)
                     if scale is not None:
                         FULL_SCALE.require("scale", abs(scale))
@@ -231,8 +235,12 @@ class Record:
             record = replace(record, channels=tuple(new))
             if contradicted:
                 record = record.noting(
-                    "important",
-                    f"the unit given, {name}, replaces the file's of {', '.join(contradicted)}",
+                    Notice.of(
+                        "unit_replaced",
+                        given=name,
+                        channels=[c.name for c in contradicted],
+                        units=[c.unit for c in contradicted],
+                    )
                 )
         return record
 
@@ -246,6 +254,6 @@ class Record:
         scaled = replace(speed, unit="rpm", scale=speed.scale * rpm, offset=speed.offset * rpm)
         return replace(self, channels=tuple(scaled if c is speed else c for c in self.channels))
 
-    def noting(self, level: str, text: str) -> Record:
+    def noting(self, notice: Notice) -> Record:
         """The record with one more notice."""
-        return replace(self, notices=(*self.notices, Notice(level, text)))
+        return replace(self, notices=(*self.notices, notice))

@@ -23,7 +23,6 @@ from thermogear.measured.changing import (
 from thermogear.measured.choosing import chosen_channels
 from thermogear.measured.contradictions import of_speed
 from thermogear.measured.gate import (
-    Finding,
     Passed,
     events_of,
     passed,
@@ -36,7 +35,6 @@ from thermogear.measured.lines import (
     MeasuredLine,
     Wanted,
     channel_lines,
-    told_withheld,
     wanted_lines,
 )
 from thermogear.measured.quantities import of_velocity
@@ -52,7 +50,6 @@ from thermogear.measured.stated import (
 )
 from thermogear.measured.traps import unknown_unit
 from thermogear.measured.turns import MeshTurns, mesh_turns
-from thermogear.measured.units import UNITS
 from thermogear.signals.envelope import envelope_rate
 from thermogear.signals.windows import Window
 
@@ -150,16 +147,11 @@ class Measurement:
     lines: tuple[MeasuredLine, ...]
     notices: tuple[Notice, ...]
     start: int
-    findings: tuple[Finding, ...] = ()
+    findings: tuple[Notice, ...] = ()
     values: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 0)), repr=False)
     slices: OrderSlices | None = None
     given: tuple[int | None, float | None] = (None, None)
     swelling: Swelling | None = None
-
-    @property
-    def damage(self) -> tuple[tuple[str, str], ...]:
-        """Level and text of every finding."""
-        return tuple((one.notice.level, one.notice.text) for one in self.findings)
 
     @property
     def settings(self) -> dict[str, str]:
@@ -245,12 +237,11 @@ def measure(
         gearing, teeth, turns = changing.gearing, changing.teeth, changing.turns
     else:
         gearing = stated_gearing(through.table, notices, expected, stated)
+        teeth = settled_teeth(gearing, teeth, notices)
     if changing is not None and changing.slices is not None:
         return _of_slices(record, through, chain, changing, notices, given)
     through.findings += events_of(through)
     chosen, start, table = through.channels, through.start, through.table
-    if changing is None:
-        teeth = settled_teeth(gearing, teeth, notices)
     doubt, undecided = record.rate_doubt, None
     if gearing is not None and turns is None:
         turns = mesh_turns(table, gearing, teeth=teeth, harmonics=harmonics)
@@ -274,18 +265,8 @@ def measure(
         )
         through.findings += [undecided] if undecided else []
     if doubt:
-        through.findings.append(
-            Finding(
-                kind=f"rate or speed is doubtful: {doubt}",
-                done="frequencies, speed and displacements are withheld (correct what is wrong, "
-                "or leave it out, to have them)",
-                effect="they would be wrong by the rate's factor; orders and accelerations stand",
-                withholds=True,
-            )
-        )
-    notices += [one.notice for one in through.findings]
-    if turns is not None and turns.said:
-        notices.append(Notice("info", turns.said))
+        through.findings.append(Notice.of("rate_or_speed_doubtful"))
+    notices += through.findings
     rate = record.rate or 1.0
     mesh = (gearing.mesh_frequency if gearing else 0.05) * rate
     wanted = (chain or Chain()).settled(rate=rate, samples=table.shape[-1], mesh=mesh)
@@ -318,7 +299,8 @@ def measure(
             ),
         )
     notices += harmonics_told(gearing, harmonics, record.rate)
-    notices += told_withheld(lines, turns)
+    beside = [line.position for line in lines if line.kind != "mesh"]
+    notices += turns.told_of(beside) if turns is not None else []
     lines = [of_velocity(line, record.channel(line.channel)) for line in lines]
     notices += _untold(record, chosen, sensor_tolerance)
     notices += _filtered(wanted, rate, mesh, gearing)
@@ -437,13 +419,11 @@ def _untold(
 ) -> Iterator[Notice]:
     """What neither the record nor the user says, and what it means for the lines."""
     if record.rate is None:
-        text = "no rate is known: lines are in orders and cycles per sample (give --rate)"
-        yield Notice("important", text)
-    if any(c.unit is None for c in channels):
-        bare = [c for c in channels if c.unit is None]
-        strange = next((u for c in bare if (u := c.strange or unknown_unit(c.name))), "")
-        what = f"the unit {strange!r} is not one of {UNITS}" if strange else "no unit is known"
-        yield Notice("important", f"{what}: amplitudes are the file's own numbers (give --unit)")
+        yield Notice.of("rate_not_known")
+    bare = [c for c in channels if c.unit is None]
+    if bare:
+        strange = next((u for c in bare if (u := c.strange or unknown_unit(c.name))), None)
+        yield Notice.of("unit_not_known", unit=strange)
     if sensor_tolerance is None:
         yield Notice.of("sensor_tolerance_not_stated")
 
@@ -452,11 +432,10 @@ def _filtered(chain: Chain, rate: float, mesh: float, gearing: Gearing | None) -
     """Whether the band's filter weakens the line at ``mesh`` [Hz] by more than 1 %."""
     band = chain.filter(rate)
     if band is not None and gearing is not None and abs(float(band.gain(mesh)) - 1) > 0.01:
-        kept = "not divided out" if chain.method == "trapezoid" else "divided out"
-        yield Notice(
-            "warning",
-            f"{band.taps} taps: the filter passes {float(band.gain(mesh)):.3f} of the mesh "
-            f"line ({kept})",
+        yield Notice.of(
+            "filter_weakens_mesh_line" if chain.method == "trapezoid" else "filter_divided_out",
+            taps=band.taps,
+            gain=float(band.gain(mesh)),
         )
 
 

@@ -7,18 +7,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from thermogear.base.units import RPM
 from thermogear.measured.contradictions import NEAR
 from thermogear.measured.gearing import Gearing
+from thermogear.measured.record import Notice
 from thermogear.measured.reduction import Measurement
 from thermogear.measured.shaft import given_shaft
 
 ALIKE = 0.02
 """Relative distance of two frequencies up to which a drift of speed explains it."""
-_NAMED = 3  # lines that a notice names
 _WEIGHT = 0.1  # of a reading whose lines may be the mesh line
 
 
@@ -43,15 +43,14 @@ class Turns:
         """Frequency of the mesh line [Hz]; nan: not known."""
         return self.mesh * (self.rate or float("nan"))
 
-    @property
-    def where(self) -> str:
-        """Place of the mesh line, with the shaft's speed if that is known.
-
-        >>> Turns(mesh=0.1, rate=5000.0, shaft=50 * np.pi).where
-        '500 Hz (1500 rpm)'
-        """
-        place = f"{self.mesh:.6g} cycles/sample" if self.rate is None else f"{self.hertz:.6g} Hz"
-        return f"{place} ({self.shaft / RPM:.5g} rpm)" if np.isfinite(self.shaft) else place
+    def figures(self, prefix: str) -> dict[str, Any]:
+        """Place of the mesh line [Hz], or [cycles/sample] where no rate is known, and the shaft's
+        speed [rad/s], by names with the ``prefix``."""
+        return {
+            f"{prefix}frequency": self.hertz,
+            f"{prefix}position": self.mesh if self.rate is None else None,
+            f"{prefix}speed": self.shaft,
+        }
 
     def scale(self, base: Turns) -> float:
         """How many times as high as ``base``'s a place of this record is, both in cycles/sample
@@ -105,9 +104,9 @@ def _tacho(found: Measurement) -> tuple[str, float] | None:
     return given.origin, float((given.turns[-1] - given.turns[0]) / (given.turns.size - 1))
 
 
-def speed_ratio(own: Turns, base: Turns) -> tuple[float, str]:
-    """How many times as fast a record turns as the baseline, and why the mesh lines of the two are
-    not one line, or may not be; then the ratio is nan.
+def speed_ratio(own: Turns, base: Turns) -> tuple[float, dict[str, Any] | None]:
+    """How many times as fast a record turns as the baseline, and what tells that the mesh lines of
+    the two are not one line, or may not be, empty where nothing does; then the ratio is nan.
 
     A tacho in both decides; else frequencies within 2 % of each other; else teeth and speed given
     that fit both lines; else teeth decided on both, where neither record has a line at the other's
@@ -116,9 +115,9 @@ def speed_ratio(own: Turns, base: Turns) -> tuple[float, str]:
     >>> from dataclasses import replace
     >>> slow, fast = (Turns(mesh=m, rate=1e3, said=1e3, teeth=(20, 31)) for m in (0.1, 0.2))
     >>> speed_ratio(fast, slow)
-    (2.0, '')
-    >>> speed_ratio(replace(fast, teeth=()), slow)[1]
-    'no speed explains it'
+    (2.0, None)
+    >>> speed_ratio(replace(fast, teeth=()), slow)
+    (nan, {})
     """
     scale = own.scale(base)
     tachos = own.tacho is not None and base.tacho is not None and own.tacho[0] == base.tacho[0]
@@ -127,20 +126,19 @@ def speed_ratio(own: Turns, base: Turns) -> tuple[float, str]:
         by_tacho = own.tacho[1] / base.tacho[1] * scale
     ratio = own.mesh / base.mesh * scale
     if np.isnan(own.mesh) or np.isnan(base.mesh):
-        return (1.0 if np.isnan(by_tacho) else by_tacho), ""
+        return (1.0 if np.isnan(by_tacho) else by_tacho), None
     if np.isnan(ratio):
-        return ratio, "the rate of one of them is not known"
+        return ratio, {}
     if not np.isnan(by_tacho):
         if abs(ratio / by_tacho - 1.0) <= ALIKE:
-            return by_tacho, ""
-        return float("nan"), f"by the tacho it turns {by_tacho:.4g} times as fast"
+            return by_tacho, None
+        return float("nan"), {"by_tacho": by_tacho}
     if _two_meshes(own.teeth, base.teeth):
-        both = (" and ".join(map(str, one.teeth)) for one in (own, base))
-        return float("nan"), "gears of {} teeth are found there, of {} here".format(*both)
+        return float("nan"), {"teeth": own.teeth, "base_teeth": base.teeth}
     known = own.is_stated() and base.is_stated()
     if abs(ratio - 1.0) <= ALIKE or known or _by_teeth(own, base, scale):
-        return ratio, ""
-    return float("nan"), "no speed explains it"
+        return ratio, None
+    return float("nan"), {}
 
 
 def _two_meshes(own: tuple[int, ...], base: tuple[int, ...]) -> bool:
@@ -156,21 +154,6 @@ def _by_teeth(own: Turns, base: Turns, scale: float) -> bool:
     stays = (abs(place * scale / base.mesh - 1.0) <= ALIKE for place in own.others)
     was = (abs(own.mesh * scale / place - 1.0) <= ALIKE for place in base.others)
     return not any(stays) and not any(was)
-
-
-def what_decides(own: Turns, base: Turns) -> str:
-    """What a user may state, where the mesh line of a record may be another one.
-
-    >>> what_decides(Turns(given=(17, None)), Turns(given=(17, None)))
-    'state --speed as well, or name a tacho'
-    """
-    if np.isnan(own.scale(base)):
-        return "state --rate"
-    teeth, speed = own.given
-    if teeth is None:
-        also = "with --speed if it is known" if speed is None else "beside the speed"
-        return f"state --teeth of the gear meant, {also}, or name a tacho"
-    return "state --speed as well, or name a tacho" if speed is None else "name a tacho"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -219,43 +202,47 @@ def places_of(found: Measurement) -> dict[tuple[str, str], Place]:
 @dataclass(frozen=True, kw_only=True)
 class Compared:
     """Of a record beside the baseline: which lines are the ``same``, how many times as fast it
-    turns (``ratio``, nan: not known) and ``why`` its mesh line is another, ``turns`` of it and of
-    the ``base``, and the names of lines that ``moved`` though the mesh line is one."""
+    turns (``ratio``, nan: not known) and what tells that its mesh line is another (``why``),
+    ``turns`` of it and of the ``base``, and the lines that ``moved`` though the mesh line is one.
+    """
 
     same: tuple[bool, ...]
     ratio: float
-    why: str
+    why: dict[str, Any] | None
     turns: Turns
     base: Turns
     moved: tuple[str, ...] = ()
 
-    def words(self, baseline: str) -> str:
-        """Why changes are withheld."""
-        if self.why:
-            return (
-                f"its mesh line is found at {self.turns.where}, that of {baseline} at "
-                f"{self.base.where}, and they may be two lines: {self.why} "
-                f"({what_decides(self.turns, self.base)})"
+    def told(self, record: str, baseline: str) -> Notice | None:
+        """Which changes of the ``record`` are withheld, and why; None where none are."""
+        if self.why is not None:
+            return Notice.of(
+                "mesh_line_may_be_another",
+                record=record,
+                baseline=baseline,
+                **self.turns.figures(""),
+                **self.base.figures("base_"),
+                by_tacho=self.why.get("by_tacho"),
+                teeth=self.why.get("teeth"),
+                base_teeth=self.why.get("base_teeth"),
             )
-        more = f" and {len(self.moved) - _NAMED} more" if len(self.moved) > _NAMED else ""
-        return (
-            f"of {len(self.moved)} lines alone, which are elsewhere than those of the same name in "
-            f"{baseline}: {', '.join(self.moved[:_NAMED])}{more}"
-        )
+        if not self.moved:
+            return None
+        return Notice.of("lines_moved", record=record, baseline=baseline, lines=self.moved)
 
 
 def compare(here: Places, there: Places, keys: Sequence[tuple[str, str]]) -> Compared:
     """Which of the lines ``keys`` (channel, name) of a record are the baseline's."""
     turns, first = (next((place.turns for place in one.values()), Turns()) for one in (here, there))
     if here is there:
-        return Compared(same=(True,) * len(keys), ratio=1.0, why="", turns=turns, base=first)
+        return Compared(same=(True,) * len(keys), ratio=1.0, why=None, turns=turns, base=first)
     ratio, why = speed_ratio(turns, first)
     both = [key for key in keys if key in here and key in there]
     moved = [key for key in both if not here[key].is_at(there[key], ratio)]
     return Compared(
         same=tuple(key not in moved for key in keys),
         ratio=ratio if _is_known(turns, first) else float("nan"),
-        why=why if moved else "",
+        why=why if moved else None,
         turns=turns,
         base=first,
         moved=tuple(f"{key[1]} of {key[0]}" for key in moved),

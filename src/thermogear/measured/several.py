@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError, nearest
 from thermogear.base.progress import Progress, silent
-from thermogear.base.units import RPM
 from thermogear.base.vocabulary import label
 from thermogear.measured.at_once import Row, rows_of
 from thermogear.measured.reduction import Measurement
@@ -26,7 +25,6 @@ Floats = NDArray[np.float64]
 MOST = 10_000
 _HALF = 1.959964
 _REASONS = 3  # files that a refusal tells of
-_NAMED = 5  # damaged records that a notice names
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,11 +44,11 @@ class Several:
     baseline: int
     refused: tuple[tuple[str, str], ...]
     unit: str
-    hint: str = ""
+    hint: Notice | None = None
     withheld: tuple[tuple[str, str], ...] = ()
-    found: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    found: tuple[tuple[str, tuple[Notice, ...]], ...] = ()
     same: NDArray[np.bool_]
-    apart: tuple[tuple[str, str], ...] = ()
+    apart: tuple[tuple[str, Notice], ...] = ()
     turns: tuple[Turns, ...]
     ratio: Floats
 
@@ -188,9 +186,9 @@ def several(
         baseline=first,
         same=np.array([one.same for one in compared], dtype=bool).reshape(len(kept), len(keys)),
         apart=tuple(
-            (names[row.file], one.words(names[good[place].file]))
+            (names[row.file], told)
             for row, one in zip(kept, compared, strict=True)
-            if one.why or one.moved
+            if (told := one.told(names[row.file], names[good[place].file])) is not None
         ),
         turns=tuple(one.turns for one in compared),
         ratio=np.array([one.ratio for one in compared]),
@@ -203,7 +201,7 @@ def several(
 
 
 def _nothing_compared(
-    baseline: str, refused: Sequence[tuple[str, str]], files: int, hint: str
+    baseline: str, refused: Sequence[tuple[str, str]], files: int, hint: Notice | None
 ) -> InputError:
     """No other record has a line of the baseline: why."""
     why = "; ".join(f"{name} is left out: {reason}" for name, reason in refused[:_REASONS])
@@ -213,7 +211,9 @@ def _nothing_compared(
         f"{files} file{'s' if files != 1 else ''}",
         allowed="two records or more with a line of the same channel and name",
         why=f"nothing can be compared with {baseline}" + (f": {why}" if why else ""),
-        fix=hint or "name records of one unit whose channels are named alike, or one file alone",
+        fix="name records of one unit whose channels are named alike, or one file alone"
+        if hint is None
+        else hint.text,
     )
 
 
@@ -232,15 +232,12 @@ def _place(baseline: str, files: Sequence[Path], shown: Sequence[str]) -> int | 
     return found[0] if len(found) == 1 else None
 
 
-def _hint(rows: Sequence[Row]) -> str:
+def _hint(rows: Sequence[Row]) -> Notice | None:
     """What to say where records may be channels of one run."""
     alike = {(row.rate, row.samples, row.signals) for row in rows}
     if len(rows) < 2 or len(alike) != 1 or rows[0].signals != 1:
-        return ""
-    return (
-        f"all {len(rows)} files have one channel, one rate and one length: if they are channels of "
-        "one run, --join channels reads them as one record"
-    )
+        return None
+    return Notice.of("perhaps_one_run", files=len(rows))
 
 
 def result_of_several(found: Several) -> Result:
@@ -280,18 +277,31 @@ def result_of_several(found: Several) -> Result:
     ]
     damaged = [name for name, _ in found.found if name not in dict(found.withheld)]
     if damaged:
-        shown = ", ".join(damaged[:_NAMED]) + (", ..." if len(damaged) > _NAMED else "")
         notices.append(
-            Notice(
-                "warning",
-                f"findings in {len(damaged)} of {len(found.names)} records, held by their "
-                f"intervals: {shown} (measure one alone, or see --json, for what it is)",
+            Notice.of(
+                "records_damaged",
+                number=len(damaged),
+                records=len(found.names),
+                damaged=damaged,
             )
         )
-    notices += [Notice.of("changes_withheld", record=name, reason=why) for name, why in found.apart]
-    notices += _of_speeds(found)
-    if found.hint:
-        notices.append(Notice("info", found.hint))
+    notices += [told for _, told in found.apart]
+    off = [k for k, ratio in enumerate(found.ratio) if abs(ratio - 1.0) > ALIKE]
+    if off:
+        speeds = [found.turns[k].shaft for k in off]
+        notices.append(
+            Notice.of(
+                "speeds_differ",
+                number=len(off),
+                records=len(found.names),
+                baseline=found.names[found.baseline],
+                baseline_speed=found.turns[found.baseline].shaft,
+                others=[found.names[k] for k in off],
+                speeds=speeds if np.all(np.isfinite(speeds)) else None,
+                ratios=[found.ratio[k] for k in off],
+            )
+        )
+    notices += [found.hint] if found.hint is not None else []
     return Result.of(
         "records",
         f"{len(found.names)} records against {found.names[found.baseline]}",
@@ -301,34 +311,6 @@ def result_of_several(found: Several) -> Result:
         unit=found.unit,
         figures=figures_of_several(found),
     )
-
-
-def _of_speeds(found: Several) -> list[Notice]:
-    """What to know of records that turn at another speed than the baseline."""
-    off = [k for k, ratio in enumerate(found.ratio) if abs(ratio - 1.0) > ALIKE]
-    if not off:
-        return []
-    told = [f"{found.names[k]}: {_speed(found, k)}" for k in off[:_NAMED]]
-    told += [f"and {len(off) - _NAMED} more"] if len(off) > _NAMED else []
-    base = found.names[found.baseline]
-    if found.turns[found.baseline].rate is not None:
-        base += f" ({_speed(found, found.baseline)})"
-    text = (
-        f"{len(off)} of {len(found.names)} records turn at another speed than "
-        f"{base}: {'; '.join(told)}. The level of a mesh line "
-        "changes with speed: what changed there is not the gears' alone"
-    )
-    return [Notice("important", text)]
-
-
-def _speed(found: Several, k: int) -> str:
-    """Speed and mesh line of a record in words; with neither how many times as fast it turns."""
-    turns, told = found.turns[k], []
-    if np.isfinite(turns.shaft):
-        told.append(f"{turns.shaft / RPM:.5g} rpm")
-    if np.isfinite(turns.hertz):
-        told.append(f"mesh line at {turns.hertz:.6g} Hz")
-    return ", ".join(told) or f"{found.ratio[k]:.4g} times as fast"
 
 
 def figures_of_several(found: Several) -> dict[str, Any]:
@@ -375,10 +357,10 @@ def figures_of_several(found: Several) -> dict[str, Any]:
         "changed": rows,
         "trends": trends,
         "speeds": speeds,
-        "apart": [list(pair) for pair in found.apart],
+        "apart": [[name, told.text] for name, told in found.apart],
         "refused": [list(pair) for pair in found.refused],
         "withheld": [list(pair) for pair in found.withheld],
-        "findings": [[name, list(texts)] for name, texts in found.found],
+        "findings": [[name, [one.as_dict() for one in told]] for name, told in found.found],
         "units": {
             "reading": found.unit,
             "shaft_speed": "rad/s",

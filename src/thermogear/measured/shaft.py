@@ -44,14 +44,17 @@ class Shaft:
     """``turns`` of a shaft at samples ``first`` on of the stretch, with rms ``noise`` [turns].
 
     ``line``: the turns are cycles of a line that was tracked and no shaft's; ``origin`` says by
-    what; ``sure``: pulses per turn are known, ``pulses`` those given. ``width`` of the filter that
-    followed the line, over its frequency. ``told`` what should be known of it.
+    what, ``channel`` by which, where one says it (``by_speed``: as a speed); ``sure``: pulses per
+    turn are known, ``pulses`` those given. ``width`` of the filter that followed the line, over its
+    frequency. ``told`` what should be known of it.
     """
 
     turns: Floats
     first: int
     noise: float
     origin: str
+    channel: str | None = None
+    by_speed: bool = False
     line: bool = False
     sure: bool = True
     pulses: float | None = None
@@ -100,19 +103,28 @@ def given_shaft(
                 else _by_pulses(channel, source.rate, record.rate, samples, at, pulses_per_turn)
             )
         except InputError as error:
-            text = f"tacho {channel.name!r} is not used: {error}{'' if speed else _meant(channel)}"
-            told.append(Notice("important", text))
+            told.append(
+                Notice.of(
+                    "tacho_not_used",
+                    channel=channel.name,
+                    reason=str(error),
+                    unit=None if speed else _unit_if_speed(channel),
+                )
+            )
             continue
         if found.turns.size < _LEAST_PART * samples:
-            share = 100.0 * found.turns.size / samples
-            text = f"tacho {channel.name!r} covers {share:.0f} % of the record: it is not used"
-            told.append(Notice("important", text))
+            share = found.turns.size / samples
+            told.append(Notice.of("tacho_too_short", channel=channel.name, share=share))
             continue
         if source is not record:
-            text = f"tacho of {source.source}: both files are taken to start together"
-            if record.start or source.start:
-                text = f"tacho of {source.source}: placed by the start times of both files"
-            told.append(Notice("info", text))
+            told.append(
+                Notice.of(
+                    "tacho_by_start_times"
+                    if record.start or source.start
+                    else "tacho_starts_together",
+                    file=source.source,
+                )
+            )
         return replace(found, told=(*told, *found.told, *_missing(found, samples)))
     if not told:
         return None
@@ -138,25 +150,17 @@ def _is_speed(channel: Channel) -> bool:
     return counts_turns(channel.unit)
 
 
-def _meant(channel: Channel) -> str:
-    """What to give where a channel without pulses is a speed."""
-    unit = channel.unit or "one of its units (none is stated)"
-    return (
-        f"; if it is a speed, give the rpm in one {unit}: --tacho-scale RPM"
-        if (channel.unit is None or kind_of(channel.unit) == "voltage")
-        else ""
-    )
+def _unit_if_speed(channel: Channel) -> str | None:
+    """The unit of a channel without pulses that may be a speed, None of any other."""
+    may_be = channel.unit is None or kind_of(channel.unit) == "voltage"
+    return (channel.unit or "unit") if may_be else None
 
 
 def _missing(shaft: Shaft, samples: int) -> list[Notice]:
     if shaft.turns.size >= 0.98 * samples:
         return []
     last = shaft.first + shaft.turns.size - 1
-    text = (
-        f"{shaft.origin}: samples {shaft.first} to {last} of {samples} have an angle, the others "
-        "are not read"
-    )
-    return [Notice("warning", text)]
+    return [Notice.of("angle_incomplete", first=shaft.first, last=last, samples=samples)]
 
 
 def _by_pulses(
@@ -175,16 +179,22 @@ def _by_pulses(
     turns = pulse_turns(pulses, pulses_per_turn or 1.0, rate=rate, samples=samples, start=at)
     told = []
     if pulses.lost or pulses.extra or pulses.aside:
-        parts = [f"{pulses.lost} lost", f"{pulses.extra} extra"]
-        if pulses.aside:
-            parts.append(f"{pulses.aside} outside the stretch that could be counted")
-        text = f"tacho {channel.name!r}: of {pulses.times.size} pulses counted " + ", ".join(parts)
-        told.append(Notice("info", text))
+        told.append(
+            Notice.of(
+                "pulses_lost",
+                channel=channel.name,
+                pulses=pulses.times.size,
+                lost=pulses.lost,
+                extra=pulses.extra,
+                aside=pulses.aside,
+            )
+        )
     return Shaft(
         turns=turns.turns,
         first=turns.first,
         noise=turns.noise,
         origin=f"tacho {channel.name!r}",
+        channel=channel.name,
         sure=pulses_per_turn is not None,
         pulses=pulses_per_turn,
         told=tuple(told),
@@ -219,8 +229,14 @@ def _by_speed(channel: Channel, own: float, rate: float, samples: int, at: float
         sample_rate=rate,
         start=at,
     )
-    origin = f"speed channel {channel.name!r}"
-    return Shaft(turns=turns.turns, first=turns.first, noise=turns.noise, origin=origin)
+    return Shaft(
+        turns=turns.turns,
+        first=turns.first,
+        noise=turns.noise,
+        origin=f"speed channel {channel.name!r}",
+        channel=channel.name,
+        by_speed=True,
+    )
 
 
 def locked(shaft: Shaft, table: Floats, teeth: int | None) -> Shaft:
@@ -236,11 +252,8 @@ def locked(shaft: Shaft, table: Floats, teeth: int | None) -> Shaft:
     before = _sharp_by(inside[0], rough)
     best = _sharpest(inside, rough, _broad_orders(inside, rough, teeth))
     if best is None or best[1].sharp < _AS_SHARP * before:
-        text = (
-            f"{shaft.origin}: no line's phase can be followed; high orders are as sharp as that "
-            "speed"
-        )
-        return replace(shaft, told=(*shaft.told, Notice("warning", text)))
+        rough_angle = Notice.of("angle_as_sharp_as_speed", channel=shaft.channel)
+        return replace(shaft, told=(*shaft.told, rough_angle))
     order, found = best
     cycles = found.cycles
     # cycles per turn: whole teeth, else so that the mean speed is the channel's
@@ -250,18 +263,21 @@ def locked(shaft: Shaft, table: Floats, teeth: int | None) -> Shaft:
         ratio = float(cycles[-1] / (rough[-1] - rough[0]))
         if abs(ratio - round(ratio)) < 0.02 * ratio:
             ratio = float(round(ratio))
-    off = cycles[-1] / ratio / (rough[-1] - rough[0]) - 1.0
-    text = (
-        f"{shaft.origin} reads {abs(off) * 100:.2g} % {'low' if off > 0 else 'high'} if the line "
-        f"at order {ratio:.6g} is whole; the angle is corrected by that line's phase: the {LINES} "
-        f"strongest lines hold {100 * found.sharp:.0f} % of the power, {100 * before:.0f} % before"
+    corrected = Notice.of(
+        "speed_corrected",
+        channel=shaft.channel,
+        off=(rough[-1] - rough[0]) * ratio / cycles[-1] - 1.0,
+        order=ratio,
+        lines=LINES,
+        share=found.sharp,
+        share_before=before,
     )
     return replace(
         shaft,
         turns=cycles / ratio,
         noise=found.noise / ratio,
         width=found.width,
-        told=(*shaft.told, Notice("info", text)),
+        told=(*shaft.told, corrected),
     )
 
 
@@ -327,14 +343,7 @@ def tracked_shaft(table: Floats) -> Shaft | None:
             break
     if best is None:
         return None
-    numbers = (
-        f"the {LINES} strongest lines hold {100 * best.sharp:.0f} % of the power in its angle, "
-        f"{100 * best.blunt:.0f} % in time"
-    )
-    told = Notice(
-        "important",
-        f"no tacho: the speed is tracked from a line that runs through the spectrum; {numbers}",
-    )
+    told = Notice.of("speed_tracked", lines=LINES, share=best.sharp, share_in_time=best.blunt)
     # near its ends a path is less sure: a frame of each is left out
     cycles = best.cycles[ends[0] : ends[1]]
     shaft = Shaft(

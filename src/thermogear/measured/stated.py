@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from thermogear.base.bounds import SPEED
 from thermogear.base.errors import InputError
 from thermogear.measured.contradictions import NEAR, of_line, of_mate, of_teeth
-from thermogear.measured.gate import Finding
 from thermogear.measured.gearing import Gearing, find_gearing
 from thermogear.measured.meshes import Stated
 from thermogear.measured.rate_check import SURE
@@ -45,7 +44,7 @@ def stated_gearing(
     try:
         free: Gearing | None = find_gearing(list(table), stated=stated)
     except InputError as error:
-        notices.append(Notice("important", str(error)))
+        notices.append(Notice.of("no_mesh_line", reason=str(error)))
         free = None
     if expected is None or (free and (_is_expected(free, expected) or _is_of_mate(free, stated))):
         return free
@@ -99,7 +98,7 @@ def speed_undecided(
     speed: float | None,
     rate: float | None,
     samples: int,
-) -> Finding | None:
+) -> Notice | None:
     """Where the line that is read may be the mesh line of another gear than that of the ``teeth``
     given, so that its shaft may turn otherwise: the shaft's speed is withheld.
 
@@ -120,26 +119,14 @@ def speed_undecided(
     share = gearing.weighed.share_of(gearing.mesh_frequency, teeth=teeth, least=least)
     if share >= SURE:
         return None
-    return Finding(
-        kind=f"which line is the mesh line of the gear of {teeth} teeth is not decided: that at "
-        f"{gearing.mesh_frequency:.6f} cycles/sample, which is read, has a weight of {share:.2g}",
-        done="the shaft's speed is withheld (give it by --speed)",
-        effect="orders count the turns of a shaft that may be another",
-        withholds=True,
+    return Notice.of(
+        "shaft_speed_undecided", teeth=teeth, line=gearing.mesh_frequency, weight=share
     )
 
 
-def _of_two_gears(gearing: Gearing, *, teeth: int, speed: float, shaft: float) -> Finding | None:
+def _of_two_gears(gearing: Gearing, *, teeth: int, speed: float, shaft: float) -> Notice | None:
     """Where the teeth given are of one gear of the mesh and the ``speed`` [rad/s] of the other."""
     on_line = list(gearing.weighed.teeth)
     if teeth not in on_line:
         return None  # teeth that are not found are told of as such
-    text, ways = of_mate(teeth, speed=speed, shaft=shaft, found=on_line)
-    if not text:
-        return None
-    return Finding(
-        kind=text,
-        done=f"the shaft's speed is withheld ({ways})",
-        effect=f"orders count the turns of the gear of {teeth} teeth",
-        withholds=True,
-    )
+    return of_mate(teeth, speed=speed, shaft=shaft, found=on_line)

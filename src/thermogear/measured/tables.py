@@ -93,15 +93,15 @@ def record_of(
     for array in arrays:
         told.array(array)
     if told.complex:
-        text = f"complex numbers are no record: {', '.join(map(repr, told.complex[:5]))}"
+        aside = Notice.of("complex_left_aside", arrays=told.complex)
         if not told.channels:
             fix = "save what was sampled: real numbers"
-            raise refused(path, kind, f"{text} (and no other array is as long as one)", fix)
-        told.notes.append(Notice("warning", f"{text}; left aside"))
+            raise refused(path, kind, f"{aside.text}; no other array is as long as one", fix)
+        told.notes.append(aside)
     if not told.channels:
         raise refused(path, kind, "it holds no array of numbers as long as a record")
     notes = told.notes
-    channels = _of_one_length(told.channels, notes)
+    channels = of_one_length(told.channels, notes)
     if len(channels) > MOST_IN_ALL:
         raise refused(path, kind, f"{len(channels)} channels; allowed 1..{MOST_IN_ALL}")
     longest = len(channels[0])
@@ -175,8 +175,9 @@ class _Told:
             kind = self.times if is_time_column(leaf, said) else self.channels
             kind.append(Channel(bare, _flat(array), said, strange=strange))
         elif min(sizes) > MOST_CHANNELS or len(array.shape) != 2:
-            text = f"{array.name!r} of shape {array.shape} is left aside"
-            self.notes.append(Notice("warning", text))
+            self.notes.append(
+                Notice.of("array_left_aside", array=array.name, shape=list(array.shape))
+            )
         else:
             axis = 0 if sizes[0] >= sizes[1] else 1
             self.channels += [
@@ -203,8 +204,7 @@ class _Told:
         time = times[best]
         t = np.asarray(time.samples[0 : min(longest, MOST_STAMPS)], dtype=float)
         if t.size < longest:
-            text = f"the rate is taken from the first {t.size} samples of {time.name!r}"
-            self.notes.append(Notice("info", text))
+            self.notes.append(Notice.of("rate_of_first_rows", rows=t.size, column=time.name))
         base = read_time(time.name, time.unit, t, stated=bool(self.rates))
         self.notes += base.notices
         if base.rate is not None:
@@ -212,13 +212,12 @@ class _Told:
         return base
 
 
-def _of_one_length(channels: list[Channel], notes: list[Notice]) -> list[Channel]:
+def of_one_length(channels: list[Channel], notes: list[Notice]) -> list[Channel]:
     """The longest of the channels; those left aside are named in ``notes``."""
     longest = max(len(c) for c in channels)
     aside = [c.name for c in channels if len(c) != longest]
     if aside:
-        shown = ", ".join(aside[:5]) + (", ..." if len(aside) > 5 else "")
-        notes.append(Notice("warning", f"shorter than {longest} samples, left aside: {shown}"))
+        notes.append(Notice.of("shorter_left_aside", samples=longest, channels=aside))
     return [c for c in channels if len(c) == longest]
 
 

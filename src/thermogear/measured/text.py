@@ -149,11 +149,9 @@ def _encoding(path: Path) -> tuple[str, list[Notice]]:
         found = encoding_of(whole)
     else:
         return "utf-8", []
-    text = f"the text is not UTF-8; it is read as {found.name}"
-    if found.likely:
-        return found.codec, [Notice("info", text)]
-    text += ", whose letters hardly come so: names may be wrong (save it as UTF-8)"
-    return found.codec, [Notice("warning", text)]
+    return found.codec, [
+        Notice.of("text_not_utf_8" if found.likely else "text_doubtful", encoding=found.name)
+    ]
 
 
 def _head(lines: io.TextIOWrapper) -> list[str]:
@@ -341,10 +339,13 @@ def _record(
             and abs(base.rate / rate - 1) > 1e-3 + half / rate
         ):
             notes.append(
-                Notice(
-                    "important",
-                    f"the header says {rate:g} samples/s, the {base.origin} {base.rate:g} "
-                    f"(factor {rate / base.rate:.4g}): neither is used (give --rate)",
+                Notice.of(
+                    "rate_stated_twice",
+                    origin="the header",
+                    rate=rate,
+                    other_origin=base.origin,
+                    other_rate=base.rate,
+                    ratio=rate / base.rate,
                 )
             )
             rate, origin, half, note = None, "", 0.0, ""

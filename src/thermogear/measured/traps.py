@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from thermogear.base.bounds import RATE
 from thermogear.base.errors import InputError
 from thermogear.measured.record import Channel, Notice, Record
-from thermogear.measured.units import TIMES, factor_of, kind_of, says_seconds, unit, unknown
+from thermogear.measured.units import factor_of, kind_of, says_seconds, unit, unknown
 from thermogear.signals.stamps import Pace, grain_of, jumps_of, pace_of, usual_rate
 
 Floats = NDArray[np.float64]
@@ -157,27 +157,23 @@ def read_time(
     other irregularity gives no rate. The rate is that of
     :func:`~thermogear.signals.stamps.pace_of`, or the one usual rate in its interval.
     """
-    notes: list[Notice] = []
-    label = f"time column {name!r}"
+    none = TimeBase(rate=None, start=0.0, origin="")
     if unit_name is None or kind_of(unit_name) != "time":
-        strange = unknown_unit(name)
-        what = f"is in {strange!r}, which is none of {TIMES}" if strange else "states no unit"
-        level = "info" if stated else "important"
-        notes.append(Notice(level, f"{label} {what}: no rate is taken from it"))
-        return TimeBase(rate=None, start=0.0, origin="", drop=(), notices=tuple(notes))
+        told = Notice.of(
+            "time_unit_not_needed" if stated else "time_unit_not_known",
+            column=name,
+            unit=unknown_unit(name) or None,
+        )
+        return replace(none, notices=(told,))
     with np.errstate(over="ignore"):
         seconds = t * factor_of(unit_name)
     if t.size < 3 or not np.all(np.isfinite(seconds)):
-        notes.append(Notice("important", f"{label} holds gaps: no rate is taken from it"))
-        return TimeBase(rate=None, start=0.0, origin="", drop=(), notices=tuple(notes))
-    what = ""
-    if np.max(np.abs(seconds)) > HUGE:  # their differences would overflow
-        what = f"holds stamps up to {np.max(np.abs(seconds)):.3g} s"
-    elif np.all(seconds == seconds[0]):
-        what = "stands still"
-    if what:
-        notes.append(Notice("important", f"{label} {what}: no rate is taken from it"))
-        return TimeBase(rate=None, start=0.0, origin="", drop=(), notices=tuple(notes))
+        return replace(none, notices=(Notice.of("time_holds_gaps", column=name),))
+    if (farthest := np.max(np.abs(seconds))) > HUGE:  # differences would overflow
+        told = Notice.of("time_too_large", column=name, largest=farthest)
+        return replace(none, notices=(told,))
+    if np.all(seconds == seconds[0]):
+        return replace(none, notices=(Notice.of("time_stands_still", column=name),))
     grain = grain_of(t) * factor_of(unit_name)
     steps = np.diff(seconds)
     mean = float(seconds[-1] - seconds[0]) / (seconds.size - 1)
@@ -185,6 +181,7 @@ def read_time(
     # stamps of few digits repeat by themselves
     single = twice.size <= _FEW * steps.size
     drop = tuple(int(i) for i in twice[repeats[twice]]) if repeats is not None and single else ()
+    notes: list[Notice] = []
     if drop:
         keep = np.ones(seconds.size, bool)
         keep[list(drop)] = False
@@ -192,25 +189,19 @@ def read_time(
         steps = np.diff(seconds)
         mean = float(seconds[-1] - seconds[0]) / (seconds.size - 1)
         notes.append(
-            Notice(
-                "warning",
-                f"{label}: {_count(len(drop), 'row')} written twice (first: row {drop[0] + 1}), "
-                "the repetition dropped",
-            )
+            Notice.of("rows_written_twice", column=name, rows=len(drop), first=drop[0] + 1)
         )
     found = TimeBase(rate=None, start=float(seconds[0]), origin="", drop=drop)
-    what = ""
     if mean <= 0.0 or np.any(steps < 0):
-        what = f"{label} does not rise (row {int(np.argmax(steps < 0)) + 2}): no rate is taken"
-        what += " from it"
-    elif not RATE.least <= 1.0 / max(mean, 1e-300) <= RATE.most:
-        what = f"{label}: steps of {mean:.3g} s give no rate"
-    if what:
-        return replace(found, notices=(*notes, Notice("important", what)))
-    return _paced(replace(found, notices=tuple(notes)), label, seconds, grain, unit_name)
+        row = int(np.argmax(steps < 0)) + 2
+        return replace(found, notices=(*notes, Notice.of("time_falls", column=name, row=row)))
+    if not RATE.least <= 1.0 / max(mean, 1e-300) <= RATE.most:
+        told = Notice.of("time_step_impossible", column=name, step=mean)
+        return replace(found, notices=(*notes, told))
+    return _paced(replace(found, notices=tuple(notes)), name, seconds, grain, unit_name)
 
 
-def _paced(found: TimeBase, label: str, seconds: Floats, grain: Floats, unit_name: str) -> TimeBase:
+def _paced(found: TimeBase, name: str, seconds: Floats, grain: Floats, unit_name: str) -> TimeBase:
     """What rising stamps [s], rounded to ``grain``, say: gaps, jitter and the rate, or none."""
     steps = np.diff(seconds)
     notes = list(found.notices)
@@ -222,37 +213,52 @@ def _paced(found: TimeBase, label: str, seconds: Floats, grain: Floats, unit_nam
     pace = pace_of(seconds, grain=grain, place=place)
     uneven = pace.farthest > max(_OFF, 6.0 * pace.jitter) or pace.jitter > 0.5 * _OFF
     if uneven or (not gaps and 0 < jumps.size <= max(_SOME, _FEW * steps.size)):
-        first = int(jumps[0]) + 1 if jumps.size else pace.place + 1
         doubled = np.flatnonzero(steps == 0.0)
-        far = max(pace.farthest, float(np.max(np.abs(ahead), initial=0.0)))
-        what = (
-            f"a time stamp appears twice (row {int(doubled[0]) + 2}) with other values"
-            if 0 < doubled.size <= _FEW * steps.size
-            else f"steps are not uniform (row {first}: off by up to {far:.3g} steps)"
-        )
-        text = f"{label}: {what}; no rate is taken from it"
-        return replace(found, notices=(*notes, Notice("important", text)))
+        if 0 < doubled.size <= _FEW * steps.size:
+            told = Notice.of("time_stamp_twice", column=name, row=int(doubled[0]) + 2)
+        else:
+            told = Notice.of(
+                "time_not_uniform",
+                column=name,
+                row=int(jumps[0]) + 1 if jumps.size else pace.place + 1,
+                off=max(pace.farthest, float(np.max(np.abs(ahead), initial=0.0))),
+            )
+        return replace(found, notices=(*notes, told))
     if gaps:
-        notes.append(_told(label, gaps, found.drop))
+        notes.append(_lost(name, gaps, found.drop))
     if pace.jitter > _JITTER:
-        notes.append(_jitters(label, pace))
+        notes.append(
+            Notice.of(
+                "time_jitters",
+                column=name,
+                jitter=pace.jitter,
+                farthest=pace.farthest,
+                loss=0.5 * (2.0 * np.pi * 0.1 * pace.jitter) ** 2,
+            )
+        )
     if unit_name != "s":
-        notes.append(_in_unit(label, unit_name, 1.0 / pace.step))
-    return _with_rate(replace(found, gaps=gaps, notices=tuple(notes)), label, pace)
+        notes.append(_in_unit(name, unit_name, 1.0 / pace.step))
+    return _with_rate(replace(found, gaps=gaps, notices=tuple(notes)), name, pace)
 
 
-def _in_unit(label: str, unit_name: str, rate: float) -> Notice:
+def _in_unit(name: str, unit_name: str, rate: float) -> Notice:
     """The unit of a time column; asked about where it makes a ``rate`` [1/s] that is too high for
     sensors of vibration, and a longer unit would not."""
-    meant = [(one, rate * factor_of(unit_name) / factor_of(one)) for one in ("us", "ms", "s")]
-    fits = [f"in {one} it is {slow:.6g}" for one, slow in meant if _LOW < slow < _HIGH]
+    slower = {each: rate * factor_of(unit_name) / factor_of(each) for each in ("us", "ms", "s")}
+    fits = {each: slow for each, slow in slower.items() if _LOW < slow < _HIGH}
     if rate < _HIGH or not fits:
-        return Notice("info", f"{label} is in {unit_name}")
-    text = f"{label} in {unit_name} makes {rate:.6g} samples/s; {' or '.join(fits)}: is its unit"
-    return Notice("warning", f"{text} right? (else rename it, or give --rate)")
+        return Notice.of("time_unit", column=name, unit=unit_name)
+    return Notice.of(
+        "time_unit_doubtful",
+        column=name,
+        unit=unit_name,
+        rate=rate,
+        other_units=list(fits),
+        other_rates=list(fits.values()),
+    )
 
 
-def _with_rate(base: TimeBase, label: str, pace: Pace) -> TimeBase:
+def _with_rate(base: TimeBase, name: str, pace: Pace) -> TimeBase:
     """The rate by a pace [s]: the usual rate that alone fits it, else with its half width."""
     low, high = 1.0 / pace.high, 1.0 / pace.low
     usual = usual_rate(low, high=high)
@@ -270,33 +276,18 @@ def _with_rate(base: TimeBase, label: str, pace: Pace) -> TimeBase:
         start=base.start + (pace.begin if rounded else 0.0),
         half_width=half,
         jitter=pace.jitter,
-        origin=label,
+        origin=f"time column {name!r}",
         note=note,
     )
 
 
-def _jitters(label: str, pace: Pace) -> Notice:
-    """How far stamps are off an even clock, and what that does if the samples are as well."""
-    lost = 0.5 * (2.0 * np.pi * 0.1 * pace.jitter) ** 2
-    return Notice(
-        "warning",
-        f"{label} jitters: stamps are off an even clock by {pace.jitter:.2g} steps rms (up to "
-        f"{pace.farthest:.2g}) beside rounding; samples are taken as even; if they were not, a "
-        f"line at a tenth of the rate reads {100 * lost:.2g} % low, which its half width holds",
-    )
-
-
-def _told(label: str, gaps: tuple[tuple[int, int], ...], drop: tuple[int, ...]) -> Notice:
+def _lost(column: str, gaps: tuple[tuple[int, int], ...], drop: tuple[int, ...]) -> Notice:
     """Where blocks are dropped, in rows of the file: those written twice count there."""
     first = gaps[0][0] + 1
     for row in drop:
         first += row < first
-    lost = _count(sum(missing for _, missing in gaps), "sample")
-    return Notice(
-        "warning",
-        f"{label} jumps at {_count(len(gaps), 'place')} (first: row {first}): {lost} dropped "
-        "there; they are put in without a number",
-    )
+    samples = sum(missing for _, missing in gaps)
+    return Notice.of("samples_lost", column=column, places=len(gaps), first=first, samples=samples)
 
 
 def _dropped(jumps: NDArray[np.intp], ahead: Floats, steps: Floats) -> tuple[tuple[int, int], ...]:
@@ -323,32 +314,26 @@ class Health:
     longest_gap: int
     zeros: bool
     constant: bool
-    rms: float
     peak: float
 
-    @property
-    def silent(self) -> str:
-        """Why nothing can be read from the channel, "" where it holds a signal."""
-        if self.constant or self.peak == 0.0:
-            return "it is constant" if self.constant else "it holds no number"
-        if TINY <= self.peak < HUGE:
-            return ""
-        return f"its largest value is {self.peak:.3g}, allowed {TINY:g}..{HUGE:g}: scale it"
-
-    @property
-    def state(self) -> str:
-        """What the reader says of a channel without a signal, "" of any other."""
-        if self.peak >= HUGE:
-            return f"holds values up to {self.peak:.3g}: damaged or of another type"
+    def told(self, channel: str) -> Notice | None:
+        """Why nothing can be read from the ``channel``; None where it holds a signal."""
+        if self.zeros:
+            return Notice.of("channel_zero", channel=channel)
         if self.constant:
-            return "is zero throughout" if self.zeros else "is constant"
-        return "" if self.peak else "holds no number at all"
+            return Notice.of("channel_constant", channel=channel)
+        if self.peak == 0.0:
+            return Notice.of("channel_empty", channel=channel)
+        if TINY <= self.peak < HUGE:
+            return None
+        return Notice.of(
+            "channel_out_of_range", channel=channel, largest=self.peak, least=TINY, most=HUGE
+        )
 
 
 def health(channel: Channel) -> Health:
     """One pass over a channel, block by block."""
-    missing = gap = longest = count = 0
-    total = square = 0.0
+    missing = gap = longest = 0
     low, high = np.inf, -np.inf
     for block in channel.blocks():
         good = np.isfinite(block)
@@ -368,34 +353,31 @@ def health(channel: Channel) -> Health:
         else:
             gap = 0
         if values.size:
-            count += values.size
-            with np.errstate(over="ignore", invalid="ignore"):
-                total += float(values.sum())
-                square += float(np.dot(values, values))
             low, high = min(low, float(values.min())), max(high, float(values.max()))
-    mean = total / count if count else 0.0
-    peak = float(max(abs(low), abs(high))) if count else 0.0
-    rms = float(np.sqrt(max(square / count - mean**2, 0.0))) if count and peak < HUGE else peak
     return Health(
         missing=missing,
         longest_gap=longest,
-        zeros=count > 0 and low == high == 0.0,
-        constant=count > 0 and low == high,
-        rms=rms,
-        peak=peak,
+        zeros=low == high == 0.0,
+        constant=low == high,
+        peak=float(max(abs(low), abs(high))) if low <= high else 0.0,
     )
 
 
 def examined(record: Record) -> Record:
-    """The record with a notice for every channel that is zero, constant or has gaps."""
+    """The record with a notice for every channel that holds no signal or has gaps."""
     for channel in record.channels:
-        found, label = health(channel), f"channel {channel.name!r}"
+        found = health(channel)
         if 0 < found.missing < len(channel):
-            missing = _count(found.missing, "sample")
-            text = f"{label}: {missing} missing (NaN), the longest gap {found.longest_gap}"
-            record = record.noting("important", text)
-        if found.state:
-            record = record.noting("important", f"{label} {found.state}")
+            record = record.noting(
+                Notice.of(
+                    "samples_missing",
+                    channel=channel.name,
+                    samples=found.missing,
+                    longest=found.longest_gap,
+                )
+            )
+        if (told := found.told(channel.name)) is not None:
+            record = record.noting(told)
     return record
 
 
@@ -417,38 +399,19 @@ def without_doubles(
             continue
         place = places[channel.name]
         first = kept[place]
-        if health(first).zeros:
-            kept[place] = channel
-            notes.append(
-                Notice(
-                    "warning",
-                    f"{channel.name!r} is stored twice; the first is zero throughout and is left "
-                    "aside",
-                )
-            )
-        elif health(channel).zeros:
-            notes.append(
-                Notice(
-                    "warning",
-                    f"{channel.name!r} is stored twice; the second is zero throughout and is left "
-                    "aside",
-                )
-            )
+        if (zeros := health(first).zeros) or health(channel).zeros:
+            kept[place] = channel if zeros else first
+            notes.append(Notice.of("twin_zero", channel=channel.name))
         elif len(first) == len(channel) and _same(first, channel):
-            notes.append(Notice("info", f"{channel.name!r} is stored twice, the same; one is kept"))
+            notes.append(Notice.of("twin_same", channel=channel.name))
         else:
             number = numbers[channel.name] = numbers.get(channel.name, 1) + 1
             while f"{channel.name} ({number})" in places:
                 number += 1
-            places[f"{channel.name} ({number})"] = len(kept)
-            kept.append(replace(channel, name=f"{channel.name} ({number})"))
-            notes.append(
-                Notice(
-                    "important",
-                    f"{channel.name!r} is stored twice with other values; the second is called "
-                    f"'{channel.name} ({number})'",
-                )
-            )
+            renamed = f"{channel.name} ({number})"
+            places[renamed] = len(kept)
+            kept.append(replace(channel, name=renamed))
+            notes.append(Notice.of("twin_renamed", channel=channel.name, renamed=renamed))
     if not kept:
         raise InputError("file", source, why="it holds no channel of numbers")
     return kept, tuple(notes)
@@ -459,7 +422,3 @@ def _same(one: Channel, other: Channel) -> bool:
         np.array_equal(a, b, equal_nan=True)
         for a, b in zip(one.blocks(), other.blocks(), strict=True)
     )
-
-
-def _count(number: int, noun: str) -> str:
-    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"

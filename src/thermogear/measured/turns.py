@@ -11,6 +11,7 @@ from scipy import signal
 
 from thermogear.measured.chain import Turning
 from thermogear.measured.gearing import SLOW, Gearing, known_teeth, sides_of
+from thermogear.measured.record import Notice
 from thermogear.signals.following import (
     Followed,
     band_power,
@@ -37,10 +38,6 @@ _FEW = 4.0  # turns of a shaft over the record
 _AS_FAR = 3.0  # times the distance of the first sidebands, up to which is looked
 _CLEAR = 3  # bins of a line's own lobe, Hann's window
 _CLEARLY = 3.0  # times the power of Q
-_UNKNOWN = (
-    "the lines beside it may as well be sidebands of a shaft that is not known: the intervals hold "
-    "both"
-)
 _THIN = 0.25  # cycles a sample, of the line while filters are tried
 _EVEN = ("kaiser", 10.0)  # its gain is even to 1.1e-5 up to 0.6 of half the rate
 _HELD = 1.0  # of the filter's half width: there its phase has taken the noise away
@@ -51,7 +48,7 @@ class MeshTurns:
     """The mesh line over the stretch: its turns over the time they take.
 
     ``frequency`` +- ``half_width`` (95 %) [cycles/sample]; ``turning``: the angle to read lines in,
-    None where the speed is steady enough; ``said`` how it was found; ``phase_noise`` [rad]: what
+    None where the speed is steady enough; ``told`` how it was found; ``phase_noise`` [rad]: what
     noise brings to that angle and what of the turning it misses, in the mesh line's own phase;
     ``unfollowed``: power beside the line that its reading lacks and that may be its own, of its
     power; ``spread``: what of ``half_width`` comes of that; ``doubt``: share of the power near the
@@ -62,14 +59,14 @@ class MeshTurns:
     frequency: float
     half_width: float
     turning: Turning | None = None
-    said: str = ""
+    told: tuple[Notice, ...] = ()
     phase_noise: float = 0.0
     followed: float = 0.0
     power: float = 0.0
     unfollowed: float = 0.0
     spread: float = 0.0
     doubt: float = 0.0
-    withheld: str = ""
+    withheld: Notice | None = None
     near: float = 0.0
     mate: bool = False
 
@@ -82,10 +79,17 @@ class MeshTurns:
         change = np.linalg.norm([reading.changing, reading.turning, _of_neighbours(reading)])
         return max(LEAK * float(change) - told, 0.0)
 
+    def told_of(self, positions: Sequence[float]) -> list[Notice]:
+        """What is told, with that lines at the ``positions`` are withheld, where some are."""
+        near = any(map(self.why_withheld, positions))
+        more = [self.withheld] if self.withheld is not None and near else []
+        return list(dict.fromkeys((*self.told, *more)))
+
     def why_withheld(self, position: float) -> str:
         """Why a line at this place [cycles/sample], no harmonic itself, is withheld, or ''."""
         harmonic = max(1.0, float(np.rint(position / self.frequency))) * self.frequency
-        return self.withheld if abs(position - harmonic) < self.near else ""
+        near = abs(position - harmonic) < self.near
+        return self.withheld.text if self.withheld is not None and near else ""
 
 
 def mesh_turns(
@@ -137,7 +141,7 @@ def mesh_turns(
     steady = MeshTurns(
         frequency=best[0],
         half_width=float(np.hypot(best[1], spread)),
-        said=_beside(reading, least, share),
+        told=_beside(reading, least, share),
         unfollowed=share,
         spread=spread,
         mate=mate,
@@ -215,8 +219,13 @@ def _or_steady(
         turns,
         doubt=max(turns.doubt, share / (1.0 + share)),
         half_width=turns.half_width + off,
-        said=turns.said if _UNKNOWN in turns.said else f"{turns.said}; {_UNKNOWN}",
+        told=_with_unknown(turns),
     )
+
+
+def _with_unknown(turns: MeshTurns) -> tuple[Notice, ...]:
+    """What is told, and once that lines beside may be sidebands of a shaft that is not known."""
+    return tuple(dict.fromkeys((*turns.told, Notice.of("sidebands_or_swing"))))
 
 
 def _or_sidebands(
@@ -234,14 +243,11 @@ def _or_sidebands(
     ends. Lines that near are withheld.
     """
     width, near = spectrum.bin_width, 2.0 * spectrum.bin_width
-    why = (
-        f"the record holds {nearest / width:.2g} turns of the slowest shaft: below {_FEW:g} its "
-        "sidebands are not told from a speed that wanders"
-    )
+    why = Notice.of("few_turns", turns=nearest / width, least=_FEW)
     reach = _AS_FAR * nearest + near
     turned = 0.0
     if turns.turning is not None:
-        why, near = f"the speed wanders, and {why}", reach
+        near = reach
         straight = line_spectrum(turns.turning.resampled(values, 0), float(turns.turning.per_cycle))
         turned = max(band_power(straight, 1.0, reach / turns.frequency) / turns.power - 1.0, 0.0)
     elif nearest >= near:
@@ -257,7 +263,7 @@ def _or_sidebands(
         spread=float(np.hypot(turns.spread, spread)),
         withheld=why,
         near=near,
-        said=turns.said if turns.turning else "; ".join(filter(None, (turns.said, why))),
+        told=turns.told if turns.turning else (*turns.told, why),
     )
 
 
@@ -266,19 +272,12 @@ def _of_neighbours(reading: Reading) -> float:
     return float(np.sqrt(abs(reading.beside))) / max(reading.amplitude, 1e-300)
 
 
-def _beside(reading: Reading, least: float | None, share: float) -> str:
-    """What is said of power near a line that is read as a steady one."""
+def _beside(reading: Reading, least: float | None, share: float) -> tuple[Notice, ...]:
+    """What is told of power near a line that is read as a steady one."""
     own = reading.amplitude**2
     near = 0.0 if not least or own <= 0.0 else (least / own - 1.0) / _BROUGHT
     share = max(share, near)
-    if share < _TOLD:
-        return ""
-    percent = f"{100 * share:.2g}" if share < 1.0 else f"{100 * share:.0f}"
-    return (
-        f"lines beside the mesh line that are no sidebands of its shafts hold {percent} % of its "
-        "power: neighbours, or a speed that swings too fast to be followed; it is read as a "
-        "steady line"
-    )
+    return (Notice.of("power_beside_mesh_line", share=share),) if share >= _TOLD else ()
 
 
 def _reach(spectrum: LineSpectrum, gearing: Gearing) -> float:
@@ -457,7 +456,7 @@ def _with_pairs(
         turns,
         doubt=max(0.0, 1.0 - other.power / max(turns.power, 1e-300)),
         half_width=turns.half_width + abs(other.frequency - turns.frequency),
-        said=f"{turns.said}; {_UNKNOWN}",
+        told=_with_unknown(turns),
     )
 
 
@@ -492,8 +491,7 @@ def _followed(
         half_width=float(np.hypot(found.frequency_half_width, spread * found.frequency)),
         unfollowed=share,
         turning=turning,
-        said=f"the mesh line's phase wanders by {wander:.3g} cycles: lines are read in angle, by "
-        "that phase",
+        told=(Notice.of("phase_wanders", cycles=wander),),
         phase_noise=float(np.hypot(noise, reading.turning)),
         followed=_HELD * found.last,
         power=float(line**2) * max(0.0, 1.0 - 2.0 * noise**2),

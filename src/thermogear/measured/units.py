@@ -43,8 +43,6 @@ _VIBRATES = ("acceleration", "velocity", "displacement", "voltage")
 _OF_RECORDS = tuple(name for name, (kind, _) in _TABLE.items() if kind in _VIBRATES)
 UNITS = ", ".join(_OF_RECORDS)
 """Known units of what vibrates, in words."""
-TIMES = ", ".join(name for name, (kind, _) in _TABLE.items() if kind == "time")
-"""Known units of time, in words."""
 _SPELLINGS = {
     "m/s2": "m/s^2",
     "m/s**2": "m/s^2",

@@ -18,8 +18,8 @@ import thermogear
 from thermogear.base.errors import InputError, nearest
 from thermogear.base.files import SCHEMA
 from thermogear.base.netcdf import read_tree, write_tree
-from thermogear.base.notice import LEVELS as LEVELS
 from thermogear.base.notice import Notice as Notice
+from thermogear.base.notice import stored_notices
 from thermogear.base.stores import RESULT as STORE
 from thermogear.base.stores import about_store, read_store, require_schema
 from thermogear.results.answer import Answer
@@ -82,16 +82,21 @@ class Result:
         kind: str,
         title: str,
         groups: Mapping[str, xr.Dataset],
-        notices: Iterable[Notice | str | Mapping[str, Any]] = (),
+        notices: Iterable[Notice] = (),
         **provenance: Any,
     ) -> Result:
-        """A new result of this version; lists and tables of ``provenance`` become JSON texts.
-
-        A notice that is a bare text is an "info".
-        """
+        """A new result of this version; lists and tables of ``provenance`` become JSON texts."""
         about = {"thermogear": thermogear.__version__, "created": now(), **provenance}
-        told = tuple(Notice.stored(one) for one in notices)
-        return cls(kind, title, groups, told, {k: _plain(v) for k, v in about.items()})
+        return cls(kind, title, groups, tuple(notices), {k: _plain(v) for k, v in about.items()})
+
+    def hiding(self, codes: Collection[str]) -> Result:
+        """The same without the notices of these ``codes``; a notice says how many there were."""
+        hidden = [notice for notice in self.notices if notice.code in codes]
+        if not hidden:
+            return self
+        important = sum(notice.level == "important" for notice in hidden)
+        told = Notice.of("notices_hidden", hidden=len(hidden), important=important)
+        return replace(self, notices=(told, *(n for n in self.notices if n not in hidden)))
 
     def with_(self, **provenance: Any) -> Result:
         """The same with more, or other, provenance."""
@@ -178,7 +183,7 @@ class Result:
     @property
     def attrs(self) -> dict[str, Plain]:
         """The root attributes of the stored file."""
-        notices = json.dumps([notice.as_dict() for notice in self.notices])
+        notices = stored_notices(self.notices)
         about: dict[str, Plain] = {"title": self.title, "kind": self.kind, "notices": notices}
         return {**self.provenance, **about, "schema": SCHEMA}
 

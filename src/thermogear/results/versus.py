@@ -299,32 +299,19 @@ def _notices(
 ) -> Iterator[Notice]:
     titles = [str(title) for title in data["case"].values]
     if own is not None:
-        pairs_ = ", ".join(f"{name[0]} of {t}" for t, name in zip(titles, own, strict=True))
-        yield Notice(
-            "info", f"No bundle is in all cases; each case's only one is compared: {pairs_}."
-        )
-    has = data["present"].values.astype(bool)
-    for axis, dims, word in (("bundle", (2,), "bundle"), ("operating", (1,), "operating point")):
-        there = np.asarray(has.any(axis=dims))
-        names = data["bundle" if axis == "bundle" else "point"].values
-        for c, title in enumerate(titles):
-            alone = [str(n) for n, col in zip(names, there.T, strict=True)
-                     if col[c] and col.sum() == 1]  # fmt: skip
-            if alone:
-                shown = "; ".join(alone[:12]) + ("; and more" if len(alone) > 12 else "")
-                plural = "s" if len(alone) > 1 else ""
-                yield Notice("warning", f"In {title} only: {word}{plural} {shown}.")
+        yield Notice.of("bundles_paired", bundles=[name[0] for name in own], cases=titles)
+    has = np.asarray(data["present"].values, dtype=bool)
+    for c, title in enumerate(titles):
+        for code, name, axis in (("bundles", "bundle", 2), ("operating", "point", 1)):
+            there = np.asarray(has.any(axis=axis))
+            alone = data[name].values[there[c] & (there.sum(axis=0) == 1)]
+            if alone.size:
+                yield Notice.of(f"{code}_in_one_case", case=title, names=alone)
     if not (has.sum(axis=0) > 1).any():
-        yield Notice(
-            "important",
-            "No operating point is in two of the cases: nothing stands side by side.",
-        )
+        yield Notice.of("nothing_side_by_side")
     versions = [str(case.texts.get("thermogear", "")) for case in cases]
     if len(set(versions)) > 1:
-        each = ", ".join(f"{t}: {v}" for t, v in zip(titles, versions, strict=True))
-        yield Notice(
-            "warning", f"The results were written by different versions of thermogear ({each})."
-        )
+        yield Notice.of("versions_differ", cases=titles, versions=versions)
 
 
 # --- joining ------------------------------------------------------------------------------

@@ -14,6 +14,7 @@ from thermogear.analysis.continuation import GAP, Branch, continuation, switch_b
 from thermogear.analysis.event_curve import EventCurve
 from thermogear.analysis.orbits import Orbit, periodic_orbit
 from thermogear.base.errors import ConvergenceError, InputError
+from thermogear.base.notice import Notice
 from thermogear.base.parameters import NUMBERS, Parameter
 from thermogear.base.progress import Progress, silent
 from thermogear.base.units import ZERO_CELSIUS
@@ -76,18 +77,24 @@ def branch_results(
     orbit, _ = orbit_of(point, period, transient=transient, model=models(begin))
     legs, cut = walked(orbit, varied, models, begin=begin, to=to, switch=switch, progress=progress)
     curves: list[EventCurve] = []
-    notices: list[str] = []
+    notices = lost_notices(legs)
     if plane is not None and not cut:
         branches = [leg.branch for leg in legs]
-        curves, notices, cut = plane.followed(branches, varied, (begin, to), progress)
+        curves, told, cut = plane.followed(branches, varied, (begin, to), progress)
+        notices += told
     summary = summary_of(point.title, varied, legs, (begin, to), cut)
     summary["parameters"] = point.parameters
-    summary["notices"] += notices
     groups = {f"branch_{i}": dataset(leg, varied.unit) for i, leg in enumerate(legs)}
     if plane is not None:
         summary |= plane.summary(curves, varied)
         groups |= plane.groups(curves, varied)
-    return found("branch", groups, summary, interrupted=cut)
+    return found("branch", groups, summary, notices, interrupted=cut)
+
+
+def lost_notices(legs: Sequence[Leg]) -> list[Notice]:
+    """Which branches could not be followed further."""
+    lost = [leg.branch for leg in legs if leg.branch.ended.startswith(GAP)]
+    return [Notice.of("branch_lost", period=branch.period) for branch in lost]
 
 
 def require_depth(switch: int) -> None:
@@ -158,11 +165,7 @@ def summary_of(
         "branches": [_leg_summary(leg, varied) for leg in legs],
         "bifurcations": [_event(b, varied) for leg in legs for b in leg.branch.bifurcations],
         "interrupted": cut,
-        "notices": [
-            f"the branch of period {leg.branch.period} was lost: what lies beyond is not "
-            "shown; begin on the other side" for leg in legs if leg.branch.ended.startswith(GAP)
-        ],
-    }  # fmt: skip
+    }
 
 
 def parameter_of(point: OnePoint, name: str) -> Parameter:
@@ -356,20 +359,21 @@ def cascade_results(
         raise InputError("--cascade", flips, allowed=f"1..{MOST_DEPTH}")
     legs: list[Leg] = []
     entries: list[dict[str, Any]] = []
-    notices: list[str] = []
+    notices: list[Notice] = []
     cut = False
     for heat in heats() if hot else (COLD,):
         for sweep in sweeps:
             if cut:
                 break
             point = of_numbers({**sweep.base, **heat.numbers, sweep.parameter: sweep.first}, start)
-            stage = f"{sweep.row}, {heat.name}".split(" (")[0]
+            about = f"{sweep.row}, {heat.name}"
+            stage = about.split(" (")[0]
             own: list[Leg] = []
             values: list[Bifurcation] = []
             try:
                 cut = _cascade(point, sweep, flips, stage, progress, own, values)
             except ConvergenceError as error:
-                notices.append(f"{sweep.row}, {heat.name}: {error}")
+                notices.append(Notice.of("cascade_not_found", about=about, reason=str(error)))
             except KeyboardInterrupt:
                 cut = True
             if not own:
@@ -379,16 +383,17 @@ def cascade_results(
     if not legs and cut:
         raise KeyboardInterrupt
     if not legs:
-        raise ConvergenceError("; ".join(notices) or "no cascade was found")
+        raise ConvergenceError("; ".join(n.text for n in notices) or "no cascade was found")
+    if all(leg.branch.back_impacts.max() == 0 for leg in legs):
+        notices.append(Notice.of("backlash_without_effect"))
     summary = {
         "title": title,
         "flips": flips,
         "cascades": entries,
         "interrupted": cut,
-        "notices": notices + _backlash_notice(legs),
     }
     groups = {f"branch_{i}": dataset(leg, "1") for i, leg in enumerate(legs)}
-    return found("cascade", groups, summary, interrupted=cut)
+    return found("cascade", groups, summary, notices, interrupted=cut)
 
 
 def _entry(
@@ -419,12 +424,6 @@ def _entry(
         "ended": legs[-1].branch.ended,
         "back_impacts": int(max(leg.branch.back_impacts.max() for leg in legs)),
     }
-
-
-def _backlash_notice(legs: Sequence[Leg]) -> list[str]:
-    if any(leg.branch.back_impacts.max() > 0 for leg in legs):
-        return []
-    return ["no back flank is hit on any of these branches: b' has no effect, heat acts by ε_T"]
 
 
 def _cascade(

@@ -81,17 +81,9 @@ class CaseRuns:
     def told(self, tolerances: Mapping[str, float]) -> Iterator[Notice]:
         """What u_input holds of the case, and what it lacks."""
         if self.accuracy is not None:
-            yield Notice(
-                "info",
-                f"u_input holds the greatest change that {DRAWINGS} drawings of flanks of class "
-                f"{self.accuracy} make: which of them the gears have is not known",
-            )
+            yield Notice.of("u_input_of_drawings", drawings=DRAWINGS, accuracy=self.accuracy)
         if not tolerances:
-            yield Notice(
-                "warning",
-                "no tolerances of the case are stated: u_input "
-                + ("is 0" if self.accuracy is None else "holds nothing else"),
-            )
+            yield Notice.of("tolerances_not_stated")
 
 
 def _stated(data: Mapping[str, Any], name: str) -> str:

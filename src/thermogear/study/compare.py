@@ -94,7 +94,7 @@ def compare(
             case, read[0], at, u_data=u_data, u_num=u_num, tolerances=tolerances, samples=samples,
             seed=seed,
         )  # fmt: skip
-    damage = [Notice(*told) for one in read if isinstance(one, Measurement) for told in one.damage]
+    damage = [told for one in read if isinstance(one, Measurement) for told in one.findings]
     printed = [
         Printed(table_of(one, turns), {}) if isinstance(one, Measurement) else one
         for one, turns in zip(read, speeds, strict=True)
@@ -276,11 +276,7 @@ def case_lines(
         coarse = _tables(runs, {"simulation.steps_per_period": str(steps // 2)})
         # fourth order: the coarse run's error is 16/15 of the difference, the fine one's 1/15
         u_num = max(map(abs, _relative(base, coarse).values()), default=0.0) / 15.0
-        notices.append(
-            Notice(
-                "info", f"u_num {100 * u_num:.3g} % from {steps} and {steps // 2} steps a period"
-            )
-        )
+        notices.append(Notice.of("u_num_of_steps", u_num=u_num, steps=[steps, steps // 2]))
     changed = [
         [_relative(base, _tables(runs, one)) for one in several]
         for several in (runs.sampled(tolerances, count=samples, seed=seed), runs.drawings())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -87,10 +87,7 @@ def compare_sensors(
         finer, _ = _simulated(base, place, speed, sensors, held=2 * HELD_MODES, only=last)
         change = _picked(finer[last], rows, sensors) - told[last.words]
         numeric = np.abs(change) / real
-        notices.append(
-            Notice("info", f"u_num: change of a line with {2 * HELD_MODES} modes of the shafts "
-                   f"instead of {HELD_MODES}")
-        )  # fmt: skip
+        notices.append(Notice.of("u_num_of_modes", modes=HELD_MODES, more=2 * HELD_MODES))
 
     def changed(several: Iterable[Mapping[str, str]]) -> Floats:
         """Changes of every line, (run, line), relative to what is measured."""
@@ -129,7 +126,7 @@ def compare_sensors(
         names,
         tuple(made),
         (_implied(measured, rows, base, place, speed),),
-        (*_seen(own), *(Notice(*one) for one in measured.damage), *notices),
+        (*_seen(own), *measured.findings, *notices),
         f"within {AGREES:g} u_val: {', '.join(counts)} of {len(made)}",
     )
 
@@ -215,10 +212,12 @@ def _simulated(
         wanted = len(interface_of(there.assembly)) - 1 + held
         one = moved(case, replace(there, speed=speed), coordinates=wanted)
         if one.train is None or one.record is None or one.motion is None:
-            notices.append(Notice("warning", f"drive train, {state.words}: no motion"))
+            notices.append(Notice.of("train_without_motion", about=state.words))
             continue
         notices.append(
-            Notice("info", f"drive train, {state.words}: {one.motion.name}, {one.motion.reason}")
+            Notice.of(
+                "train_moves", about=state.words, label=one.motion.name, reason=one.motion.reason
+            )
         )
         periods = one.record.phase.size // SAMPLES
         felt = sensed(one.train, one.motion.state, vectors=vectors, periods=periods)
@@ -246,9 +245,8 @@ def _turned(sensor: Accelerometer) -> Accelerometer:
 
 def _exchanged(
     made: Sequence[Row], rows: Sequence[_Line], table: Floats, sensors: Sequence[Accelerometer]
-) -> list[Notice]:
+) -> Iterator[Notice]:
     """Channels that would agree along the other axis on their strongest line, and do not here."""
-    found = []
     for sensor in dict.fromkeys(row.sensor for row in rows):
         mine = [k for k, row in enumerate(rows) if row.sensor == sensor]
         k = max(mine, key=lambda k: rows[k].found.acceleration)
@@ -256,14 +254,12 @@ def _exchanged(
         error = float(_picked(table, [other], sensors)[0]) / made[k].measured - 1.0
         allowed = AGREES * made[k].u_val
         if abs(error) <= allowed < abs(made[k].errors[-1]):
-            found.append(
-                Notice(
-                    "important",
-                    f"channel {sensor.channel!r} does not agree along {sensor.words}, and would "
-                    f"along {other.sensor.words}: are the axes exchanged?",
-                )
+            yield Notice.of(
+                "axes_exchanged",
+                channel=sensor.channel,
+                along=sensor.words,
+                instead=other.sensor.words,
             )
-    return found
 
 
 def _verdict(row: Row, names: Sequence[str]) -> str:
@@ -292,17 +288,10 @@ def _implied(
     )
 
 
-def _seen(sensors: Sequence[Accelerometer]) -> list[Notice]:
+def _seen(sensors: Sequence[Accelerometer]) -> Iterator[Notice]:
     """What the accelerometers see, where it is easily taken for something else."""
-    found = []
-    if any(one.kind == "bearing" for one in sensors):
-        found.append(
-            Notice("info", "a bearing's cap moves with the outer ring's seat, or with the housing "
-                   "where the seat is rigid; neither the journal nor the teeth move like it")
-        )  # fmt: skip
-    if any(one.kind in ("journal", "gear") for one in sensors):
-        found.append(
-            Notice("info", "journal and gear: motion of the shaft's centre in the fixed frame, "
-                   "which no accelerometer on the housing sees")
-        )  # fmt: skip
-    return found
+    kinds = {one.kind for one in sensors}
+    if "bearing" in kinds:
+        yield Notice.of("cap_moves_with_seat")
+    if kinds & {"journal", "gear"}:
+        yield Notice.of("shaft_centre_not_seen")

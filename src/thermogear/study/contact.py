@@ -22,7 +22,7 @@ from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair, ThermalDeviation
 from thermogear.results.result import Notice, Result
-from thermogear.study.relief import EDGE_WORDS, Seen, one_point
+from thermogear.study.relief import Seen, one_point
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -194,31 +194,18 @@ def apart(point: Operating, difference: float) -> Operating:
 def _notices(
     case: GearCase, body: str, lost: int, edges: xr.DataArray, compared: xr.Dataset
 ) -> Iterator[Notice]:
-    apart_by = 100.0 * (compared["iso_stiffness"] / compared["loaded_stiffness"] - 1.0).values
-    low, high = (f"{value:+.0f}" for value in (apart_by.min(), apart_by.max()))
-    standard = f"{low} %" if low == high else f"{low} to {high} %"
-    words = "clamped at the bore: statics" if body == "bore-clamped" else "without hub wind-up"
-    yield Notice(
-        "info",
-        f"Body: {words}, plane stress. Contact on tip corners and relief stand without "
-        "a finite-element check; `thermogear verify stiffness` holds the rest against one.",
-    )
-    yield Notice(
-        "info",
-        "ISO 6336-1 knows neither bore nor course over the mesh; here it stands "
-        f"{standard} from the loaded contact. Below 100 N/mm its stiffness falls fast.",
-    )
+    apart = (compared["iso_stiffness"] / compared["loaded_stiffness"] - 1.0).values
+    yield Notice.of("loaded_contact_unchecked", body=body)
+    yield Notice.of("iso_stiffness_apart", apart=[[apart.min(), apart.max()]])
     if bool((edges > 0.0).any()):
         most = edges.isel(edges.argmax(...))
-        at = f"{most['temperature'].values!s}, {float(most['load']):.4g} N m"
-        yield Notice(
-            "important",
-            f"Tip corners carry load during up to {100 * float(most):.3g} % of the "
-            f"mesh period ({at}). {EDGE_WORDS}",
+        yield Notice.of(
+            "edge_contact_at_most",
+            share=most.item(),
+            state=str(most["temperature"].values),
+            torque=most["load"].item(),
         )
     if lost:
-        yield Notice(
-            "important", f"{lost} positions did not settle; they are not_converged and not drawn."
-        )
+        yield Notice.of("positions_not_settled", lost=lost)
     if any(m.stiffness != "loaded" for m in case.models):
-        yield Notice("info", "The loaded contact stands for every bundle of the case.")
+        yield Notice.of("contact_of_every_bundle")

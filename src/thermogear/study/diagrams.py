@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -251,9 +252,5 @@ def overlaid(
         one, other, (plans[0].family, plans[1].family), most=most,
         progress=lambda done, count: progress("bifurcations followed", done, count),
     )  # fmt: skip
-    notices = [
-        f"{state}: {told}"
-        for state, data_ in zip(words, found, strict=True)
-        for told in from_data(data_)
-    ]
+    notices = chain.from_iterable(map(from_data, found, words))
     return Result.of("overlay", title, {"states": data}, notices, matches=rows, states=words)

@@ -99,19 +99,10 @@ def _drawn(
 
 
 def _notices(data: xr.Dataset) -> Iterator[Notice]:
-    yield Notice(
-        "info",
-        "Backlash that the centre distance does not open is taken off all four flanks alike; "
-        "growth is that of bodies of revolution with free teeth, whatever flank the bundle has.",
-    )
+    yield Notice.of("backlash_off_all_flanks")
     if float(data["back_gap"].min()) <= 0.0:
-        yield Notice("important", "No backlash is left: the hot flanks overlap where they jam.")
+        yield Notice.of("no_backlash_left")
     if float(data["tip_clearance"].min()) <= 0.0:
-        yield Notice(
-            "important", "Tips reach the other gear's root when hot: no clearance is left."
-        )
+        yield Notice.of("no_tip_clearance_left")
     if data.attrs["not_drawn"]:
-        yield Notice(
-            "warning",
-            f"{data.attrs['not_drawn']}: not a shape of one flank, felt in the gaps and not drawn.",
-        )
+        yield Notice.of("deviations_not_drawn", deviations=data.attrs["not_drawn"])

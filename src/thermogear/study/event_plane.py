@@ -14,6 +14,7 @@ from thermogear.analysis.bordered import Sheet
 from thermogear.analysis.continuation import Branch
 from thermogear.analysis.event_curve import CARRIED, LOST, EventCurve, event_curve
 from thermogear.base.errors import ConvergenceError
+from thermogear.base.notice import Notice
 from thermogear.base.parameters import Parameter
 from thermogear.base.progress import Progress
 from thermogear.dynamics.return_map import MovedMap
@@ -51,15 +52,14 @@ class Plane:
         first: Parameter,
         limits: tuple[float, float],
         progress: Progress,
-    ) -> tuple[list[EventCurve], list[str], bool]:
+    ) -> tuple[list[EventCurve], list[Notice], bool]:
         """A curve for every bifurcation, grazings last; notices; whether Ctrl+C cut it."""
         events = [b for branch in branches for b in branch.bifurcations if b.kind in CARRIED]
         chosen = [b for b in events if b.kind not in OF_ONE_MASS or one_mass(b)]
         chosen.sort(key=lambda event: event.kind == GRAZING)
         left = {b.kind for b in events} - {b.kind for b in chosen}
         notices = [
-            f"{kind}s stand at the first value of {self.second.name}: those of a drive train are "
-            "not followed"
+            Notice.of("events_of_train_not_followed", kind=kind, parameter=self.second.name)
             for kind in OF_ONE_MASS
             if kind in left
         ]
@@ -69,12 +69,12 @@ class Plane:
                 if any(_ends_at(one, event, limits, float(self.values[0])) for one in curves):
                     continue
                 if len(curves) == MOST_CURVES:
-                    notices.append(f"more than {MOST_CURVES} curves: the rest is not followed")
+                    notices.append(Notice.of("curves_left_out", most=MOST_CURVES))
                     break
                 try:
                     curves.append(self._curve(event, first, limits, progress))
                 except ConvergenceError as error:
-                    notices.append(str(error))
+                    notices.append(Notice.of("curve_not_found", kind=event.kind, reason=str(error)))
         except KeyboardInterrupt:
             return curves, notices, True
         return curves, notices, False

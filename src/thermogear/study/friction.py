@@ -139,19 +139,10 @@ def range_in_words(law: FrictionLaw) -> str:
 
 
 def _notices(state: ContactState, words: list[dict[str, str]]) -> Iterator[Notice]:
-    yield Notice(
-        "info",
-        f"The film is known to about {100 * FILM_UNCERTAINTY:.0f} % "
-        "(pressure-viscosity) and the thickness formulas spread by 14 %: so does the border "
-        "between the regimes.",
-    )
-    yield Notice(
-        "info",
-        "Near the pitch point nothing slides: Benedict and Kelley's logarithm is held "
-        "at 1 % of the entrainment speed, Xu and Kahraman's law falls to 0.",
-    )
+    yield Notice.of("film_uncertain", uncertainty=FILM_UNCERTAINTY)
+    yield Notice.of("friction_at_pitch_point")
     for one in words:
         if one["missing"]:
-            yield Notice("warning", f"{one['law']}: {one['missing']}")
+            yield Notice.of("law_without_value", about=one["law"], reason=one["missing"])
     if float(np.max(np.asarray(state.sum_speed))) == 0.0:
-        yield Notice("important", "The pair is at rest: no film forms.")
+        yield Notice.of("pair_at_rest")

@@ -101,57 +101,39 @@ def _group(chart: Chart, pair: GearPair) -> xr.Dataset:
 def measured_notices(case: GearCase) -> Iterator[Notice]:
     """What of a chart acts, what was decided for it, and what is left out."""
     for chart in case.charts:
-        gear, name = _gear(case.pair, chart.gear), chart.gear.capitalize()
-        low, high = (2e3 * float(np.hypot(gear.base_radius, end)) for end in chart.range)
-        sides = []
+        gear, name = _gear(case.pair, chart.gear), f"{chart.gear} flanks"
         for one in chart.flanks:
-            count = chart.traces.flank.count(one.flank)
-            mean = f"mean of {count} teeth" if count > 1 else "one tooth"
-            part = (one.rho[-1] - one.rho[0]) / one.cutoff
-            sides.append(
-                f"{one.flank} {mean}, cut-off {1e3 * one.cutoff:.2g} mm of roll path (1/{part:.0f} "
-                f"of the range; noise {1e6 * one.noise:.2g} um)"
+            yield Notice.of(
+                "flank_as_measured",
+                about=name,
+                flank=one.flank,
+                traces=chart.traces.flank.count(one.flank),
+                cutoff=one.cutoff,
+                part=(one.rho[-1] - one.rho[0]) / one.cutoff,
+                noise=one.noise,
             )
-        stated = "" if chart.read.signed else " Material outside is taken as positive."
-        ranged = "active profile within the trace"
-        if chart.traces.range is not None:
-            cut = not np.allclose(chart.traces.range, chart.range, rtol=0.0, atol=1e-6)
-            ranged = "stated, as far as the trace goes" if cut else "stated"
-        yield Notice(
-            "info",
-            f"{name} flanks as measured ({', '.join(chart.names)}): {'; '.join(sides)}. Evaluated "
-            f"over diameters {low:.5g} to {high:.5g} mm ({ranged}), held constant beyond; zero at "
-            f"the pitch circle, where backlash counts.{stated}",
+        ends, stated = (
+            None if range_ is None else [2.0 * np.hypot(gear.base_radius, range_)]
+            for range_ in (chart.range, chart.traces.range)
         )
+        yield Notice.of(
+            "flanks_evaluated",
+            about=name,
+            files=list(chart.names),
+            diameters=ends,
+            stated=stated,
+        )
+        if not chart.read.signed:
+            yield Notice.of("sign_not_stated", about=name)
         limited = [one.flank for one in chart.flanks if one.limited]
         if limited:
-            yield Notice(
-                "warning",
-                f"{name} flanks, {' and '.join(limited)}: the traces are so noisy that bumps of "
-                "noise may carry in the contact. More teeth, or more points, would settle it.",
-            )
-        missing = {"drive", "back"} - {one.flank for one in chart.flanks}
-        if missing:
-            yield Notice(
-                "warning",
-                f"{name} flanks: no trace of the {missing.pop()} flank; it is taken as the "
-                "involute itself.",
-            )
-        relieved = any(
-            isinstance(one, Relief) and one.gear == chart.gear for one in case.deviations
-        )
-        if relieved:
-            yield Notice(
-                "warning",
-                f"{name} flanks: a relief of the case stands on top of the traces, which hold what "
-                "relief was cut already.",
-            )
+            yield Notice.of("traces_noisy", about=name, flanks=limited)
+        for flank in {"drive", "back"} - {one.flank for one in chart.flanks}:
+            yield Notice.of("flank_not_measured", about=name, flank=flank)
+        if any(isinstance(one, Relief) and one.gear == chart.gear for one in case.deviations):
+            yield Notice.of("relief_on_traces", about=name)
         if chart.read.pitch:
-            yield Notice(
-                "info",
-                f"{name} pitch deviations ({', '.join(chart.read.pitch)}) are kept with the "
-                "results and not used: a run has one mesh period for all teeth.",
-            )
+            yield Notice.of("pitch_not_used", about=name, deviations=list(chart.read.pitch))
 
 
 def _gear(pair: GearPair, name: str) -> Gear:

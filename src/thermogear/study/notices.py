@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.settle import LABELS, PERIODIC
-from thermogear.base.display import CELSIUS, reach, stretches
-from thermogear.base.units import RPM
 from thermogear.base.vocabulary import STILL, moves
 from thermogear.case.case import GearCase
 from thermogear.heat.friction import LUBRICATED, beyond
@@ -22,41 +20,51 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-NOT_DECIDED = "whether contact is lost is not decided: 0 of {} points are valid"
-"""Where no point has status ok: what rests on no oil bath proves nothing."""
-
-
 def finished(data: xr.Dataset, title: str = "") -> Result:
     """What a store of long work holds, with what should be known beside it."""
     return stored_dataset(with_notices(data), title)
 
 
-def contact_notices(data: xr.Dataset) -> list[str]:
+def contact_notices(data: xr.Dataset) -> Iterator[Notice]:
     """What does not move; over which speeds contact is lost, and where the back flanks are hit."""
-    found = still_notices(data)
-    moving = moves(data["status"].values)
-    over_speed = "contact_loss_share" in data and "pinion_speed" in data["label"].dims
-    if not (over_speed and moving.any()):
-        return found
-    speeds = data["pinion_speed"].values / RPM
-    axis = data["label"].dims.index("pinion_speed")
-    others = tuple(i for i in range(data["label"].ndim) if i != axis)
+    status = data["status"].values
+    for word in STILL:
+        # of a motion that was not computed, the label says why
+        count = int(np.sum(data["label"].values == LABELS.index(word)))
+        if count:
+            yield Notice.of(f"points_{word}", count=count, points=status.size)
+    moving = moves(status)
+    if not ("contact_loss_share" in data and "pinion_speed" in data["label"].dims and moving.any()):
+        return
     share = data["contact_loss_share"].values
     lost = moving & (share > 0.0)
-    valid = int(((data["status"].values == 0) & np.isfinite(share)).sum())
-    never = f"contact is never lost at the {valid} of {moving.size} points that are valid"
     # of a motion that is not periodic the impacts are not counted; its least force tells
     hit = moving & ((data["back_impacts"].values > 0) | (data["mesh_force_min"].values < 0.0))
-    for flags, yes, no in (
-        (lost, "contact is lost", never if valid else NOT_DECIDED.format(moving.size)),
-        (hit, "the back flanks are hit", ""),
-    ):
-        here = np.asarray(flags.any(axis=others))
-        if here.any():
-            found.append(f"{yes} at {stretches(speeds, here)} rpm (in any state, up or down)")
-        elif no:
-            found.append(no)
-    return found
+    valid = int(((status == 0) & np.isfinite(share)).sum())
+    if lost.any():
+        yield Notice.of("contact_lost", **_at_speeds(data, lost))
+    else:
+        yield Notice.of(
+            "contact_never_lost" if valid else "contact_loss_not_decided",
+            valid=valid,
+            points=status.size,
+        )
+    if hit.any():
+        yield Notice.of("back_flanks_hit", **_at_speeds(data, hit))
+
+
+def _at_speeds(data: xr.Dataset, flags: NDArray[np.bool_]) -> dict[str, Any]:
+    """Stretches of speed [rad/s] on which ``flags`` hold anywhere, all speeds, number of states."""
+    dims, ways = data["label"].dims, data["label"].sizes.get("direction", 1)
+    axis = flags.ndim - len(dims) + dims.index("pinion_speed")
+    here = np.moveaxis(flags, axis, -1).reshape(-1, flags.shape[axis]).any(axis=0)
+    ends = np.flatnonzero(np.diff(np.concatenate([[0], here.astype(int), [0]]))).reshape(-1, 2)
+    speeds = data["pinion_speed"].values
+    return {
+        "speeds": [[speeds[first], speeds[end - 1]] for first, end in ends],
+        "computed": [[speeds[0], speeds[-1]]],
+        "states": data["label"].size // (ways * speeds.size),
+    }
 
 
 def differing(data: xr.Dataset) -> NDArray[np.bool_]:
@@ -73,144 +81,125 @@ def differing(data: xr.Dataset) -> NDArray[np.bool_]:
     return np.asarray(both & ((period[:, 0] != period[:, 1]) | (apart > least)))
 
 
-def difference_notices(data: xr.Dataset) -> list[str]:
+def difference_notices(data: xr.Dataset) -> Iterator[Notice]:
     """Over which speeds the runs up and down show different motions."""
-    here = np.asarray(differing(data).any(axis=0))
-    if not here.any():
-        return []
-    speeds = data["pinion_speed"].values / RPM
-    return [f"up and down differ at {stretches(speeds, here)} rpm (in any state)"]
+    apart = differing(data)
+    if apart.any():
+        yield Notice.of("up_and_down_differ", **_at_speeds(data, apart))
 
 
-def range_notices(case: GearCase, data: xr.Dataset) -> list[str]:
+def range_notices(case: GearCase, data: xr.Dataset) -> Iterator[Notice]:
     """Contact, the back side, and where the case's speeds lie."""
-    found = contact_notices(data) + from_data(data)
+    yield from contact_notices(data)
+    yield from from_data(data)
     ratio = data["frequency_ratio"].values if "frequency_ratio" in data else np.empty(0)
-    ratio = ratio[np.isfinite(ratio)]
-    frequency = data["mesh_frequency"].values if "mesh_frequency" in data else np.empty(0)
-    frequency = frequency[np.isfinite(frequency)]
-    if ratio.size:
-        natural = float(np.median(frequency / ratio))
-        turns = 60.0 / case.pair.pinion.teeth
-        speeds = np.array(case.speeds)
-        tests = case.pair.pinion.teeth * speeds / (2.0 * math.pi) / natural
-        shown = ", ".join(f"{s / RPM:.4g}" for s in speeds)
-        found.append(
-            f"the range covers omega_h {reach(ratio, '.3f')}; the mesh meets the "
-            f"natural frequency of the mean stiffness, {natural:.0f} Hz, at "
-            f"{natural * turns:.0f} rpm; the case's own speeds ({shown} rpm) lie at omega_h "
-            f"{reach(tests, '.3f')}"
-        )
-    return found
-
-
-def still_notices(data: xr.Dataset) -> list[str]:
-    """How many points of a sweep or run-up have no motion, and why."""
-    label = data["label"].values
-    counts = {word: int(np.sum(label == LABELS.index(word))) for word in STILL}
-    return [
-        f"{count} of {label.size} points have no motion ({word.replace('_', ' ')}): {STILL[word]}"
-        for word, count in counts.items()
-        if count
-    ]
-
-
-def reasons(why: Iterable[str]) -> str:
-    """Why points have no value at all, each reason once."""
-    each = "; ".join(dict.fromkeys(why))
-    return f" No value: {each}." if each else ""
-
-
-def several_words(data: xr.Dataset, settled: NDArray[np.bool_]) -> str:
-    """That points of a heat balance have two steady states, and which one is told; "" if none."""
-    several = settled & (data["several"].values == 1)
-    number, count = int(several.sum()), settled.size
-    if not number:
-        return ""
-    hotter = data["hot_node_temperature"] - data["node_temperature"]
-    most = float(hotter.sel(node="oil").values[several].max())
-    some = "1 point has" if number == 1 else f"{number} points have"
-    some = "The point has" if count == 1 else f"Of {count} points, {some}"
-    far = f", up to {most:.1f} K hotter" if np.isfinite(most) else ""
-    come = "it comes" if number == 1 else "they come"
-    return (
-        f"{some} another steady state when {come} from hot{far}: thinner oil lets the layer on "
-        "the gears turn turbulent, which drags more. All figures are those of the state reached "
-        "from cold."
+    if not np.isfinite(ratio).any():
+        return
+    natural = np.nanmedian(data["mesh_frequency"].values / ratio)
+    resonance = 2.0 * math.pi * natural / case.pair.pinion.teeth
+    speeds = np.array(case.speeds)
+    yield Notice.of(
+        "range_of_frequencies",
+        ratios=[[np.nanmin(ratio), np.nanmax(ratio)]],
+        natural_frequency=natural,
+        resonance=resonance,
+        speeds=speeds,
+        at=[[speeds.min() / resonance, speeds.max() / resonance]],
     )
+
+
+def heat_notices(
+    data: xr.Dataset, settled: NDArray[np.bool_], why: Iterable[str], about: str = ""
+) -> Iterator[Notice]:
+    """Points of a heat balance without a steady temperature, and those with a second one."""
+    lost = int((~settled).sum())
+    if lost:
+        yield Notice.of(
+            "heat_not_settled",
+            about=about,
+            lost=lost,
+            points=settled.size,
+            reasons=list(dict.fromkeys(why)) or None,
+        )
+    several = settled & (data["several"].values == 1)
+    if several.any():
+        hotter = data["hot_node_temperature"] - data["node_temperature"]
+        yield Notice.of(
+            "second_steady_state",
+            about=about,
+            several=several.sum(),
+            points=settled.size,
+            hotter=hotter.sel(node="oil").values[several].max(),
+        )
+
+
+def jam_notices(data: xr.Dataset, reference: float, about: str = "") -> Iterator[Notice]:
+    """Gear temperatures at which the backlash is used up, alone and with all bodies.
+
+    In proportion it is the one nearest to the ``reference`` [K], from where all bodies go.
+    """
+    alone, together = (
+        values[np.isfinite(values)]
+        for values in (data["jam_temperature"].values, data["proportional_jam_temperature"].values)
+    )
+    if alone.size:
+        yield Notice.of("jam_of_gears_alone", about=about, temperature=alone.min())
+    if together.size:
+        nearest = together[np.argmin(np.abs(together - reference))]
+        yield Notice.of("jam_in_proportion", about=about, reference=reference, temperature=nearest)
+    elif alone.size:
+        yield Notice.of("no_jam_in_proportion", about=about)
 
 
 def friction_notices(case: GearCase, groups: Mapping[str, xr.Dataset]) -> Iterator[Notice]:
     """What the friction laws say of themselves: pitch point, ranges, the oil's range."""
-    if np.isfinite(groups["path"]["friction_coefficient_mixed"].values).any():
-        yield Notice(
-            "info",
-            "Benedict and Kelley's friction diverges where nothing slides; near the pitch "
-            "point the sliding speed is held above 1 % of the entrainment speed, and the "
-            "coefficient is 0 where the logarithm's argument falls below 1.",
-        )
-    path = groups["path"]
+    path, mesh = groups["path"], groups["mesh"]
+    if np.isfinite(path["friction_coefficient_mixed"].values).any():
+        yield Notice.of("friction_at_pitch_point")
+    oil = case.stated.lubricant
     for place, model in enumerate(case.models):
-        here = path.isel(bundle=place)
-        hot = here.isel(state=-1)
+        hot, cycle = (data.isel(bundle=place, state=-1) for data in (path, mesh))
         known = np.isfinite(hot["friction_coefficient"].values)
         share = float((known & (hot["friction_outside_range"].values == 1)).mean())
         if share > 0.0:
-            yield Notice(
-                "important",
-                f"{model.name}: the friction law {model.law.name} is outside its range on "
-                f"{100.0 * share:.0f} % of the path (hot, all operating points).",
+            yield Notice.of(
+                "friction_law_outside", about=model.name, law=model.law.name, share=share
             )
-        eta = groups["mesh"].isel(bundle=place, state=-1)["dynamic_viscosity"].values
-        left = _left_out(case, here.isel(state=-1), eta)
+        left = _left_out(case, hot, cycle["dynamic_viscosity"].values)
         if left:
-            yield Notice(
-                "info",
-                f"{model.name}: the band of friction laws leaves out, where they are outside "
-                f"their range: {'; '.join(left)}.",
+            yield Notice.of(
+                "friction_laws_left_out", about=model.name, laws=[*left], shares=[*left.values()]
             )
-    yield from _film_beyond_oil(case, groups)
-
-
-def _film_beyond_oil(case: GearCase, groups: Mapping[str, xr.Dataset]) -> Iterator[Notice]:
-    """Where the film forms at flanks that leave the range of the oil's viscosity line."""
-    oil = case.stated.lubricant
-    low, high = (CELSIUS.text(t, 1) for t in oil.temperature_range)
-    for place, model in enumerate(case.models):
-        hot = groups["mesh"].isel(bundle=place, state=-1)["film_outside_range"].values == 1
-        where = ["the hot state"] if hot.any() else []
-        if "temperature" in groups:
-            row = groups["temperature"].isel(bundle=place)
-            beyond_oil = row["film_outside_range"] == 1
-            axes = [d for d in beyond_oil.dims if d != "gear_temperature"]
-            at = row["gear_temperature"].values[beyond_oil.any(axes).values]
-            where += [CELSIUS.text(float(t), 1) for t in at]
-        if where:
-            yield Notice(
-                "info",
-                f"{model.name}: the film forms at flanks that leave the range of {oil.name}'s "
-                f"viscosity line ({low} to {high}, from 2 mm²/s on): {', '.join(where)}. The "
-                "viscosity there is drawn out.",
+        warm = (
+            _beyond_oil(groups["temperature"].isel(bundle=place)) if "temperature" in groups else []
+        )
+        hot_too = bool((cycle["film_outside_range"] == 1).any())
+        if hot_too or warm:
+            yield Notice.of(
+                "film_beyond_oil",
+                about=model.name,
+                oil=oil.name,
+                range=[list(oil.temperature_range)],
+                hot=hot_too,
+                temperatures=warm or None,
             )
 
 
-def _left_out(case: GearCase, here: xr.Dataset, viscosity: NDArray[np.float64]) -> list[str]:
-    """Laws of oiled contacts outside their range, with the part of the path [%]."""
+def _beyond_oil(row: xr.Dataset) -> list[float]:
+    """Gear temperatures [K] at which the film leaves the range of the oil's viscosity line."""
+    beyond_oil = row["film_outside_range"] == 1
+    axes = [d for d in beyond_oil.dims if d != "gear_temperature"]
+    temperatures: list[float] = row["gear_temperature"].values[beyond_oil.any(axes).values].tolist()
+    return temperatures
+
+
+def _left_out(case: GearCase, here: xr.Dataset, viscosity: NDArray[np.float64]) -> dict[str, float]:
+    """Laws of oiled contacts outside their range, with the share of the path."""
     pair = case.pair
     values: dict[str, ArrayLike | None] = {
         "roughness": 0.5 * (pair.pinion.roughness + pair.wheel.roughness),
         "viscosity": viscosity[:, None],
         "film_parameter": here["film_parameter"].values,
     }
-    parts = ((law.name, 100.0 * float(np.mean(beyond(law, values)))) for law in LUBRICATED)
-    return [f"{name} on {part:.0f} % of the path" for name, part in parts if part > 0.0]
-
-
-def up_and_down(count: int, *, held: int) -> str:
-    """That a run-up and a run-down differ on ``count`` stretches, on ``held`` of them to stay."""
-    rate = "the difference comes from the rate of the run"
-    words = f"up and down differ on {count} stretch{'es' * (count > 1)} of speed; "
-    if not held:
-        return f"{words}at a steady speed no second motion was found there, {rate}"
-    jumps = "two motions exist at a steady speed too, so that a run jumps at its ends"
-    return f"{words}on {held} of them {jumps}{f'; on the others {rate}' * (held < count)}"
+    shares = {law.name: float(np.mean(beyond(law, values))) for law in LUBRICATED}
+    return {name: share for name, share in shares.items() if share > 0.0}

@@ -7,6 +7,7 @@ tree carries metres, seconds and hertz.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from thermogear.analysis.lyapunov import lyapunov_exponents
 from thermogear.analysis.orbits import Orbit, periodic_orbit
 from thermogear.analysis.proof import Label
 from thermogear.base.errors import ConvergenceError, InputError
+from thermogear.base.notice import Notice
 from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import label as labelled
 from thermogear.base.vocabulary import label_words
@@ -39,6 +41,7 @@ def found(
     kind: str,
     groups: dict[str, xr.Dataset],
     summary: dict[str, Any],
+    notices: Iterable[Notice] = (),
     *,
     interrupted: bool = False,
 ) -> Result:
@@ -47,7 +50,7 @@ def found(
         kind,
         str(summary["title"]),
         groups,
-        summary["notices"],
+        notices,
         summary=summary,
         interrupted=interrupted,
     )
@@ -215,9 +218,8 @@ def told_orbit(
         "mesh_frequency_hz": hertz if points.gears else None,
         "residual": orbit.residual,
         "lines": lines,
-        "notices": _orbit_notices(orbit, low, b, period),
     }
-    return found("orbit", {"orbit": data}, summary)
+    return found("orbit", {"orbit": data}, summary, _orbit_notices(orbit, low, b, period))
 
 
 def _without_units(data: xr.Dataset) -> None:
@@ -228,26 +230,18 @@ def _without_units(data: xr.Dataset) -> None:
             data[name].attrs["units"] = "1"
 
 
-def _orbit_notices(orbit: Orbit, low: float, b: float, asked: int | None) -> list[str]:
-    notices = []
-    if asked is not None and asked != orbit.period:
-        notices.append(f"period {asked} was asked for; this motion closes after {orbit.period}")
-    if orbit.minimal_period != orbit.period:
-        notices.append(
-            f"asked for {orbit.period} periods; this orbit closes after {orbit.minimal_period}"
-        )
+def _orbit_notices(orbit: Orbit, low: float, b: float, asked: int | None) -> Iterator[Notice]:
+    least = orbit.minimal_period
+    wanted = orbit.period if asked is None else asked
+    if not wanted == orbit.period == least:
+        yield Notice.of("other_period", asked=wanted, period=least)
     if low > b:
-        notices.append("b' has no effect here: contact is never lost, the motion is linear")
+        yield Notice.of("motion_linear")
     elif low > -b:
         # y = x - b' stays; the back flank stands at y = -2 b'
-        notices.append(
-            f"b' has no effect here down to {max(0.5 * (b - low), 0.0):.6g}: the back flank is "
-            "never reached, so backlash shifts the orbit and changes neither multipliers nor "
-            "spectrum"
-        )
+        yield Notice.of("back_flank_not_reached", down_to=max(0.5 * (b - low), 0.0))
     if not orbit.stable:
-        notices.append("unstable: no motion settles on this orbit")
-    return notices
+        yield Notice.of("orbit_unstable")
 
 
 # --- Lyapunov exponents -------------------------------------------------------------------
@@ -304,10 +298,7 @@ def lyapunov_results(
     end = label(point.points, initial_state=state, discard=128, cap=512, starts=2, follow=1)
     if end.orbit is not None and not verdict.startswith("not"):
         verdict = f"not chaotic at its end: period {end.period} after {ran} periods"
-        notices.append(
-            "the motion closes by the end of the record: its mean exponent is one of the transient "
-            "and of the orbit, and says nothing of either"
-        )
+        notices.append(Notice.of("exponent_of_transient"))
     data = labelled(
         {
             "lyapunov_batch": (("batch",), values),
@@ -333,6 +324,5 @@ def lyapunov_results(
         "verdict": verdict,
         "state": [float(c) for c in state],
         "interrupted": cut,
-        "notices": notices,
     }
-    return found("lyapunov", {"lyapunov": data}, summary, interrupted=cut)
+    return found("lyapunov", {"lyapunov": data}, summary, notices, interrupted=cut)

@@ -29,7 +29,6 @@ LOADS = tuple(np.arange(0.1, 1.75, 0.1))
 """Loads, as parts of the one designed for, at which the pairs are compared."""
 PHASES = 200
 EDGE_SHARE = "share of the mesh period in which a tip corner carries load"
-EDGE_WORDS = "The Hertzian pressure is not valid on a corner (edge contact): it is left out there."
 
 
 def relief_survey(
@@ -197,22 +196,9 @@ class Seen:
 
 
 def _notices(case: GearCase, edges: Sequence[float]) -> Iterator[Notice]:
-    yield Notice(
-        "info",
-        "Bodies clamped at their bores (statics), plane stress; contact on tip corners "
-        "and relief stand without a finite-element check.",
-    )
-    yield Notice(
-        "info",
-        "The relief is best at the load and temperature it is made for; the picture "
-        "over the load says what it costs at other loads.",
-    )
+    yield Notice.of("loaded_contact_unchecked", body="bore-clamped")
+    yield Notice.of("relief_of_one_load")
     if any(edges):
-        yield Notice(
-            "important",
-            "At the design load tip corners carry during "
-            f"{100 * edges[0]:.3g} % of the mesh period without the relief and "
-            f"{100 * edges[1]:.3g} % with it. {EDGE_WORDS}",
-        )
+        yield Notice.of("edge_contact_of_relief", without=edges[0], relieved=edges[1])
     if any(isinstance(d, Relief) and d.end == "tip" for d in case.deviations):
-        yield Notice("warning", "The case's own tip relief is replaced.")
+        yield Notice.of("relief_of_case_replaced")

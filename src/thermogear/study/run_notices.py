@@ -5,13 +5,11 @@ from __future__ import annotations
 import importlib.metadata
 import json
 import math
-from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import thermogear
 from thermogear.base.display import CELSIUS
@@ -28,7 +26,7 @@ from thermogear.results.beside import from_data
 from thermogear.results.result import Notice
 from thermogear.results.tables import rows_along
 from thermogear.study.measured_flanks import measured_notices
-from thermogear.study.notices import friction_notices, reasons, several_words
+from thermogear.study.notices import friction_notices, heat_notices, jam_notices
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -36,6 +34,10 @@ if TYPE_CHECKING:
 
 STUDIED_FREQUENCIES = (1.1, 1.3)
 """Frequency ratios of the thesis's bifurcation study."""
+
+HOTTEST_JAM = ZERO_CELSIUS + 400.0
+"""Jam temperature [K] below which that of a pair with backlash left is of interest: ours, hotter
+than any gear runs."""
 
 MOST_POINTS = 12
 """The heat balance is told point by point up to so many; the stored group has them all."""
@@ -66,27 +68,17 @@ def notices(case: GearCase, groups: Mapping[str, xr.Dataset]) -> Iterator[Notice
     if "temperature" in groups:
         yield from _row_jams(groups["temperature"])
     yield from _stiffness(case, mesh)
-    yield from _edges(mesh)
+    shares = mesh["edge_contact_share"].values
+    if np.any(shares > 0.0):
+        yield Notice.of("edge_contact", shares=[[np.nanmin(shares), np.nanmax(shares)]])
     if any(model.thermal_stiffness == "thesis" for model in case.models):
-        yield Notice(
-            "info",
-            "The thesis's thermal stiffness k_T has no cold limit (it tends to infinity as "
-            "the growth vanishes); it is set to 0 where nothing has grown.",
-        )
-    yield Notice(
-        "info",
-        "Undeformed and hot differ in the growth of gears and housing alone; oil and "
-        "film are equally warm in both: friction and flash can be compared.",
-    )
+        yield Notice.of("thermal_stiffness_without_cold_limit")
+    yield Notice.of("heat_is_growth_alone")
     yield from friction_notices(case, groups)
     if case.base_sets and not of_the_thesis(case):
-        yield Notice(
-            "info",
-            "draw.base_sets: left out. These sets belong to the ready-made case, and this "
-            "case has other values.",
-        )
+        yield Notice.of("base_sets_left_out")
     if mesh.sizes["bundle"] > 1:
-        yield _difference(mesh)
+        yield from _difference(mesh)
 
 
 def _stiffness(case: GearCase, mesh: xr.Dataset) -> Iterator[Notice]:
@@ -99,42 +91,12 @@ def _stiffness(case: GearCase, mesh: xr.Dataset) -> Iterator[Notice]:
             float(cold["mean_stiffness"]) / float(cold[f"{body}_stiffness"]) - 1.0
             for body in ("rim", "bore_clamped")
         ]
-        yield Notice(
-            "warning",
-            f"{model.name}: the mesh stiffness is the textbook sum of tooth pairs that do not "
-            f"feel each other. For this pair its mean without heat lies {_above(over[0])} "
-            f"that of the loaded contact, {_above(over[1])} it with the bodies clamped at "
-            "their bores.",
+        yield Notice.of(
+            "stiffness_is_textbook_sum", about=model.name, over_rim=over[0], over_clamped=over[1]
         )
     if any(model.stiffness == "loaded" for model in case.models):
-        yield Notice(
-            "info",
-            "The loaded contact takes plane-stress bodies. Contact on tip corners and relief "
-            "stand without a finite-element check; `thermogear verify stiffness` holds the "
-            "rest of this pair's contact against finite elements. For the vibration the "
-            "body's wind-up against its bore is left to the inertia (the reading named "
-            "rim); both readings are among the figures.",
-        )
-
-
-def _edges(mesh: xr.Dataset) -> Iterator[Notice]:
-    """Where a tip corner carries, and what that leaves unknown."""
-    shares = 100.0 * mesh["edge_contact_share"].values
-    if not np.any(shares > 0.0):
-        return
-    least, most = f"{np.nanmin(shares):.1f}", f"{np.nanmax(shares):.1f}"
-    span = most if least == most else f"{least} to {most}"
-    yield Notice(
-        "info",
-        f"Edge contact: under load the corner of a tip carries for {span} % "
-        "of the mesh period in the loaded contact. Hertz's pressure is not valid there and is "
-        "left out; stiffness, shares, friction and flash take the corner for a flank.",
-    )
-
-
-def _above(part: float) -> str:
-    """A relative difference as so many per cent above or below."""
-    return f"{100.0 * abs(part):.0f} % {'above' if part > 0.0 else 'below'}"
+        yield Notice.of("loaded_contact_unchecked", body="rim")
+        yield Notice.of("wind_up_left_to_inertia")
 
 
 def _computed(case: GearCase, groups: Mapping[str, xr.Dataset]) -> Iterator[Notice]:
@@ -145,199 +107,118 @@ def _computed(case: GearCase, groups: Mapping[str, xr.Dataset]) -> Iterator[Noti
     ours = sum(one.field.startswith("gearbox.") for one in case.assumptions)
     limit = min(g.material.tempering_temperature for g in (case.pair.pinion, case.pair.wheel))
     lost_by = json.loads(balance.attrs.get("lost", "{}"))
-    for place, bundle in enumerate(balance["bundle"].values):
+    for place, name in enumerate(balance["bundle"].values):
+        bundle = str(name)
         here = balance.isel(bundle=place)
         settled = here["status"].values == STATUS.index("ok")
-        lost = int(np.sum(~settled))
-        if lost:
-            yield Notice(
-                "important",
-                f"{bundle}: {lost} of {settled.size} operating points have no steady "
-                "temperature; their status is heat_not_settled and they have no motion."
-                + reasons(lost_by.get(str(bundle), {}).values()),
-            )
+        yield from heat_notices(here, settled, lost_by.get(bundle, {}).values(), bundle)
         if not settled.any():
             continue
-        if text := several_words(here, settled):
-            yield Notice("important", f"{bundle}: {text}")
         steady = here.isel(operating=np.flatnonzero(settled))
         teeth = steady["node_temperature"].sel(node=["pinion_tooth", "wheel_tooth"])
         oil = steady["node_temperature"].sel(node="oil")
-        text = (
-            f"{bundle}: temperatures computed from the heat balance; teeth "
-            f"{CELSIUS.text(float(teeth.min()), 1)} to {CELSIUS.text(float(teeth.max()), 1)}, oil "
-            f"{CELSIUS.text(float(oil.min()), 1)} to {CELSIUS.text(float(oil.max()), 1)}, settled "
-            f"within {int(steady['iterations'].max())} iterations to "
-            f"{float(steady['residual'].max()):.1g} K. They rest on the gearbox's values; "
-            f"{ours or 'none'} of them "
-            f"{'is' if ours == 1 else 'are'} ours."
+        hottest = float(teeth.max())
+        if hottest > limit:
+            yield Notice.of("teeth_tempered", about=bundle, hottest=hottest, limit=limit)
+        yield Notice.of(
+            "temperatures_computed",
+            about=bundle,
+            teeth=[[teeth.min().item(), hottest]],
+            oil=[[oil.min().item(), oil.max().item()]],
+            iterations=steady["iterations"].max().item(),
+            residual=steady["residual"].max().item(),
+            assumed=ours,
         )
-        hot = float(teeth.max()) > limit
-        if hot:
-            text += f" The teeth pass {CELSIUS.text(limit, 1)}, where their material is tempered."
-        yield Notice("important" if hot else "info", text)
 
 
 def _deviations(case: GearCase) -> Iterator[Notice]:
     """What a reader must know where flanks deviate from the involute."""
     if not case.deviations:
         return
-    deaf = [m.name for m in case.models if m.stiffness != "loaded"]
-    count = len(case.deviations)
-    text = (
-        f"{count} deviation{'s' if count > 1 else ''} of the flanks: in clearance, jam and error, "
-        "and in stiffness and load shares of the loaded contact."
-    )
+    yield Notice.of("flanks_deviate", deviations=len(case.deviations))
     if case.transmission_error.harmonics:
-        text += (
-            " The kinematic error of [transmission_error] comes on top: what the deviations cause "
-            "should not stand there again."
-        )
+        yield Notice.of("kinematic_error_on_top")
+    deaf = [m.name for m in case.models if m.stiffness != "loaded"]
     if deaf:
-        text += f" The textbook sum of {', '.join(deaf)} does not feel them."
-    yield Notice("warning" if deaf else "info", text)
+        yield Notice.of("deviations_not_felt", bundles=deaf)
     if any(isinstance(d, PitchError) and np.ptp(d.errors) > 0.0 for d in case.deviations):
-        yield Notice(
-            "warning",
-            "Pitch errors: a run holds the teeth of one mesh period. Other teeth may leave "
-            "less clearance and jam earlier; `loaded_contact` takes phases of whole "
-            "revolutions.",
-        )
+        yield Notice.of("pitch_errors_of_one_period")
 
 
 def _jammed(case: GearCase, mesh: xr.Dataset) -> Iterator[Notice]:
     hot = mesh.isel(state=-1)
-    yield from (Notice("important", words) for words in from_data(hot))
-    for place, bundle in enumerate(mesh["bundle"].values):
+    yield from from_data(hot)
+    for place, name in enumerate(mesh["bundle"].values):
+        bundle = str(name)
         here = hot.isel(bundle=place)
         bare = mesh.isel(state=0, bundle=place)["status"] == STATUS.index("jammed")
+        count = here.sizes["operating"]
         if bool(bare.any()):
-            yield Notice(
-                "important",
-                f"{bundle}: {int(bare.sum())} of {here.sizes['operating']} operating points "
-                "are jammed without heat: the deviations of the flanks take more than the "
-                "cold backlash. Jammed points have no motion.",
-            )
+            yield Notice.of("jammed_cold", about=bundle, jammed=bare.sum().item(), points=count)
             continue
         jammed = int((here["status"] == STATUS.index("jammed")).sum())
-        alone, words = _jams(here, case.stated.temperatures.reference)
+        least = np.nanmin(here["jam_temperature"].values, initial=np.inf)
         if jammed:
-            yield Notice(
-                "important",
-                f"{bundle}: {jammed} of {here.sizes['operating']} operating points are jammed "
-                f"when hot. The backlash is used up {words}. Jammed points have no motion.",
-            )
-        elif math.isfinite(alone) and alone < ZERO_CELSIUS + 400.0:
-            yield Notice("info", f"{bundle}: the pair would jam {words}.")
-
-
-def _jams(here: xr.Dataset, reference: float) -> tuple[float, str]:
-    """Least jam temperature [K] of gears that rise alone, and both jams in words.
-
-    In proportion it is the one nearest to the ``reference`` [K], from where all bodies go.
-    """
-    alone, together = (
-        np.ravel(here[name].values) for name in ("jam_temperature", "proportional_jam_temperature")
-    )
-    least = float(np.nanmin(alone, initial=np.inf))
-    first = f"at {_degrees(alone, np.argsort(alone), here)} of the pinion's addendum"
-    words = f"{first} where both gears rise alike with the housing as it is"
-    nearest = np.argsort(np.abs(together - reference))
-    known = float(together[nearest[0]])
-    if not math.isfinite(known):
-        return least, f"{words}, and never where shafts and housing go along in proportion"
-    way = "rise" if known > reference else "cool"
-    at = _degrees(together, nearest, here)
-    return least, f"{words}, at {at} where shafts and housing {way} in proportion to the gears"
-
-
-def _degrees(kelvin: NDArray[np.float64], order: NDArray[np.int64], here: xr.Dataset) -> str:
-    """The first of some temperatures in ``order``, with its operating point where they differ."""
-    first = int(order[0])
-    if not math.isfinite(kelvin[first]):
-        return "no temperature"
-    text = f"{kelvin[first] - ZERO_CELSIUS:.0f} °C"
-    if np.all(np.abs(kelvin - kelvin[first]) < 0.5):
-        return text
-    return f"{text} ({_point(here.isel(operating=first), '.5g')})"
+            yield Notice.of("jammed_hot", about=bundle, jammed=jammed, points=count)
+        if jammed or least < HOTTEST_JAM:
+            yield from jam_notices(here, case.stated.temperatures.reference, bundle)
 
 
 def _regime(case: GearCase, mesh: xr.Dataset) -> Iterator[Notice]:
     ratios = mesh["frequency_ratio"].isel(bundle=0, state=0).values
     low, high = STUDIED_FREQUENCIES
-    f_n = float(mesh["natural_frequency"].isel(bundle=0, state=0, operating=0))
-    per_rpm = case.pair.pinion.teeth / 60.0
-    studied = [f_n * ratio / per_rpm for ratio in (low, high)]
-    inside = (ratios >= low) & (ratios <= high)
-    if np.any(inside):
+    if np.any((ratios >= low) & (ratios <= high)):
         return
-    yield Notice(
-        "important",
-        f"Two regimes: the speeds of this case lie at frequency ratios "
-        f"{ratios.min():.2f} to {ratios.max():.2f} of the natural frequency "
-        f"of the undeformed mean stiffness ({f_n:.0f} Hz), while the thesis's bifurcation "
-        f"study at {low} to {high} would mean {studied[0]:.0f} to {studied[1]:.0f} rpm. "
-        "Nothing found in one speaks for the other.",
+    f_n = float(mesh["natural_frequency"].isel(bundle=0, state=0, operating=0))
+    per_ratio = 2.0 * math.pi * f_n / case.pair.pinion.teeth
+    yield Notice.of(
+        "two_regimes",
+        ratios=[[ratios.min(), ratios.max()]],
+        natural_frequency=f_n,
+        studied=[[low, high]],
+        speeds=[[low * per_ratio, high * per_ratio]],
     )
 
 
 def _motion(motion: xr.Dataset) -> Iterator[Notice]:
-    names = Counter(str(name) for name in motion["label"].values.ravel())
-    if names["undecided"]:
-        yield Notice(
-            "warning",
-            f"{names['undecided']} motions are undecided: they neither close nor are they "
-            "chaotic to the end; the reason stands with each.",
-        )
+    undecided = int((motion["label"] == "undecided").sum())
+    if undecided:
+        yield Notice.of("motions_undecided", undecided=undecided)
     if "back_impacts" in motion:
         impacts = motion["back_impacts"].values
-        moving = np.isfinite(impacts)
-        if moving.any() and not np.any(impacts[moving] > 0.0):
-            yield Notice(
-                "info",
-                "b' has no effect here: no tooth ever hits the back side, so the backlash "
-                "can be moved out of the equation; heat acts through stiffness and error "
-                "alone.",
-            )
-        elif moving.any():
-            free = int(np.sum(impacts[moving] == 0.0))
-            yield Notice(
-                "info",
-                f"b' has no effect on {free} of {int(moving.sum())} motions, whose teeth "
-                "never hit the back side.",
-            )
+        moving = int(np.isfinite(impacts).sum())
+        if moving:
+            free = int(np.sum(impacts == 0.0))
+            yield Notice.of("back_flanks_free", free=free, motions=moving)
 
 
 def _row_jams(row: xr.Dataset) -> Iterator[Notice]:
-    jammed = row["status"] == STATUS.index("jammed")
-    for place, bundle in enumerate(row["bundle"].values):
-        here = jammed.isel(bundle=place).any("operating")
-        temperatures = row["gear_temperature"].values[here.values]
-        if temperatures.size:
-            text = ", ".join(f"{t - ZERO_CELSIUS:.0f}" for t in temperatures)
-            yield Notice("important", f"{bundle}: jammed at gear temperatures of {text} °C.")
+    jammed = (row["status"] == STATUS.index("jammed")).any("operating")
+    for bundle, here in zip(
+        row["bundle"].values, jammed.transpose("bundle", ...).values, strict=True
+    ):
+        if here.any():
+            yield Notice.of(
+                "row_jammed", about=str(bundle), temperatures=row["gear_temperature"].values[here]
+            )
 
 
-def _difference(mesh: xr.Dataset) -> Notice:
-    parts = []
-    for place, bundle in enumerate(mesh["bundle"].values):
-        here = mesh.isel(bundle=place, operating=told_operating(mesh))
-        cold, hot = (float(here["mean_stiffness"].isel(state=i)) for i in (0, -1))
-        b = float(here["half_backlash"].isel(state=-1)) * 1e6
-        if math.isnan(b):
-            continue
-        parts.append(f"{bundle}: stiffness {100 * (hot / cold - 1):+.1f} %, b' = {b:.1f} um")
-    told = "; ".join(parts) or "no point has a hot state"
-    return Notice("important", f"What heat does depends on the bundle. {told}.")
+def _difference(mesh: xr.Dataset) -> Iterator[Notice]:
+    at = mesh.isel(operating=told_operating(mesh))
+    known = at.isel(bundle=np.isfinite(at["half_backlash"].isel(state=-1).values))
+    if known.sizes["bundle"]:
+        stiffness = known["mean_stiffness"]
+        yield Notice.of(
+            "heat_by_bundle",
+            bundles=known["bundle"].values,
+            stiffness=(stiffness.isel(state=-1) / stiffness.isel(state=0) - 1.0).values,
+            half_backlash=known["half_backlash"].isel(state=-1).values,
+        )
 
 
 def dimensionless_notices(points: xr.Dataset) -> Iterator[Notice]:
     """The notices of a dimensionless case."""
-    yield Notice(
-        "info",
-        "These are parameter sets of the dimensionless equation; they are not derived from "
-        "any gear pair.",
-    )
+    yield Notice.of("sets_of_no_gears")
     yield from _motion(points)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from functools import partial
@@ -21,6 +20,7 @@ from thermogear.analysis.outcome import outcome_arrays, outcome_variables, settl
 from thermogear.analysis.section import units_of
 from thermogear.analysis.settle import PERIODIC, Rule, Settled
 from thermogear.base.errors import InputError
+from thermogear.base.notice import Notice, stored_notices
 from thermogear.base.plan import (
     Alive,
     Arrays,
@@ -32,7 +32,6 @@ from thermogear.base.plan import (
     ranges_of,
     stretches,
 )
-from thermogear.base.units import RPM
 from thermogear.base.vocabulary import NO_COUNT, moves
 from thermogear.case.case import GearCase, gear_case
 from thermogear.case.family import GearFamily, Tabulated
@@ -247,16 +246,12 @@ class RunUpPlan:
             "total_periods": int(data["used_periods"].sum()),
         }
         data = _with_jumps(self, data)
-        told = range_notices(self.case, data) + difference_notices(data)
+        told = [*range_notices(self.case, data), *difference_notices(data)]
         early = np.argwhere(data["left_early"].values > 0)
         if early.size:
-            speeds = np.unique(np.array(self.speeds)[early[:, 2]]) / RPM
-            told.append(
-                f"these steps alone would leave a motion before its fold: at "
-                f"{', '.join(f'{s:.4g}' for s in speeds)} rpm the state of the speed before leads "
-                "elsewhere; the run shown follows the motion in finer steps"
-            )
-        return data.assign_attrs(notices=json.dumps(told))
+            speeds = np.unique(np.array(self.speeds)[early[:, 2]])
+            told.append(Notice.of("motion_followed_in_finer_steps", speeds=speeds))
+        return data.assign_attrs(notices=stored_notices(told))
 
 
 def _with_folds(plan: RunUpPlan, data: xr.Dataset) -> xr.Dataset:

@@ -99,7 +99,7 @@ def shared_results(
             "part": ("part", [1.0, LIGHT], "1", "load over the mean load"),
         },
     )
-    summary = {"title": point.title, **_summary(data, moving), "interrupted": cut, "notices": []}
+    summary = {"title": point.title, **_summary(data, moving), "interrupted": cut}
     return found("shared", {"rest": data, "motion": moving}, summary, interrupted=cut)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
@@ -21,6 +20,7 @@ from thermogear.analysis.outcome import (
 )
 from thermogear.analysis.settle import Rule
 from thermogear.base.errors import InputError
+from thermogear.base.notice import stored_notices
 from thermogear.base.plan import (
     Alive,
     Arrays,
@@ -130,7 +130,7 @@ class SweepPlan:
         return data.assign_attrs(
             bundle=self.family.bundle,
             state=self.family.state.stored,
-            notices=json.dumps(range_notices(self.family.case, data)),
+            notices=stored_notices(range_notices(self.family.case, data)),
         )
 
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.errors import ValidityWarning
 from thermogear.base.progress import Progress, silent
-from thermogear.base.units import RPM, ZERO_CELSIUS
+from thermogear.base.units import RPM
 from thermogear.base.vocabulary import (
     HEAT_NOT_SETTLED,
     REGIMES,
@@ -37,7 +37,7 @@ from thermogear.mesh.operating import Operating
 from thermogear.mesh.trends import conclusion, verdicts
 from thermogear.results.beside import from_data
 from thermogear.results.result import Notice, Result
-from thermogear.study.notices import reasons, several_words
+from thermogear.study.notices import heat_notices, jam_notices
 from thermogear.study.scuffing import load_stage, not_steel
 
 Floats = NDArray[np.float64]
@@ -255,84 +255,36 @@ def _notices(
     status = grid["status"].values
     settled = is_known(status)
     count = status.size
-    told = f"{count} points have" if count > 1 else "1 point has"
-    if not settled.all():
-        yield Notice(
-            "important",
-            f"{int((~settled).sum())} of {told} no steady temperature; they are left out of every "
-            "picture." + reasons(why),
-        )
-    if text := several_words(grid, settled):
-        yield Notice("important", text)
-    yield from (Notice("important", words) for words in from_data(grid))
+    yield from heat_notices(grid, settled, why)
+    yield from from_data(grid)
     outside = settled & (grid["within_oil_range"].values == 0)
     low, high = case.stated.lubricant.temperature_range
     if outside.any():
-        yield Notice(
-            "important",
-            f"At {int(outside.sum())} of {count} points the oil leaves the "
-            f"{low - ZERO_CELSIUS:.0f} to {high - ZERO_CELSIUS:.0f} °C of its viscosity line: such "
-            "a pair needs an oil cooler (gearbox.oil_flow). They are hatched, and left out of the "
-            "rank correlations.",
+        yield Notice.of(
+            "oil_leaves_viscosity_line", outside=outside.sum(), points=count, range=[[low, high]]
         )
     teeth = grid["node_temperature"].sel(node=["pinion_tooth", "wheel_tooth"]).mean("node").values
     beyond = settled & (teeth > high)
     if beyond.any():
-        yield Notice(
-            "warning",
-            f"At {int(beyond.sum())} of {count} points the flanks are hotter than the "
-            f"{high - ZERO_CELSIUS:.0f} °C up to which the oil's viscosity line is trusted: the "
-            "film there is an estimate.",
-        )
-    jam, together = (grid[n].values for n in ("jam_temperature", "proportional_jam_temperature"))
-    least = grid["least_half_backlash"].values
-    if (status == STATUS.index("jammed")).any():
-        yield Notice(
-            "important", f"{int((status == STATUS.index('jammed')).sum())} points are jammed."
-        )
+        yield Notice.of("flanks_beyond_oil", beyond=beyond.sum(), points=count, limit=high)
+    jammed = int((status == STATUS.index("jammed")).sum())
+    if jammed:
+        yield Notice.of("points_jammed", count=jammed, points=count)
     elif settled.any():
-        none = "No point" if settled.all() else "No settled point"
-        yield Notice(
-            "info",
-            f"{none} jams: at least {1e6 * float(np.nanmin(least[settled])):.0f} um of half "
-            "backlash are left. Held against its housing as it is, the pair would jam from "
-            f"{_least(jam[settled])} of the pinion's teeth"
-            + _in_proportion(together[settled], case.stated.temperatures.reference),
-        )
-    yield Notice(
-        "info", "The way there, and the least backlash on it: thermogear warmup CASE -o DIR."
-    )
+        least = np.nanmin(grid["least_half_backlash"].values[settled])
+        yield Notice.of("no_point_jams", settled=settled.sum(), points=count, half_backlash=least)
+        yield from jam_notices(grid, case.stated.temperatures.reference)
+    yield Notice.of("warm_up_elsewhere")
     stage, assumed = load_stage(case)
-    if assumed:
-        other = not_steel(case)
-        yield Notice(
-            "info",
-            "oil.scuffing_load_stage is not given: "
-            + (
-                f"no scuffing margin, the stage assumed is for steel on steel, not {other}."
-                if other
-                else f"the scuffing margin is that of stage {stage:g}, assumed."
-            ),
-        )
-    yield Notice(
-        "info",
-        f"{count} point{'s' * (count > 1)}, lubricated and dry, in {seconds:.2f} s; at most "
-        f"{int(grid['iterations'].max())} iterations, greatest residual of a settled point "
-        f"{float(np.max(grid['residual'].values[settled], initial=0.0)):.1e} K.",
+    other = not_steel(case)
+    if assumed and other:
+        yield Notice.of("no_scuffing_margin", material=other)
+    elif assumed:
+        yield Notice.of("scuffing_stage_assumed", stage=stage)
+    yield Notice.of(
+        "heat_balances_solved",
+        points=count,
+        seconds=seconds,
+        iterations=grid["iterations"].values.max(),
+        residual=np.max(grid["residual"].values[settled], initial=0.0),
     )
-
-
-def _in_proportion(kelvin: NDArray[np.float64], reference: float) -> str:
-    """The jam nearest to the ``reference`` [K] from which all bodies go in proportion."""
-    known = kelvin[np.isfinite(kelvin)]
-    if not known.size:
-        return ", and never with all bodies going along in proportion."
-    nearest = float(known[np.argmin(np.abs(known - reference))])
-    way = "rising" if nearest > reference else "cooling"
-    return f", with all bodies {way} in proportion from {nearest - ZERO_CELSIUS:.0f} °C."
-
-
-def _least(kelvin: NDArray[np.float64]) -> str:
-    """The least of some temperatures in words; "no temperature" where there is none."""
-    known = kelvin[np.isfinite(kelvin)]
-    return f"{known.min() - ZERO_CELSIUS:.0f} °C" if known.size else "no temperature"

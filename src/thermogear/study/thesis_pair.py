@@ -57,12 +57,6 @@ FOLLOWED = 12
 """Bifurcations of each diagram that are followed from one state to the other, grazings last: a
 second of processor time each, about."""
 
-RIGID = Notice(
-    "important",
-    "Gear temperature, damping, speed and stiffness fluctuation are computed with the gears on "
-    "rigid bearings; the shafts of the case move over the play of its bearings alone.",
-)
-
 
 def thesis_pair(
     case: GearCase,
@@ -104,11 +98,13 @@ def thesis_pair(
     except KeyboardInterrupt:
         cut = True
     told = [
-        Notice("important", f"{PARAMETERS[name].words}, undeformed and hot: {words}")
+        notice
         for name in matches
-        for words in from_data(groups[f"diagrams/{name}"][["status"]])
+        for notice in from_data(groups[f"diagrams/{name}"][["status"]], PARAMETERS[name].words)
     ]
-    notices = (*[RIGID] * (case.train is not None), *told, *friction_notices(alone, groups))
+    if case.train is not None:
+        told.insert(0, Notice.of("gears_on_rigid_bearings"))
+    notices = (*told, *friction_notices(alone, groups))
     return replace(ran, kind="thesis-pair", groups=groups, notices=notices).with_(
         interrupted=cut, left_out=left_out, matches=matches, conclusion=beside.text("conclusion")
     )

@@ -13,12 +13,13 @@ from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.base.progress import Progress, silent
-from thermogear.base.units import RPM, ZERO_CELSIUS
+from thermogear.base.units import RPM
 from thermogear.base.vocabulary import label
 from thermogear.case.case import GearCase
 from thermogear.case.duty import Measured, chosen_point, point_duty
 from thermogear.case.gearbox_schema import NODES
 from thermogear.case.sensors import Shown, shown_by
+from thermogear.heat.transient import HOTTEST
 from thermogear.mesh.balance_table import LOSSES, of_bearings
 from thermogear.mesh.clearance import Clearance
 from thermogear.mesh.thermal import HotPair
@@ -403,65 +404,41 @@ def _notices(
     seconds: float,
 ) -> Iterator[Notice]:
     if worst["half_backlash_m"] <= 0.0:
-        first = f"{course.jams[0] / 60.0:.2f} min" if course.jams.size else "the start"
-        yield Notice("important", f"The pair jams: the backlash is used up at {first}.")
+        yield Notice.of("pair_jams", time=course.jams[0] if course.jams.size else course.time[0])
     if course.course.too_hot:
-        yield Notice(
-            "important",
-            f"A node reaches 427 C after {course.time[-1] / 60.0:.1f} min: the course ends there.",
-        )
-    low, high = case.stated.lubricant.temperature_range
-    oil = np.asarray(course.operating.oil_temperature)
+        yield Notice.of("node_too_hot", time=course.time[-1], limit=HOTTEST)
+    lubricant = case.stated.lubricant
     if (hot := course.operating.no_bath).any():
-        yield Notice(
-            "important",
-            f"From {course.time[hot][0] / 60.0:.2f} min on no oil bath exists: the "
-            f"oil is above {case.stated.lubricant.hottest_bath - ZERO_CELSIUS:.0f} °C. What is "
-            "told of later moments holds only if a bath could be kept.",
-        )
+        yield Notice.of("no_bath_from", time=course.time[hot][0], hottest=lubricant.hottest_bath)
+    low, high = lubricant.temperature_range
+    oil = np.asarray(course.operating.oil_temperature)
     outside = (oil < low) | (oil > high)
     if outside.any():
-        spent = float(np.diff(course.time)[outside[1:]].sum()) / 60.0
-        yield Notice(
-            "important",
-            f"For {spent:.1f} min the oil is outside the {low - ZERO_CELSIUS:.0f} to "
-            f"{high - ZERO_CELSIUS:.0f} C of its viscosity line.",
-        )
+        spent = np.diff(course.time)[outside[1:]].sum()
+        yield Notice.of("oil_outside_for", duration=spent, range=[[low, high]])
     unknown = (steady["settled"].values == 0) & (course.duty.speed > 0.0)
     if unknown.any():
-        yield Notice(
-            "important",
-            f"Of {int(unknown.sum())} of {unknown.size} pieces no steady state is known.",
-        )
-    if steady["several"].values.any():
-        yield Notice(
-            "important",
-            "More than one thermal state is steady at "
-            f"{int(steady['several'].values.sum())} of {unknown.size} pieces: the one reached from "
-            "cold is told; a hot start may end in the other.",
-        )
+        yield Notice.of("pieces_not_settled", lost=unknown.sum(), pieces=unknown.size)
+    several = int(steady["several"].values.sum())
+    if several:
+        yield Notice.of("second_steady_state_of_pieces", several=several, pieces=unknown.size)
     endless = not np.isfinite(course.duty.time[-1])
     if endless and not (course.course.settled or course.course.too_hot):
-        yield Notice("important", "The pair does not come to rest in 40 time constants.")
+        yield Notice.of("no_rest_reached")
     if measured is not None and np.any(measured.time > course.time[-1]):
-        left = int((measured.time > course.time[-1]).sum())
-        yield Notice("warning", f"{left} rows of the record lie after the end and are left out.")
+        yield Notice.of("rows_after_end", rows=(measured.time > course.time[-1]).sum())
     if found is not None:
-        yield Notice(
-            "info",
-            f"Fitted to {found.count} readings, worth {found.effective:.1f} independent ones "
-            f"(neighbours correlate with {found.autocorrelation:.2f}). The intervals hold scatter "
-            "alone, not what the model leaves out.",
+        yield Notice.of(
+            "factors_fitted",
+            readings=found.count,
+            effective=found.effective,
+            autocorrelation=found.autocorrelation,
         )
     if np.any(course.duty.speed == 0.0):
-        yield Notice(
-            "info",
-            "At rest gears give heat to the oil by free convection over their wetted share "
-            "(Churchill and Chu); the walls keep gearbox.oil_housing_coefficient as it is given.",
-        )
-    yield Notice(
-        "info",
-        f"Losses by the whole chain at every step, {course.course.evaluations} times, in "
-        f"{seconds:.1f} s; the heat balance closes to "
-        f"{float(course.course.imbalance.max()):.1e} of the heat turned over.",
+        yield Notice.of("free_convection_at_rest")
+    yield Notice.of(
+        "losses_at_every_step",
+        evaluations=course.course.evaluations,
+        seconds=seconds,
+        imbalance=course.course.imbalance.max(),
     )

@@ -276,8 +276,10 @@ class Page:
 
     @property
     def figures(self) -> dict[str, Any]:
-        """The figures a script wants; what is not finite is None."""
-        return dict(finite(self.numbers()))
+        """The figures a script wants, with the notices; what is not finite is None."""
+        numbers = finite(self.numbers())
+        notices = [notice.as_dict() for notice in self.result.notices]
+        return {**numbers, "notices": notices} if numbers else {}
 
     @property
     def pictures(self) -> Iterator[Shown]:
@@ -325,13 +327,13 @@ def told(notices: Iterable[Notice]) -> list[tuple[str, str, Markup]]:
 
 def notice_lines(result: Result, most: int | None = None) -> list[str]:
     """Notices as lines of a terminal: all, or the ``most`` important ones and how many more."""
-    if most is None or len(result.notices) <= most:
-        return [f"- {' '.join(one.text.split())}" for one in result.notices]
-    order = list(LEVELS)
-    first = sorted(result.notices, key=lambda one: order.index(one.level))[:most]
-    more = len(result.notices) - most
-    words = f"- {more} more note{'s' if more > 1 else ''} on the page"
-    return [*(f"- {' '.join(one.text.split())}" for one in first), words]
+    shown, more = result.notices, len(result.notices) - (most or len(result.notices))
+    if more > 0:
+        order = ["notices_hidden", *LEVELS]  # how many are hidden is always said
+        ranked = sorted(shown, key=lambda n: order.index(n.code if n.code in order else n.level))
+        shown = tuple(ranked[:most])
+    lines = [f"- {' '.join(one.text.split())}" for one in shown]
+    return [*lines, f"- {more} more note{'s' * (more > 1)} on the page"] if more > 0 else lines
 
 
 @cache

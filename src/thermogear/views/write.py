@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Collection
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -53,7 +54,7 @@ def write(page: Page, folder: Path) -> list[Path]:
     """
     html, figures = names(page.result)
     written = [put(folder / html, render(page))]
-    numbers = page.numbers()
+    numbers = page.figures
     if numbers:
         written.append(put(folder / figures, json_text(numbers)))
     for one in page.pictures if page.files else ():
@@ -103,14 +104,15 @@ def save_results(result: Result, directory: str | Path) -> dict[str, Any]:
     return numbers
 
 
-def write_report(directory: str | Path, kind: str = "") -> Path:
+def write_report(directory: str | Path, kind: str = "", *, hidden: Collection[str] = ()) -> Path:
     """Draw the page of what is stored in ``directory`` anew; its path.
 
-    ``kind`` chooses where results of several studies stand there. Raises InputError, in one line,
+    ``kind`` chooses where results of several studies stand there; notices of the codes ``hidden``
+    are left out. Raises InputError, in one line,
     where the results are missing, damaged or not ours.
     """
     directory = Path(directory)
-    result = open_results(directory, kind)
+    result = open_results(directory, kind).hiding(hidden)
     return put(directory / names(result)[0], render(page_of(result)))
 
 

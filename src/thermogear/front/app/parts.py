@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
@@ -25,8 +24,6 @@ from thermogear.views.moving import moving
 from thermogear.views.picture import Picture
 from thermogear.views.plots import live as plot
 
-OF_ALL = re.compile(r" \(in any state(, up or down)?\)$")
-"""What notices of several states end with; a live run-up has one."""
 OFTEN = 0.25
 """Seconds between two pictures of one that fills in."""
 MAP = (48, 24)
@@ -231,12 +228,9 @@ def _run_part(look: Look, one: live.LiveRunUp, state: str) -> Part:
     lines = []
     for name, run in look.kept.runs.items():
         if not run.preview:
-            found = [
-                *plot.jumps(run.data),
-                *contact_notices(run.data),
-                *difference_notices(run.data),
-            ]
-            lines += [f"{name}, {OF_ALL.sub('', words)}" for words in found]
+            notices = (*contact_notices(run.data), *difference_notices(run.data))
+            lines += [f"{name}: {words}" for words in plot.jumps(run.data)]
+            lines += [f"{name}: {notice.text}" for notice in notices]
     if one.preview:
         lines.append(f"{state}: a coarse look first")
     return Part(name="run-up", picture=_runs(look), lines=lines, done=one.done, total=one.total)

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.display import worded
 from thermogear.base.errors import ValidityWarning
 from thermogear.base.progress import Progress, silent
 from thermogear.case.case import GearCase
@@ -78,20 +77,16 @@ def notices(case: GearCase, found: Sequence[Answer], speeds: Speeds | None) -> I
     """What limits the answers ``found`` as a whole, and the look over ``speeds``."""
     count = case.stated.speed.size
     if count > MOST_POINTS:
-        yield Notice(
-            "info", f"{MOST_POINTS} of {count} operating points are answered, evenly spread."
-        )
+        yield Notice.of("some_points_answered", answered=MOST_POINTS, points=count)
     if case.accuracy is not None:
-        drawn: Mapping[str, Any] = next((a.figures for a in found if "drawings" in a.figures), {})
-        words = "{drawings} drawings have a static error of {least:~2} to "
-        words += "{greatest:~2 µm} hot, this one {hot:~2 µm}"
-        told = worded(words if drawn else "Another may have another error", drawn)[0]
-        yield Notice(
-            "warning",
-            f"Flanks are one drawing from accuracy class {case.accuracy}. {told}, and another "
-            "may part where these flanks do not: try [flanks] seed = 2, 3, 4, or give measured "
-            "flanks. They repeat in every mesh period; pitch errors over a whole turn, which "
-            "bring lines of the shaft, are not modelled.",
+        drawn = next((one.figures for one in found if "drawings" in one.figures), {})
+        errors = [1e-6 * drawn[name] for name in ("least", "greatest", "hot") if drawn]
+        yield Notice.of(
+            "flanks_are_one_drawing",
+            accuracy=case.accuracy,
+            drawings=drawn.get("drawings"),
+            errors=[errors[:2]] if drawn else None,
+            this=errors[2] if drawn else None,
         )
     if speeds is not None:
         looked = speeds.column("pinion_speed")

@@ -14,6 +14,7 @@ from thermogear.analysis.event_curve import EventCurve
 from thermogear.analysis.orbits import Orbit, periodic_orbit, shoot
 from thermogear.analysis.walk import Motion, Search
 from thermogear.base.errors import ConvergenceError, InputError
+from thermogear.base.notice import Notice
 from thermogear.base.parameters import Parameter
 from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import STATUS, STILL
@@ -25,7 +26,14 @@ from thermogear.dynamics.ladder import Engine
 from thermogear.dynamics.plane import plane_of
 from thermogear.dynamics.return_map import return_map
 from thermogear.results.result import Result
-from thermogear.study.branches import Leg, parameter_of, require_depth, summary_of, walked
+from thermogear.study.branches import (
+    Leg,
+    lost_notices,
+    parameter_of,
+    require_depth,
+    summary_of,
+    walked,
+)
 from thermogear.study.event_plane import Plane
 from thermogear.study.orbit import found
 from thermogear.study.shafts.family import TrainFamily
@@ -215,10 +223,10 @@ def train_branch_results(
     progress("settling", 1, 1)
     legs, cut = walked(orbit, varied, models, begin=first, to=to, switch=switch, progress=progress)
     curves: list[EventCurve] = []
-    notices: list[str] = []
+    told: list[Notice] = []
     if plane is not None and not cut:
         branches = [leg.branch for leg in legs]
-        curves, notices, cut = plane.followed(branches, varied, (first, to), progress)
+        curves, told, cut = plane.followed(branches, varied, (first, to), progress)
     summary = summary_of(point.title, varied, legs, (first, to), cut)
     began = "Newton's method from the start itself"
     if motion is not None:
@@ -234,19 +242,20 @@ def train_branch_results(
             "straight": straight_error(grid, legs[0].branch, plane),
         }
     }
-    notices.append(_straight_words(summary["train"]["straight"], varied))
+    off = summary["train"]["straight"] or {"force": None, "multiplier": None}
+    notices = [
+        *lost_notices(legs),
+        *told,
+        Notice.of("straight_between_values", force=off["force"], multiplier=off["multiplier"]),
+    ]
     cycle = grid.family.cycle
     if cycle > 1:
-        notices.append(
-            f"unbalance, eccentricity or run-out turn with the shafts: one period here is {cycle} "
-            "mesh periods, after which all forces come again"
-        )
-    summary["notices"] += notices
+        notices.append(Notice.of("period_of_all_shafts", cycle=cycle))
     groups = {f"branch_{i}": _stored(leg, varied) for i, leg in enumerate(legs)}
     if plane is not None:
         summary |= plane.summary(curves, varied)
         groups |= plane.groups(curves, varied)
-    return found("branch", groups, summary, interrupted=cut)
+    return found("branch", groups, summary, notices, interrupted=cut)
 
 
 def straight_error(grid: TrainGrid, branch: Branch, plane: Plane | None) -> dict[str, Any] | None:
@@ -277,16 +286,6 @@ def straight_error(grid: TrainGrid, branch: Branch, plane: Plane | None) -> dict
         found.append((size, _greatest(model, state, branch.period)))
     (one, force), (other, own) = found
     return {"value": value, "multiplier": abs(one - other), "force": abs(force / own - 1.0)}
-
-
-def _straight_words(found: dict[str, Any] | None, varied: Parameter) -> str:
-    words = "between the computed values (--values) mesh and friction run straight"
-    if found is None:
-        return f"{words}; half way no orbit was found to tell by how much that is off"
-    return (
-        f"{words}: at {varied.told(found['value'])}, half way, the greatest mesh force is off by "
-        f"{100.0 * found['force']:.2g} % and the largest multiplier by {found['multiplier']:.2g}"
-    )
 
 
 def _stored(leg: Leg, varied: Parameter) -> xr.Dataset:

@@ -252,7 +252,7 @@ def campbell(
             ),
             "response": _response_table(case, states, fine, responses),
         },
-        [*notices(case, [[one] for one in found]), LINEAR],
+        [*notices(case, [[one] for one in found]), Notice.of("linear_about_rest")],
         **case.provenance,
         bundle=case.models[0].name,
         speeds=[float(s) for s in at.speed],
@@ -457,12 +457,3 @@ def _response_table(
             "bearing": list(plan_of(case).bearing_names),
         },
     )
-
-
-LINEAR = Notice(
-    "info",
-    "Linear about the equilibrium at the greatest power: teeth and bearings stay in contact, "
-    "the mesh has its mean stiffness in the response, its least and greatest in the band. Where a "
-    "dynamic force exceeds the static load the bearing lifts off, or the teeth part: no linear "
-    "force is valid there and none is given.",
-)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -357,22 +358,17 @@ def _reason(one: Moved) -> str:
 
 def _told(found: Sequence[Sequence[Moved]]) -> list[Notice]:
     """What a reader has to know of this motion."""
-    notices = [
-        Notice(
-            "info",
-            "Motion of the drive train: stiffness, error, friction and clearances of each state of "
-            "heat at the deflected centre distance; bearings keep the position of their cages.",
-        )
+    return [
+        Notice.of("train_motion_model"),
+        *(
+            Notice.of(
+                "train_motion_open",
+                about=one.state.state.words,
+                speed=one.state.speed,
+                label=one.motion.name,
+                reason=one.motion.reason,
+            )
+            for one in chain.from_iterable(found)
+            if one.motion is not None and one.motion.name in ("undecided", "diverged")
+        ),
     ]
-    for row in found:
-        for one in row:
-            if one.motion is not None and one.motion.name in ("undecided", "diverged"):
-                speed = one.state.speed * 30.0 / np.pi
-                notices.append(
-                    Notice(
-                        "warning",
-                        f"Drive train at {speed:.6g} rpm, {one.state.state.words}: "
-                        f"{one.motion.name}, {one.motion.reason}.",
-                    )
-                )
-    return notices

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
+from itertools import chain
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.progress import Progress, silent
-from thermogear.base.units import RPM
-from thermogear.base.vocabulary import STATUS, STILL, label
+from thermogear.base.vocabulary import STATUS, label
 from thermogear.case.case import GearCase
 from thermogear.results.result import Notice, Result
 from thermogear.shafts.train import SHAFTS
@@ -218,11 +218,7 @@ def _displaced(rows: list[int], one: TrainState) -> Floats:
 
 def notices(case: GearCase, found: Sequence[Sequence[TrainState]]) -> Iterator[Notice]:
     """What limits the model, and what one should look at."""
-    yield Notice(
-        "info",
-        "Two shafts in one plane mesh: no axial forces, gears without tilt stiffness of their "
-        "own, friction of the teeth left out of the bearing loads.",
-    )
+    yield Notice.of("plane_mesh")
     width = min(case.pair.pinion.face_width, case.pair.wheel.face_width)
     tilted = max(
         (
@@ -234,41 +230,25 @@ def notices(case: GearCase, found: Sequence[Sequence[TrainState]]) -> Iterator[N
         default=0.0,
     )
     if tilted > TILT_SHARE:
-        yield Notice(
-            "warning",
-            f"The gears tilt by up to {tilted:.2g} of the teeth's deflection across the face: the "
-            "load leans to one end, which a plane mesh does not see.",
-        )
-    for row in found:
-        for one in row:
-            if one.equilibrium is None:
-                yield Notice(
-                    "important",
-                    f"{one.state.words}, {one.speed / RPM:.6g} rpm, {one.torque:.6g} N m: "
-                    f"{STILL[STATUS[one.status]]}; no numbers.",
-                )
-            elif one.status == JAMMED:
-                yield Notice(
-                    "important",
-                    f"{one.state.words}, {one.speed / RPM:.6g} rpm, {one.torque:.6g} N m: the pair "
-                    "is jammed; its back flanks carry too, and press on the bearings.",
-                )
-    yield from _of_bearings(case, found)
-
-
-def _of_bearings(case: GearCase, found: Sequence[Sequence[TrainState]]) -> Iterator[Notice]:
+        yield Notice.of("gears_tilt", tilt=tilted)
+    for one in chain.from_iterable(found):
+        if one.equilibrium is None or one.status == JAMMED:
+            yield Notice.of(
+                "train_without_rest" if one.equilibrium is None else "train_jammed",
+                about=one.state.words,
+                speed=one.speed,
+                torque=one.torque,
+                status=STATUS[one.status],
+            )
     plan = plan_of(case)
-    for words in plan.misfits():
-        yield Notice("warning", f"{words}.")
+    yield from plan.misfits()
     for row in found:
-        tight = [
-            f"{name} {2e6 * c:.1f} um"
-            for place, name in enumerate(plan.bearing_names)
-            if (c := min(float(one.half_plays[place]) for one in row)) < 0.0
-        ]
-        if tight:
-            yield Notice(
-                "important",
-                f"Preloaded {row[0].state.words} (radial internal clearance below zero): "
-                f"{', '.join(tight)}. A preload adds to the load, and heat adds to the preload.",
+        plays = 2.0 * np.min([one.half_plays for one in row], axis=0)
+        tight = np.flatnonzero(plays < 0.0)
+        if tight.size:
+            yield Notice.of(
+                "bearings_preloaded",
+                about=row[0].state.words,
+                bearings=[plan.bearing_names[place] for place in tight],
+                clearances=plays[tight],
             )

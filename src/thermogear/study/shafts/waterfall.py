@@ -22,6 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.family import axis_values
 from thermogear.base.errors import ConvergenceError, InputError
+from thermogear.base.notice import Notice, stored_notices
 from thermogear.base.plan import (
     Alive,
     Arrays,
@@ -40,7 +41,7 @@ from thermogear.dynamics.geared_map import GearedMap
 from thermogear.dynamics.ladder import Engine, Steps
 from thermogear.results.result import Result
 from thermogear.results.work import Report, carry_out
-from thermogear.study.notices import finished, up_and_down
+from thermogear.study.notices import finished
 from thermogear.study.shafts.campbell import critical_speeds
 from thermogear.study.shafts.moving import MovingTrain, moving, rubbing
 from thermogear.study.shafts.record import HARMONICS, SAMPLES, lines, shown
@@ -386,17 +387,14 @@ class WaterfallPlan:
         error = float("nan")
         if first is not None:
             error = float(np.abs(first.reduction.frequency_errors(first.state.linear)).max())
-        low, high = (30.0 / np.pi * v for v in (min(self.speeds), max(self.speeds)))
-        told_all = [
-            f"each way takes {self.duration:.4g} s; the train has the heat, mesh and clearances of "
-            "one operating point all through",
-            f"{size} coordinates; the 12 lowest natural frequencies are off by at most "
-            f"{100.0 * error:.2g} %",
+        notices = [
+            Notice.of("one_point_all_through", duration=self.duration),
+            Notice.of("train_reduced", coordinates=size, error=error),
         ]
         if rows:
-            told_all.append(up_and_down(len(rows), held=held))
+            notices.append(Notice.of("ways_differ", stretches=len(rows), held=held))
         else:
-            told_all.append(f"up and down agree between {low:.6g} and {high:.6g} rpm: no jump")
+            notices.append(Notice.of("ways_agree", speeds=[[min(self.speeds), max(self.speeds)]]))
         return data.assign_attrs(
             state_names=json.dumps([one.kind for one in self.states]),
             bearing_names=json.dumps(list(plan_of(self.case).bearing_names)),
@@ -404,7 +402,7 @@ class WaterfallPlan:
             torque=float("nan") if first is None else first.state.torque,
             duration=self.duration,
             train_coordinates=size,
-            notices=json.dumps(told_all),
+            notices=stored_notices(notices),
         )
 
 

@@ -131,5 +131,4 @@ def numbers(result: Result) -> dict[str, object]:
         "title": result.title,
         "kind": result.kind,
         "answers": [one.row for one in result.answers],
-        "notices": [one.as_dict() for one in result.notices],
     }

@@ -71,13 +71,12 @@ def _numbers(result: Result) -> dict[str, Any]:
     data, name = result.data, str(result.data.attrs["parameter"])
 
     def alone(place: int) -> dict[str, Any]:
-        part = replace(result, kind="diagram", groups={"": state_of(data, place)}, notices=())
+        part = replace(result, kind="diagram", groups={"": state_of(data, place)})
         return numbers(part.with_(parameter=name))
 
     return {
         "kind": result.kind, "parameter": name, "states": result.values("states"),
         "one": alone(0), "other": alone(1), "moved": _moved(result),
-        "notices": [notice.text for notice in result.notices],
     }  # fmt: skip
 
 

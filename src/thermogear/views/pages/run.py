@@ -37,7 +37,6 @@ def numbers(result: Result) -> dict[str, Any]:
         "title": result.title,
         "kind": result.kind,
         "answers": [one.row for one in result.answers],
-        "notices": [one.as_dict() for one in result.notices],
     }
     groups = result.groups
     if "mesh" in groups:

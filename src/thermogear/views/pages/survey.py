@@ -54,11 +54,7 @@ def survey(
         result,
         summary,
         sections,
-        numbers=lambda: {
-            "title": result.title,
-            **numbers(result),
-            "notices": [one.as_dict() for one in result.notices],
-        },
+        numbers=lambda: {"title": result.title, **numbers(result)},
         lines=lambda: [
             *(lines(result) if lines else [typed(summary), *lines_of(*tables)]),
             *notice_lines(result),

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from thermogear.base.display import CELSIUS, MICROMETRE
 from thermogear.base.vocabulary import ASSUMED, FASTER_RULE
 from thermogear.results.result import Result
+from thermogear.views.page import notice_lines
 from thermogear.views.pages.findings import ways_apart
 from thermogear.views.pages.lost_words import lost_line, lost_rows
 from thermogear.views.plots.lost_contact import has_lost
@@ -46,7 +47,6 @@ def _labels(result: Result) -> dict[str, Any]:
             found[name] = int(data.attrs[name])
     if has_lost(data):
         found["lost_contact"] = lost_rows(data)
-    found["notices"] = [one.text for one in result.notices]
     return found
 
 
@@ -164,8 +164,6 @@ def lines(result: Result) -> list[str]:
         elif name == "ways_apart":
             at = ", ".join(f"{place:.9g}" for place in value)
             found += [f"two motions, up and down, at {at}"] * bool(value)
-        elif name == "notices":
-            found += [f"- {text}" for text in value]
         elif name not in TABLES:
             found.append(f"{name}: {value}")
-    return found
+    return [*found, *notice_lines(result)]

@@ -206,13 +206,10 @@ def _points(data: xr.Dataset, result: Result) -> Section:
         blocks.append(declared("Jumps", JUMPS, told["jumps"]))
         blocks.append(Text(JUMPS_EXPLAINED))
     elif str(data.attrs["kind"]) == "run-up":
-        apart = [n.text for n in result.notices if n.text.startswith("up and down differ")]
         blocks.append(
             Text(
-                f"No motion was lost at a fold. Yet {apart[0]}: a motion ended in another way "
-                "there, as chaos does, which is not located."
-                if apart
-                else "No jump: up and down the motion runs on at every speed."
+                "No motion was lost at a fold. Where up and down differ all the same (see the "
+                "notes), a motion ended in another way, as chaos does, which is not located."
             )
         )
     if told.get("attractors"):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermogear.base.display import CELSIUS, KELVIN, MICROMETRE, SPEED, exactly, number, reach
+from thermogear.base.display import CELSIUS, KELVIN, MICROMETRE, SPEED, exactly, number, span
 from thermogear.base.vocabulary import STATUS
 from thermogear.results.result import Result
 from thermogear.views.columns import Column, Row, declared, rows_along
@@ -181,4 +181,4 @@ def _lines(result: Result) -> list[str]:
         "mean friction coefficient": data["mean_friction"].values,
     }
     told = [f"{one['claim']}: {one['verdict']} ({one['found']})" for one in result.rows("verdicts")]
-    return [f"{name:<32} {reach(values)}" for name, values in figures.items()] + told
+    return [f"{name:<32} {span(values, 4)}" for name, values in figures.items()] + told

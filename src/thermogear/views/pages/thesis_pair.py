@@ -320,5 +320,4 @@ def _numbers(result: Result, findings: dict[str, str]) -> dict[str, Any]:
         ],
         "bifurcations": result.table("matches"),
         "left_out": result.rows("left_out"),
-        "notices": [one.as_dict() for one in result.notices],
     }

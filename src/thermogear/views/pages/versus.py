@@ -319,7 +319,6 @@ def _numbers(result: Result) -> dict[str, Any]:
         "title": result.title,
         "kind": result.text("of"),
         "cases": names_of(data, "case"),
-        "notices": [one.as_dict() for one in result.notices],
         "differences": result.rows("differences"),
         "choices": result.rows("choices"),
         "units": _numbers_there(data),
