@@ -15,7 +15,7 @@ from thermogear.analysis.labels import label
 from thermogear.analysis.lyapunov import lyapunov_exponents
 from thermogear.analysis.orbits import Orbit, periodic_orbit
 from thermogear.analysis.proof import Label
-from thermogear.base.errors import ConvergenceError, InputError
+from thermogear.base.errors import ConvergenceError
 from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import label as labelled
 from thermogear.base.vocabulary import label_words
@@ -23,6 +23,7 @@ from thermogear.case.one_point import OnePoint
 from thermogear.dynamics.integrate import simulate
 from thermogear.results.result import Result
 from thermogear.signals.spectra import amplitude_spectrum
+from thermogear.study.declared import ClosedOrbit, Lyapunov, declared
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -118,6 +119,7 @@ def complex_rows(values: Any) -> list[dict[str, float]]:
     ]
 
 
+@declared(ClosedOrbit)
 def orbit_results(
     point: OnePoint,
     period: int | None = None,
@@ -217,7 +219,7 @@ def told_orbit(
         "lines": lines,
         "notices": _orbit_notices(orbit, low, b, period),
     }
-    return found("orbit", {"orbit": data}, summary)
+    return found(ClosedOrbit.kind, {"orbit": data}, summary)
 
 
 def _without_units(data: xr.Dataset) -> None:
@@ -253,17 +255,16 @@ def _orbit_notices(orbit: Orbit, low: float, b: float, asked: int | None) -> lis
 # --- Lyapunov exponents -------------------------------------------------------------------
 
 
+@declared(Lyapunov)
 def lyapunov_results(
     point: OnePoint,
     *,
-    discard: int = 2000,
-    batches: int = 40,
-    batch_periods: int = 500,
+    discard: int = Lyapunov.discard,
+    batches: int = Lyapunov.batches,
+    batch_periods: int = Lyapunov.batch_periods,
     progress: Progress = silent,
 ) -> Result:
     """lambda_1 with the error of its batch means, in rounds, so that Ctrl+C keeps what is done."""
-    if batches < 4:
-        raise InputError("--batches", batches, allowed=">= 4")
     rounds = min(ROUNDS, batches // 2)
     sizes = [batches // rounds + (1 if i < batches % rounds else 0) for i in range(rounds)]
     state = np.asarray(point.simulation.initial_state, dtype=float)
@@ -335,4 +336,4 @@ def lyapunov_results(
         "interrupted": cut,
         "notices": notices,
     }
-    return found("lyapunov", {"lyapunov": data}, summary, interrupted=cut)
+    return found(Lyapunov.kind, {"lyapunov": data}, summary, interrupted=cut)
