@@ -89,7 +89,7 @@ def test_a_function_is_not_called_with_what_is_not_allowed() -> None:
 
     @dataclass(frozen=True)
     class Turns(Study, kind="turns", home=""):
-        count: int = option(2, "--count", "Turns.", within=(1, 3))
+        count: int = option(2, "--count", "Turns.", allowed=range(1, 4))
 
     @declared(Turns)
     def turned(count: int = Turns.count) -> Any:

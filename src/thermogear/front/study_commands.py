@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import Field, fields
 from functools import partial
 from typing import Any
@@ -12,7 +11,6 @@ from typing import Any
 import click
 
 from thermogear.base.errors import InputError
-from thermogear.base.progress import Progress
 from thermogear.front import delivery, motion_commands
 from thermogear.study.declared import COMMANDS as DECLARED
 from thermogear.study.declared import Study
@@ -42,28 +40,16 @@ def _read(read: Callable[[str, Any], Any], _: Any, parameter: click.Parameter, v
 def _option(declared: Field[Any]) -> Callable[..., Any]:
     """The click option of a field; without a value the function's default counts."""
     about, default = dict(declared.metadata), declared.default
-    flag, read, among = (about.pop(name) for name in ("flag", "read", "among"))
-    del about["within"]
+    flag, read, allowed = (about.pop(name) for name in ("flag", "read", "allowed"))
     if isinstance(default, bool):
         about["is_flag"] = True
     elif isinstance(default, int | float | str):
         about |= {"default": default, "show_default": True}
-    if among:
-        about["type"] = click.Choice(among)
+    if isinstance(allowed, tuple) and allowed:
+        about["type"] = click.Choice(allowed)
     if read is not None:
         about["callback"] = partial(_read, read)
     return click.option(flag, declared.name, **about)
-
-
-@contextmanager
-def by_options(flags: Mapping[str, str]) -> Iterator[None]:
-    """Errors about a field name its option, by which the person who gave it knows it."""
-    try:
-        yield
-    except InputError as error:
-        if error.field in flags:
-            raise error.named(flags[error.field]) from error
-        raise
 
 
 def command_of(name: str, study: type[Study]) -> click.Command:
@@ -73,14 +59,20 @@ def command_of(name: str, study: type[Study]) -> click.Command:
     def carry_out(output: str | None, as_json: bool, **given: Any) -> None:
         wanted = {each.name: given.pop(each.name) for each in declared}
         known = {name: value for name, value in wanted.items() if value is not None}
-        with by_options({each.name: each.metadata["flag"] for each in declared}):
+        try:
             asked = study(**known)
             work = asked.of_subject(SUBJECTS[study.of](given))
-
-            def make(report: Progress) -> Any:
-                return work(progress=report).with_(asked=asked.asked)
-
-            delivery.deliver(make, output, as_json=as_json)
+            delivery.deliver(
+                lambda report: work(progress=report).with_(asked=asked.asked),
+                output,
+                as_json=as_json,
+            )
+        except InputError as error:
+            if error.field not in wanted:
+                raise
+            # who gave an option knows it by its name
+            flags = {each.name: each.metadata["flag"] for each in declared}
+            raise error.named(flags[error.field]) from error
 
     command: Any = carry_out
     for option in reversed([*_shared(study), *map(_option, declared)]):

@@ -7,8 +7,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,13 +18,14 @@ from thermogear.base.units import RPM
 from thermogear.front import delivery
 from thermogear.front.motion_commands import is_train
 from thermogear.front.numbers import grid, start
+from thermogear.front.progress import Stopped, progress
 
 if TYPE_CHECKING:
     from thermogear.base.plan import Plan
     from thermogear.case.case import DimensionlessCase, GearCase
     from thermogear.case.thermal_state import ThermalState
     from thermogear.results.result import Result
-    from thermogear.results.work import Report, Step
+    from thermogear.results.work import Step
     from thermogear.study.diagrams import AnyMap
 
 
@@ -393,31 +393,6 @@ def _split(text: str) -> tuple[str, str]:
 # --- running ------------------------------------------------------------------------------
 
 
-@contextmanager
-def _watched() -> Iterator[Report]:
-    """A bar with the remaining time on the error stream, where a person is watching."""
-    if not sys.stderr.isatty():
-        yield lambda step: None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn
-
-    from thermogear.base.progress import duration
-
-    columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[left]}"))
-    with Progress(*columns, console=Console(stderr=True)) as bars:
-        task = bars.add_task("chunks", total=None, left="")
-
-        def report(step: Step) -> None:
-            left = "" if step.remaining != step.remaining else f"{duration(step.remaining)} left"
-            bars.update(
-                task, completed=step.done, total=step.total,
-                description=f"chunks {step.done}/{step.total}", left=left,
-            )  # fmt: skip
-
-        yield report
-
-
 def _estimate_alone(options: dict[str, Any], as_json: bool) -> None:
     if options["only_estimate"] and as_json:
         raise InputError("--json", "beside --estimate", why="an estimate is a sentence")
@@ -436,11 +411,11 @@ def _compute(plan: Plan, directory: Path, title: str, options: dict[str, Any]) -
     last: list[Step] = []
     begun = time.monotonic()
     try:
-        with _watched() as watch:
+        with progress() as watch:
 
             def report(step: Step) -> None:
                 last[:] = [step]
-                watch(step)
+                watch("chunks", step.done, step.total)
 
             data = carry_out(
                 plan, directory, threads=options["threads"], scheduler=options["scheduler"],
@@ -456,8 +431,6 @@ def _compute(plan: Plan, directory: Path, title: str, options: dict[str, Any]) -
         result = finished(data, title).with_(**about, seconds=took)
         write(page_of(result), directory)
     except KeyboardInterrupt:
-        from thermogear.front.progress import Stopped
-
         if not last:
             raise Stopped(f"nothing was added to {directory}") from None
         raise Stopped(

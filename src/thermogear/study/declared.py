@@ -32,16 +32,15 @@ def option(
     words: str,
     *,
     read: Callable[[str, Any], Any] | None = None,
-    within: tuple[int, int] | None = None,
-    among: Sequence[str] = (),
+    allowed: range | Sequence[str] = (),
     **more: Any,
 ) -> T:
     """A field: its ``default`` in SI, and its option ``flag`` with the ``words`` of its help.
 
-    ``read(flag, value)`` makes an SI value of what a person wrote. Allowed are whole numbers
-    ``within`` both ends, or words ``among`` these, from Python too. ``more``: metavar and type.
+    ``read(flag, value)`` makes an SI value of what a person wrote. ``allowed`` are whole numbers of
+    a range, or these words, from Python too. ``more``: metavar and type.
     """
-    about = {"flag": flag, "help": words, "read": read, "within": within, "among": among, **more}
+    about = {"flag": flag, "help": words, "read": read, "allowed": allowed, **more}
     declared: T = field(default=default, metadata=about)
     return declared
 
@@ -64,12 +63,11 @@ class Study:
 
     def __post_init__(self) -> None:
         for each in fields(self):  # type: ignore[arg-type]  # subclasses are dataclasses
-            value, within = getattr(self, each.name), each.metadata["within"]
-            if within and value is not None and not within[0] <= value <= within[1]:
-                raise InputError(each.name, value, allowed=f"{within[0]}..{within[1]}")
-            among = each.metadata["among"]
-            if among and value is not None and value not in among:
-                raise InputError(each.name, repr(value), allowed=" | ".join(among))
+            value, allowed = getattr(self, each.name), each.metadata["allowed"]
+            if allowed and value is not None and value not in allowed:
+                whole = isinstance(allowed, range)
+                words = f"{allowed[0]}..{allowed[-1]}" if whole else " | ".join(allowed)
+                raise InputError(each.name, repr(value), allowed=words)
 
     def arguments(self, subject: Any) -> dict[str, Any]:
         """The keyword arguments of the function, for this case or point."""
@@ -84,8 +82,8 @@ class Study:
     @property
     def asked(self) -> dict[str, Any]:
         """The fields as results store them; tables and records stand in the groups of a result."""
-        plain = {name: _plain(value) for name, value in vars(self).items()}
-        return {name: value for name, value in plain.items() if value is not None}
+        plain = ((name, _plain(value)) for name, value in vars(self).items())
+        return {name: value for name, value in plain if value is not None}
 
 
 def declared(study: type[Study]) -> Callable[[Callable[P, Result]], Callable[P, Result]]:
@@ -118,20 +116,27 @@ def _plain(value: Any) -> Any:
 # --- from words to values ---------------------------------------------------------------------
 
 
-def _numbers(flag: str, text: str) -> list[float]:
+def _numbers(
+    flag: str,
+    text: str,
+    sign: str = ",",
+    allowed: str = "numbers with commas between",
+    fix: str = "500,1000,2000",
+    count: int = 0,
+) -> list[float]:
+    """Numbers with a ``sign`` between; so many of them, or any number."""
     try:
-        return [float(part) for part in text.split(",")]
-    except ValueError as cause:
-        raise InputError(
-            flag, repr(text), allowed="numbers with commas between", fix="write 500,1000,2000"
-        ) from cause
+        values = [float(part) for part in text.split(sign)]
+    except ValueError:
+        values = []
+    if not values or len(values) != (count or len(values)):
+        raise InputError(flag, repr(text), allowed=allowed, fix=f"write {fix}")
+    return values
 
 
 def _positive(flag: str, value: float, scale: float = 1.0) -> float:
     """A number above 0 in units of ``scale`` [SI]."""
-    if not 0.0 < value < math.inf:
-        raise InputError(flag, f"{value:g}", allowed="> 0, finite")
-    if value >= 1e9:
+    if not 0.0 < value < 1e9:
         raise InputError(flag, f"{value:g}", allowed="> 0, below 1e9")
     return scale * value
 
@@ -157,22 +162,9 @@ def _kelvin(flag: str, celsius: float) -> float:
     return kelvin(flag, celsius)
 
 
-def _range(flag: str, text: str) -> tuple[float, float]:
+def _range(flag: str, text: str) -> tuple[float, ...]:
     """LOW:HIGH rpm as [rad/s]."""
-    try:
-        low, high = (RPM * float(part) for part in text.split(":"))
-    except ValueError:
-        fix = f"write {flag} 0:6000"
-        raise InputError(flag, repr(text), allowed="LOW:HIGH", fix=fix) from None
-    return low, high
-
-
-def _point(flag: str, text: str) -> tuple[float, float]:
-    """RPM,NM as speed [rad/s] and torque [N m]."""
-    values = _numbers(flag, text)
-    if len(values) != 2:
-        raise InputError(flag, repr(text), allowed="RPM,NM", fix="write 2000,150")
-    return values[0] * RPM, values[1]
+    return tuple(RPM * rpm for rpm in _numbers(flag, text, ":", "LOW:HIGH", f"{flag} 0:6000", 2))
 
 
 # --- gears ------------------------------------------------------------------------------------
@@ -257,12 +249,12 @@ class WarmUpSurvey(Study, kind="warmup", home="thermogear.study.warm_up:warm_up_
         "holds until the next, the last says the end.",
         metavar="FILE",
     )
-    at: tuple[float, float] | None = option(
+    at: Sequence[float] | None = option(
         None,
         "--at",
         "Operating point that is held until steady, without a table; the case's of the greatest "
         "power if left out.",
-        read=_point,
+        read=partial(_numbers, allowed="RPM,NM", fix="2000,150", count=2),
         metavar="RPM,NM",
     )
     start: float | None = option(
@@ -296,7 +288,8 @@ class WarmUpSurvey(Study, kind="warmup", home="thermogear.study.warm_up:warm_up_
             raise InputError("at", "an operating point beside --duty", fix="leave one out")
         duty = None if self.duty is None else read_duty(self.duty, subject)
         if self.at is not None:
-            duty = point_duty(subject, *self.at, "at")
+            speed, torque = self.at
+            duty = point_duty(subject, speed * RPM, torque, "at")
         record = None if self.measured is None else read_measured(self.measured)
         return {"duty": duty, "start": self.start, "measured": record, "fit": self.fit}
 
@@ -327,7 +320,7 @@ class ReliefSurvey(Study, kind="relief", home="thermogear.study.relief:relief_su
         metavar="DEGC",
     )
     shape: str = option(
-        "linear", "--shape", "Form of the relief.", among=("linear", "parabolic")
+        "linear", "--shape", "Form of the relief.", allowed=("linear", "parabolic")
     )  # fmt: skip
     symmetric: bool = option(
         False, "--symmetric", "The same amount and length on both gears."
@@ -363,7 +356,7 @@ class Contact(Study, kind="contact", home="thermogear.study.contact:loaded_surve
         None,
         "--body",
         "Reading of the hub: held at the bore (statics), or without its wind-up [the case's].",
-        among=("bore-clamped", "rim"),
+        allowed=("bore-clamped", "rim"),
     )
 
 
@@ -414,7 +407,7 @@ class Statics(Study, kind="statics", home="thermogear.study.shafts.statics:stati
     """
 
 
-COUNT = (1, 60)
+COUNT = range(1, 61)
 """Modes that a study of the drive train may list (ours)."""
 
 
@@ -428,7 +421,7 @@ class NaturalModes(Study, kind="modes", home="thermogear.study.shafts.modes:mode
     operating: int | None = option(
         None, "--operating", "Operating point; the hardest if left out.", type=int, metavar="N"
     )
-    count: int = option(12, "--count", "Number of modes.", within=COUNT)
+    count: int = option(12, "--count", "Number of modes.", allowed=COUNT)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -449,7 +442,7 @@ class Campbell(Study, kind="campbell", home="thermogear.study.shafts.campbell:ca
     torque: float | None = option(
         None, "--torque", "Pinion torque; the hardest point's.", type=float, metavar="NM"
     )
-    count: int = option(12, "--count", "Number of modes.", within=COUNT)
+    count: int = option(12, "--count", "Number of modes.", allowed=COUNT)
 
 
 # --- one motion -------------------------------------------------------------------------------
@@ -492,7 +485,7 @@ class Lyapunov(
     """
 
     discard: int = option(2000, "--discard", "Periods thrown away.")
-    batches: int = option(40, "--batches", "Batches of the mean.", within=(4, 100_000))
+    batches: int = option(40, "--batches", "Batches of the mean.", allowed=range(4, 100_001))
     batch_periods: int = option(500, "--batch-periods", "Periods in each.")
 
 
@@ -509,7 +502,7 @@ class SharedForce(
       thermogear shared-force rig.toml -o shared
     """
 
-    count: int = option(41, "--speeds", "Speeds of the sweep.", within=(1, 10_000))
+    count: int = option(41, "--speeds", "Speeds of the sweep.", allowed=range(1, 10_001))
 
 
 COMMANDS: dict[str, type[Study]] = {
