@@ -364,7 +364,7 @@ class Contact(Study, kind="contact", home="thermogear.study.contact:loaded_surve
 class Sensitivity(
     Study,
     kind="sensitivity",
-    home="thermogear.study.sensitivity:sensitivity",
+    home="thermogear.study.sensitivity:sensitivity_around",
     stores="Store the study and its page in DIR.",
 ):
     """Which inputs decide which results (extra [sensitivity]).
@@ -386,13 +386,6 @@ class Sensitivity(
         metavar="RPM",
     )
     seed: int = option(1, "--seed", "Seed of sampling and bootstrap.")
-
-    def arguments(self, subject: Any) -> dict[str, Any]:
-        """The plan, its inputs with their ranges around those of the case."""
-        from thermogear.study.sensitivity import Plan
-        from thermogear.study.watched import inputs_of
-
-        return {"plan": Plan(**vars(self), inputs=inputs_of(subject))}
 
 
 # --- shafts -----------------------------------------------------------------------------------

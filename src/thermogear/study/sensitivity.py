@@ -31,7 +31,7 @@ from thermogear.mesh.excite import EXCITES
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Temperatures
 from thermogear.results.result import Result, now
-from thermogear.study.declared import Sensitivity
+from thermogear.study.declared import Sensitivity, declared
 from thermogear.study.watched import (
     INPUTS,
     OUTPUTS,
@@ -160,6 +160,20 @@ def sensitivity(case: GearCase, plan: Plan | None = None, *, progress: Progress 
     return Result.of(
         Sensitivity.kind, f"Sensitivity: {case.title}", {"sensitivity": words}, created=now()
     )
+
+
+@declared(Sensitivity)
+def sensitivity_around(
+    case: GearCase,
+    *,
+    samples: int = Sensitivity.samples,
+    speed: float | None = None,
+    seed: int = Sensitivity.seed,
+    progress: Progress = silent,
+) -> Result:
+    """The same with inputs in ranges around those of the case; ``speed`` [rad/s] as of a plan."""
+    plan = Plan(samples=samples, speed=speed, seed=seed, inputs=inputs_of(case))
+    return sensitivity(case, plan, progress=progress)
 
 
 def _dataset(
