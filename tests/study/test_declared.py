@@ -13,6 +13,7 @@ import pytest
 
 from thermogear.base.errors import InputError
 from thermogear.base.units import RPM
+from thermogear.case.case import gear_case, load_example
 from thermogear.case.one_point import of_numbers
 from thermogear.front.cli import cli, main
 from thermogear.results.result import open_results
@@ -76,12 +77,20 @@ def test_python_is_refused_under_the_name_of_the_field(
 
 def test_arrays_are_stored_as_lists_and_what_is_no_number_is_left_out() -> None:
     axes = {"speeds": np.array([1.0, 2.0]) * RPM, "torques": (np.int64(5), 2.5)}
-    asked = Temperature(**axes).asked
+    asked = Temperature(**axes).asked({"own": True})
     assert asked == {
-        "speeds": [RPM, 2.0 * RPM], "torques": [5, 2.5], "own": False, "force": False
+        "speeds": [RPM, 2.0 * RPM], "torques": [5, 2.5], "own": True, "force": False
     }  # fmt: skip
     assert type(asked["torques"][0]) is int
-    assert "duty" not in COMMANDS["warmup"](duty=object()).asked  # type: ignore[call-arg]
+    assert COMMANDS["warmup"](duty="a.csv").asked({"duty": object()})["duty"] == "a.csv"  # type: ignore[call-arg]
+
+
+def test_the_speeds_of_the_case_are_asked_where_its_own_are_wanted() -> None:
+    case = gear_case(load_example("rig"))
+    asked = Temperature(own=True)
+    arguments = asked.arguments(case)
+    assert arguments == {"speeds": case.speeds, "torques": case.torques}
+    assert asked.asked(arguments)["speeds"] == list(case.speeds)
 
 
 def test_a_function_is_not_called_with_what_is_not_allowed() -> None:

@@ -62,11 +62,7 @@ def command_of(name: str, study: type[Study]) -> click.Command:
         try:
             asked = study(**known)
             work = asked.of_subject(SUBJECTS[study.of](given))
-            delivery.deliver(
-                lambda report: work(progress=report).with_(asked=asked.asked),
-                output,
-                as_json=as_json,
-            )
+            delivery.deliver(work, output, as_json=as_json)
         except InputError as error:
             if error.field not in wanted:
                 raise

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import inspect
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import partial, wraps
 from importlib import import_module
@@ -17,6 +17,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any, ClassVar, ParamSpec, TypeVar
 
 from thermogear.base.errors import InputError
+from thermogear.base.progress import Progress
 from thermogear.base.units import RPM
 
 if TYPE_CHECKING:
@@ -73,16 +74,23 @@ class Study:
         """The keyword arguments of the function, for this case or point."""
         return dict(vars(self))
 
-    def of_subject(self, subject: Any) -> Callable[..., Result]:
-        """The function with its arguments, which are checked; to be called with ``progress``."""
+    def of_subject(self, subject: Any) -> Callable[[Progress], Result]:
+        """What carries the study out, with its arguments, which are checked."""
         module, _, name = self.home.partition(":")
-        study = getattr(import_module(module), name)
-        return partial(study, subject, **self.arguments(subject))
+        study, arguments = getattr(import_module(module), name), self.arguments(subject)
 
-    @property
-    def asked(self) -> dict[str, Any]:
-        """The fields as results store them; tables and records stand in the groups of a result."""
-        plain = ((name, _plain(value)) for name, value in vars(self).items())
+        def carried_out(progress: Progress) -> Result:
+            made: Result = study(subject, **arguments, progress=progress)
+            return made.with_(asked=self.asked(arguments))
+
+        return carried_out
+
+    def asked(self, arguments: Mapping[str, Any]) -> dict[str, Any]:
+        """Fields and ``arguments`` as results store them, the latter where they differ.
+
+        Tables and records stand in the groups of a result.
+        """
+        plain = ((k, _plain(v)) for k, v in (*vars(self).items(), *arguments.items()))
         return {name: value for name, value in plain if value is not None}
 
 
@@ -97,7 +105,7 @@ def declared(study: type[Study]) -> Callable[[Callable[P, Result]], Callable[P, 
         def studied(*args: P.args, **kwargs: P.kwargs) -> Result:
             given = signature.bind(*args, **kwargs).arguments
             asked = study(**{name: given[name] for name in names & given.keys()})
-            return function(*args, **kwargs).with_(asked=asked.asked)
+            return function(*args, **kwargs).with_(asked=asked.asked({}))
 
         return studied
 
