@@ -124,7 +124,7 @@ def _plain(value: Any) -> Any:
 # --- from words to values ---------------------------------------------------------------------
 
 
-def _numbers(
+def numbers(
     flag: str,
     text: str,
     sign: str = ",",
@@ -151,7 +151,7 @@ def _positive(flag: str, value: float, scale: float = 1.0) -> float:
 
 def _axis(flag: str, text: str, scale: float = 1.0) -> tuple[float, ...]:
     """Rising SI values of an axis: numbers with commas, or FROM:TO:COUNT."""
-    values = _numbers(flag, text.replace(":", ","))
+    values = numbers(flag, text.replace(":", ","))
     if ":" in text:
         low, high, number = (values + [math.nan] * 3)[:3]
         if len(values) != 3 or not (number == int(number or 0) and 2 <= number <= 100_000):
@@ -172,7 +172,7 @@ def _kelvin(flag: str, celsius: float) -> float:
 
 def _range(flag: str, text: str) -> tuple[float, ...]:
     """LOW:HIGH rpm as [rad/s]."""
-    return tuple(RPM * rpm for rpm in _numbers(flag, text, ":", "LOW:HIGH", f"{flag} 0:6000", 2))
+    return tuple(RPM * rpm for rpm in numbers(flag, text, ":", "LOW:HIGH", f"{flag} 0:6000", 2))
 
 
 # --- gears ------------------------------------------------------------------------------------
@@ -262,7 +262,7 @@ class WarmUpSurvey(Study, kind="warmup", home="thermogear.study.warm_up:warm_up_
         "--at",
         "Operating point that is held until steady, without a table; the case's of the greatest "
         "power if left out.",
-        read=partial(_numbers, allowed="RPM,NM", fix="2000,150", count=2),
+        read=partial(numbers, allowed="RPM,NM", fix="2000,150", count=2),
         metavar="RPM,NM",
     )
     start: float | None = option(
