@@ -25,7 +25,7 @@ from thermogear.mesh.thermal import HotPair
 from thermogear.mesh.warm_up import PHASES, Duty, WarmUp, meshing, warm_up, with_factors
 from thermogear.mesh.warm_up_fit import Fit, fit_factors, require_factors, until
 from thermogear.results.result import Notice, Result
-from thermogear.study.declared import WarmUpSurvey
+from thermogear.study.declared import WarmUpSurvey, declared
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -44,6 +44,7 @@ FIT_TOLERANCE = 3e-3
 ALONG = ("moment",)
 
 
+@declared(WarmUpSurvey)
 def warm_up_survey(
     case: GearCase,
     duty: Duty | None = None,
