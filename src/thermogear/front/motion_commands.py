@@ -38,31 +38,27 @@ def _number(parameter: Parameter) -> Callable[[_Command], _Command]:
     return click.option(f"--{short}", parameter.name, type=float, help=text)
 
 
-def point_options(command: _Command) -> _Command:
-    """CASE and the options that pick one motion out of it, or plain numbers."""
-    options = [
-        click.argument("case", metavar="[CASE]", required=False),
-        *(_number(PARAMETERS[name]) for name in NUMBERS),
-        click.option("--start", metavar="X,V", help="Start (X, X') instead of the case's."),
-        click.option("--row", metavar="NAME", help="Row of a dimensionless case [the first]."),
-        click.option("--point", type=int, help="Point of the row, from 1 [1]."),
-        click.option(
-            "--operating", type=int,
-            help="Operating point of a gear case, from 1 (speeds x torques) [1].",
-        ),
-        click.option("--bundle", metavar="NAME", help="Bundle of a gear case [the first]."),
-        click.option(
-            "--state",
-            help="undeformed | hot | computed | the gears' temperature in degC [hot]. Along speed "
-            "and torque the gears stay as hot as at the operating point.",
-        ),
-        delivery.overrides,
-        delivery.output("Also store data, pictures and a page.", required=False),
-        delivery.as_json,
-    ]  # fmt: skip
-    for option in reversed(options):
-        command = option(command)
-    return command
+point_options = delivery.together(
+    click.argument("case", metavar="[CASE]", required=False),
+    *(_number(PARAMETERS[name]) for name in NUMBERS),
+    click.option("--start", metavar="X,V", help="Start (X, X') instead of the case's."),
+    click.option("--row", metavar="NAME", help="Row of a dimensionless case [the first]."),
+    click.option("--point", type=int, help="Point of the row, from 1 [1]."),
+    click.option(
+        "--operating", type=int,
+        help="Operating point of a gear case, from 1 (speeds x torques) [1].",
+    ),
+    click.option("--bundle", metavar="NAME", help="Bundle of a gear case [the first]."),
+    click.option(
+        "--state",
+        help="undeformed | hot | computed | the gears' temperature in degC [hot]. Along speed "
+        "and torque the gears stay as hot as at the operating point.",
+    ),
+    delivery.overrides,
+    delivery.output("Also store data, pictures and a page.", required=False),
+    delivery.as_json,
+)  # fmt: skip
+"""CASE and the options that pick one motion out of it, or plain numbers."""
 
 
 def _start(options: dict[str, Any]) -> tuple[float, float] | None:

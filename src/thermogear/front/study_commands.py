@@ -70,9 +70,7 @@ def command_of(name: str, study: type[Study]) -> click.Command:
             flags = {each.name: each.metadata["flag"] for each in declared}
             raise error.named(flags[error.field]) from error
 
-    command: Any = carry_out
-    for option in reversed([*_shared(study), *map(_option, declared)]):
-        command = option(command)
+    command = delivery.together(*_shared(study), *map(_option, declared))(carry_out)
     return click.command(name, help=inspect.getdoc(study))(command)
 
 

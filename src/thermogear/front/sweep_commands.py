@@ -39,29 +39,25 @@ def _safe(context: click.Context, _: click.Parameter, address: str | None) -> st
     return address
 
 
-def _common(command: Callable[..., None]) -> Callable[..., None]:
-    """Options of every one of these commands."""
-    options = [
-        delivery.output("Store of the results; the same command goes on with an unfinished one."),
-        delivery.overrides,
-        click.option("--bundle", help="Bundle of choices; default: the case's first."),
-        click.option("--state", help="undeformed, hot (as the case says), computed (from the heat "
-                     "balance) or the gears' temperature in degC; default: hot."),
-        click.option("--threads", type=click.IntRange(1, 1024), help="Default: all cores."),
-        click.option("--insecure", is_flag=True, is_eager=True,
-                     help="Take a scheduler over plain tcp on another machine: whoever reaches "
-                     "it runs code as you."),
-        click.option("--scheduler", metavar="ADDRESS", callback=_safe,
-                     help="Hand the chunks to this dask scheduler (extra [cluster])."),
-        click.option("--force", is_flag=True, help="Run even if it may not fit."),
-        click.option("--estimate", "only_estimate", is_flag=True,
-                     help="Print time, memory and disk it will take, and stop."),
-        delivery.csv,
-        delivery.as_json,
-    ]  # fmt: skip
-    for option in reversed(options):
-        command = option(command)
-    return command
+_common = delivery.together(
+    delivery.output("Store of the results; the same command goes on with an unfinished one."),
+    delivery.overrides,
+    click.option("--bundle", help="Bundle of choices; default: the case's first."),
+    click.option("--state", help="undeformed, hot (as the case says), computed (from the heat "
+                 "balance) or the gears' temperature in degC; default: hot."),
+    click.option("--threads", type=click.IntRange(1, 1024), help="Default: all cores."),
+    click.option("--insecure", is_flag=True, is_eager=True,
+                 help="Take a scheduler over plain tcp on another machine: whoever reaches "
+                 "it runs code as you."),
+    click.option("--scheduler", metavar="ADDRESS", callback=_safe,
+                 help="Hand the chunks to this dask scheduler (extra [cluster])."),
+    click.option("--force", is_flag=True, help="Run even if it may not fit."),
+    click.option("--estimate", "only_estimate", is_flag=True,
+                 help="Print time, memory and disk it will take, and stop."),
+    delivery.csv,
+    delivery.as_json,
+)  # fmt: skip
+"""Options of every one of these commands."""
 
 
 GEAR_AXES = (
@@ -70,19 +66,15 @@ GEAR_AXES = (
 )
 
 
-def _train(command: Callable[..., None]) -> Callable[..., None]:
-    """Options of the commands that move a drive train where the case has shafts."""
-    options = [
-        click.option("--rigid", is_flag=True,
-                     help="The gear pair on rigid bearings, although CASE has [[shafts]]."),
-        click.option("--operating", type=int, metavar="N",
-                     help="Operating point of the drive train, from 1 [1]."),
-        click.option("--coordinates", type=int, metavar="N",
-                     help="Of the reduced train; the interface and 16 modes if left out."),
-    ]  # fmt: skip
-    for option in reversed(options):
-        command = option(command)
-    return command
+_train = delivery.together(
+    click.option("--rigid", is_flag=True,
+                 help="The gear pair on rigid bearings, although CASE has [[shafts]]."),
+    click.option("--operating", type=int, metavar="N",
+                 help="Operating point of the drive train, from 1 [1]."),
+    click.option("--coordinates", type=int, metavar="N",
+                 help="Of the reduced train; the interface and 16 modes if left out."),
+)  # fmt: skip
+"""Options of the commands that move a drive train where the case has shafts."""
 
 
 def _train_of(
