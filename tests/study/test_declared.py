@@ -5,20 +5,20 @@ from __future__ import annotations
 import inspect
 from dataclasses import fields
 from importlib import import_module
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 from thermogear.base.errors import InputError
+from thermogear.base.progress import silent
 from thermogear.base.units import RPM
 from thermogear.case.case import gear_case, load_example
 from thermogear.case.one_point import of_numbers
-from thermogear.front.cli import cli, main
-from thermogear.results.result import open_results
+from thermogear.front.cli import cli
 from thermogear.study.declared import (
     COMMANDS,
+    ClosedOrbit,
     Contact,
     Lyapunov,
     ReliefSurvey,
@@ -51,12 +51,13 @@ def test_function_and_command_have_the_fields_of_the_declaration(name: str) -> N
     assert cli.commands[name].help == inspect.getdoc(study)
 
 
-def test_what_was_asked_is_stored_from_python_and_from_the_command_line(tmp_path: Path) -> None:
+def test_what_was_asked_is_stored_from_python_and_from_the_command_line() -> None:
     result = orbit_results(of_numbers(NUMBERS), 2)
     assert result.table("asked") == {"period": 2, "transient": True}
-    words = ["--zeta", "0.1535", "--w", "1.245", "--eps", "0.335", "--fm", "0.017", "--fh", "-1.16"]
-    assert main(["orbit", *words, "--period", "2", "--direct", "-o", str(tmp_path / "out")]) == 0
-    assert open_results(tmp_path / "out").table("asked") == {"period": 2, "transient": False}
+    given = cli.commands["orbit"].make_context("orbit", ["--period", "2", "--direct"]).params
+    fields_given = {name: given[name] for name in ("period", "transient")}
+    asked = ClosedOrbit(**fields_given).of_subject(of_numbers(NUMBERS, (0.78, 0.045)))(silent)
+    assert asked.table("asked") == {"period": 2, "transient": False}
 
 
 @pytest.mark.parametrize(
