@@ -112,6 +112,17 @@ def output(
     return click.option("-o", "--output", required=required, metavar="DIR", help=words)
 
 
+def together(*options: Callable[[_Command], _Command]) -> Callable[[_Command], _Command]:
+    """Options that several commands have, in the order of the help."""
+
+    def put(command: _Command) -> _Command:
+        for option in reversed(options):
+            command = option(command)
+        return command
+
+    return put
+
+
 def load(path: str, changes: tuple[str, ...]) -> GearCase | DimensionlessCase:
     """The case of a command, its file or a ready-made one."""
     from thermogear.case.case import load_case

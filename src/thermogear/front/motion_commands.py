@@ -1,6 +1,6 @@
-"""``thermogear orbit``, ``lyapunov`` and ``continue``: one motion and its proof.
+"""``thermogear continue``, and the options that pick one motion.
 
-Each works on a case file (gear or dimensionless, or the name of a ready-made one) or on plain
+It works on a case file (gear or dimensionless, or the name of a ready-made one) or on plain
 numbers. Importing this module imports nothing heavy.
 """
 
@@ -27,8 +27,6 @@ DEFAULTS = {"half_backlash": " over the cold one [1]", "thermal_stiffness": " [0
 """What is said of numbers that may be left out."""
 OF_GEARS = ("operating", "bundle", "state")
 OF_ROWS = ("row", "point")
-MOST_BATCHES = 100_000
-MOST_SPEEDS = 10_000
 
 
 def _number(parameter: Parameter) -> Callable[[_Command], _Command]:
@@ -40,31 +38,27 @@ def _number(parameter: Parameter) -> Callable[[_Command], _Command]:
     return click.option(f"--{short}", parameter.name, type=float, help=text)
 
 
-def _point_options(command: _Command) -> _Command:
-    """CASE and the options that pick one motion out of it, or plain numbers."""
-    options = [
-        click.argument("case", metavar="[CASE]", required=False),
-        *(_number(PARAMETERS[name]) for name in NUMBERS),
-        click.option("--start", metavar="X,V", help="Start (X, X') instead of the case's."),
-        click.option("--row", metavar="NAME", help="Row of a dimensionless case [the first]."),
-        click.option("--point", type=int, help="Point of the row, from 1 [1]."),
-        click.option(
-            "--operating", type=int,
-            help="Operating point of a gear case, from 1 (speeds x torques) [1].",
-        ),
-        click.option("--bundle", metavar="NAME", help="Bundle of a gear case [the first]."),
-        click.option(
-            "--state",
-            help="undeformed | hot | computed | the gears' temperature in degC [hot]. Along speed "
-            "and torque the gears stay as hot as at the operating point.",
-        ),
-        delivery.overrides,
-        delivery.output("Also store data, pictures and a page.", required=False),
-        delivery.as_json,
-    ]  # fmt: skip
-    for option in reversed(options):
-        command = option(command)
-    return command
+point_options = delivery.together(
+    click.argument("case", metavar="[CASE]", required=False),
+    *(_number(PARAMETERS[name]) for name in NUMBERS),
+    click.option("--start", metavar="X,V", help="Start (X, X') instead of the case's."),
+    click.option("--row", metavar="NAME", help="Row of a dimensionless case [the first]."),
+    click.option("--point", type=int, help="Point of the row, from 1 [1]."),
+    click.option(
+        "--operating", type=int,
+        help="Operating point of a gear case, from 1 (speeds x torques) [1].",
+    ),
+    click.option("--bundle", metavar="NAME", help="Bundle of a gear case [the first]."),
+    click.option(
+        "--state",
+        help="undeformed | hot | computed | the gears' temperature in degC [hot]. Along speed "
+        "and torque the gears stay as hot as at the operating point.",
+    ),
+    delivery.overrides,
+    delivery.output("Also store data, pictures and a page.", required=False),
+    delivery.as_json,
+)  # fmt: skip
+"""CASE and the options that pick one motion out of it, or plain numbers."""
 
 
 def _start(options: dict[str, Any]) -> tuple[float, float] | None:
@@ -118,63 +112,19 @@ def _point(options: dict[str, Any], case: Any) -> OnePoint:
     )
 
 
-@click.command()
-@_point_options
-@click.option("--period", type=int, help="Mesh periods of the orbit [what the motion settles on].")
-@click.option(
-    "--direct", is_flag=True, help="Newton from the start itself, which reaches unstable orbits."
-)
-def orbit(period: int | None, direct: bool, **options: Any) -> None:
-    """The closed orbit a motion settles on, with its Floquet multipliers.
-
-    Of a case with [[shafts]] too it is the gear pair's on rigid bearings; what its drive train
-    settles on is shown by run, its orbits are followed by continue.
-
-    \b
-      thermogear orbit table-4.2 --row zeta --point 2
-      thermogear orbit --zeta 0.1535 --w 1.245 --eps 0.335 --fm 0.017 --fh -1.16 --period 2
-    """
-    from thermogear.study.orbit import orbit_results
-
-    point = _point(options, _case(options))
-
-    def make(report: Progress) -> Result:
-        return orbit_results(point, period, transient=not direct, progress=report)
-
-    delivery.deliver(make, options["output"], as_json=options["as_json"])
+def point_of(options: dict[str, Any]) -> OnePoint:
+    """The one motion that the options pick."""
+    return _point(options, _case(options))
 
 
-@click.command()
-@_point_options
-@click.option("--discard", type=int, default=2000, show_default=True, help="Periods thrown away.")
-@click.option("--batches", type=int, default=40, show_default=True, help="Batches of the mean.")
-@click.option("--batch-periods", type=int, default=500, show_default=True, help="Periods in each.")
-def lyapunov(discard: int, batches: int, batch_periods: int, **options: Any) -> None:
-    """The largest Lyapunov exponent of a motion with its error.
-
-    \b
-      thermogear lyapunov table-4.2 --row zeta --point 4
-    """
-    from thermogear.study.orbit import lyapunov_results
-
-    if batches > MOST_BATCHES:
-        raise InputError("--batches", batches, allowed=f"4..{MOST_BATCHES}")
-    point = _point(options, _case(options))
-
-    def make(report: Progress) -> Result:
-        return lyapunov_results(
-            point,
-            discard=discard,
-            batches=batches,
-            batch_periods=batch_periods,
-            progress=report,
-        )
-
-    delivery.deliver(make, options["output"], as_json=options["as_json"])
+def point_from_rest(options: dict[str, Any]) -> OnePoint:
+    """The same where every motion starts from rest."""
+    _unused(options, ("start",), "every speed starts from rest")
+    return point_of(options)
 
 
 @click.command("continue")
-@_point_options
+@point_options
 @click.option(
     "--parameter",
     metavar="NAME",
@@ -360,26 +310,4 @@ def _sweeps(
     return (on_numbers(sweeps, numbers) if numbers else sweeps), title
 
 
-@click.command("shared-force")
-@_point_options
-@click.option("--speeds", type=int, default=41, show_default=True, help="Speeds of the sweep.")
-def shared_force(speeds: int, **options: Any) -> None:
-    """The mesh force shared pair by pair and the one-spring form, at rest and in motion.
-
-    \b
-      thermogear shared-force rig.toml -o shared
-    """
-    from thermogear.study.shared_force import shared_results
-
-    _unused(options, ("start",), "every speed starts from rest")
-    if not 2 <= speeds <= MOST_SPEEDS:
-        raise InputError("--speeds", speeds, allowed=f"2..{MOST_SPEEDS}")
-    point = _point(options, _case(options))
-
-    def make(report: Progress) -> Result:
-        return shared_results(point, count=speeds, progress=report)
-
-    delivery.deliver(make, options["output"], as_json=options["as_json"])
-
-
-COMMANDS: list[click.Command] = [orbit, lyapunov, continue_, shared_force]
+COMMANDS: list[click.Command] = [continue_]

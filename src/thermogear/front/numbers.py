@@ -8,6 +8,7 @@ from typing import Any
 import click
 
 from thermogear.base.errors import InputError, short
+from thermogear.study.declared import numbers
 
 
 class Number(click.ParamType[float | int]):
@@ -52,10 +53,7 @@ def grid(option: str, text: str) -> Any:
 
 def start(text: str) -> tuple[float, float]:
     """The two numbers of ``X,V``, a start in half backlashes."""
-    try:
-        x, v = (float(part) for part in text.split(","))
-    except ValueError:
-        raise InputError("--start", repr(text), allowed="two numbers X,V", fix="0,0") from None
+    x, v = numbers("--start", text, allowed="two numbers X,V", fix="0,0", count=2)
     if not abs(x) < 1e6 or not abs(v) < 1e6:
         raise InputError("--start", text, allowed="finite numbers below 1e6")
     return x, v

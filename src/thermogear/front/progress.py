@@ -15,15 +15,15 @@ class Stopped(KeyboardInterrupt):
 
 @contextmanager
 def progress(wanted: bool = True) -> Iterator[Progress]:
-    """A reporter that draws one bar for each stage; silent where stderr is no terminal."""
+    """A reporter that draws a bar with the time left for each stage; silent off a terminal."""
     if not (wanted and sys.stderr.isatty()):
         yield silent
         return
     from rich.console import Console
-    from rich.progress import BarColumn, TaskID, TextColumn, TimeElapsedColumn
     from rich.progress import Progress as Bars
+    from rich.progress import TaskID, TimeElapsedColumn
 
-    columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
+    columns = (*Bars.get_default_columns(), TimeElapsedColumn())
     with Bars(*columns, console=Console(stderr=True)) as bars:
         known: dict[str, TaskID] = {}
 

@@ -7,8 +7,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,13 +18,14 @@ from thermogear.base.units import RPM
 from thermogear.front import delivery
 from thermogear.front.motion_commands import is_train
 from thermogear.front.numbers import grid, start
+from thermogear.front.progress import Stopped, progress
 
 if TYPE_CHECKING:
     from thermogear.base.plan import Plan
     from thermogear.case.case import DimensionlessCase, GearCase
     from thermogear.case.thermal_state import ThermalState
     from thermogear.results.result import Result
-    from thermogear.results.work import Report, Step
+    from thermogear.results.work import Step
     from thermogear.study.diagrams import AnyMap
 
 
@@ -39,29 +39,25 @@ def _safe(context: click.Context, _: click.Parameter, address: str | None) -> st
     return address
 
 
-def _common(command: Callable[..., None]) -> Callable[..., None]:
-    """Options of every one of these commands."""
-    options = [
-        delivery.output("Store of the results; the same command goes on with an unfinished one."),
-        delivery.overrides,
-        click.option("--bundle", help="Bundle of choices; default: the case's first."),
-        click.option("--state", help="undeformed, hot (as the case says), computed (from the heat "
-                     "balance) or the gears' temperature in degC; default: hot."),
-        click.option("--threads", type=click.IntRange(1, 1024), help="Default: all cores."),
-        click.option("--insecure", is_flag=True, is_eager=True,
-                     help="Take a scheduler over plain tcp on another machine: whoever reaches "
-                     "it runs code as you."),
-        click.option("--scheduler", metavar="ADDRESS", callback=_safe,
-                     help="Hand the chunks to this dask scheduler (extra [cluster])."),
-        click.option("--force", is_flag=True, help="Run even if it may not fit."),
-        click.option("--estimate", "only_estimate", is_flag=True,
-                     help="Print time, memory and disk it will take, and stop."),
-        delivery.csv,
-        delivery.as_json,
-    ]  # fmt: skip
-    for option in reversed(options):
-        command = option(command)
-    return command
+_common = delivery.together(
+    delivery.output("Store of the results; the same command goes on with an unfinished one."),
+    delivery.overrides,
+    click.option("--bundle", help="Bundle of choices; default: the case's first."),
+    click.option("--state", help="undeformed, hot (as the case says), computed (from the heat "
+                 "balance) or the gears' temperature in degC; default: hot."),
+    click.option("--threads", type=click.IntRange(1, 1024), help="Default: all cores."),
+    click.option("--insecure", is_flag=True, is_eager=True,
+                 help="Take a scheduler over plain tcp on another machine: whoever reaches "
+                 "it runs code as you."),
+    click.option("--scheduler", metavar="ADDRESS", callback=_safe,
+                 help="Hand the chunks to this dask scheduler (extra [cluster])."),
+    click.option("--force", is_flag=True, help="Run even if it may not fit."),
+    click.option("--estimate", "only_estimate", is_flag=True,
+                 help="Print time, memory and disk it will take, and stop."),
+    delivery.csv,
+    delivery.as_json,
+)  # fmt: skip
+"""Options of every one of these commands."""
 
 
 GEAR_AXES = (
@@ -70,19 +66,15 @@ GEAR_AXES = (
 )
 
 
-def _train(command: Callable[..., None]) -> Callable[..., None]:
-    """Options of the commands that move a drive train where the case has shafts."""
-    options = [
-        click.option("--rigid", is_flag=True,
-                     help="The gear pair on rigid bearings, although CASE has [[shafts]]."),
-        click.option("--operating", type=int, metavar="N",
-                     help="Operating point of the drive train, from 1 [1]."),
-        click.option("--coordinates", type=int, metavar="N",
-                     help="Of the reduced train; the interface and 16 modes if left out."),
-    ]  # fmt: skip
-    for option in reversed(options):
-        command = option(command)
-    return command
+_train = delivery.together(
+    click.option("--rigid", is_flag=True,
+                 help="The gear pair on rigid bearings, although CASE has [[shafts]]."),
+    click.option("--operating", type=int, metavar="N",
+                 help="Operating point of the drive train, from 1 [1]."),
+    click.option("--coordinates", type=int, metavar="N",
+                 help="Of the reduced train; the interface and 16 modes if left out."),
+)  # fmt: skip
+"""Options of the commands that move a drive train where the case has shafts."""
 
 
 def _train_of(
@@ -393,31 +385,6 @@ def _split(text: str) -> tuple[str, str]:
 # --- running ------------------------------------------------------------------------------
 
 
-@contextmanager
-def _watched() -> Iterator[Report]:
-    """A bar with the remaining time on the error stream, where a person is watching."""
-    if not sys.stderr.isatty():
-        yield lambda step: None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn
-
-    from thermogear.base.progress import duration
-
-    columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[left]}"))
-    with Progress(*columns, console=Console(stderr=True)) as bars:
-        task = bars.add_task("chunks", total=None, left="")
-
-        def report(step: Step) -> None:
-            left = "" if step.remaining != step.remaining else f"{duration(step.remaining)} left"
-            bars.update(
-                task, completed=step.done, total=step.total,
-                description=f"chunks {step.done}/{step.total}", left=left,
-            )  # fmt: skip
-
-        yield report
-
-
 def _estimate_alone(options: dict[str, Any], as_json: bool) -> None:
     if options["only_estimate"] and as_json:
         raise InputError("--json", "beside --estimate", why="an estimate is a sentence")
@@ -436,11 +403,11 @@ def _compute(plan: Plan, directory: Path, title: str, options: dict[str, Any]) -
     last: list[Step] = []
     begun = time.monotonic()
     try:
-        with _watched() as watch:
+        with progress() as watch:
 
             def report(step: Step) -> None:
                 last[:] = [step]
-                watch(step)
+                watch("chunks", step.done, step.total)
 
             data = carry_out(
                 plan, directory, threads=options["threads"], scheduler=options["scheduler"],
@@ -456,8 +423,6 @@ def _compute(plan: Plan, directory: Path, title: str, options: dict[str, Any]) -
         result = finished(data, title).with_(**about, seconds=took)
         write(delivery.without_hidden(page_of(result)), directory)
     except KeyboardInterrupt:
-        from thermogear.front.progress import Stopped
-
         if not last:
             raise Stopped(f"nothing was added to {directory}") from None
         raise Stopped(

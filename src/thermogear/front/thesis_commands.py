@@ -1,4 +1,4 @@
-"""``thermogear thesis`` and ``thermogear sensitivity``: commands for the main group to register."""
+"""``thermogear thesis``: a command for the main group to register."""
 
 from __future__ import annotations
 
@@ -113,50 +113,4 @@ def _record(text: str) -> tuple[Path, float | None]:
         raise InputError("--record", repr(text), allowed="FILE=RPM, a number of rpm") from None
 
 
-@click.command()
-@delivery.case
-@delivery.output("Store the study and its page in DIR.", required=False)
-@click.option(
-    "--samples",
-    default=128,
-    show_default=True,
-    help="Base samples, a power of two, 8 or more; 128 for figures.",
-)
-@click.option("--speed", type=float, metavar="RPM", help="Pinion speed; the case's middle one.")
-@click.option("--seed", default=1, show_default=True, help="Seed of sampling and bootstrap.")
-@delivery.overrides
-@delivery.as_json
-def sensitivity(
-    case: str,
-    output: str | None,
-    samples: int,
-    speed: float | None,
-    seed: int,
-    overrides: tuple[str, ...],
-    as_json: bool,
-) -> None:
-    """Which inputs decide which results (extra [sensitivity]).
-
-    Widths, loads, oil, finish, backlash, damping, error and heat run through ranges around those of
-    CASE. Of the ready-made `rig` they are the inputs that the thesis leaves unstated, and its
-    conclusions are judged.
-    """
-    from thermogear.study.sensitivity import Plan, require_salib
-    from thermogear.study.sensitivity import sensitivity as study
-    from thermogear.study.watched import inputs_of
-
-    require_salib()
-    if speed is not None and not 0.0 < speed < 1e6:
-        raise InputError("--speed", f"{speed:g} rpm", allowed="> 0, below 1e6 rpm")
-    at = None if speed is None else speed * RPM
-    Plan(samples=samples, speed=at, seed=seed)
-    read = delivery.load_gears(case, overrides)
-    plan = Plan(samples=samples, speed=at, seed=seed, inputs=inputs_of(read))
-
-    def make(report: Progress) -> Result:
-        return study(read, plan, progress=report)
-
-    delivery.deliver(make, output, as_json=as_json)
-
-
-COMMANDS: list[click.Command] = [thesis, sensitivity]
+COMMANDS: list[click.Command] = [thesis]

@@ -22,12 +22,12 @@ from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair, ThermalDeviation
 from thermogear.results.result import Notice, Result
+from thermogear.study.declared import Contact, declared
 from thermogear.study.relief import Seen, one_point
 
 if TYPE_CHECKING:
     import xarray as xr
 
-KIND = "contact"
 PARTS = (0.1, 0.25, 0.5, 1.0, 2.0)
 """Loads, as parts of the case's greatest, where none are named."""
 DIFFERENCES = (-40.0, -20.0, 0.0, 20.0, 40.0)
@@ -37,6 +37,7 @@ LIGHT = tuple(np.geomspace(0.02, 2.0, 41))
 PHASES = 200
 
 
+@declared(Contact)
 def loaded_survey(
     case: GearCase,
     torques: Sequence[float] = (),
@@ -130,7 +131,7 @@ def loaded_survey(
     )
     lost = int((contact["status"].values != 0).sum() + (heated["status"].values != 0).sum())
     return Result.of(
-        KIND,
+        Contact.kind,
         f"Loaded contact: {case.title}",
         {"contact": contact, "base_pitch": base_pitch, "iso_6336": compared},
         _notices(case, model.body, lost, contact["edge_contact_share"], compared),

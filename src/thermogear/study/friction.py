@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import REGIMES, label
 from thermogear.case.case import GearCase
 from thermogear.case.thermal_state import HOT
@@ -19,8 +20,7 @@ from thermogear.mesh.friction_path import FrictionPath
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.thermal import HotPair
 from thermogear.results.result import Notice, Result
-
-KIND = "friction"
+from thermogear.study.declared import Friction
 
 
 def friction_path(case: GearCase, model: MeshModel, positions: int) -> FrictionPath:
@@ -39,7 +39,7 @@ def laws_beside(model: MeshModel) -> dict[str, FrictionLaw]:
     return {words if name == own.name else name: law for name, law in laws.items()}
 
 
-def friction_survey(case: GearCase) -> Result:
+def friction_survey(case: GearCase, *, progress: Progress = silent) -> Result:
     """|mu| by every law over the path of contact at every operating point, hot.
 
     Variables over (law, operating, path_position): ``friction_coefficient`` (nan where a law has
@@ -50,6 +50,7 @@ def friction_survey(case: GearCase) -> Result:
     case decides load shares and temperatures.
     """
     model = case.models[0]
+    progress("friction laws", 0, 1)
     path = friction_path(case, model, case.path_positions)
     state = path.state
     shape = (case.stated.speed.size, path.s.size)
@@ -112,7 +113,7 @@ def friction_survey(case: GearCase) -> Result:
         },
     )
     return Result.of(
-        KIND,
+        Friction.kind,
         f"Friction laws: {case.title}",
         {"laws": data},
         _notices(state, words),

@@ -16,7 +16,7 @@ from thermogear.analysis.labels import label
 from thermogear.analysis.lyapunov import lyapunov_exponents
 from thermogear.analysis.orbits import Orbit, periodic_orbit
 from thermogear.analysis.proof import Label
-from thermogear.base.errors import ConvergenceError, InputError
+from thermogear.base.errors import ConvergenceError
 from thermogear.base.notice import Notice
 from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import label as labelled
@@ -25,6 +25,7 @@ from thermogear.case.one_point import OnePoint
 from thermogear.dynamics.integrate import simulate
 from thermogear.results.result import Result
 from thermogear.signals.spectra import amplitude_spectrum
+from thermogear.study.declared import ClosedOrbit, Lyapunov, declared
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -121,6 +122,7 @@ def complex_rows(values: Any) -> list[dict[str, float]]:
     ]
 
 
+@declared(ClosedOrbit)
 def orbit_results(
     point: OnePoint,
     period: int | None = None,
@@ -219,7 +221,8 @@ def told_orbit(
         "residual": orbit.residual,
         "lines": lines,
     }
-    return found("orbit", {"orbit": data}, summary, _orbit_notices(orbit, low, b, period))
+    notices = _orbit_notices(orbit, low, b, period)
+    return found(ClosedOrbit.kind, {"orbit": data}, summary, notices)
 
 
 def _without_units(data: xr.Dataset) -> None:
@@ -247,17 +250,16 @@ def _orbit_notices(orbit: Orbit, low: float, b: float, asked: int | None) -> Ite
 # --- Lyapunov exponents -------------------------------------------------------------------
 
 
+@declared(Lyapunov)
 def lyapunov_results(
     point: OnePoint,
     *,
-    discard: int = 2000,
-    batches: int = 40,
-    batch_periods: int = 500,
+    discard: int = Lyapunov.discard,
+    batches: int = Lyapunov.batches,
+    batch_periods: int = Lyapunov.batch_periods,
     progress: Progress = silent,
 ) -> Result:
     """lambda_1 with the error of its batch means, in rounds, so that Ctrl+C keeps what is done."""
-    if batches < 4:
-        raise InputError("--batches", batches, allowed=">= 4")
     rounds = min(ROUNDS, batches // 2)
     sizes = [batches // rounds + (1 if i < batches % rounds else 0) for i in range(rounds)]
     state = np.asarray(point.simulation.initial_state, dtype=float)
@@ -325,4 +327,4 @@ def lyapunov_results(
         "state": [float(c) for c in state],
         "interrupted": cut,
     }
-    return found("lyapunov", {"lyapunov": data}, summary, notices, interrupted=cut)
+    return found(Lyapunov.kind, {"lyapunov": data}, summary, notices, interrupted=cut)

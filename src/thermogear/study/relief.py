@@ -23,21 +23,22 @@ from thermogear.mesh.elastic import LoadedPair
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair, ThermalDeviation
 from thermogear.results.result import Notice, Result
+from thermogear.study.declared import ReliefSurvey, declared
 
-KIND = "relief"
 LOADS = tuple(np.arange(0.1, 1.75, 0.1))
 """Loads, as parts of the one designed for, at which the pairs are compared."""
 PHASES = 200
 EDGE_SHARE = "share of the mesh period in which a tip corner carries load"
 
 
+@declared(ReliefSurvey)
 def relief_survey(
     case: GearCase,
     *,
     torque: float | None = None,
     gear_temperature: float | None = None,
-    shape: str = "linear",
-    symmetric: bool = False,
+    shape: str = ReliefSurvey.shape,
+    symmetric: bool = ReliefSurvey.symmetric,
     largest: float | None = None,
     progress: Progress = silent,
 ) -> Result:
@@ -158,7 +159,7 @@ def relief_survey(
     lines = "\n\n".join(relief_text(r.gear, r) for r in (design.pinion, design.wheel))
     swings = {name: float(np.ptp(c.deflection)) for name, c in zip(pairs, curves, strict=True)}
     return Result.of(
-        KIND,
+        ReliefSurvey.kind,
         f"Tip relief: {case.title}",
         {"error": error, "loads": over},
         _notices(case, [float(c.edge_share[0]) for c in curves]),

@@ -489,5 +489,4 @@ def run_up(
         branch_period=branch_period,
     )
     how: dict[str, Any] = {"threads": threads, "scheduler": scheduler, "report": report}
-    data = carry_out(plan, store, **how, alive=alive, title=case.title)
-    return finished(data, case.title)
+    return finished(carry_out(plan, store, **how, alive=alive, title=case.title), case.title)

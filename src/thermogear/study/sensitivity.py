@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError, ValidityWarning, nearest, of_extra
 from thermogear.base.progress import Progress, silent
+from thermogear.base.units import RPM
 from thermogear.base.vocabulary import STATUS
 from thermogear.case.build import Follows, TemperatureRule
 from thermogear.case.case import GearCase
@@ -30,6 +31,7 @@ from thermogear.mesh.excite import EXCITES
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Temperatures
 from thermogear.results.result import Result, now
+from thermogear.study.declared import Sensitivity, declared
 from thermogear.study.watched import (
     INPUTS,
     OUTPUTS,
@@ -68,20 +70,20 @@ class Plan:
     ``resamples`` of the bootstrap, ``confidence`` of its intervals, ``seed``.
     """
 
-    samples: int = 128
+    samples: int = Sensitivity.samples
     speed: float | None = None
     inputs: tuple[Input, ...] = INPUTS
     resamples: int = 200
     confidence: float = 0.95
-    seed: int = 1
+    seed: int = Sensitivity.seed
 
     def __post_init__(self) -> None:
         if self.samples < 8 or self.samples & (self.samples - 1):
             raise InputError("samples", self.samples, allowed="a power of two, 8 or more")
         if not 0 <= self.seed < 2**32:
             raise InputError("seed", self.seed, allowed="0..4294967295, whole")
-        if self.speed is not None and not 0.0 < self.speed < 1e6:
-            raise InputError("speed", f"{self.speed:g} rad/s", allowed="> 0, below 1e6 rad/s")
+        if self.speed is not None and not 0.0 < self.speed / RPM < 1e6:
+            raise InputError("speed", f"{self.speed / RPM:g} rpm", allowed="> 0, below 1e6 rpm")
         if not 0.0 < self.confidence < 1.0:
             raise InputError("confidence", self.confidence, allowed="0 < confidence < 1")
         known = [one.name for one in INPUTS]
@@ -156,8 +158,22 @@ def sensitivity(case: GearCase, plan: Plan | None = None, *, progress: Progress 
     data = _dataset(case, chosen, outputs, values, indices, jammed, seconds)
     words = data.assign(sentence=(("output",), plain_words(data)))
     return Result.of(
-        "sensitivity", f"Sensitivity: {case.title}", {"sensitivity": words}, created=now()
+        Sensitivity.kind, f"Sensitivity: {case.title}", {"sensitivity": words}, created=now()
     )
+
+
+@declared(Sensitivity)
+def sensitivity_around(
+    case: GearCase,
+    *,
+    samples: int = Sensitivity.samples,
+    speed: float | None = None,
+    seed: int = Sensitivity.seed,
+    progress: Progress = silent,
+) -> Result:
+    """The same with inputs in ranges around those of the case; ``speed`` [rad/s] as of a plan."""
+    plan = Plan(samples=samples, speed=speed, seed=seed, inputs=inputs_of(case))
+    return sensitivity(case, plan, progress=progress)
 
 
 def _dataset(

@@ -22,6 +22,7 @@ from thermogear.mesh.clearance import Clearance
 from thermogear.mesh.load_shared import contact_at, pair_springs
 from thermogear.mesh.thermal import HotPair
 from thermogear.results.result import Result
+from thermogear.study.declared import SharedForce, declared
 from thermogear.study.orbit import found
 
 if TYPE_CHECKING:
@@ -35,11 +36,12 @@ FACTORS = LIGHT ** (np.arange(18, -7, -1) / 12.0)
 STEPS, SAMPLES, PERIODS, DISCARD = 1024, 128, 64, 192
 
 
+@declared(SharedForce)
 def shared_results(
     point: OnePoint,
     *,
     speeds: tuple[float, float] | None = None,
-    count: int = 41,
+    count: int = SharedForce.count,
     progress: Progress = silent,
 ) -> Result:
     """Both mesh forces of a gear case at rest and in motion.
@@ -100,7 +102,7 @@ def shared_results(
         },
     )
     summary = {"title": point.title, **_summary(data, moving), "interrupted": cut}
-    return found("shared", {"rest": data, "motion": moving}, summary, interrupted=cut)
+    return found(SharedForce.kind, {"rest": data, "motion": moving}, summary, interrupted=cut)
 
 
 def at_rest(case: GearCase, hot: HotPair, here: Excitation, drive: PairSprings) -> xr.Dataset:

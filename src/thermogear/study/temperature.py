@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from thermogear.base.errors import ValidityWarning
 from thermogear.base.progress import Progress, silent
-from thermogear.base.units import RPM
 from thermogear.base.vocabulary import (
     HEAT_NOT_SETTLED,
     REGIMES,
@@ -37,13 +36,11 @@ from thermogear.mesh.operating import Operating
 from thermogear.mesh.trends import conclusion, verdicts
 from thermogear.results.beside import from_data
 from thermogear.results.result import Notice, Result
+from thermogear.study.declared import Temperature, declared
 from thermogear.study.notices import heat_notices, jam_notices
 from thermogear.study.scuffing import load_stage, not_steel
 
 Floats = NDArray[np.float64]
-KIND = "temperature"
-SPEEDS = tuple(RPM * np.arange(500.0, 6001.0, 500.0))
-TORQUES = tuple(np.arange(50.0, 501.0, 50.0))
 LUBRICATIONS = ("mixed", "dry")
 
 PATH_POSITIONS = 81
@@ -53,10 +50,11 @@ BLOCK = 60
 GRID = ("pinion_speed", "pinion_torque")
 
 
+@declared(Temperature)
 def thermal_map(
     case: GearCase,
-    speeds: Sequence[float] = SPEEDS,
-    torques: Sequence[float] = TORQUES,
+    speeds: Sequence[float] = Temperature.speeds,
+    torques: Sequence[float] = Temperature.torques,
     *,
     progress: Progress = silent,
 ) -> Result:
@@ -101,7 +99,7 @@ def thermal_map(
     checked = conclusion({name: grids[name] for name in LUBRICATIONS})
     chosen = grids[chosen_law]
     return Result.of(
-        KIND,
+        Temperature.kind,
         f"{_heading(chosen)}: {case.title}",
         {"map": chosen, "conclusion": checked},
         _notices(case, chosen, seconds, why),

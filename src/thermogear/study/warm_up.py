@@ -26,12 +26,12 @@ from thermogear.mesh.thermal import HotPair
 from thermogear.mesh.warm_up import PHASES, Duty, WarmUp, meshing, warm_up, with_factors
 from thermogear.mesh.warm_up_fit import Fit, fit_factors, require_factors, until
 from thermogear.results.result import Notice, Result
+from thermogear.study.declared import WarmUpSurvey, declared
 
 if TYPE_CHECKING:
     import xarray as xr
 
 Floats = NDArray[np.float64]
-KIND = "warmup"
 LEAST_LOSS = 5e-9
 """A steady loss of backlash [m] below which another one is no share of it."""
 MOMENTS = 400
@@ -45,6 +45,7 @@ FIT_TOLERANCE = 3e-3
 ALONG = ("moment",)
 
 
+@declared(WarmUpSurvey)
 def warm_up_survey(
     case: GearCase,
     duty: Duty | None = None,
@@ -71,7 +72,9 @@ def warm_up_survey(
     began = time.perf_counter()
     names = require_factors(fit, "fit") if fit else ()
     if names and measured is None:
-        raise InputError("fit", ", ".join(names), why="there is no record to fit to")
+        raise InputError(
+            "fit", ", ".join(names), why="there is no record to fit to", fix="give measured too"
+        )
     work = point_duty(case, *chosen_point(case)) if duty is None else duty
     if work.pieces > MOST_PIECES:
         raise InputError("duty", f"{work.pieces} rows", allowed=f"at most {MOST_PIECES}")
@@ -103,7 +106,7 @@ def warm_up_survey(
     seconds = time.perf_counter() - began
     worst = _worst(case, course, steady)
     return Result.of(
-        KIND,
+        WarmUpSurvey.kind,
         f"Warm-up: {case.title}",
         groups,
         _notices(case, course, steady, measured, found, worst, seconds),

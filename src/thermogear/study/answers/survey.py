@@ -22,12 +22,12 @@ from thermogear.results.answer import Answer
 from thermogear.results.result import Later, Notice, Result
 from thermogear.study.answers import moving, shafts, steady
 from thermogear.study.answers.asked import MOST_POINTS, MOVES, OF_COLD, OF_HOT, Asked
+from thermogear.study.declared import Answers
 from thermogear.study.speeds import Speeds
 
 if TYPE_CHECKING:
     import xarray as xr
 
-KIND = "answers"
 MAKERS = (
     steady.mesh,
     steady.heat,
@@ -59,7 +59,7 @@ def answers(case: GearCase, *, progress: Progress = silent) -> Result:
     progress("mesh cycle", 2, 2)
     found, speeds = answered(case, model, cold, hot, progress)
     return Result.of(
-        KIND,
+        Answers.kind,
         case.title,
         {} if speeds is None else Later(speeds=lambda: speeds.data),
         notices(case, found, speeds),

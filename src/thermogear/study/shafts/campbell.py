@@ -33,7 +33,8 @@ from thermogear.shafts.response import (
     unbalance_response,
 )
 from thermogear.shafts.train import SHAFTS
-from thermogear.study.shafts.modes import MOST_MODES, bearing_parts, name_of
+from thermogear.study.declared import Campbell, declared
+from thermogear.study.shafts.modes import bearing_parts, name_of
 from thermogear.study.shafts.sketch import sketch
 from thermogear.study.shafts.state import TrainState, plan_of, settled
 from thermogear.study.shafts.statics import notices
@@ -43,12 +44,10 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
-KIND = "campbell"
 SPEEDS = 9
 """Speeds at which the natural frequencies are computed; they change little in between."""
 FINE = 240
 """Speeds of the response."""
-MODES = 12
 MESH_HARMONICS = 3
 FASTEST = 500_000 * RPM
 """No pinion turns faster [rad/s]."""
@@ -136,12 +135,13 @@ def critical_speeds(case: GearCase, state: TrainState, highest: float) -> list[C
     return found
 
 
+@declared(Campbell)
 def campbell(
     case: GearCase,
     *,
     speeds: tuple[float, float] | None = None,
     torque: float | None = None,
-    count: int = MODES,
+    count: int = Campbell.count,
     progress: Progress = silent,
 ) -> Result:
     """Natural frequencies over the pinion's speed, critical speeds and forced response.
@@ -159,11 +159,9 @@ def campbell(
         case = case.with_values({"torque": torque})
         place = int(np.argmax(case.stated.speed * case.stated.torque))
     low, high = speeds or (0.0, 1.5 * float(at.speed.max()))
-    if not 1 <= count <= MOST_MODES:
-        raise InputError("--count", count, allowed=f"1..{MOST_MODES}")
     if not 0.0 <= low < high <= FASTEST:
         raise InputError(
-            "--rpm",
+            "speeds",
             f"{low / RPM:.6g}:{high / RPM:.6g} rpm",
             allowed="0 <= LOW < HIGH <= 500000 rpm",
         )
@@ -200,7 +198,7 @@ def campbell(
     numbered = (("mode",), np.arange(1, count + 1), "1", "number of the mode")
     level_names = {"state": states, "stiffness_level": list(LEVELS), "mode": numbered}
     return Result.of(
-        KIND,
+        Campbell.kind,
         f"Campbell diagram: {case.title}",
         {
             "campbell": label(

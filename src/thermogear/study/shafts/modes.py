@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.errors import InputError
 from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import label
 from thermogear.case.case import GearCase
@@ -16,6 +15,7 @@ from thermogear.case.one_point import counted
 from thermogear.results.result import Result
 from thermogear.shafts.linear import LinearTrain, Modes, damping_ratios, strain_shares, whirl
 from thermogear.shafts.train import SHAFTS
+from thermogear.study.declared import NaturalModes, declared
 from thermogear.study.shafts.sketch import sketch
 from thermogear.study.shafts.state import TrainState, plan_of, settled
 from thermogear.study.shafts.statics import notices
@@ -24,17 +24,15 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Floats = NDArray[np.float64]
-KIND = "modes"
-MODES = 12
-MOST_MODES = 60
 MODE = ("state", "mode")
 
 
+@declared(NaturalModes)
 def modes(
     case: GearCase,
     *,
     operating: int | None = None,
-    count: int = MODES,
+    count: int = NaturalModes.count,
     progress: Progress = silent,
 ) -> Result:
     """The ``count`` lowest modes of a case's drive train at one operating point, cold and hot.
@@ -45,8 +43,6 @@ def modes(
     energy; ``shapes`` of both shafts along their length. Raises InputError for a case without
     shafts, and where the point has no equilibrium.
     """
-    if not 1 <= count <= MOST_MODES:
-        raise InputError("--count", count, allowed=f"1..{MOST_MODES}")
     at = case.stated
     hardest = int(np.argmax(at.speed * at.torque))
     most = at.speed.size
@@ -55,7 +51,7 @@ def modes(
     linear = [one.linear for one in found]
     free = [one.modes(state.speed, count=count) for one, state in zip(linear, found, strict=True)]
     return Result.of(
-        KIND,
+        NaturalModes.kind,
         f"Modes of the drive train: {case.title}",
         {
             "modes": _table(linear, found, free, bearing_parts(case)),

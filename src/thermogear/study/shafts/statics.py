@@ -15,6 +15,7 @@ from thermogear.base.vocabulary import STATUS, label
 from thermogear.case.case import GearCase
 from thermogear.results.result import Notice, Result
 from thermogear.shafts.train import SHAFTS
+from thermogear.study.declared import Statics
 from thermogear.study.shafts.sketch import sketch
 from thermogear.study.shafts.state import JAMMED, TrainState, places_of, plan_of, settled
 
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Floats = NDArray[np.float64]
-KIND = "statics"
 TILT_SHARE = 0.5
 """Misalignment across the face over the mesh deflection from which a plane mesh is doubtful."""
 POINT, RING = ("state", "operating"), ("state", "operating", "bearing")
@@ -40,7 +40,7 @@ def statics(case: GearCase, *, progress: Progress = silent) -> Result:
     plan = plan_of(case)
     train = plan.drive_train(pair=case.pair)
     return Result.of(
-        KIND,
+        Statics.kind,
         f"Loads of the shafts: {case.title}",
         {
             "statics": of_mesh(case, found),

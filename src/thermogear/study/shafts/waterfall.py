@@ -494,5 +494,4 @@ def waterfall(
         coordinates=coordinates, threads=threads,
     )  # fmt: skip
     how: dict[str, Any] = {"threads": threads, "scheduler": scheduler, "report": report}
-    data = carry_out(plan, store, **how, alive=alive, title=case.title)
-    return finished(data, case.title)
+    return finished(carry_out(plan, store, **how, alive=alive, title=case.title), case.title)

@@ -1,0 +1,519 @@
+"""Studies that are declared once: their arguments, their options, and what is stored of them.
+
+A study is a frozen dataclass. Its fields are the keyword arguments of the function that carries it
+out; :func:`option` says how the command line takes each and what is allowed. The docstring is the
+help of the command. Importing this module imports nothing heavy: ``--help`` reads it.
+"""
+
+from __future__ import annotations
+
+import inspect
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, fields
+from functools import partial, wraps
+from importlib import import_module
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, ClassVar, ParamSpec, TypeVar
+
+from thermogear.base.errors import InputError
+from thermogear.base.progress import Progress
+from thermogear.base.units import RPM
+
+if TYPE_CHECKING:
+    from thermogear.results.result import Result
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+
+def option(
+    default: T,
+    flag: str,
+    words: str,
+    *,
+    read: Callable[[str, Any], Any] | None = None,
+    allowed: range | Sequence[str] = (),
+    **more: Any,
+) -> T:
+    """A field: its ``default`` in SI, and its option ``flag`` with the ``words`` of its help.
+
+    ``read(flag, value)`` makes an SI value of what a person wrote. ``allowed`` are whole numbers of
+    a range, or these words, from Python too. ``more``: metavar and type.
+    """
+    about = {"flag": flag, "help": words, "read": read, "allowed": allowed, **more}
+    declared: T = field(default=default, metadata=about)
+    return declared
+
+
+class Study:
+    """What is asked of a study: every subclass is a frozen dataclass of one.
+
+    ``home``: module and name of the function that carries it out; ``of``: what it is a study of,
+    the gears or one point of a case. A directory of results may be left out where there are words
+    on it, ``stores``.
+    """
+
+    kind: ClassVar[str]
+    home: ClassVar[str]
+    of: ClassVar[str]
+    stores: ClassVar[str]
+
+    def __init_subclass__(cls, kind: str, home: str, of: str = "gears", stores: str = "") -> None:
+        cls.kind, cls.home, cls.of, cls.stores = kind, home, of, stores
+
+    def __post_init__(self) -> None:
+        for each in fields(self):  # type: ignore[arg-type]  # subclasses are dataclasses
+            value, allowed = getattr(self, each.name), each.metadata["allowed"]
+            if allowed and value is not None and value not in allowed:
+                whole = isinstance(allowed, range)
+                words = f"{allowed[0]}..{allowed[-1]}" if whole else " | ".join(allowed)
+                raise InputError(each.name, repr(value), allowed=words)
+
+    def arguments(self, subject: Any) -> dict[str, Any]:
+        """The keyword arguments of the function, for this case or point."""
+        return dict(vars(self))
+
+    def of_subject(self, subject: Any) -> Callable[[Progress], Result]:
+        """What carries the study out, with its arguments, which are checked."""
+        module, _, name = self.home.partition(":")
+        study, arguments = getattr(import_module(module), name), self.arguments(subject)
+
+        def carried_out(progress: Progress) -> Result:
+            made: Result = study(subject, **arguments, progress=progress)
+            return made.with_(asked=self.asked(arguments))
+
+        return carried_out
+
+    def asked(self, arguments: Mapping[str, Any]) -> dict[str, Any]:
+        """Fields and ``arguments`` as results store them, the latter where they differ.
+
+        Tables and records stand in the groups of a result.
+        """
+        plain = ((k, _plain(v)) for k, v in (*vars(self).items(), *arguments.items()))
+        return {name: value for name, value in plain if value is not None}
+
+
+def declared(study: type[Study]) -> Callable[[Callable[P, Result]], Callable[P, Result]]:
+    """A function whose arguments ``study`` declares: checks them, and stores them as asked."""
+    names = {each.name for each in fields(study)}  # type: ignore[arg-type]
+
+    def checked(function: Callable[P, Result]) -> Callable[P, Result]:
+        signature = inspect.signature(function)
+
+        @wraps(function)
+        def studied(*args: P.args, **kwargs: P.kwargs) -> Result:
+            given = signature.bind(*args, **kwargs).arguments
+            asked = study(**{name: given[name] for name in names & given.keys()})
+            return function(*args, **kwargs).with_(asked=asked.asked({}))
+
+        return studied
+
+    return checked
+
+
+def _plain(value: Any) -> Any:
+    """Words, numbers and rows of them; None for anything else."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    if isinstance(value, list | tuple):
+        return [_plain(each) for each in value]
+    return value if isinstance(value, str | int | float) else None
+
+
+# --- from words to values ---------------------------------------------------------------------
+
+
+def numbers(
+    flag: str,
+    text: str,
+    sign: str = ",",
+    allowed: str = "numbers with commas between",
+    fix: str = "500,1000,2000",
+    count: int = 0,
+) -> list[float]:
+    """Numbers with a ``sign`` between; so many of them, or any number."""
+    try:
+        values = [float(part) for part in text.split(sign)]
+    except ValueError:
+        values = []
+    if not values or len(values) != (count or len(values)):
+        raise InputError(flag, repr(text), allowed=allowed, fix=f"write {fix}")
+    return values
+
+
+def _positive(flag: str, value: float, scale: float = 1.0) -> float:
+    """A number above 0 in units of ``scale`` [SI]."""
+    if not 0.0 < value < 1e9:
+        raise InputError(flag, f"{value:g}", allowed="> 0, below 1e9")
+    return scale * value
+
+
+def _axis(flag: str, text: str, scale: float = 1.0) -> tuple[float, ...]:
+    """Rising SI values of an axis: numbers with commas, or FROM:TO:COUNT."""
+    values = numbers(flag, text.replace(":", ","))
+    if ":" in text:
+        low, high, number = (values + [math.nan] * 3)[:3]
+        if len(values) != 3 or not (number == int(number or 0) and 2 <= number <= 100_000):
+            allowed = "FROM:TO:COUNT, COUNT 2..100000"
+            raise InputError(flag, repr(text), allowed=allowed, fix="write 500:6000:12")
+        values = [low + (high - low) * k / (number - 1) for k in range(int(number))]
+    scaled = tuple(_positive(flag, value, scale) for value in values)
+    if any(b <= a for a, b in pairwise(values)):
+        raise InputError(flag, repr(text), allowed="strictly rising values")
+    return scaled
+
+
+def _kelvin(flag: str, celsius: float) -> float:
+    from thermogear.case.allowed import kelvin
+
+    return kelvin(flag, celsius)
+
+
+def _range(flag: str, text: str) -> tuple[float, ...]:
+    """LOW:HIGH rpm as [rad/s]."""
+    return tuple(RPM * rpm for rpm in numbers(flag, text, ":", "LOW:HIGH", f"{flag} 0:6000", 2))
+
+
+# --- gears ------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Answers(
+    Study,
+    kind="answers",
+    home="thermogear.study.answers.survey:answers",
+    stores="Directory for results and a page of the answers.",
+):
+    """Answer what one wants to know of CASE: each in a sentence with its limit and a verdict.
+
+    Does it mesh, how hot does it run, what is left of the backlash, is there a film, at which
+    speeds does it resonate or lose contact, how large are dynamic factor and transmission error.
+    """
+
+
+@dataclass(frozen=True)
+class Friction(Study, kind="friction", home="thermogear.study.friction:friction_survey"):
+    """Draw every friction law over CASE's path of contact, with ranges and regime.
+
+    Writes friction.nc, friction.html, pictures and CSV to DIR.
+    """
+
+
+@dataclass(frozen=True, kw_only=True)
+class Temperature(Study, kind="temperature", home="thermogear.study.temperature:thermal_map"):
+    """Close the loop of friction and heat over speeds and torques: the map of everything hot.
+
+    Regime, flash and body temperature, backlash left, scuffing margin, ISO estimates; for the
+    thesis's rig its first conclusion, checked. Steady states alone: `warmup` follows the way there.
+    Temperatures that CASE gives are not used; nodes that [gearbox.measured] holds are. Writes
+    temperature.nc, temperature.html, pictures and CSV.
+    """
+
+    speeds: Sequence[float] = option(
+        tuple(RPM * rpm for rpm in range(500, 6001, 500)),
+        "--speeds",
+        "Pinion speeds, or FROM:TO:COUNT; 500:6000:12 if left out.",
+        read=partial(_axis, scale=RPM),
+        metavar="RPM[,RPM...]",
+    )
+    torques: Sequence[float] = option(
+        tuple(map(float, range(50, 501, 50))),
+        "--torques",
+        "Pinion torques, or FROM:TO:COUNT; 50:500:10 if left out.",
+        read=_axis,
+        metavar="NM[,NM...]",
+    )
+    own: bool = option(False, "--own", "Take the speeds and torques of the case instead.")
+    force: bool = option(False, "--force", "Run even if it may not fit into the free memory.")
+
+    def arguments(self, subject: Any) -> dict[str, Any]:
+        """The axes; refused where the map of so many points does not fit into the memory."""
+        from thermogear.case.size import require_points
+
+        axes = {"speeds": self.speeds, "torques": self.torques}
+        if self.own:
+            if axes != {name: getattr(Temperature, name) for name in axes}:
+                raise InputError("own", "speeds or torques beside it", fix="leave one out")
+            axes = {name: getattr(subject, name) for name in axes}
+        require_points(math.prod(map(len, axes.values())), forced=self.force)
+        return axes
+
+
+@dataclass(frozen=True, kw_only=True)
+class WarmUpSurvey(Study, kind="warmup", home="thermogear.study.warm_up:warm_up_survey"):
+    """Follow CASE through its duty from a cold start: when is the backlash least?
+
+    Temperatures of gears, shafts, housing and oil, half backlash and margin to the jam, flash, film
+    and stiffness over time; what a thermocouple, a ring on the shaft and an infrared camera
+    ([sensors]) would show. Temperatures that CASE gives are not used; nodes that
+    [gearbox.measured] holds are. Writes warmup.nc, warmup.html, pictures and CSV to DIR.
+    """
+
+    duty: str | None = option(
+        None,
+        "--duty",
+        "CSV table of the duty: time [min],speed [rpm],torque [N m],ambient [degC]; each row "
+        "holds until the next, the last says the end.",
+        metavar="FILE",
+    )
+    at: Sequence[float] | None = option(
+        None,
+        "--at",
+        "Operating point that is held until steady, without a table; the case's of the greatest "
+        "power if left out.",
+        read=partial(numbers, allowed="RPM,NM", fix="2000,150", count=2),
+        metavar="RPM,NM",
+    )
+    start: float | None = option(
+        None,
+        "--start",
+        "Temperature of everything at the start; the ambient's if left out.",
+        type=float,
+        read=_kelvin,
+        metavar="DEGC",
+    )
+    measured: str | None = option(
+        None,
+        "--measured",
+        "CSV record to draw over the curves: time [min],pinion_tooth [degC],oil [degC],...; "
+        "columns named by nodes or sensors.",
+        metavar="FILE",
+    )
+    fit: Sequence[str] = option(
+        (),
+        "--fit",
+        "Fit one or two heat-transfer factors to the record: housing, oil_housing, wetted, shafts.",
+        read=lambda _, text: [name.strip() for name in text.split(",")],
+        metavar="NAME[,NAME]",
+    )
+
+    def arguments(self, subject: Any) -> dict[str, Any]:
+        """Duty and record, read from their files."""
+        from thermogear.case.duty import point_duty, read_duty, read_measured
+
+        if self.duty is not None and self.at is not None:
+            raise InputError("at", "an operating point beside --duty", fix="leave one out")
+        duty = None if self.duty is None else read_duty(self.duty, subject)
+        if self.at is not None:
+            speed, torque = self.at
+            duty = point_duty(subject, speed * RPM, torque, "at")
+        record = None if self.measured is None else read_measured(self.measured)
+        return {"duty": duty, "start": self.start, "measured": record, "fit": self.fit}
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReliefSurvey(Study, kind="relief", home="thermogear.study.relief:relief_survey"):
+    """Find the tip relief that makes CASE's hot pair run most evenly under load.
+
+    Least peak-to-peak static transmission error, drawn against the unrelieved pair; prints the
+    lines for the case file. Writes relief.nc, relief.html, pictures and CSV to DIR.
+    """
+
+    torque: float | None = option(
+        None,
+        "--torque",
+        "Pinion torque; the case's greatest if left out.",
+        type=float,
+        read=_positive,
+        metavar="NM",
+    )
+    gear_temperature: float | None = option(
+        None,
+        "--temperature",
+        "Addendum temperature of both gears, the rest as temperatures.follow says; the case's hot "
+        "state if left out.",
+        type=float,
+        read=_kelvin,
+        metavar="DEGC",
+    )
+    shape: str = option(
+        "linear", "--shape", "Form of the relief.", allowed=("linear", "parabolic")
+    )  # fmt: skip
+    symmetric: bool = option(
+        False, "--symmetric", "The same amount and length on both gears."
+    )  # fmt: skip
+    largest: float | None = option(
+        None,
+        "--largest",
+        "Greatest amount to be tried.",
+        type=float,
+        read=partial(_positive, scale=1e-6),
+        metavar="UM",
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Contact(Study, kind="contact", home="thermogear.study.contact:loaded_survey"):
+    """Loaded tooth contact of CASE over mesh position, load and temperature.
+
+    Tangent and secant stiffness, transmission error, load shares, pressure, double contact (and
+    how gears of unequal temperature lose it at light load), how long tip corners carry (edge
+    contact, where no pressure is given), and ISO 6336-1. Writes contact.nc, contact.html,
+    pictures and CSV to DIR.
+    """
+
+    torques: Sequence[float] = option(
+        (),
+        "--torques",
+        "Pinion torques, or FROM:TO:COUNT; parts of the case's greatest if left out.",
+        read=_axis,
+        metavar="NM[,NM...]",
+    )
+    body: str | None = option(
+        None,
+        "--body",
+        "Reading of the hub: held at the bore (statics), or without its wind-up [the case's].",
+        allowed=("bore-clamped", "rim"),
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sensitivity(
+    Study,
+    kind="sensitivity",
+    home="thermogear.study.sensitivity:sensitivity_around",
+    stores="Store the study and its page in DIR.",
+):
+    """Which inputs decide which results (extra [sensitivity]).
+
+    Widths, loads, oil, finish, backlash, damping, error and heat run through ranges around those of
+    CASE. Of the ready-made `rig` they are the inputs that the thesis leaves unstated, and its
+    conclusions are judged.
+    """
+
+    samples: int = option(
+        128, "--samples", "Base samples, a power of two, 8 or more; 128 for figures."
+    )
+    speed: float | None = option(
+        None,
+        "--speed",
+        "Pinion speed; the case's middle one.",
+        type=float,
+        read=lambda _, rpm: rpm * RPM,
+        metavar="RPM",
+    )
+    seed: int = option(1, "--seed", "Seed of sampling and bootstrap.")
+
+
+# --- shafts -----------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Statics(Study, kind="statics", home="thermogear.study.shafts.statics:statics"):
+    """Loads of CASE's shafts and bearings at rest under torque, cold and hot.
+
+    Bearing loads and clearances, deflection of the shafts, the actual centre distance with its
+    contact ratio and backlash, and the tilt of the gears. CASE needs [[shafts]] and [[bearings]].
+    """
+
+
+COUNT = range(1, 61)
+"""Modes that a study of the drive train may list (ours)."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class NaturalModes(Study, kind="modes", home="thermogear.study.shafts.modes:modes"):
+    """Natural frequencies of CASE's drive train, and which part bends in each mode.
+
+    Cold and hot, with the bearings' stiffness under load and the mesh at its mean.
+    """
+
+    operating: int | None = option(
+        None, "--operating", "Operating point; the hardest if left out.", type=int, metavar="N"
+    )
+    count: int = option(12, "--count", "Number of modes.", allowed=COUNT)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Campbell(Study, kind="campbell", home="thermogear.study.shafts.campbell:campbell"):
+    """Critical speeds of CASE's drive train, cold and hot, and what vibrates there.
+
+    Natural frequencies over speed with the band of the mesh stiffness; orders of mesh, shafts and
+    bearings; the response of every bearing to transmission error and unbalance.
+    """
+
+    speeds: tuple[float, float] | None = option(
+        None,
+        "--rpm",
+        "Pinion speeds; 0 to 1.5 times the case's greatest.",
+        read=_range,
+        metavar="LOW:HIGH",
+    )
+    torque: float | None = option(
+        None, "--torque", "Pinion torque; the hardest point's.", type=float, metavar="NM"
+    )
+    count: int = option(12, "--count", "Number of modes.", allowed=COUNT)
+
+
+# --- one motion -------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, kw_only=True)
+class ClosedOrbit(Study, kind="orbit", home="thermogear.study.orbit:orbit_results", of="point"):
+    """The closed orbit a motion settles on, with its Floquet multipliers.
+
+    Of a case with [[shafts]] too it is the gear pair's on rigid bearings; what its drive train
+    settles on is shown by run, its orbits are followed by continue.
+
+    \b
+      thermogear orbit table-4.2 --row zeta --point 2
+      thermogear orbit --zeta 0.1535 --w 1.245 --eps 0.335 --fm 0.017 --fh -1.16 --period 2
+    """
+
+    period: int | None = option(
+        None, "--period", "Mesh periods of the orbit [what the motion settles on].", type=int
+    )
+    transient: bool = option(
+        True,
+        "--direct",
+        "Newton from the start itself, which reaches unstable orbits.",
+        read=lambda _, direct: not direct,
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Lyapunov(
+    Study,
+    kind="lyapunov",
+    home="thermogear.study.orbit:lyapunov_results",
+    of="point",
+):
+    """The largest Lyapunov exponent of a motion with its error.
+
+    \b
+      thermogear lyapunov table-4.2 --row zeta --point 4
+    """
+
+    discard: int = option(2000, "--discard", "Periods thrown away.")
+    batches: int = option(40, "--batches", "Batches of the mean.", allowed=range(4, 100_001))
+    batch_periods: int = option(500, "--batch-periods", "Periods in each.")
+
+
+@dataclass(frozen=True, kw_only=True)
+class SharedForce(
+    Study,
+    kind="shared",
+    home="thermogear.study.shared_force:shared_results",
+    of="point from rest",
+):
+    """The mesh force shared pair by pair and the one-spring form, at rest and in motion.
+
+    \b
+      thermogear shared-force rig.toml -o shared
+    """
+
+    count: int = option(41, "--speeds", "Speeds of the sweep.", allowed=range(1, 10_001))
+
+
+COMMANDS: dict[str, type[Study]] = {
+    **{
+        study.kind: study
+        for study in (
+            Answers, Friction, Temperature, WarmUpSurvey, ReliefSurvey, Contact, Sensitivity,
+            Statics, NaturalModes, Campbell, ClosedOrbit, Lyapunov,
+        )
+    },
+    "shared-force": SharedForce,
+}  # fmt: skip
+"""Every declared study by the name of its command."""
