@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 
 from said import numbers
-from thermogear.base.display import reach
+from thermogear.base.display import span
 from thermogear.base.errors import InputError
 from thermogear.base.materials import MATERIALS
 from thermogear.base.vocabulary import STATUS
@@ -226,8 +226,8 @@ def test_a_point_that_does_not_settle_has_a_status_and_no_number() -> None:
     rows = frame["status"] == "heat_not_settled"
     assert int(rows.sum()) == int(lost.sum())
     assert frame.loc[rows, "greatest_flash [K]"].isna().all()
-    (line,) = (one for one in page(tree).lines() if one.startswith("greatest flash"))
-    assert line.endswith(reach(grid["greatest_flash"].values[~lost]))
+    (line,) = (one for one in page(tree).lines() if one.startswith("  greatest flash"))
+    assert line.endswith(span(grid["greatest_flash"].values[~lost]))
 
 
 @pytest.mark.filterwarnings("ignore::thermogear.ValidityWarning")

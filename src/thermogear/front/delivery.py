@@ -143,7 +143,7 @@ def tell(page: Page, path: Path | None, *, as_json: bool) -> None:
     from thermogear.results.files import json_text
 
     if as_json:
-        click.echo(json_text(page.numbers()), nl=False)
+        click.echo(json_text(page.figures), nl=False)
         return
     for line in page.lines():
         click.echo(line)

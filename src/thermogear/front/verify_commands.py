@@ -219,7 +219,8 @@ def _stiffness_lines(found: StiffnessCheck) -> list[str]:
     """The check as a table of the terminal, and where both are farthest apart."""
     from thermogear.base.display import PERCENT, STIFFNESS_PER_WIDTH
     from thermogear.results.tables import rows_of
-    from thermogear.views.columns import Column, declared, lines_of
+    from thermogear.views.columns import Column, declared
+    from thermogear.views.page import lines_of
 
     columns = (
         Column("phase", "phase", ".4f"),
@@ -253,7 +254,8 @@ def _growth_lines(found: GrowthCheck) -> list[str]:
     """The check as a table of the terminal, and where both are farthest apart."""
     from thermogear.base.display import MICROMETRE, MILLIMETRE
     from thermogear.results.tables import rows_of
-    from thermogear.views.columns import Column, declared, lines_of
+    from thermogear.views.columns import Column, declared
+    from thermogear.views.page import lines_of
 
     columns = (
         Column("radius", "radius", ".4f", MILLIMETRE),

@@ -53,7 +53,7 @@ def write(page: Page, folder: Path) -> list[Path]:
     """
     html, figures = names(page.result)
     written = [put(folder / html, render(page))]
-    numbers = page.numbers()
+    numbers = page.figures
     if numbers:
         written.append(put(folder / figures, json_text(numbers)))
     for one in page.pictures if page.files else ():

@@ -11,7 +11,7 @@ from thermogear.base.limits import FINE, LOOK, OPEN
 from thermogear.results.answer import Answer, worst
 from thermogear.results.result import Result
 from thermogear.views.columns import Column, declared
-from thermogear.views.page import Block, Made, Page, Pictures, Section, Table, notice_lines
+from thermogear.views.page import Block, Made, Page, Pictures, Section, Table, Text
 from thermogear.views.pages.background import background
 from thermogear.views.plots.speeds import speeds_picture
 
@@ -27,8 +27,8 @@ def page(result: Result) -> Page:
         result,
         summary(result),
         Made(lambda: sections(result, pictures) + background(result)),
-        numbers=lambda: numbers(result),
-        lines=lambda: [*lines(result), *notice_lines(result)],
+        numbers=lambda: {"answers": result.rows("answers")},
+        told=lambda: told(result),
     )
 
 
@@ -114,22 +114,9 @@ def _sentence(one: Answer) -> str:
     return f"{one.sentence[:-1]}, at {one.operating}." if one.operating else one.sentence
 
 
-def lines(result: Result) -> list[str]:
+def told(result: Result) -> Iterator[Text]:
     """The answers for a terminal: one line each, under their questions."""
-    found: list[str] = []
     for first, one in _firsts(gravest(result.answers)):
         if first:
-            found.append(one.question)
-        found.append(f"  {one.verdict:<11}  {_sentence(one)} [{one.limit}]")
-    return found
-
-
-def numbers(result: Result) -> dict[str, object]:
-    """The answers for a script."""
-    return {
-        "thermogear": result.text("thermogear"),
-        "title": result.title,
-        "kind": result.kind,
-        "answers": [one.row for one in result.answers],
-        "notices": [one.as_dict() for one in result.notices],
-    }
+            yield Text(one.question)
+        yield Text(f"  {one.verdict:<11}  {_sentence(one)} [{one.limit}]")

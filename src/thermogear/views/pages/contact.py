@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,10 +18,10 @@ from thermogear.base.display import (
     number,
 )
 from thermogear.results.result import Result
-from thermogear.views.columns import Column, declared, rows_along
+from thermogear.views.columns import Column, by_name, declared, key, rows_along, units
 from thermogear.views.page import Page, Shown
 from thermogear.views.pages import survey_captions as words
-from thermogear.views.pages.survey import survey, table_of
+from thermogear.views.pages.survey import survey
 from thermogear.views.plots import loaded
 from thermogear.views.typesetting import prose
 
@@ -107,7 +107,14 @@ def page(result: Result) -> Page:
         f"and {data.sizes['temperature']} temperatures; body "
         f"{result.text('body').replace('_', ' ')}."
     )
-    return survey(result, summary, pictures, [against, table], numbers=_numbers)
+    every = data.assign(iso_6336_stiffness=iso["iso_stiffness"])
+    return survey(
+        result,
+        summary,
+        pictures,
+        [against, table],
+        numbers=lambda: {**by_name(every, IN_JSON), "units": units(IN_JSON, every)},
+    )
 
 
 COLUMNS = (
@@ -145,18 +152,19 @@ def _corner_share(data: xr.Dataset, bit: int) -> xr.DataArray:
     return carries.any("pair").mean("mesh_phase")
 
 
-def _numbers(result: Result) -> dict[str, Any]:
-    data, iso = result.groups["contact"], result.groups["iso_6336"]
-    return {
-        "pinion_torque_Nm": [float(v) for v in data["load"].values],
-        "temperature_degC": [
+IN_JSON = (
+    key("pinion_torque_Nm", "load"),
+    key(
+        "temperature_degC",
+        lambda data: [
             name if np.isnan(given) else float(CELSIUS(given))
             for name, given in zip(
                 data["temperature"].values.tolist(), data["gear_temperature"].values, strict=True
             )
         ],
-        "mean_stiffness": table_of(data["mean_stiffness"]),
-        "double_contact_length_m": table_of(data["double_contact_length"]),
-        "edge_contact_share": table_of(data["edge_contact_share"]),
-        "iso_6336_stiffness": [float(v) for v in iso["iso_stiffness"].values],
-    }
+    ),
+    key("mean_stiffness"),
+    key("double_contact_length_m", "double_contact_length"),
+    key("edge_contact_share"),
+    key("iso_6336_stiffness"),
+)

@@ -53,16 +53,6 @@ def lost_rows(data: xr.Dataset) -> list[dict[str, Any]]:
     return rows
 
 
-def lost_line(row: dict[str, Any]) -> str:
-    """One of the rows as a sentence: "hot: the drive flank parts at 300 rpm (2 of 5 points)".
-
-    Points that are assumed are told apart.
-    """
-    more = f", and {row['assumed']} that are assumed" if row["assumed"] else ""
-    state = f"{row['state']}: " if "state" in row else ""
-    return f"{state}{row['what']} {row['where']} ({row['points']} of {row['of']} points{more})"
-
-
 def where(data: xr.Dataset, flags: NDArray[np.bool_]) -> str:
     """Where on the axes of the result ``flags`` are set: ranges in the units shown."""
     axes = [str(n) for n in data["label"].dims if n not in ("direction", "start")]

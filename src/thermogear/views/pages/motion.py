@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from thermogear.base.display import MICROMETRE, NANOMETRE, PERCENT, Display, number
 from thermogear.results.result import Result
-from thermogear.views.columns import Column, Row, declared, lines_of, pairs, typed
+from thermogear.views.columns import Column, Row, declared, pairs
 from thermogear.views.csv_files import cell_text, head_text
 from thermogear.views.page import (
     LEAD,
@@ -20,7 +20,6 @@ from thermogear.views.page import (
     Shown,
     Table,
     Text,
-    notice_lines,
 )
 from thermogear.views.picture import Picture
 from thermogear.views.plots import one_motion as plots
@@ -116,12 +115,7 @@ def page(result: Result) -> Page:
             Section(LEAD, "In pictures", [Gallery(shown)], folded=False),
         ],
         numbers=lambda: summary,
-        lines=lambda: [
-            summary["title"],
-            typed(headline),
-            *lines_of(*blocks),
-            *notice_lines(result),
-        ],
+        told=lambda: [Text(summary["title"]), Text(headline), *blocks],
         tables=lambda: csv_tables(kind, groups),
         files=("svg", "png"),
     )

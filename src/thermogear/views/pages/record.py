@@ -43,11 +43,8 @@ def page(result: Result) -> Page:
         result.text("conclusion") or _summary(result),
         [section for make in made if (section := make(result)) is not None],
         numbers=lambda: record_slices.numbers(result),
-        lines=lambda: LINES[result.kind](result),
+        told=lambda: record_lines.TOLD[result.kind](result),
     )
-
-
-LINES = {"measured": record_lines.measured, "comparison": record_lines.comparison}
 
 
 def _summary(results: Result) -> str:

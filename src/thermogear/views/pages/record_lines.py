@@ -7,24 +7,24 @@ from typing import Any
 
 from thermogear.base.display import SPEED
 from thermogear.results.result import Result
-from thermogear.views.columns import lines_of
+from thermogear.views.page import Block, Text
 from thermogear.views.pages.record_tables import comparison_tables, line_table
 
 _TOLD = 5e-4
 """Weight that three digits show."""
 
 
-def measured(result: Result) -> list[str]:
-    """Notices, evidence, settings, and a row for each line."""
+def measured(result: Result) -> list[Block]:
+    """Evidence, settings, and a row for each line."""
     found = result.table("figures")
-    told = [f"{one.level}: {one.text}" for one in result.notices]
-    told += given_and_found(found)
+    told = given_and_found(found)
     told += [f"evidence: {text}" for text in found["evidence"]]
     told += [f"{name}: {value}" for name, value in result.table("settings").items()]
     if found.get("shaft_speed") is not None:
         told.append(_shaft(found))
     table = line_table(result)
-    return [*told, *lines_of(*[table] if table else []), *slices(found.get("slices"))]
+    tables = [table] if table else []
+    return [*map(Text, told), *tables, *map(Text, slices(found.get("slices")))]
 
 
 def slices(found: Mapping[str, Any] | None) -> list[str]:
@@ -113,7 +113,9 @@ def _open(verdict: str) -> str:
     return "no gear" if verdict == "no gear found" else "teeth undecided"
 
 
-def comparison(result: Result) -> list[str]:
-    """Notices, the tables of the page, the conclusion."""
-    told = [f"{one.level}: {one.text}" for one in result.notices]
-    return [*told, *lines_of(*comparison_tables(result)), result.table("figures")["conclusion"]]
+def comparison(result: Result) -> list[Block]:
+    """The tables of the page, the conclusion."""
+    return [*comparison_tables(result), Text(result.table("figures")["conclusion"])]
+
+
+TOLD = {"measured": measured, "comparison": comparison}

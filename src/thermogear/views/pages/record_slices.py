@@ -6,9 +6,32 @@ from functools import partial
 from typing import Any
 
 from thermogear.results.result import Result
+from thermogear.views.columns import Column, by_name, key
 from thermogear.views.page import Pictures, Section, Text
 from thermogear.views.pages import record_lines
 from thermogear.views.plots import slices as plots
+
+
+def _moved(name: str) -> tuple[Column, Column]:
+    """A reading turned into acceleration or displacement, with its half width."""
+    value = f"slice_{name}"
+    return key(name, value), key(
+        f"{name}_half_width", lambda data: data["slice_half_width"] * data[value]
+    )
+
+
+STEPS = [key(name, f"slice_{name}") for name in ("time", "speed", "speed_rate")]
+OF_ORDER = (
+    key("channel"),
+    key("name"),
+    key("order", "slice_order"),
+    *(
+        key(name, f"slice_{name}")
+        for name in ("frequency", "reading", "reading_half_width", "phase", "turns")
+    ),
+    *_moved("acceleration"),
+    *_moved("displacement"),
+)
 
 
 def numbers(results: Result) -> dict[str, Any]:
@@ -16,27 +39,12 @@ def numbers(results: Result) -> dict[str, Any]:
     found, data = results.table("figures"), results.group("slices")
     if data is None or not isinstance(found.get("slices"), dict):
         return found
-    steps = {
-        name: data[f"slice_{name}"].values.tolist() for name in ("time", "speed", "speed_rate")
-    }
-    orders = []
-    for channel in data["channel"].values:
-        for k, name in enumerate(data["name"].values):
-            one = data.sel(channel=channel).isel(slice=k)
-            share = one["slice_half_width"].values
-            rows = {
-                "frequency": one["slice_frequency"].values,
-                "reading": one["slice_reading"].values,
-                "reading_half_width": one["slice_reading_half_width"].values,
-                "phase": one["slice_phase"].values,
-                "turns": one["slice_turns"].values,
-            }
-            for moved in ("acceleration", "displacement"):
-                rows[moved] = one[f"slice_{moved}"].values
-                rows[f"{moved}_half_width"] = share * rows[moved]
-            told = {"channel": str(channel), "name": str(name), "order": float(one["slice_order"])}
-            orders.append(told | {key: values.tolist() for key, values in rows.items()})
-    return {**found, "slices": {**found["slices"], **steps, "orders": orders}}
+    orders = [
+        by_name(data.sel(channel=channel).isel(slice=place), OF_ORDER)
+        for channel in data["channel"].values
+        for place in range(data.sizes["slice"])
+    ]
+    return {**found, "slices": {**found["slices"], **by_name(data, STEPS), "orders": orders}}
 
 
 def section(results: Result) -> Section | None:

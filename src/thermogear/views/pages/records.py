@@ -10,8 +10,8 @@ import numpy as np
 
 from thermogear.base.display import PERCENT, SPEED, Display
 from thermogear.results.result import Result
-from thermogear.views.columns import PLAIN, Column, Row, declared, lines_of
-from thermogear.views.page import Page, Pictures, Section, Table
+from thermogear.views.columns import PLAIN, Column, Row, declared
+from thermogear.views.page import Page, Pictures, Section, Table, Text
 from thermogear.views.plots import records as plots
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ def page(result: Result) -> Page:
         summary(found),
         sections,
         numbers=lambda: found,
-        lines=lambda: lines(result),
+        told=lambda: [*_tables(found).values(), Text(summary(found))],
     )
 
 
@@ -135,10 +135,3 @@ def summary(found: dict[str, Any]) -> str:
         f"intervals; {chance:.3g} would by chance where nothing changed and intervals are exact."
         f"{withheld}"
     )
-
-
-def lines(result: Result) -> list[str]:
-    """Refusals, what changed, speeds, trends, the summary."""
-    found = result.table("figures")
-    told = [f"{one.level}: {one.text}" for one in result.notices]
-    return [*told, *lines_of(*_tables(found).values()), summary(found)]

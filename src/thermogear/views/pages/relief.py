@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import Any
 
 from thermogear.base.display import CELSIUS, MICROMETRE, MILLIMETRE, exactly
 from thermogear.results.result import Result
 from thermogear.views.columns import Column, declared
-from thermogear.views.page import Page, Shown
+from thermogear.views.page import Code, Page, Shown, Text
 from thermogear.views.pages import survey_captions as words
 from thermogear.views.pages.survey import survey
 from thermogear.views.plots import relief
@@ -18,7 +17,7 @@ KINDS = ("relief",)
 
 def page(result: Result) -> Page:
     """The relief found, beside the unrelieved pair."""
-    torque = float(result.text("torque"))
+    torque, paste = float(result.text("torque")), result.text("paste")
     before, after = (
         MICROMETRE(float(result.text("unrelieved"))),
         MICROMETRE(float(result.text("relieved"))),
@@ -62,34 +61,18 @@ def page(result: Result) -> Page:
         summary,
         pictures,
         [table],
-        numbers=_numbers,
-        lines=_lines,
-        code=result.text("paste"),
-    )
-
-
-def _numbers(result: Result) -> dict[str, Any]:
-    error = result.groups["error"]
-    return {
-        "torque_Nm": float(result.text("torque")),
-        "unrelieved_m": float(result.text("unrelieved")),
-        "relieved_m": float(result.text("relieved")),
-        "evaluations": int(result.text("evaluations")),
-        "reliefs": result.table("reliefs"),
-        "edge_contact_share": {
-            str(one["pair_kind"].values): float(one) for one in error["edge_contact_share"]
+        numbers=lambda: {
+            "torque_Nm": torque,
+            **{f"{name}_m": float(result.text(name)) for name in ("unrelieved", "relieved")},
+            "evaluations": int(result.text("evaluations")),
+            "reliefs": result.table("reliefs"),
+            "edge_contact_share": dict(result.groups["error"]["edge_contact_share"].to_series()),
+            "paste": paste,
         },
-        "paste": result.text("paste"),
-    }
-
-
-def _lines(result: Result) -> list[str]:
-    before, after = (MICROMETRE(float(result.text(name))) for name in ("unrelieved", "relieved"))
-    return [
-        f"transmission error at {float(result.text('torque')):g} N m: {before:.3f} um peak to peak "
-        f"without, {after:.3f} um with relief",
-        "",
-        "# for the case file, in place of tip reliefs it has already",
-        *result.text("paste").splitlines(),
-        "",
-    ]
+        told=[
+            table,
+            Text("# for the case file, in place of tip reliefs it has already"),
+            Code(paste),
+        ],
+        code=paste,
+    )

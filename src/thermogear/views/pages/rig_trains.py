@@ -9,7 +9,7 @@ import numpy as np
 
 from thermogear.base.display import PERCENT
 from thermogear.results.result import Result
-from thermogear.views.columns import Column, Row, declared, rows_along
+from thermogear.views.columns import Column, Row, by_name, declared, key, rows_along
 from thermogear.views.page import Block, Pictures, Table, Text
 from thermogear.views.plots import rig_trains as plots
 from thermogear.views.typesetting import prose
@@ -91,23 +91,17 @@ def _assumed(data: xr.Dataset) -> Table:
     return declared(caption, ASSUMED, rows_along(data, "input"), names=3, wordy=True)
 
 
+IN_JSON = tuple(map(key, ("hits", "share", "share_low", "share_high")))
+
+
 def numbers(data: xr.Dataset) -> dict[str, Any]:
     """The answer JSON-ready, with shares by place and factor."""
-    shares = {
-        str(place): {
-            f"{float(limit):g}": {
-                name: float(data[name].sel(seen=place, limit=limit))
-                for name in ("hits", "share", "share_low", "share_high")
-            }
-            for limit in data["limit"].values
-        }
-        for place in data["seen"].values
-    }
+    limits = [f"{float(limit):g}" for limit in data["limit"].values]
     told = ("answer", "sentence", "deciding", "motions")
     return {
         **{name: str(data.attrs[name]) for name in told},
         "trains": int(data.attrs["trains"]),
         "lost": int(data.attrs["lost"]),
         "nearest_factor": float(np.min(data["needed_factor"].sel(seen="either").values)),
-        "shares": shares,
+        "shares": by_name(data.assign_coords(limit=limits), IN_JSON, "seen", "limit"),
     }

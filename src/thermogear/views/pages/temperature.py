@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermogear.base.display import CELSIUS, KELVIN, MICROMETRE, SPEED, exactly, number, reach
+from thermogear.base.display import CELSIUS, KELVIN, exactly, number
 from thermogear.base.vocabulary import STATUS
 from thermogear.results.result import Result
-from thermogear.views.columns import Column, Row, declared, rows_along
+from thermogear.views.columns import Column, Row, by_name, declared, key, reaches, rows_along, units
 from thermogear.views.page import Page, Shown, Table
 from thermogear.views.pages import survey_captions as words
-from thermogear.views.pages.survey import survey, table_of
+from thermogear.views.pages.survey import OPERATING, survey
 from thermogear.views.plots import thermal_map
 from thermogear.views.style import names_of
 from thermogear.views.tables import is_settled
@@ -28,7 +28,7 @@ KINDS = ("temperature",)
 
 def page(result: Result) -> Page:
     """The closed loop over speed and torque."""
-    data = result.groups["map"]
+    data = _with_nodes(result.groups["map"])
     pictures = []
     over = words.running(data)
     if over:
@@ -41,10 +41,10 @@ def page(result: Result) -> Page:
                 wide=True,
             )
         )
-    tables = [_corner_table(data), _estimate_table(data)]
     rows = result.rows("verdicts")
+    told = [reaches("Over all operating points.", REACH, data)]
     if rows:
-        tables.append(_conclusion_table(rows))
+        told.append(_conclusion_table(rows))
     status = data["status"].values
     count = {word: int((status == place).sum()) for place, word in enumerate(STATUS)}
     summary = (
@@ -54,7 +54,40 @@ def page(result: Result) -> Page:
         + f". Iterations at most {int(data['iterations'].max())}."
         + ("" if over else words.one_point(data))
     )
-    return survey(result, summary, pictures, tables, numbers=_numbers, lines=_lines)
+    return survey(
+        result,
+        summary,
+        pictures,
+        [_corner_table(data), _estimate_table(data), *told],
+        numbers=lambda: {
+            "seconds": float(result.text("seconds")),
+            "points": status.size,
+            **by_name(data, IN_JSON),
+            "units": units(IN_JSON, data),
+            "conclusion": rows,
+        },
+        told=told,
+    )
+
+
+REACH = (
+    Column("teeth", lambda data: np.stack([data["pinion_tooth"], data["wheel_tooth"]]), 3, CELSIUS),
+    Column("greatest flash temperature", "greatest_flash", 3, KELVIN, "greatest_flash"),
+    Column("least half backlash", "least_half_backlash"),
+    Column("scuffing margin", "scuffing_margin", 3, KELVIN, "scuffing_margin"),
+    Column("least film parameter", "least_film_parameter", key="least_film_parameter"),
+    Column("mean friction coefficient", "mean_friction", key="mean_friction"),
+)
+IN_JSON = (
+    *OPERATING,
+    key("status"),
+    key("iterations"),
+    key("pinion_tooth_K", "pinion_tooth"),
+    key("oil_K", "oil"),
+    key("least_half_backlash"),
+    key("residual"),
+    *REACH,
+)
 
 
 CONCLUSION = (
@@ -98,18 +131,22 @@ CORNERS = (
 )
 
 
+def _with_nodes(data: xr.Dataset) -> xr.Dataset:
+    """The same with the temperature of every node and each estimate as a variable."""
+    of_nodes = {n: data["node_temperature"].sel(node=n, drop=True) for n in names_of(data, "node")}
+    estimates = {
+        n: data["body_estimate"].sel(estimate=n, drop=True) for n in names_of(data, "estimate")
+    }
+    return data.assign(of_nodes | estimates)
+
+
 def _at_corners(data: xr.Dataset) -> list[dict[str, Any]]:
-    """Corners and middle of the grid, with the temperature of every node and each estimate."""
+    """Corners and middle of the grid."""
     chosen = {
         name: sorted({0, data.sizes[name] // 2, data.sizes[name] - 1})
         for name in ("pinion_speed", "pinion_torque")
     }
-    there = data.isel(chosen)
-    of_nodes = {n: there["node_temperature"].sel(node=n, drop=True) for n in names_of(data, "node")}
-    estimates = {
-        n: there["body_estimate"].sel(estimate=n, drop=True) for n in names_of(data, "estimate")
-    }
-    return rows_along(there.assign(of_nodes | estimates), *chosen)
+    return rows_along(data.isel(chosen), *chosen)
 
 
 def _corner_table(data: xr.Dataset) -> Table:
@@ -143,42 +180,3 @@ def _estimate_table(data: xr.Dataset) -> Table:
         _at_corners(data),
         names=2,
     )
-
-
-def _numbers(result: Result) -> dict[str, Any]:
-    data = result.groups["map"]
-    names = (
-        "greatest_flash",
-        "least_half_backlash",
-        "scuffing_margin",
-        "least_film_parameter",
-        "mean_friction",
-        "residual",
-    )
-    return {
-        "seconds": float(result.text("seconds")),
-        "points": int(data["status"].size),
-        "pinion_speed_rpm": [SPEED(float(v)) for v in data["pinion_speed"].values],
-        "pinion_torque_Nm": [float(v) for v in data["pinion_torque"].values],
-        "status": data["status"].values.tolist(),
-        "iterations": data["iterations"].values.tolist(),
-        "pinion_tooth_K": table_of(data["node_temperature"].sel(node="pinion_tooth")),
-        "oil_K": table_of(data["node_temperature"].sel(node="oil")),
-        **{name: table_of(data[name]) for name in names},
-        "conclusion": result.rows("verdicts"),
-    }
-
-
-def _lines(result: Result) -> list[str]:
-    data = result.groups["map"]
-    teeth = data["node_temperature"].sel(node=["pinion_tooth", "wheel_tooth"]).values
-    figures = {
-        "teeth [degC]": CELSIUS(teeth),
-        "greatest flash temperature [K]": data["greatest_flash"].values,
-        "least half backlash [um]": MICROMETRE(data["least_half_backlash"].values),
-        "scuffing margin [K]": data["scuffing_margin"].values,
-        "least film parameter": data["least_film_parameter"].values,
-        "mean friction coefficient": data["mean_friction"].values,
-    }
-    told = [f"{one['claim']}: {one['verdict']} ({one['found']})" for one in result.rows("verdicts")]
-    return [f"{name:<32} {reach(values)}" for name, values in figures.items()] + told

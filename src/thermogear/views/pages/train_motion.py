@@ -9,7 +9,7 @@ import numpy as np
 
 from thermogear.base.display import MICROMETRE, NEWTON
 from thermogear.results.result import Result
-from thermogear.views.columns import OF_STATE, Column, declared, lines_of, rows_along
+from thermogear.views.columns import OF_STATE, Column, declared, rows_along
 from thermogear.views.moving import Dial
 from thermogear.views.page import Block, Pictures, Section, Table, Text
 from thermogear.views.picture import Picture
@@ -180,7 +180,7 @@ def _tables(data: xr.Dataset) -> list[Table]:
     ]
 
 
-def lines(result: Result) -> list[str]:
+def told(result: Result) -> list[Table]:
     """What the terminal tells of the drive train's motion."""
     data = result.group("train_motion")
-    return [] if data is None else lines_of(*_tables(data))
+    return [] if data is None else _tables(data)

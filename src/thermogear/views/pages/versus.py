@@ -12,7 +12,7 @@ from markupsafe import Markup
 
 from thermogear.base.display import display, in_words, percent
 from thermogear.results.result import Result
-from thermogear.views.columns import Column, Row, declared, rows_along
+from thermogear.views.columns import Column, Row, declared, in_full, key, rows_along
 from thermogear.views.csv_files import table_text
 from thermogear.views.page import (
     Block,
@@ -22,7 +22,6 @@ from thermogear.views.page import (
     Section,
     Table,
     Text,
-    notice_lines,
 )
 from thermogear.views.plots import versus as plots
 from thermogear.views.style import chosen, names_of
@@ -77,8 +76,15 @@ def page(result: Result) -> Page:
         result,
         _summary(data),
         [_differences(data), _figures(data), *_pictures(data), _cases(data)],
-        numbers=lambda: _numbers(result),
-        lines=lambda: notice_lines(result),
+        numbers=lambda: {
+            "kind": result.text("of"),
+            "cases": names_of(data, "case"),
+            "differences": result.rows("differences"),
+            "choices": result.rows("choices"),
+            "units": _numbers_there(data),
+            "figures": _rows(data),
+        },
+        told=lambda: [Text(_summary(data))],
         tables=lambda: {
             f"versus_{name}.csv": table_text(head, rows)
             for name, (head, rows) in _csv_tables(data).items()
@@ -278,10 +284,10 @@ def _cases(data: xr.Dataset) -> Section:
 
 def _rows(data: xr.Dataset) -> list[dict[str, Any]]:
     """The figures of every case, bundle, point and state that there are."""
-    names = ("case", "bundle", "point", "state", "label", *_numbers_there(data))
+    names = [*map(key, ("case", "bundle", "point", "state", "label", *_numbers_there(data)))]
     places = data.assign_coords(operating=data["point"].values)
     rows = rows_along(places, "case", "bundle", "operating", "state")
-    return [{name: row[name] for name in names} for row in rows if row["present"]]
+    return [in_full(names, row) for row in rows if row["present"]]
 
 
 def _numbers_there(data: xr.Dataset) -> dict[str, str]:
@@ -305,23 +311,4 @@ def _csv_tables(data: xr.Dataset) -> dict[str, tuple[list[str], list[list[Any]]]
         "differences": (["field", *titles], fields),
         "choices": (["bundle", "choice", *titles], made),
         "figures": (["case", "bundle", "point", "state", "label", *units], rows),
-    }
-
-
-# --- figures as JSON wants them ---------------------------------------------------------------
-
-
-def _numbers(result: Result) -> dict[str, Any]:
-    """What a machine wants to read of :func:`versus`: texts, and a row for each point."""
-    data = result.data
-    return {
-        "thermogear": result.text("thermogear"),
-        "title": result.title,
-        "kind": result.text("of"),
-        "cases": names_of(data, "case"),
-        "notices": [one.as_dict() for one in result.notices],
-        "differences": result.rows("differences"),
-        "choices": result.rows("choices"),
-        "units": _numbers_there(data),
-        "figures": _rows(data),
     }

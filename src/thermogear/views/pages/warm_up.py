@@ -61,7 +61,7 @@ def page(result: Result) -> Page:
         answer(worst, cold) + fit_sentence(result.table("fit")),
         pictures,
         tables,
-        numbers=_numbers,
+        numbers=partial(_numbers, result),
     )
 
 
@@ -269,20 +269,17 @@ def _fitted(fit: Mapping[str, Any]) -> Table:
     return declared(text, FACTORS, fit["factors"])
 
 
-# --- figures as the terminal and JSON want them -----------------------------------------------
+# --- figures as JSON wants them ---------------------------------------------------------------
 
 
 def _numbers(result: Result) -> dict[str, Any]:
-    data = result.groups["course"]
-    error = data["sensor_temperature"].values[-1] - data["true_temperature"].values[-1]
-    last = data["node_temperature"].values[-1]
+    last = result.groups["course"].isel(moment=-1)
+    last = last.assign(error=last["sensor_temperature"] - last["true_temperature"])
     return {
         "worst": result.table("worst"),
         "jams_s": result.values("jams"),
-        "end_K": {str(node): float(t) for node, t in zip(data["node"].values, last, strict=True)},
-        "sensor_error_at_the_end_K": {
-            str(name): float(e) for name, e in zip(data["sensor"].values, error, strict=True)
-        },
+        "end_K": dict(last["node_temperature"].to_series()),
+        "sensor_error_at_the_end_K": dict(last["error"].to_series()),
         "greatest_imbalance": float(result.text("greatest_imbalance")),
         "evaluations": int(result.text("evaluations")),
         "seconds": float(result.text("seconds")),

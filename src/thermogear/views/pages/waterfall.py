@@ -12,7 +12,7 @@ import numpy as np
 from thermogear.base.display import HERTZ, NEWTON, SPEED, number
 from thermogear.base.vocabulary import STATUS, STILL
 from thermogear.results.result import Result
-from thermogear.views.columns import Column, Row, declared
+from thermogear.views.columns import Column, Row, by_name, declared, in_full, key, rows_along
 from thermogear.views.page import Page, Shown, Table
 from thermogear.views.pages.survey import survey
 from thermogear.views.plots import waterfall as plots
@@ -42,7 +42,7 @@ def page(result: Result) -> Page:
             made.append(("sound", "Housing by order", LINES, partial(plots.sound, data, 0)))
     pictures = [Shown(*one, wide=True) for one in made]
     tables = [jumps(data), _critical(data)]
-    return survey(result, summary(data), pictures, tables, numbers=numbers)
+    return survey(result, summary(data), pictures, tables, numbers=partial(numbers, data))
 
 
 def summary(data: xr.Dataset) -> str:
@@ -64,34 +64,29 @@ def summary(data: xr.Dataset) -> str:
     )
 
 
-def _apart(data: xr.Dataset) -> list[dict[str, Any]]:
-    """The stretches on which the ways up and down differ."""
-    states = plots.states_of(data)
-    parts = ["mesh force", *json.loads(data.attrs["bearing_names"])]
-    stretches = [data.isel(stretch=i) for i in range(data.sizes["stretch"])]
-    return [
-        {
-            "state": states[int(one["apart_state"])],
-            **{f"{end}_rpm": SPEED(float(one[f"apart_{end}"])) for end in ("from", "to", "at")},
-            "of": parts[int(one["apart_part"])],
-            "up_rms_N": float(one["apart_up"]),
-            "down_rms_N": float(one["apart_down"]),
-            "because_of": "two motions" if int(one["apart_held"]) else "the rate of the run",
-        }
-        for one in stretches
-    ]
-
-
 APART = (
-    Column("state", "state"),
-    Column("from [rpm]", "from_rpm", ".6g"),
-    Column("to [rpm]", "to_rpm", ".6g"),
-    Column("most at [rpm]", "at_rpm", ".6g"),
-    Column("of", "of"),
-    Column("up, rms [N]", "up_rms_N"),
-    Column("down, rms [N]", "down_rms_N"),
-    Column("because of", "because_of"),
+    Column("state", "apart_state", key="state"),
+    Column("from", "apart_from", ".6g", SPEED, "from_rpm"),
+    Column("to", "apart_to", ".6g", SPEED, "to_rpm"),
+    Column("most at", "apart_at", ".6g", SPEED, "at_rpm"),
+    Column("of", "apart_part", key="of"),
+    Column("up, rms", "apart_up", 3, NEWTON, "up_rms_N"),
+    Column("down, rms", "apart_down", 3, NEWTON, "down_rms_N"),
+    Column(
+        "because of",
+        lambda row: "two motions" if row["apart_held"] else "the rate of the run",
+        key="because_of",
+    ),
 )
+
+
+def _apart(data: xr.Dataset) -> list[dict[str, Any]]:
+    """The stretches on which the ways up and down differ, with the words of states and parts."""
+    states = np.array(plots.states_of(data))[data["apart_state"].values]
+    parts = np.array(["mesh force", *json.loads(data.attrs["bearing_names"])])
+    parts = parts[data["apart_part"].values]
+    named = data.assign(apart_state=("stretch", states), apart_part=("stretch", parts))
+    return rows_along(named, "stretch")
 
 
 def jumps(data: xr.Dataset) -> Table:
@@ -131,28 +126,19 @@ def _critical(data: xr.Dataset) -> Table:
     return declared("Critical speeds of the linear train within the run.", CRITICAL, rows, names=2)
 
 
-def numbers(result: Result) -> dict[str, Any]:
+IN_JSON = (
+    key("mesh_force_rms_N", "mesh_force_rms"),
+    key("mesh_force_max_N", "mesh_force_max"),
+    key("contact_loss_share"),
+    key("bearing_force_max_N", lambda data: np.nanmax(data["bearing_force_max"].values, axis=1)),
+    key("housing_rms_m_per_s2", "housing_rms"),
+)
+
+
+def numbers(data: xr.Dataset) -> dict[str, Any]:
     """The figures of a run-up, JSON-ready."""
-    data = result.data
     return {
-        "speeds_rpm": (SPEED(data["pinion_speed"].values)).tolist(),
-        **{
-            state: {
-                way: _of_one_way(data.isel(state=s, direction=d))
-                for d, way in enumerate(("up", "down"))
-            }
-            for s, state in enumerate(plots.states_of(data))
-        },
-        "apart": _apart(data),
-    }
-
-
-def _of_one_way(data: xr.Dataset) -> dict[str, list[float]]:
-    """Vibration over speed of one state and direction."""
-    return {
-        "mesh_force_rms_N": data["mesh_force_rms"].values.tolist(),
-        "mesh_force_max_N": data["mesh_force_max"].values.tolist(),
-        "contact_loss_share": data["contact_loss_share"].values.tolist(),
-        "bearing_force_max_N": np.nanmax(data["bearing_force_max"].values, axis=1).tolist(),
-        "housing_rms_m_per_s2": data["housing_rms"].values.tolist(),
+        "speeds_rpm": SPEED(data["pinion_speed"].values).tolist(),
+        **by_name(data, IN_JSON, "state", "direction"),
+        "apart": [in_full(APART, row) for row in _apart(data)],
     }
