@@ -37,7 +37,7 @@ class Display:
     def __call__(self, values: ArrayLike) -> NDArray[np.float64]: ...
 
     def __call__(self, values: ArrayLike) -> float | NDArray[np.float64]:
-        if isinstance(values, float):
+        if isinstance(values, float | int):
             return self.scale * (values - self.zero) / self.per
         return np.asarray(self.scale * (np.asarray(values, dtype=float) - self.zero) / self.per)
 

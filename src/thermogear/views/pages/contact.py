@@ -128,7 +128,7 @@ COLUMNS = (
     Column(
         "edge contact [%]",
         lambda row: " / ".join(
-            number(100.0 * row[f"{gear}_corner"], 2) for gear in ("wheel", "pinion")
+            number(PERCENT(row[f"{gear}_corner"]), 2) for gear in ("wheel", "pinion")
         ),
     ),
     Column("greatest pressure on the flanks", "contact_pressure", 3, MEGAPASCAL),

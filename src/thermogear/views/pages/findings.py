@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.display import exactly, number, stretches
+from thermogear.base.display import PERCENT, exactly, number, stretches
 from thermogear.base.vocabulary import ASSUMED
 from thermogear.views.plots.parameters import parameter_of, shown
 from thermogear.views.plots.sweeps import CLASSES, classes_of
@@ -96,7 +96,7 @@ def _basins(data: xr.Dataset) -> str:
         return "No attractor was found"
     shares = [
         f"{f'period {int(p)}' if p else 'chaotic, estimate'}, "
-        f"{number(100.0 * float(f))} % of the starts"
+        f"{number(PERCENT(float(f)))} % of the starts"
         for p, f in zip(data["attractor_period"].values, data["fraction"].values, strict=True)
     ]
     if count == 1:

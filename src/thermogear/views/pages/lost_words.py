@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.display import exactly, stretches
+from thermogear.base.display import PERCENT, exactly, stretches
 from thermogear.base.vocabulary import ASSUMED
 from thermogear.views.plots.lost_contact import has_lost, lost_of, things
 from thermogear.views.plots.parameters import each_state, parameter_of, shown
@@ -74,7 +74,7 @@ def where(data: xr.Dataset, flags: NDArray[np.bool_]) -> str:
         for name, unit, on in zip(axes, units, inside, strict=True)
     ]
     found = ", ".join(one for one in words if one)
-    share = 100.0 * float(here.mean())
+    share = PERCENT(float(here.mean()))
     if box.mean() >= FILLED and found:
         return found
     return f"at {exactly(share, 2)} % of the points{f', {found}' * bool(found)}"

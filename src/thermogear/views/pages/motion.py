@@ -323,7 +323,7 @@ def _train_words(train: Summary) -> list[Block]:
     if straight is not None:
         words.append(
             f"Half way between computed values the greatest mesh force is off by "
-            f"{100.0 * straight['force']:.2g} %, the largest multiplier by "
+            f"{PERCENT(straight['force']):.2g} %, the largest multiplier by "
             f"{straight['multiplier']:.2g}."
         )
     return [Text(text, "note") for text in words]
@@ -388,7 +388,7 @@ def _shared_tables(summary: Summary) -> list[Block]:
 
 
 def _percent(part: float | None) -> str:
-    return "–" if part is None else f"{100.0 * part:.2f} %"
+    return "–" if part is None else f"{PERCENT(part):.2f} %"
 
 
 ORBIT = (Column("quantity", "name"), Column("value", "value"), Column("unit", "unit"))

@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from thermogear.base.display import Display, number
+from thermogear.base.display import PERCENT, Display, number
 from thermogear.base.parameters import Parameter
 from thermogear.results.result import Result
 from thermogear.views.columns import Column, declared
@@ -108,7 +108,7 @@ def table_of(result: Result) -> Table:
 def _became(row: Mapping[str, Any], unit: str) -> str:
     """What became of a bifurcation on the way to the other state."""
     share = row["share"] if row["one"] is not None else 1.0 - row["share"]
-    at = f"at {number(100.0 * share, 3)} % of the way"
+    at = f"at {number(PERCENT(share), 3)} % of the way"
     if row["partner"] == "matched":
         return "" if row["drawn"] else "its branch is not among those drawn"
     if row["partner"] == "meets another":

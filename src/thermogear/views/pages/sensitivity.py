@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermogear.base.display import SPEED
+from thermogear.base.display import PERCENT, SPEED
 from thermogear.results.result import Result
 from thermogear.views.columns import Column, Row, declared, in_full, key, rows_along
 from thermogear.views.page import Block, Page, Pictures, Section, Text
@@ -39,7 +39,7 @@ def _study_words(results: Result) -> str:
     return (
         f"{int(data.attrs['evaluations'])} evaluations of the chain from friction to vibration at "
         f"{SPEED(float(data.attrs['speed'])):.0f} rpm in {float(data.attrs['seconds']):.0f} s; "
-        f"intervals at {100 * float(data.attrs['confidence']):.0f} %. Every input runs through "
+        f"intervals at {PERCENT(float(data.attrs['confidence'])):.0f} %. Every input runs through "
         "its whole range, independently of the others."
     )
 

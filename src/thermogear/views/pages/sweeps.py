@@ -95,7 +95,7 @@ def _summary(data: xr.Dataset) -> str:
         if kind in ("diagram", "run-up"):  # of the others the finding counts the points
             code = sweeps.classes_of(data)
             parts = [
-                f"{sweeps.CLASSES[n][0]} at {100.0 * np.mean(code == n):.3g} %"
+                f"{sweeps.CLASSES[n][0]} at {PERCENT(np.mean(code == n)):.3g} %"
                 for n in np.unique(code)
             ]
             said.insert(2, f"Of {code.size} points: {', '.join(parts)}.")

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from markupsafe import Markup
 
-from thermogear.base.display import celsius
+from thermogear.base.display import PERCENT, celsius
 from thermogear.results.result import Result
 from thermogear.views.columns import PLAIN, Column, Row, declared, in_full, key, pairs, rows_along
 from thermogear.views.page import (
@@ -145,7 +145,7 @@ def _tiles(results: Result) -> list[Tile]:
     found = results.table("counts")
     total = sum(found.values())
     return [
-        Tile(name, str(count), f"{100 * count / total:.0f} % of {total} claims")
+        Tile(name, str(count), f"{PERCENT(count / total):.0f} % of {total} claims")
         for name, count in found.items()
     ]
 

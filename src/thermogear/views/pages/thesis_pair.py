@@ -14,6 +14,7 @@ from thermogear.base.display import (
     CELSIUS,
     KELVIN,
     MICROMETRE,
+    PERCENT,
     SPEED,
     celsius,
     exactly,
@@ -197,7 +198,7 @@ def _diagram(name: str, result: Result, pictures: Pictures) -> Told:
 def _shares(one: xr.Dataset) -> str:
     """Which motions one state settles on, by their shares of the values."""
     code = classes_of(one)
-    parts = (f"{CLASSES[n][0]} at {number(100.0 * np.mean(code == n))} %" for n in np.unique(code))
+    parts = (f"{CLASSES[n][0]} at {number(PERCENT(np.mean(code == n)))} %" for n in np.unique(code))
     return ", ".join(parts)
 
 

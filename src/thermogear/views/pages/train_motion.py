@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermogear.base.display import MICROMETRE, NEWTON
+from thermogear.base.display import MICROMETRE, NEWTON, PERCENT
 from thermogear.results.result import Result
 from thermogear.views.columns import OF_STATE, Column, declared, rows_along
 from thermogear.views.moving import Dial
@@ -101,7 +101,7 @@ def section(result: Result, pictures: Pictures) -> Section | None:
         blocks.append(
             Text(
                 f"{size} coordinates of the reduced train change its 12 lowest natural "
-                f"frequencies by at most {100.0 * worst:.2g} %.",
+                f"frequencies by at most {PERCENT(worst):.2g} %.",
                 "note",
             )
         )
@@ -160,7 +160,7 @@ RINGS = (
 )
 PATHS = (
     Column("radial internal clearance", "clearance", ".1f", MICROMETRE),
-    Column("carries load [% of time]", lambda row: 100.0 * row["bearing_contact_share"], ".1f"),
+    Column("carries load [% of time]", lambda row: PERCENT(row["bearing_contact_share"]), ".1f"),
     Column("contact losses per mesh period", "bearing_contact_losses", ".2f"),
 )
 

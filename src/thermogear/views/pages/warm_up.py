@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermogear.base.display import CELSIUS, KELVIN, MICROMETRE, MINUTE, exactly, number
+from thermogear.base.display import CELSIUS, KELVIN, MICROMETRE, MINUTE, PERCENT, exactly, number
 from thermogear.results.result import Result
 from thermogear.views.columns import Column, declared, rows_along
 from thermogear.views.page import Page, Shown, Table
@@ -88,7 +88,7 @@ def answer(worst: Mapping[str, Any], cold: float) -> str:
             text += f"{number(MICROMETRE(rest), 4)} um"
             if worst["loss_above_steady"] is not None:
                 text += (
-                    f"; the loss of backlash is {number(100.0 * worst['loss_above_steady'])} % "
+                    f"; the loss of backlash is {number(PERCENT(worst['loss_above_steady']))} % "
                     "greater than the steady one"
                 )
             text += "."

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thermogear.base.display import PERCENT
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import OKABE_ITO, WIDE
 
@@ -21,8 +22,8 @@ _KNOWN = 50.0  # per cent: a line of a wider interval hides the others
 def course(data: xr.Dataset) -> Picture:
     """Change of the lines that changed most for their uncertainty, of those known to +-50 % if
     there are any; shaded: 95 % intervals."""
-    change = 100.0 * data["record_line_change"].values
-    half = 100.0 * data["record_line_change_half_width"].values
+    change = PERCENT(data["record_line_change"].values)
+    half = PERCENT(data["record_line_change_half_width"].values)
     score = np.nan_to_num(np.abs(change) / np.maximum(half, 1e-12)).max(axis=0)
     known = np.nan_to_num(half, nan=0.0).max(axis=0) <= _KNOWN
     drawn = [k for k in np.argsort(-score) if known[k] or not known.any()][:MOST]

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermogear.base.display import MICROMETRE, SPEED
+from thermogear.base.display import MICROMETRE, PERCENT, SPEED
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import COLD, FAINT, HOT, INK, OKABE_ITO, SINGLE, WIDE, scale
 
@@ -52,7 +52,7 @@ def factors(data: xr.Dataset) -> Picture:
     count = data.sizes["train"]
     for place, colour in zip(data["seen"].values, (INK, *OKABE_ITO), strict=False):
         needed = np.sort(data["needed_factor"].sel(seen=place).values)
-        share = 100.0 * np.arange(1, count + 1) / count
+        share = PERCENT(np.arange(1, count + 1) / count)
         words = str(data["seen_words"].sel(seen=place).item())
         panel.curve(needed, share, colour=colour, label=words)
     panel.line(x=float(data.attrs["near"]), colour=HOT, width=1.0, dash=(4, 3))
@@ -72,6 +72,6 @@ def ranks(data: xr.Dataset) -> Picture:
     panel.field(columns, rows, np.abs(rank), colours=scale("Blues"), low=0.0, high=1.0)
     for r, c in np.argwhere(np.abs(rank) > 3.0 * error).tolist():
         colour = "#ffffff" if abs(rank[r, c]) > 0.6 else INK
-        words = f"{100 * rank[r, c]:+.0f}".replace("-", "−")
+        words = f"{PERCENT(rank[r, c]):+.0f}".replace("-", "−")
         panel.text(c, r, words, size=7.4, colour=colour)
     return Picture([[panel]], size=(WIDE, 4.2), left=3.0, top=0.2, bottom=2.9)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.display import CELSIUS, MICROMETRE
+from thermogear.base.display import CELSIUS, MICROMETRE, PERCENT
 from thermogear.base.vocabulary import ASSUMED, STATUS, UNDEFORMED
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.parameters import axis_words, parameter_of, shown
@@ -232,7 +232,7 @@ def basins_picture(data: xr.Dataset) -> Picture:
     for n in range(len(colours)):
         period = int(data["attractor_period"].values[n])
         kind = f"period {period}" if period else "chaotic, estimate"
-        names.append(f"{kind}: {100.0 * float(data['fraction'].values[n]):.3g} %")
+        names.append(f"{kind}: {PERCENT(float(data['fraction'].values[n])):.3g} %")
     none = np.where(data["status"].values == DIVERGED, 0, 1)
     codes = np.where(np.isnan(data["attractor"].values), none, data["attractor"].values + 2)
     panel.field(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.display import CELSIUS, MICROMETRE, SPEED
+from thermogear.base.display import CELSIUS, MICROMETRE, PERCENT, SPEED
 from thermogear.base.vocabulary import is_known
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import INK, OKABE_ITO, WIDE, scale
@@ -34,7 +34,7 @@ def thermal_map(data: xr.Dataset) -> Picture:
     def kept(values: Floats) -> Floats:
         return np.where(settled, values, np.nan)
 
-    share = kept(100.0 * data["regime_share"].isel(regime_name=0).values)
+    share = kept(PERCENT(data["regime_share"].isel(regime_name=0).values))
     boundary = _panel(data, share, "boundary lubrication [% of path]", "Reds", (0, 100))
     film = kept(data["least_film_parameter"].values)
     levels = _nice(film, 3)
