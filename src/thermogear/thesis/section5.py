@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from thermogear.base.display import HERTZ, MICROMETRE, MILLIMETRE, PERCENT, SPEED
+from thermogear.base.display import HERTZ, MICROMETRE, MILLIMETRE, PERCENT, SPEED, Display
 from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.measured.published import (
     THESIS_5_2,
@@ -21,7 +21,7 @@ from thermogear.thesis.evidence import Evidence
 PUBLISHED = "thermogear.measured.published.THESIS_5_2"
 COMPARE = "thermogear.study.compare.compare"
 MODELS = ("with heat", "without heat")
-QUANTITIES = {"frequency": ("Hz", 1.0), "displacement": ("µm", 1e6)}
+QUANTITIES = {"frequency": Display("Hz"), "displacement": MICROMETRE}
 
 
 def _lines() -> tuple[SpeedLine, ...]:
@@ -211,25 +211,25 @@ def _entries() -> list[Claim]:
     found = []
     for number, line in enumerate(_lines()):
         rpm = f"{SPEED(line.speed):.0f} rpm"
-        for q, (quantity, (unit, scale)) in enumerate(QUANTITIES.items()):
+        for q, (quantity, scale) in enumerate(QUANTITIES.items()):
             place = f"5.2, table, {rpm}, {quantity}"
             base = f"5.2.{100 * (number + 1) + 10 * q}"
             judge = _measured_line if quantity == "frequency" else _measured_amplitude
             other = _simulated_line if quantity == "frequency" else _simulated_amplitude
-            value = scale * getattr(line, quantity)
+            value = scale(getattr(line, quantity))
             found.append(
                 Claim(
-                    base, place, "table entry", f"Measured {quantity} {value:g} {unit}.",
+                    base, place, "table entry", f"Measured {quantity} {value:g} {scale.unit}.",
                     lambda e, n=number, f=judge: f(e, n),  # type: ignore[misc]
                     (PUBLISHED, COMPARE), "experiment",
                 )
             )  # fmt: skip
             for m, model in enumerate(MODELS):
-                shown = scale * getattr(THESIS_5_2.models[model].lines[number], quantity)
+                shown = scale(getattr(THESIS_5_2.models[model].lines[number], quantity))
                 found.append(
                     Claim(
                         f"{base[:-1]}{1 + m}", place, "table entry",
-                        f"Simulated {quantity} {shown:g} {unit} {model}.",
+                        f"Simulated {quantity} {shown:g} {scale.unit} {model}.",
                         lambda e, n=number, m=m, f=other: f(e, n, m),  # type: ignore[misc]
                         (PUBLISHED, "thermogear.study.run.run"), f"motion-0-{number}",
                     )

@@ -23,9 +23,7 @@ from thermogear.views.page import (
 )
 from thermogear.views.picture import Picture
 from thermogear.views.plots import one_motion as plots
-from thermogear.views.plots.event_plane import plane_picture
 from thermogear.views.plots.parameters import page_words
-from thermogear.views.plots.shared import shared_picture
 from thermogear.views.typesetting import prose
 
 if TYPE_CHECKING:
@@ -104,7 +102,7 @@ def page(result: Result) -> Page:
     caption = _caption(kind, summary, groups)
     shown = [Shown(kind, HEADINGS[kind], caption, _picture(kind, groups), wide=True)]
     if "curve_0" in groups:
-        made = partial(plane_picture, _numbered(groups, "curve_"))
+        made = partial(plots.plane_picture, _numbered(groups, "curve_"))
         shown.append(Shown("plane", PLANE, plane_caption(summary), made, wide=True))
     headline, blocks = _headline(kind, summary), _TABLES[kind](summary)
     return Page(
@@ -126,7 +124,7 @@ def _picture(kind: str, groups: Groups) -> Callable[[], Picture]:
         maker = plots.branch_picture if kind == "branch" else plots.cascade_picture
         return partial(maker, _numbered(groups, "branch_"))
     if kind == "shared":
-        return partial(shared_picture, groups["rest"], groups["motion"])
+        return partial(plots.shared_picture, groups["rest"], groups["motion"])
     return partial(plots.orbit_picture if kind == "orbit" else plots.lyapunov_picture, groups[kind])
 
 

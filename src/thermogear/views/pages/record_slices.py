@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from thermogear.base.display import HERTZ, SPEED
 from thermogear.results.result import Result
 from thermogear.views.columns import Column, by_name, key
 from thermogear.views.page import Pictures, Section, Text
 from thermogear.views.pages import record_lines
-from thermogear.views.plots import slices as plots
+from thermogear.views.picture import Axis, Panel, Picture
+from thermogear.views.plots.sweeps import edges
+from thermogear.views.style import OKABE_ITO, WIDE, scale
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 def _moved(name: str) -> tuple[Column, Column]:
@@ -63,7 +71,7 @@ def section(results: Result) -> Section | None:
         "has a fixed frequency falls from left to right (dotted: resonances found).",
         shown,
         ["map_reading"],
-        partial(plots.order_map, shown, resonances, unit, count),
+        partial(order_map, shown, resonances, unit, count),
         wide=True,
     )
     for number, channel in enumerate(data["channel"].values[:4]):
@@ -73,9 +81,60 @@ def section(results: Result) -> Section | None:
             "The highest orders over speed; shaded: 95 % intervals.",
             data,
             ["slice_reading", "slice_reading_half_width"],
-            partial(plots.over_speed, data, number, unit),
+            partial(over_speed, data, number, unit),
             wide=True,
         )
     told = results.table("figures").get("slices") or {}
     words = [Text(record_lines.resonance(one)) for one in told.get("resonances", [])]
     return Section("orders", "Orders over speed", [*pictures.take(), *words], folded=False)
+
+
+# --- pictures -----------------------------------------------------------------------------------
+
+
+LEAST = 1e-4
+"""Of the greatest amplitude, below which nothing is told apart."""
+MOST = 6
+"""Orders drawn as slices."""
+
+
+def order_map(data: xr.Dataset, resonances: xr.Dataset | None, unit: str, count: str) -> Picture:
+    """Amplitude over order and speed; dotted where a resonance in hertz would be."""
+    rpm, order = SPEED(data["map_speed"].values), data["map_order"].values
+    rising = np.argsort(rpm, kind="stable")
+    rpm, values = rpm[rising], data["map_reading"].values[rising]
+    kept = np.concatenate([[True], np.diff(rpm) > 1e-9 * rpm[-1]])
+    rpm, values = rpm[kept], values[kept]
+    top = float(np.nanmax(values, initial=1e-300))
+    panel = Panel(Axis("speed [rpm]"), Axis(f"order of {count} [–]"))
+    panel.field(
+        edges(rpm), edges(order), np.clip(values, LEAST * top, None).T, low=LEAST * top, high=top,
+        log=True, colours=scale("magma"), words=f"amplitude (peak) [{unit}]",
+    )  # fmt: skip
+    if resonances is not None:
+        for one in range(resonances.sizes["resonance"]):
+            if str(resonances["kind"].values[one]) != "resonance":
+                continue
+            along = float(resonances["resonance_frequency"].values[one]) / HERTZ(SPEED.stored(rpm))
+            inside = (along >= order[0]) & (along <= order[-1])
+            panel.curve(
+                rpm[inside], along[inside], colour="white", width=0.8, dash=(1.0, 2.5),
+                label=f"{float(resonances['resonance_frequency'].values[one]):.5g} Hz",
+            )  # fmt: skip
+    return Picture([[panel]], size=(WIDE, 4.4), legend=4)
+
+
+def over_speed(data: xr.Dataset, channel: int, unit: str) -> Picture:
+    """Amplitudes of the highest orders of a channel over speed, with their 95 % intervals."""
+    rpm = SPEED(data["slice_speed"].values)
+    a = data["slice_reading"].values[channel]
+    half = data["slice_reading_half_width"].values[channel]
+    seen = np.flatnonzero(np.isfinite(a).any(axis=-1))
+    tops = np.array([np.nanmax(a[k]) for k in seen])
+    panel = Panel(Axis("speed [rpm]"), Axis(f"amplitude (peak) [{unit}]"))
+    rising = np.argsort(rpm, kind="stable")
+    for k, colour in zip(seen[np.argsort(-tops)][:MOST], OKABE_ITO, strict=False):
+        y, h = a[k][rising], half[k][rising]
+        panel.band(rpm[rising], low=np.maximum(y - h, 0.0), high=y + h, colour=colour, opacity=0.25)
+        panel.curve(rpm[rising], y, colour=colour, width=1.2, label=str(data["name"].values[k]))
+    return Picture([[panel]], size=(WIDE, 3.6), legend=3)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from markupsafe import Markup
 
-from thermogear.base.display import PERCENT, celsius
+from thermogear.base.display import MICROMETRE, PERCENT, celsius
 from thermogear.results.result import Result
 from thermogear.views.columns import PLAIN, Column, Row, declared, in_full, key, pairs, rows_along
 from thermogear.views.page import (
@@ -279,9 +279,14 @@ def _deformation(results: Result, pictures: Pictures) -> list[Block]:
     grid = results.group("grid")
     if grid is not None:
         for name, heading, unit, scale in (
-            ("friction", "Friction over speed and torque", "mean friction coefficient [–]", 1.0),
-            ("flash", "Flash temperature over speed and torque", "highest flash [K]", 1.0),
-            ("growth", "Growth over speed and torque", "mean growth of both flanks [µm]", 1e6),
+            ("friction", "Friction over speed and torque", "mean friction coefficient [–]", PLAIN),
+            ("flash", "Flash temperature over speed and torque", "highest flash [K]", PLAIN),
+            (
+                "growth",
+                "Growth over speed and torque",
+                "mean growth of both flanks [µm]",
+                MICROMETRE,
+            ),
         ):
             pictures.add(
                 f"grid-{name}", heading,

@@ -6,16 +6,18 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-from thermogear.base.display import MICROMETRE, NEWTON, PERCENT
+from thermogear.base.display import MICROMETRE, MILLIMETRE_PER_SECOND, NEWTON, PERCENT
 from thermogear.results.result import Result
 from thermogear.views.columns import OF_STATE, Column, declared, rows_along
 from thermogear.views.moving import Dial
 from thermogear.views.page import Block, Pictures, Section, Table, Text
-from thermogear.views.picture import Picture
+from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots import bearings
-from thermogear.views.plots import train_motion as plots
 from thermogear.views.plots.shafts import internal_clearance
+from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
+from thermogear.views.style import INK, STATES, WIDE, names_of
 from thermogear.views.tables import labelled
 from thermogear.views.typesetting import operating_names
 
@@ -75,7 +77,7 @@ def section(result: Result, pictures: Pictures) -> Section | None:
         pictures.add(
             f"train-motion-{o}", f"The train in motion, {name}", CAPTION, data,
             ("mesh_force", "mesh_force_line", "bearing_force_line"),
-            partial(plots.four_panels, data, o), wide=True,
+            partial(four_panels, data, o), wide=True,
         )  # fmt: skip
         if o in closer:
             _of_bearings(data, o, name, pictures)
@@ -88,7 +90,7 @@ def section(result: Result, pictures: Pictures) -> Section | None:
         if np.isfinite(here["housing_line"].values).any():
             pictures.add(
                 f"train-sound-{o}", f"Acceleration of the housing, {name}", SOUND, data,
-                ("housing_line",), partial(plots.sound, data, o), wide=True,
+                ("housing_line",), partial(sound, data, o), wide=True,
             )  # fmt: skip
     blocks: list[Block] = [*pictures.take()]
     if closer and len(closer) < len(names):
@@ -184,3 +186,73 @@ def told(result: Result) -> list[Table]:
     """What the terminal tells of the drive train's motion."""
     data = result.group("train_motion")
     return [] if data is None else _tables(data)
+
+
+# --- pictures -----------------------------------------------------------------------------------
+
+
+HIGHEST = 12.0
+MANY = 128
+"""Sections from which their dots are small."""
+
+
+def four_panels(data: xr.Dataset, operating: int) -> Picture:
+    """Mesh force over time and order, section, largest bearing lines of one operating point."""
+    here = data.isel(operating=operating)
+    phase = here["phase"].values
+    teeth = Panel(Axis("time [mesh periods]"), Axis("force of the flanks [N]"), "Flanks")
+    plane = Panel(
+        Axis("approach along the drive flank [µm]"), Axis("its rate [mm/s]"), "Section, once a mesh"
+    )
+    states = names_of(here, "state")
+    for s, state in enumerate(states):
+        one = here.isel(state=s)
+        colour = STATES.get(state, INK)
+        teeth.curve(phase, one["mesh_force"].values, colour=colour, label=f"drive, {state}")
+        if np.nanmax(one["back_force"].values, initial=0.0) > 0.0:
+            teeth.curve(
+                phase, -one["back_force"].values, colour=colour, dash=(3.0, 2.0),
+                label=f"back, {state}",
+            )  # fmt: skip
+        places = one["section_deflection"].values
+        many = np.isfinite(places).sum() > MANY
+        plane.points(
+            MICROMETRE(places),
+            MILLIMETRE_PER_SECOND(one["section_rate"].values),
+            colour=colour,
+            open=s == 0 and not many,
+            size=2.4 if many else 6.4 if s == 0 else 4.2,
+            label=state,
+        )
+    order = here["line_order"].values
+    mesh = _lines(here, order, here["mesh_force_line"].values, "line of the flanks' force [N]")
+    mesh.title = "Lines of the drive flanks' force"
+    felt = _lines(
+        here, order, here["bearing_force_line"].values.max(axis=1), "line of bearing force [N]"
+    )
+    felt.title = "Largest line of any bearing"
+    return Picture([[teeth, mesh], [plane, felt]], size=(WIDE, 6.6), legend=4)
+
+
+def _lines(
+    here: xr.Dataset, order: NDArray[np.float64], amplitude: NDArray[np.float64], words: str
+) -> Panel:
+    """A spectrum (state, order) over orders of the mesh frequency."""
+    floor, top = floor_of(amplitude, order=order, highest=HIGHEST)
+    panel = over_orders(
+        "order of the mesh frequency [–]", words, floor=floor, top=top, highest=HIGHEST
+    )
+    for s, state in enumerate(names_of(here, "state")):
+        draw_lines(
+            panel, order=order, amplitude=amplitude[s], colour=STATES.get(state, INK), label=state,
+            filled=s > 0,
+        )  # fmt: skip
+    return panel
+
+
+def sound(data: xr.Dataset, operating: int) -> Picture:
+    """Lines of the housing's acceleration at one operating point."""
+    here = data.isel(operating=operating)
+    order, lines = here["line_order"].values, here["housing_line"].values
+    panel = _lines(here, order, lines, "acceleration of the housing [m/s²]")
+    return Picture([[panel]], size=(WIDE, 3.4))

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermogear.base.display import CELSIUS, PERCENT, SPEED
+from thermogear.base.display import CELSIUS, PERCENT, SPEED, Display
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import (
     COLD,
@@ -32,7 +32,7 @@ HEATS = {
 }
 
 
-def over_grid(data: xr.Dataset, name: str, unit: str, scale: float = 1.0) -> Picture:
+def over_grid(data: xr.Dataset, name: str, unit: str, scale: Display) -> Picture:
     """One quantity over speed, a curve per torque: temperatures given beside the heat balance."""
     rpm = SPEED(data["speed"].values)
     torques = data["torque"].values
@@ -47,7 +47,7 @@ def over_grid(data: xr.Dataset, name: str, unit: str, scale: float = 1.0) -> Pic
         for place, colour in enumerate(ramp(len(torques))):
             for kind, (words, dash) in kinds.items():
                 if name + kind in here:
-                    values = scale * here[name + kind].values[:, place]
+                    values = scale(here[name + kind].values[:, place])
                     label = f"{words}{torques[place]:.0f} N m"
                     panel.curve(rpm, values, colour=colour, dash=dash, label=label)
         panels.append(panel)
