@@ -21,7 +21,7 @@ from thermogear.results.workers import compute_chunk
 from thermogear.study.diagrams import Train, case_basins, case_diagram, case_map, train_maps
 from thermogear.study.notices import finished
 from thermogear.study.shafts.motion import train_motion
-from thermogear.views.pages.lost_words import lost_rows, lost_words
+from thermogear.views.pages.findings import lost_rows, lost_words
 from thermogear.views.plots.lost_contact import lost_contact_picture, lost_of
 from thermogear.views.write import page_of
 

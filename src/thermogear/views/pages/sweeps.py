@@ -15,8 +15,7 @@ from thermogear.results.result import Result
 from thermogear.results.tables import in_words
 from thermogear.views.columns import PLAIN, Column, Row, declared, in_full, key, pairs, rows_along
 from thermogear.views.page import LEAD, Block, Page, Pictures, Section, Table, Text
-from thermogear.views.pages.findings import finding, ways_apart
-from thermogear.views.pages.lost_words import lost_rows, lost_words
+from thermogear.views.pages.findings import finding, lost_rows, lost_words, ways_apart
 from thermogear.views.picture import Picture
 from thermogear.views.plots import sweeps
 from thermogear.views.plots.lost_contact import (

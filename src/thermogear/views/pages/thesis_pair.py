@@ -29,8 +29,7 @@ from thermogear.views.columns import Column, by_name, declared, in_full, key, ro
 from thermogear.views.page import Block, Gallery, Page, Pictures, Section, Text
 from thermogear.views.pages import captions, gear_sections, overlay
 from thermogear.views.pages.background import background
-from thermogear.views.pages.findings import finding
-from thermogear.views.pages.lost_words import lost_words
+from thermogear.views.pages.findings import finding, lost_words
 from thermogear.views.pages.record_tables import comparison_table
 from thermogear.views.pages.survey import OPERATING
 from thermogear.views.pages.sweeps import LOST_DIAGRAM, lost_table

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.display import MICROMETRE, MILLIMETRE_PER_SECOND, SPEED, STIFFNESS, Display
 from thermogear.views.picture import Axis, Panel, Picture, Top
-from thermogear.views.plots.orbits import refined
+from thermogear.views.plots.motion import refined
 from thermogear.views.plots.parameters import axis_words, shown
 from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
 from thermogear.views.style import COLD, HOT, INK, OKABE_ITO, QUIET, WIDE
