@@ -19,7 +19,7 @@ from thermogear.results.result import open_results
 from thermogear.study.shafts.motion import train_motion
 from thermogear.study.shafts.state import settled
 from thermogear.study.shafts.waterfall import waterfall
-from thermogear.views.columns import lines_of, typed
+from thermogear.views.page import lines_of, typed
 from thermogear.views.pages.waterfall import jumps, numbers
 
 HELD = """

@@ -333,7 +333,7 @@ def leaves(value: Any, name: str = "") -> Iterator[tuple[str, float]]:
 def test_every_number_of_the_json_has_a_unit_and_half_widths_are_absolute(
     run: Measurement,
 ) -> None:
-    told = json.loads(json_text(page_of(result_of(run)).numbers()))
+    told = json.loads(json_text(page_of(result_of(run)).figures))
     units = told["units"]
     assert {name for name, _ in leaves(told)} <= {*units, "schema"}
     assert units["reading"] == units["reading_half_width"] == "g"

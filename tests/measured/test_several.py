@@ -68,12 +68,12 @@ def test_damage_of_one_of_several_records_is_told(tmp_path: Path) -> None:
     table = np.loadtxt(tmp_path / "r2.csv", delimiter=",", skiprows=1)
     table[[1000, 4000, 6000], 1] = 40.0
     np.savetxt(tmp_path / "r2.csv", table, "%.7g", ",", header="time [s],acc [g]", comments="")
-    done = CliRunner().invoke(measure, [str(tmp_path), "--teeth", "20", "--sidebands", "0"])
-    assert done.exit_code == 0, done.output
-    told = [line for line in done.output.splitlines() if line.startswith(("important", "warning"))]
-    assert [("r1.csv" in line, "r2.csv" in line) for line in told] == [(True, False), (False, True)]
     words = [str(tmp_path), "--teeth", "20", "--sidebands", "0", "--json"]
-    found = json.loads(CliRunner().invoke(measure, words).stdout)
+    done = CliRunner().invoke(measure, words)
+    assert done.exit_code == 0, done.output
+    found = json.loads(done.stdout)
+    told = [one["text"] for one in found["notices"] if one["level"] in ("important", "warning")]
+    assert [("r1.csv" in line, "r2.csv" in line) for line in told] == [(True, False), (False, True)]
     assert [name for name, _ in found["withheld"]] == ["r1.csv"]
     assert [name for name, _ in found["findings"]] == ["r1.csv", "r2.csv"]
     assert found["compared"] == 6
@@ -191,7 +191,7 @@ def test_a_second_stage_that_grew_is_no_change_of_the_first(
     assert [why.data["base_frequency"], why.data["frequency"]] == hertz[:2]
     result = result_of_several(found)
     assert why in result.notices
-    figures = page_of(result).numbers()
+    figures = page_of(result).figures
     assert [name for name, _ in figures["apart"]] == ["r1"]
     assert [one["mesh_frequency"] for one in figures["speeds"]] == pytest.approx(hertz)
     # the teeth of stage 1 given: it is read in both, and is as before

@@ -24,7 +24,7 @@ from thermogear.study.shafts.campbell import campbell, orders_of
 from thermogear.study.shafts.modes import modes
 from thermogear.study.shafts.state import Meshing, moved_apart, places_of, settled
 from thermogear.study.shafts.statics import statics
-from thermogear.views.pages.shafts import criticals, page
+from thermogear.views.pages.shafts import page
 from thermogear.views.write import save
 
 CASE = """
@@ -215,7 +215,7 @@ def test_no_linear_force_is_told_above_the_static_load() -> None:
     assert np.isnan(force[lifted]).all()
     assert np.all(lifts[lifted] < critical["critical_speed"].values[lifted])
     # in the page, the terminal and the file the speed stands where the force would
-    rows = list(criticals(result))
+    rows = page(result).figures["critical"]
     words = [line for line in page(result).lines() if "not valid:" in line]
     told = [one for one in rows if one["lifts_off_from_rpm"] is not None]
     assert len(words) == len(told) > 0

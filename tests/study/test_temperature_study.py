@@ -223,8 +223,8 @@ def test_a_point_that_does_not_settle_has_a_status_and_no_number() -> None:
     rows = frame["status"] == "heat_not_settled"
     assert int(rows.sum()) == int(lost.sum())
     assert frame.loc[rows, "greatest_flash [K]"].isna().all()
-    (line,) = (one for one in page(tree).lines() if one.startswith("greatest flash"))
-    assert line.endswith(span(grid["greatest_flash"].values[~lost], 4))
+    (line,) = (one for one in page(tree).lines() if one.startswith("  greatest flash"))
+    assert line.endswith(span(grid["greatest_flash"].values[~lost]))
 
 
 @pytest.mark.filterwarnings("ignore::thermogear.ValidityWarning")

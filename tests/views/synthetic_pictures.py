@@ -13,7 +13,6 @@ from thermogear.views.picture import Picture
 from thermogear.views.plots import (
     bearings,
     claims,
-    event_plane,
     flanks,
     gears,
     laws,
@@ -33,7 +32,7 @@ from thermogear.views.plots import (
     warm_up,
     waterfall,
 )
-from thermogear.views.plots.shared import shared_picture
+from thermogear.views.plots.one_motion import plane_picture, shared_picture
 
 SIZES = {
     "direction": 2, "start": 1, "damping_ratio": 5, "frequency": 4, "section": 3, "branch": 1,
@@ -350,7 +349,7 @@ def of_planes() -> dict[str, Picture]:
     curve = made("point", "first", "second").assign(
         stable=("point", np.array([1, 0])), asked=("point", np.array([1, 1]))
     )
-    return {"event-plane": event_plane.plane_picture([curve.assign_attrs(about)])}
+    return {"event-plane": plane_picture([curve.assign_attrs(about)])}
 
 
 def of_moving_trains() -> dict[str, Picture]:

@@ -6,19 +6,32 @@ import csv
 import itertools
 import json
 import math
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
 from markupsafe import Markup
 
+import thermogear
 from thermogear.base.display import CELSIUS, MICROMETRE, PERCENT, exactly
 from thermogear.base.vocabulary import label, status_attributes
 from thermogear.results.files import json_text
+from thermogear.results.result import Notice, Result
 from thermogear.results.tables import rows_of
-from thermogear.views.columns import Column, declared, lines_of, rows_along, typed
+from thermogear.views.columns import (
+    Column,
+    by_name,
+    declared,
+    in_full,
+    key,
+    reaches,
+    rows_along,
+    units,
+)
 from thermogear.views.csv_files import cell_text, table_text
-from thermogear.views.page import Text
+from thermogear.views.page import Code, Page, Text, lines_of, typed
 
 GAP = np.array([[1.0 / 3e4, -2e-9], [np.nan, 4e-5]])
 COLUMNS = (
@@ -69,14 +82,60 @@ def test_rows_hold_every_place_in_full_precision() -> None:
     assert [repr(row["half_backlash"]) for row in turned] == list(map(repr, GAP.T.ravel().tolist()))
 
 
+IN_JSON = (
+    Column("state", "state", key="state"),
+    Column("gap", "half_backlash", ".1f", key="gap_um"),
+    Column("oil", "oil", 3, CELSIUS, "oil_degC"),
+    key("half_backlash"),
+    key("teeth"),
+    key("status"),
+)
+
+
 def test_json_gets_numbers_and_null_where_one_is_missing() -> None:
-    rows = [
-        {name: row[name] for name in ("state", "half_backlash", "teeth")}
-        for row in rows_along(data(), "state", "operating")
-    ]
-    told = json.loads(json_text({"rows": rows}))["rows"]
+    """The same column gives the page its digits and JSON all of them, in the unit of its name."""
+    rows = rows_along(data(), "state", "operating")
+    told = json.loads(json_text({"rows": [in_full(IN_JSON, row) for row in rows]}))["rows"]
     assert [row["half_backlash"] for row in told] == [1.0 / 3e4, -2e-9, None, 4e-5]
+    assert told[0]["gap_um"] == MICROMETRE(1.0 / 3e4)
+    assert (told[0]["oil_degC"], told[-1]["oil_degC"]) == (20.0, 80.0)
     assert all(type(row["teeth"]) is int for row in told)
+    # what has no words is not on the page
+    assert declared("", IN_JSON, rows).head == ["state", "gap [µm]", "oil [°C]"]
+
+
+def test_json_gets_arrays_by_the_names_along_dimensions() -> None:
+    whole = by_name(data(), IN_JSON)
+    assert whole["half_backlash"][0] == [1.0 / 3e4, -2e-9]
+    assert whole["status"] == [["ok", "jammed"], ["not_converged", "ok"]]
+    each = by_name(data(), IN_JSON, "state")
+    assert list(each) == ["undeformed", "hot"]
+    for place, name in enumerate(each):
+        assert repr(each[name]["half_backlash"]) == repr(GAP[place].tolist())
+        assert each[name]["oil_degC"] == whole["oil_degC"][place]
+
+
+def test_a_stored_name_in_json_has_its_unit_beside_it() -> None:
+    assert units(IN_JSON, data()) == {"half_backlash": "m"}
+
+
+def test_reaches_are_those_of_all_places() -> None:
+    table = reaches("Gaps.", IN_JSON[1:3], data())
+    assert table.rows == [["gap [µm]", "−0.002 to 40"], ["oil [°C]", "20 to 80"]]
+    assert lines_of(Code("a = 1\nb = 2"), table)[:3] == ["a = 1", "b = 2", "Gaps."]
+
+
+def test_every_json_says_what_it_is_and_carries_codes() -> None:
+    """Version, title, kind and notices with code and data are added in one place."""
+    notice = Notice("warning", "mind", "some_code", {"a": 1.0})
+    result = Result.of("drawing", "Gears", {"": data()}, [notice])
+    assert Page(result, "", (), numbers=lambda: {"gap_um": 1.0}).figures == {
+        "thermogear": thermogear.__version__, "title": "Gears", "kind": "drawing", "gap_um": 1.0,
+        "notices": [
+            {"code": "some_code", "level": "warning", "data": {"a": 1.0}, "text": "mind"}
+        ],
+    }  # fmt: skip
+    assert Page(result, "", ()).figures == {}
 
 
 def test_the_page_has_units_in_heads_and_digits_as_declared() -> None:
@@ -161,3 +220,11 @@ def test_texts_stand_between_tables_and_an_empty_one_has_its_heads() -> None:
     assert [cell_text(v) for v in (0.1, math.nan, 3, "a,b", "=1")] == [
         "0.1", "", "3", '"a,b"', "'=1",
     ]  # fmt: skip
+
+
+def test_no_page_writes_its_lines_by_hand() -> None:
+    """A page names blocks for the terminal; its lines and the notices are made in one place."""
+    pages = Path(thermogear.__file__).parent / "views" / "pages"
+    texts = {path.name: path.read_text("utf-8") for path in pages.glob("*.py")}
+    found = re.compile(r"lines=lambda|lines_of|notice_lines|as_dict\(\)")
+    assert [name for name, text in texts.items() if found.search(text)] == []

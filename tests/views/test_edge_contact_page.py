@@ -13,7 +13,7 @@ import xarray as xr
 from thermogear.case.case import GearCase, load_example
 from thermogear.study.contact import loaded_survey
 from thermogear.views.drawing import draw
-from thermogear.views.plots.loaded import along_path
+from thermogear.views.pages.contact import along_path
 from thermogear.views.write import save
 
 

@@ -33,8 +33,8 @@ from thermogear.views.moving import (
     script,
 )
 from thermogear.views.page import Gallery, Page, Section, Shown, render
+from thermogear.views.pages import dial as dial_plot
 from thermogear.views.picture import Axis, Contours, Field, Hatch, Panel, Picture, Points
-from thermogear.views.plots import dial as dial_plot
 from thermogear.views.write import write_report
 
 HOSTILE = """</script><img src=x onerror="window.bad=1"> '"]]>&lt; \\$ $_{<b>}$"""

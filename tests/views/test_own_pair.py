@@ -27,7 +27,7 @@ from thermogear.thesis.errata import with_errata
 from thermogear.views.drawing import draw
 from thermogear.views.page import render
 from thermogear.views.pages import captions
-from thermogear.views.plots import thermal_map as map_plots
+from thermogear.views.pages import temperature as map_plots
 from thermogear.views.write import page_of
 
 pytestmark = pytest.mark.filterwarnings("ignore:foundation of the gear")

@@ -18,8 +18,8 @@ from test_versus_report import built, read_versus
 
 from thermogear import pictures
 from thermogear.views import drawing
+from thermogear.views.pages import versus
 from thermogear.views.picture import KINDS, Axis, Mark, Panel, Picture
-from thermogear.views.plots import versus
 from thermogear.views.style import COLD, INK, ramp
 from traits import traits
 

@@ -15,7 +15,7 @@ from thermogear.analysis.outcome import outcome_variables
 from thermogear.base import display
 from thermogear.base.vocabulary import FASTER_RULE, QUANTITIES, told_labels
 from thermogear.views import typesetting as words
-from thermogear.views.plots.orbits import periods_to_draw, refined, thinned
+from thermogear.views.plots.motion import periods_to_draw, refined, thinned
 from thermogear.views.plots.spectrum import floor_of
 from thermogear.views.plots.sweeps import CLASSES
 

@@ -14,7 +14,7 @@ from thermogear.base import display
 from thermogear.base.display import CELSIUS, HERTZ, HOUR, MINUTE, SPEED, Display
 
 SOURCE = Path(thermogear.__file__).parent
-FACTORS = (1e9, 1e6, 1e3, 1e-3, 1e-6, 1e-8, 1e-9, 60.0, 180.0, 3600.0, 273.15)
+FACTORS = (1e9, 1e6, 1e3, 1e-3, 1e-6, 1e-8, 1e-9, 60.0, 100.0, 180.0, 3600.0, 273.15)
 """Factors and zeros between SI and the units people read."""
 NAMED = ("RPM", "ZERO_CELSIUS", "STANDARD_GRAVITY")
 ALLOWED = {
@@ -28,10 +28,11 @@ ALLOWED = {
     "1e-09 * drawing.module",
     "0.001 * abs(shift)",
     "0.001 * middle",
+    "0.001 * abs(right)",
     # half a width for a picture whose values are all alike, no unit
     "max(abs(low), 1.0) * 0.001",
     "0.5 * max(abs(float(values[0])), 1.0) * 0.001",
-    # what a person writes in rpm or µm is read, not shown; no command loads numpy for it
+    # what a person writes in rpm, µm or % is read, not shown; no command loads numpy for it
     "RPM * np.linspace(said.low, said.high, said.count)",
     "float(rpm) * RPM",
     "rpm * RPM",
@@ -41,6 +42,13 @@ ALLOWED = {
     "point[0] * RPM",
     "grid('rpm', rpm) * RPM",
     "1e-06 * largest",
+    "number / 100.0",
+    "u_data / 100.0",
+    # printed in µm, and sampled in N/µm: the stored numbers are made of these
+    "1e-06 * float(line[f'{name}_{rpm:.0f}'])",
+    "values['housing_mass'] * values['mount_stiffness'] * 1000000.0",
+    # the number of a claim, no share
+    "100 * (number + 1)",
 }
 
 
@@ -62,7 +70,7 @@ def conversions(tree: ast.AST) -> Iterator[str]:
                 break
 
 
-@pytest.mark.parametrize("folder", ["views", "front"])
+@pytest.mark.parametrize("folder", ["views", "front", "thesis"])
 def test_no_unit_is_made_outside_the_display(folder: str) -> None:
     found = {
         f"{path.relative_to(SOURCE)}: {words}"
@@ -86,7 +94,8 @@ def test_no_page_makes_a_table_by_hand() -> None:
 
 def test_conversions_are_seen() -> None:
     seen = "f'{1e6 * x:.2f}', v / RPM, t - 273.15, s / 60.0, w / (2.0 * np.pi), y * 1e-3"
-    assert len([*conversions(ast.parse(seen))]) == 6
+    seen += ", f'{100 * part:.0f} %', 100.0 * abs(a / b - 1.0), share * 100.0"
+    assert len([*conversions(ast.parse(seen))]) == 9
     unseen = "MICROMETRE(x), 0.5 * x, t - t0, 2.0 * np.pi * k / teeth"
     assert [*conversions(ast.parse(unseen))] == []
 

@@ -5,6 +5,8 @@ equations, dG/dp from derivatives of the map where it has them and else from a d
 is where (1 - mu_1)(1 - mu_2)... vanishes, a period doubling where (1 + mu_1)(1 + mu_2)... does, a
 torus where a product 1 - mu_i mu_j of a pair does. Where the return map jumps, Newton's method has
 nothing to end on: the orbit is then said not to be there.
+Checked by ``tests/analysis/test_continuation.py``: dG/dp against differences of the map, the
+located points against independent values.
 """
 
 from __future__ import annotations

@@ -10,6 +10,8 @@ It is a homotopy of the equation. Each curve is a continuation in two parameters
 as much as some branches. It fails, and the row says why, where a curve breaks off or two curves
 end at one bifurcation. Where two curves pass close to each other, one may go on along the other:
 neither is believed then.
+Checked by ``tests/study/test_diagrams.py``, and by ``checks/trial_matched.py``, which confirms each
+pair by a diagram half way between both states.
 """
 
 from __future__ import annotations

@@ -37,7 +37,7 @@ class Display:
     def __call__(self, values: ArrayLike) -> NDArray[np.float64]: ...
 
     def __call__(self, values: ArrayLike) -> float | NDArray[np.float64]:
-        if isinstance(values, float):
+        if isinstance(values, float | int):
             return self.scale * (values - self.zero) / self.per
         return np.asarray(self.scale * (np.asarray(values, dtype=float) - self.zero) / self.per)
 
@@ -55,6 +55,7 @@ MILLIMETRE = Display("mm", 1e3)
 KELVIN = Display("K")
 CELSIUS = Display("°C", 1.0, zero=ZERO_CELSIUS)
 NEWTON = Display("N")
+KILONEWTON = Display("kN", 1e-3)
 STIFFNESS = Display("10⁸ N/m", 1e-8)
 PER_MICROMETRE = Display("N/µm", 1e-6)
 HERTZ = Display("Hz", per=2.0 * math.pi)

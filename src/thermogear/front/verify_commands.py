@@ -149,7 +149,7 @@ def growth(case: str, overrides: tuple[str, ...], bore: str, as_json: bool) -> N
 @delivery.plain_json
 def pairs(refine: int, near: str, as_json: bool) -> None:
     """The fixed pairs: a published one, four of our own, and three at the model's edges."""
-    from thermogear.base.display import LINE_LOAD
+    from thermogear.base.display import LINE_LOAD, PERCENT
     from thermogear.verify.checks import check_stiffness, inner_phases
     from thermogear.verify.pairs import far_pairs, own_pairs, published_pair
     from thermogear.verify.tooth_mesh import Density
@@ -175,7 +175,7 @@ def pairs(refine: int, near: str, as_json: bool) -> None:
             worst = max(worst, (abs(float(found.difference[found.worst])), checked.name))
             load = f"{LINE_LOAD(checked.line_load):g} N/mm"
             _say(as_json, "", f"{checked.name}, {load} ({group})", *_stiffness_lines(found))
-        _say(as_json, "", f"worst of the {group} pairs: {worst[1]}, {100.0 * worst[0]:.2f} %")
+        _say(as_json, "", f"worst of the {group} pairs: {worst[1]}, {PERCENT(worst[0]):.2f} %")
     if as_json:
         click.echo(json_text(content), nl=False)
 
@@ -219,7 +219,8 @@ def _stiffness_lines(found: StiffnessCheck) -> list[str]:
     """The check as a table of the terminal, and where both are farthest apart."""
     from thermogear.base.display import PERCENT, STIFFNESS_PER_WIDTH
     from thermogear.results.tables import rows_of
-    from thermogear.views.columns import Column, declared, lines_of
+    from thermogear.views.columns import Column, declared
+    from thermogear.views.page import lines_of
 
     columns = (
         Column("phase", "phase", ".4f"),
@@ -244,7 +245,7 @@ def _stiffness_lines(found: StiffnessCheck) -> list[str]:
     worst = found.worst
     return [
         *lines_of(declared("secant, N/(mm um)", columns, rows_of(by_name))),
-        f"worst: stiffness {100.0 * found.difference[worst]:+.2f} % at {found.phase[worst]:.4f}, "
+        f"worst: stiffness {PERCENT(found.difference[worst]):+.2f} % at {found.phase[worst]:.4f}, "
         f"share {found.worst_share:.4f}",
     ]
 
@@ -253,7 +254,8 @@ def _growth_lines(found: GrowthCheck) -> list[str]:
     """The check as a table of the terminal, and where both are farthest apart."""
     from thermogear.base.display import MICROMETRE, MILLIMETRE
     from thermogear.results.tables import rows_of
-    from thermogear.views.columns import Column, declared, lines_of
+    from thermogear.views.columns import Column, declared
+    from thermogear.views.page import lines_of
 
     columns = (
         Column("radius", "radius", ".4f", MILLIMETRE),

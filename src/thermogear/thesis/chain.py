@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.units import RPM
+from thermogear.base.display import SPEED
 from thermogear.base.vocabulary import label
 from thermogear.case.case import GearCase
 from thermogear.case.one_point import of_case
@@ -42,7 +42,7 @@ def operating_grid(case: GearCase, *, speeds: int = 6, torques: int = 5) -> xr.D
     along the path, ``flash`` the highest, both mixed and dry, ``growth`` of both flanks the mean,
     ``gear_temperature`` of the pinion's addendum.
     """
-    omega = np.linspace(*SPEEDS, speeds) * RPM
+    omega = SPEED.stored(np.linspace(*SPEEDS, speeds))
     moment = np.linspace(*TORQUES, torques)
     flat = np.repeat(omega, torques), np.tile(moment, speeds)
     # the document's mixed friction, as far as it can be read, feeds the loop too

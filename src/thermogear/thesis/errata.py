@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermogear.base.units import STANDARD_GRAVITY
+from thermogear.base.display import GRAVITY, MICROMETRE, PERCENT
 from thermogear.case.base import Case
 from thermogear.case.case import GearCase
 from thermogear.case.thesis_cases import of_the_thesis
@@ -138,9 +138,9 @@ def errata(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[Row]:
             6,
             "deformation Delta f at the pinion's tip",
             "adds a pure number to a stretch along the flank and leaves out u_b; with the tooth "
-            f"thickness at r_k, as its symbol says, it would be {1e6 * at_radius:.3g} um",
-            printed_growth * 1e6,
-            growth * 1e6,
+            f"thickness at r_k, as its symbol says, it would be {MICROMETRE(at_radius):.3g} um",
+            MICROMETRE(printed_growth),
+            MICROMETRE(growth),
             "um",
         ),
         _row(
@@ -148,7 +148,7 @@ def errata(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[Row]:
             "base circle growth u_b",
             "never defined; the radial displacement of the annulus and tooth at the base circle",
             None,
-            float(figures["pinion_base_growth"]) * 1e6,
+            MICROMETRE(float(figures["pinion_base_growth"])),
             "um",
         ),
         _row(
@@ -190,7 +190,7 @@ def errata(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[Row]:
             "error table: 2000 rpm without heat",
             "the table's own entries give 21.27 to 21.73 %, however they were rounded",
             18.5,
-            100.0 * (19.3 - 15.15) / 19.3,
+            PERCENT((19.3 - 15.15) / 19.3),
             "%",
         ),
         _row(
@@ -213,7 +213,7 @@ def errata(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[Row]:
             "measured displacement 10.4 um at 1000 rpm",
             "implies this acceleration of a housing, and a twice integrated housing signal is "
             "not x",
-            (2.0 * math.pi * 419.7) ** 2 * 10.4e-6 / STANDARD_GRAVITY,
+            GRAVITY((2.0 * math.pi * 419.7) ** 2 * 10.4e-6),
             None,
             "g",
         ),
@@ -244,5 +244,5 @@ def _backlash(mesh: xr.Dataset, name: str) -> float | None:
     for place, bundle in enumerate(mesh["bundle"].values):
         if str(bundle).startswith(name):
             found = mesh["half_backlash"].isel(bundle=place, state=-1, operating=0)
-            return float(found) * 1e6
+            return MICROMETRE(float(found))
     return None

@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 
 from thermogear.analysis.any_motion import settle
 from thermogear.analysis.walk import Search
+from thermogear.base.display import MICROMETRE, SPEED
 from thermogear.base.errors import ThermogearError, ValidityWarning
-from thermogear.base.units import RPM
 from thermogear.base.vocabulary import STATUS
 from thermogear.case.case import gear_case, load_case
 from thermogear.case.thermal_state import HOT
@@ -101,7 +101,7 @@ def shown(values: Mapping[str, float], *, held: int = HELD_MODES) -> Shown:
                 return _without(values, STATUS[state.status], nothing)
             wanted = len(interface_of(state.assembly)) - 1 + held
             train = moving(case, state, coordinates=wanted, friction=rubbing(case, state))
-            trains = [train.at_speed(case, rpm * RPM) for rpm in SPEEDS]
+            trains = [train.at_speed(case, float(SPEED.stored(rpm))) for rpm in SPEEDS]
     except ThermogearError:
         return _without(values, "not_converged", nothing)
     labels, found = [], []
@@ -188,7 +188,7 @@ def row(one: Shown) -> list[str]:
     found += list(one.labels)
     for place in SEEN:
         found.append(one.channels[place])
-        found += [f"{1e6 * v:.{DIGITS}g}" for v in (*one.amplitudes[place], *one.most[place])]
+        found += [f"{MICROMETRE(v):.{DIGITS}g}" for v in (*one.amplitudes[place], *one.most[place])]
     return found
 
 

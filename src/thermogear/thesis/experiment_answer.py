@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.units import RPM
+from thermogear.base.display import MICROMETRE, PERCENT, SPEED
 from thermogear.base.vocabulary import label
 from thermogear.thesis.experiment import PRINTED, SEEN, WORDS, Shown
 from thermogear.thesis.rig_trains import ASSUMED, FIXED, SPEEDS
@@ -162,7 +162,7 @@ def results(rows: Sequence[Shown]) -> xr.Dataset:
             "seen": ("seen", list(seen)),
             "place": ("place", list(SEEN)),
             "limit": ("limit", np.array(LIMITS), "1", "factor allowed"),
-            "rig_speed": ("rig_speed", np.array(SPEEDS) * RPM, "rad/s", "pinion speed"),
+            "rig_speed": ("rig_speed", SPEED.stored(SPEEDS), "rad/s", "pinion speed"),
             "quantile": ("quantile", np.array(QUANTILES), "1", "quantile"),
         },
     )
@@ -190,12 +190,13 @@ def sentence(data: xr.Dataset) -> str:
         "yes": "Yes, under these assumptions: the printed displacements come out of",
         "undecided": "Undecided: the printed displacements may come out of",
     }[str(data.attrs["answer"])]
-    last = 1e6 * float(data.attrs["largest"])
+    last = MICROMETRE(float(data.attrs["largest"]))
     return (
         f"{said} an accelerometer on a bearing's cap or on the housing. On {int(one['hits'])} of "
         f"{data.attrs['trains']} sampled drive trains one shows 10.4, 19.3 and 48.5 µm within a "
-        f"factor {NEAR:g} at all three speeds, growing ({100 * float(one['share']):.1f} %, 95 % "
-        f"interval {100 * float(one['share_low']):.1f} to {100 * float(one['share_high']):.1f} %, "
+        f"factor {NEAR:g} at all three speeds, growing ({PERCENT(float(one['share'])):.1f} %, 95 % "
+        f"interval {PERCENT(float(one['share_low'])):.1f} to "
+        f"{PERCENT(float(one['share_high'])):.1f} %, "
         f"{data.attrs['lost']} without a motion counted against either end); the nearest is off "
         f"by a factor {nearest:.2f}, and the largest displacement of any of them at 3000 rpm is "
         f"{last:.1f} µm."

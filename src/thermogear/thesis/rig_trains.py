@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.display import MILLIMETRE
 from thermogear.shafts.bearings.catalogue import catalogue_bearing
 
 Floats = NDArray[np.float64]
@@ -222,7 +223,7 @@ def case_text(values: Mapping[str, float]) -> str:
     for shaft in ("pinion", "wheel"):
         kind = _chosen(f"{shaft}_bearing", values)
         size = catalogue_bearing(kind)
-        bore, half = 1e3 * size.bore, 500.0 * size.width
+        bore, half = MILLIMETRE(size.bore), 500.0 * size.width
         middle = bore * values["thickness"]
         ends = (_OVERHANG + half, _WALL + half)
         # the coupling is on the left of the pinion's shaft, on the right of the wheel's

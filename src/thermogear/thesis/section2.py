@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from thermogear.base.display import MICROMETRE, MILLIMETRE, PERCENT
 from thermogear.base.vocabulary import REGIMES
 from thermogear.gears.contact import hertz_half_width
 from thermogear.heat.friction import benedict_kelley, benedict_kelley_as_printed
@@ -16,7 +17,7 @@ from thermogear.thesis.evidence import Evidence
 
 HEAT, FRICTION = "thermogear.heat.temperature", "thermogear.heat.friction"
 CYCLE = "thermogear.mesh.cycle.mesh_cycle"
-MM = 1e3
+IN_MILLIMETRES = MILLIMETRE.scale
 """Millimetres in a metre: what a change of the length unit multiplies lengths with."""
 
 
@@ -35,7 +36,7 @@ def _flash_arguments(a: dict[str, float], length: float = 1.0) -> dict[str, floa
 
 def _flash_formula(e: Evidence) -> Finding:
     a = e.contact_at_a
-    units = [_flash_arguments(a), _flash_arguments(a, length=MM)]
+    units = [_flash_arguments(a), _flash_arguments(a, length=IN_MILLIMETRES)]
     printed = [abs(float(blok_as_printed(**given))) for given in units]
     u = FLASH_FACTORS["parabola"]
     right = [float(blok_flash(**given, factor=u)) for given in units]
@@ -51,7 +52,7 @@ def _flash_formula(e: Evidence) -> Finding:
 
 def _flash_symbols(e: Evidence) -> Finding:
     u = FLASH_FACTORS
-    spread = 100.0 * (u["parabola"] / u["ellipse"] - 1.0)
+    spread = PERCENT(u["parabola"] / u["ellipse"] - 1.0)
     names = ", ".join(f"{name} {value:.5f}" for name, value in u.items())
     return Finding(
         f"u = {u['parabola']:.4f} with the root of the half width (heat as a parabola)",
@@ -97,8 +98,8 @@ def _half_width(e: Evidence) -> Finding:
     )  # fmt: skip
     eta = (true / one) ** 2
     return Finding(
-        f"{1e6 * one * math.sqrt(eta):.4g} µm at A with η = {eta:.6g}",
-        f"{1e6 * true:.4g} µm at A from the reduced modulus",
+        f"{MICROMETRE(one) * math.sqrt(eta):.4g} µm at A with η = {eta:.6g}",
+        f"{MICROMETRE(true):.4g} µm at A from the reduced modulus",
         Verdict.ASSUMED,
         f"The formula is Hertz's for equal materials if η = {eta:.4g}, which is not given, and if "
         "the force is that of the one tooth pair and not of the whole mesh.",

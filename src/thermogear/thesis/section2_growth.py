@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from thermogear.base.units import ZERO_CELSIUS
+from thermogear.base.display import CELSIUS, MICROMETRE, NANOMETRE
 from thermogear.heat.thesis_profile import (
     deformed_profile,
     flank_growth_as_printed,
@@ -30,7 +30,8 @@ PROFILE, GROWTH = "thermogear.heat.thesis_profile", "thermogear.heat.expansion.f
 def _expands(e: Evidence) -> Finding:
     radial, across = chain.tip_displacement(e.case, e.case.gear_temperatures[0])
     return Finding(
-        f"radial {1e6 * radial:.3g} µm, half tooth {1e6 * across:.3g} µm at the pinion's tip",
+        f"radial {MICROMETRE(radial):.3g} µm, half tooth {MICROMETRE(across):.3g} µm at the "
+        "pinion's tip",
         "the same, at the lowest temperature of the row",
         verdict_of(radial > 0.0 and across > 0.0),
         "Both are positive; the body's radial displacement is much the larger.",
@@ -48,8 +49,9 @@ def _surface_drives(e: Evidence) -> Finding:
     bulge = steel.thermal_expansion * flash * depth
     grown = float(path["deformation_sum"].mean())
     return Finding(
-        f"flash {flash:.3g} K is about {1e6 * depth:.2g} µm deep and lifts {1e9 * bulge:.2g} nm",
-        f"the body is {rise:.3g} K warmer and its flanks grow {1e6 * grown:.3g} µm",
+        f"flash {flash:.3g} K is about {MICROMETRE(depth):.2g} µm deep and lifts "
+        f"{NANOMETRE(bulge):.2g} nm",
+        f"the body is {rise:.3g} K warmer and its flanks grow {MICROMETRE(grown):.3g} µm",
         verdict_of(bulge > 0.1 * grown),
         "It is the body's temperature, not the surface's flash, that deforms the profile; the "
         "flash enters no formula of the deformation, printed or repaired.",
@@ -74,7 +76,7 @@ def _field(e: Evidence) -> Finding:
 def _field_symbols(e: Evidence) -> Finding:
     t = e.case.operating.temperatures
     drop = float(np.ravel(t.pinion_addendum)[0]) - float(np.ravel(t.pinion_bore)[0])
-    balance = e.grid.sel(thermal="balance")["gear_temperature"].values - ZERO_CELSIUS
+    balance = CELSIUS(e.grid.sel(thermal="balance")["gear_temperature"].values)
     return Finding(
         f"bore {drop:.3g} K below the addendum, assumed",
         f"heat balance over speed and torque: {balance.min():.3g} to {balance.max():.3g} °C",
@@ -92,10 +94,11 @@ def _radial(e: Evidence) -> Finding:
     right = np.atleast_2d(deformed_profile(gear, field, r)[0])[0] - r
     worst = float(np.max(np.abs(printed - right)))
     return Finding(
-        f"{1e6 * printed[0]:.4g} to {1e6 * printed[-1]:.4g} µm from form circle to tip",
-        f"{1e6 * right[0]:.4g} to {1e6 * right[-1]:.4g} µm",
+        f"{MICROMETRE(printed[0]):.4g} to {MICROMETRE(printed[-1]):.4g} µm from form circle to tip",
+        f"{MICROMETRE(right[0]):.4g} to {MICROMETRE(right[-1]):.4g} µm",
         verdict_of(worst < 0.01 * float(right.max()), assumption=True),
-        f"Right within {1e6 * worst:.1e} µm if u_b, which is not defined, is the displacement of "
+        f"Right within {MICROMETRE(worst):.1e} µm if u_b, which is not defined, is the "
+        "displacement of "
         "the base circle by body and tooth root.",
     )
 
@@ -126,8 +129,8 @@ def _angle(e: Evidence) -> Finding:
 
 def _base_growth(e: Evidence) -> Finding:
     mesh = e.bundle("mesh", "consistent").isel(operating=0)
-    u = [1e6 * float(mesh[f"{g}_base_growth"]) for g in ("pinion", "wheel")]
-    reference = e.case.operating.temperatures.reference - ZERO_CELSIUS
+    u = [MICROMETRE(float(mesh[f"{g}_base_growth"])) for g in ("pinion", "wheel")]
+    reference = CELSIUS(e.case.operating.temperatures.reference)
     return Finding(
         "u_b is named and not defined",
         f"{listed(u)} µm for pinion and wheel, from {reference:.3g} °C, free bores",
@@ -143,22 +146,23 @@ def _deformation(e: Evidence) -> Finding:
     r = np.array([gear.tip_radius])
     field = hot.field(gear)
     printed, at_radius = (
-        1e6 * float(np.ravel(flank_growth_as_printed(gear, field, r, thickness_at=at))[0])
+        MICROMETRE(float(np.ravel(flank_growth_as_printed(gear, field, r, thickness_at=at))[0]))
         for at in (None, r)
     )
     thesis = float(np.ravel(thesis_flank_growth(gear, field, r))[0])
-    right = 1e6 * float(
-        e.bundle("path", "consistent")["pinion_deformation"].isel(operating=0).values[-1]
+    right = MICROMETRE(
+        float(e.bundle("path", "consistent")["pinion_deformation"].isel(operating=0).values[-1])
     )
     return Finding(
         f"{printed:.4g} µm literally with the tooth thickness at the pitch circle, "
-        f"{at_radius:.3g} µm with that at r_k; {1e6 * thesis:.3g} µm with the first term as a "
+        f"{at_radius:.3g} µm with that at r_k; {MICROMETRE(thesis):.3g} µm with the first "
+        "term as a "
         "length",
         f"{right:.3g} µm normal growth of one flank at the pinion's tip",
-        verdict_of(abs(1e6 * thesis / right - 1.0) < 0.1),
+        verdict_of(abs(MICROMETRE(thesis) / right - 1.0) < 0.1),
         "The first term is a pure number, the second a stretch along the flank and not normal to "
         f"it, and the body's growth u_b is missing: repaired as far as it goes it still gives "
-        f"{right / (1e6 * thesis):.2g} times too little.",
+        f"{right / (MICROMETRE(thesis)):.2g} times too little.",
     )
 
 

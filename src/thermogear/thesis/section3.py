@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from thermogear.base.units import RPM, ZERO_CELSIUS
+from thermogear.base.display import CELSIUS, MICROMETRE, MILLIMETRE, PERCENT, SPEED, STIFFNESS
 from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.dynamics.models import dead_zone
 from thermogear.thesis import chain
@@ -12,7 +12,7 @@ from thermogear.thesis.claim import Claim, Finding, Verdict, listed, verdict_of
 from thermogear.thesis.evidence import Evidence
 
 CYCLE = "thermogear.mesh.cycle.mesh_cycle"
-THERMAL, STIFFNESS = "thermogear.mesh.thermal", "thermogear.gears.stiffness"
+THERMAL, SPRING_MODEL = "thermogear.mesh.thermal", "thermogear.gears.stiffness"
 MODELS, EXCITE = "thermogear.dynamics.models", "thermogear.mesh.excite.excitation"
 
 
@@ -20,7 +20,7 @@ def _by_heat(e: Evidence, name: str) -> list[float]:
     """Hot over cold at the first operating point [%]: thesis, consistent."""
     k = e.groups["mesh"][name].isel(operating=0)
     return [
-        100.0 * float(k.sel(bundle=b, state="hot") / k.sel(bundle=b, state=UNDEFORMED) - 1.0)
+        PERCENT(float(k.sel(bundle=b, state="hot") / k.sel(bundle=b, state=UNDEFORMED) - 1.0))
         for b in ("thesis", "consistent")
     ]
 
@@ -32,12 +32,12 @@ def _row(e: Evidence, name: str, bundle: str) -> np.ndarray:
 
 
 def _temperatures(e: Evidence) -> str:
-    return listed(np.array(e.case.gear_temperatures) - ZERO_CELSIUS, ".0f", "°C")
+    return listed(CELSIUS(e.case.gear_temperatures), ".0f", "°C")
 
 
 def _reduces(e: Evidence) -> Finding:
-    cold = 1e6 * e.case.operating.half_backlash
-    thesis, right = (1e6 * _row(e, "half_backlash", b) for b in ("thesis", "consistent"))
+    cold = MICROMETRE(e.case.operating.half_backlash)
+    thesis, right = (MICROMETRE(_row(e, "half_backlash", b)) for b in ("thesis", "consistent"))
     uniform, _ = chain.uniform_change(e.case, e.case.gear_temperatures[-1])
     return Finding(
         f"half backlash {cold:.4g} µm cold, {listed(thesis, '.4g')} µm at {_temperatures(e)}",
@@ -49,10 +49,12 @@ def _reduces(e: Evidence) -> Finding:
 
 
 def _half_gap(e: Evidence) -> Finding:
-    thesis, right = (1e6 * float(_row(e, "half_backlash", b)[-1]) for b in ("thesis", "consistent"))
-    cold = 1e6 * e.case.operating.half_backlash
+    thesis, right = (
+        MICROMETRE(float(_row(e, "half_backlash", b)[-1])) for b in ("thesis", "consistent")
+    )
+    cold = MICROMETRE(e.case.operating.half_backlash)
     mesh = e.groups["temperature"].sel(bundle="consistent").isel(operating=0, gear_temperature=-1)
-    jam = float(mesh["jam_temperature"]) - ZERO_CELSIUS
+    jam = CELSIUS(float(mesh["jam_temperature"]))
     return Finding(
         f"loses {cold - thesis:.3g} µm of {cold:.4g} µm at the hottest",
         f"loses {cold - right:.3g} µm; jams at {jam:.0f} °C with the housing as it is",
@@ -65,7 +67,7 @@ def _half_gap(e: Evidence) -> Finding:
 
 def _half_gap_symbols(e: Evidence) -> Finding:
     path = e.bundle("path", "consistent").isel(operating=0)
-    total = 1e6 * path["deformation_sum"].values
+    total = MICROMETRE(path["deformation_sum"].values)
     return Finding(
         "one deformation for each gear",
         f"the sum of both runs from {total.min():.4g} to {total.max():.4g} µm along the path",
@@ -93,8 +95,10 @@ def _energy_method(e: Evidence) -> Finding:
     loaded = e.bundle("mesh", "consistent", UNDEFORMED).isel(operating=0)
     k = loaded["mesh_stiffness"].values
     return Finding(
-        f"{listed([1e-8 * f['minimum'], 1e-8 * f['maximum']], '.4g')}·10⁸ N/m, one and two pairs",
-        f"{listed([1e-8 * k.min(), 1e-8 * k.max()], '.4g')}·10⁸ N/m from the loaded contact",
+        f"{listed([STIFFNESS(f['minimum']), STIFFNESS(f['maximum'])], '.4g')}·10⁸ N/m, one "
+        "and two pairs",
+        f"{listed([STIFFNESS(k.min()), STIFFNESS(k.max())], '.4g')}·10⁸ N/m from the loaded "
+        "contact",
         Verdict.ASSUMED,
         "The textbook sum can be computed with width and bores assumed. It lets two teeth on one "
         "gear body know nothing of each other and so is too stiff where two pairs carry.",
@@ -113,8 +117,8 @@ def _five_parts(e: Evidence) -> Finding:
     total = float(mesh["pair_stiffness"].values[middle])
     series = 1.0 / sum(1.0 / k for k in parts)
     return Finding(
-        f"{len(parts)} springs in series give {1e-8 * series:.5g}·10⁸ N/m at mid path",
-        f"the pair's stiffness there: {1e-8 * total:.5g}·10⁸ N/m",
+        f"{len(parts)} springs in series give {STIFFNESS(series):.5g}·10⁸ N/m at mid path",
+        f"the pair's stiffness there: {STIFFNESS(total):.5g}·10⁸ N/m",
         verdict_of(abs(series / total - 1.0) < 1e-9),
         "Contact, and for each gear bending, shear, axial compression and body: five kinds.",
     )
@@ -127,8 +131,9 @@ def _thermal_spring(e: Evidence) -> Finding:
     torque = chain.thermal_spring_over_torque(e.case, np.array([50.0, 200.0]))
     _, change = chain.uniform_change(e.case, e.case.gear_temperatures[-1])
     return Finding(
-        f"k_T {listed(1e-8 * spring)}·10⁸ N/m at {listed(warm - ZERO_CELSIUS, '.0f')} °C beside "
-        f"{1e-8 * elastic[0]:.3g}·10⁸ N/m; {torque[1] / torque[0]:.3g} times as much at 4 times "
+        f"k_T {listed(STIFFNESS(spring))}·10⁸ N/m at {listed(CELSIUS(warm), '.0f')} °C beside "
+        f"{STIFFNESS(elastic[0]):.3g}·10⁸ N/m; {torque[1] / torque[0]:.3g} times as much at 4 "
+        "times "
         "the torque",
         f"growth alone changes the tangent stiffness by {change:+.1e}",
         verdict_of(spring[0] < spring[-1]),
@@ -179,7 +184,7 @@ def _cold_stiffness(e: Evidence) -> Finding:
 
 def _raises(e: Evidence) -> Finding:
     thesis, right = (
-        100.0 * _row(e, "thermal_stiffness_ratio", b) for b in ("thesis", "consistent")
+        PERCENT(_row(e, "thermal_stiffness_ratio", b)) for b in ("thesis", "consistent")
     )
     return Finding(
         f"{listed(thesis, '+.2f')} % at {_temperatures(e)}",
@@ -203,9 +208,9 @@ def _fluctuation(e: Evidence) -> Finding:
 def _average(e: Evidence) -> Finding:
     f = e.fit
     return Finding(
-        f"{1e-8 * f['middle']:.4g}·10⁸ N/m mid-range on the assumed rig; met exactly with "
-        f"{1e3 * f['width']:.4g} mm of width",
-        f"time mean {1e-8 * f['mean_at_width']:.4g}·10⁸ N/m of the same curve",
+        f"{STIFFNESS(f['middle']):.4g}·10⁸ N/m mid-range on the assumed rig; met exactly with "
+        f"{MILLIMETRE(f['width']):.4g} mm of width",
+        f"time mean {STIFFNESS(f['mean_at_width']):.4g}·10⁸ N/m of the same curve",
         verdict_of(abs(f["middle"] / chain.PRINTED_MIDDLE - 1.0) < 0.05, assumption=True),
         "Read as the middle between highest and lowest, the textbook curve meets it with a round "
         "width and bores; as a time mean the same curve does not.",
@@ -217,11 +222,12 @@ def _amplitude(e: Evidence) -> Finding:
     off = f["swing_at_width"] / chain.PRINTED_SWING - 1.0
     half = 0.5 * f["swing_at_width"]
     return Finding(
-        f"peak to peak {1e-8 * f['swing_at_width']:.4g}·10⁸ N/m at that width ({100 * off:+.1f} %)",
-        f"amplitude {1e-8 * half:.4g}·10⁸ N/m, half of it",
+        f"peak to peak {STIFFNESS(f['swing_at_width']):.4g}·10⁸ N/m at that width "
+        f"({PERCENT(off):+.1f} %)",
+        f"amplitude {STIFFNESS(half):.4g}·10⁸ N/m, half of it",
         verdict_of(abs(off) < 0.05, assumption=True),
         "It is the peak to peak value. As an amplitude it is impossible: the stiffness would swing "
-        f"down to {1e-8 * (chain.PRINTED_MIDDLE - chain.PRINTED_SWING):.3g}·10⁸ N/m, below one "
+        f"down to {STIFFNESS(chain.PRINTED_MIDDLE - chain.PRINTED_SWING):.3g}·10⁸ N/m, below one "
         "pair's.",
     )
 
@@ -260,7 +266,7 @@ def _relative(e: Evidence) -> Finding:
 
 def _static_error(e: Evidence) -> Finding:
     mesh = e.bundle("mesh", "consistent", UNDEFORMED).isel(operating=0)
-    loaded = 1e6 * float(np.ptp(mesh["transmission_error"].values))
+    loaded = MICROMETRE(float(np.ptp(mesh["transmission_error"].values)))
     own = e.case.transmission_error.harmonics
     kinematic = 2e6 * (abs(own[0]) if own else 0.0)
     return Finding(
@@ -275,7 +281,7 @@ def _static_error(e: Evidence) -> Finding:
 def _dimensionless(e: Evidence) -> Finding:
     mesh = e.bundle("mesh", "consistent").isel()
     ratio, force = (mesh[n].values for n in ("frequency_ratio", "force_amplitude"))
-    rpm = mesh["pinion_speed"].values / RPM
+    rpm = SPEED(mesh["pinion_speed"].values)
     power = np.polyfit(np.log(ratio), np.log(force), 1)[0]
     return Finding(
         "F_h a free constant, B′ and the phases unscaled",
@@ -294,7 +300,7 @@ def _dimensionless_symbols(e: Evidence) -> Finding:
              "mean_force", "force_amplitude", "half_backlash_ratio")  # fmt: skip
     symbols = ("ζ", "ω_h", "ε", "ε_T", "F_m", "F_h", "b′/b")
     values = ", ".join(f"{s} {float(mesh[n]):.3g}" for s, n in zip(symbols, names, strict=True))
-    first = e.case.speeds[-1] / RPM
+    first = SPEED(e.case.speeds[-1])
     return Finding(
         "the numbers' values are not given for the rig",
         f"at {first:.0f} rpm: {values}",
@@ -317,11 +323,11 @@ _ROWS = (
      "Restoring deflection with a dead zone between -b′ and b′.", _gap_function,
      (f"{MODELS}.dead_zone",), ""),
     ("3.2.1", "3.2", "statement", "Mesh stiffness comes from the potential energy method.",
-     _energy_method, (f"{STIFFNESS}.mesh_stiffness", "thermogear.gears.loaded.loaded_contact"),
+     _energy_method, (f"{SPRING_MODEL}.mesh_stiffness", "thermogear.gears.loaded.loaded_contact"),
      "stiffness-1"),
     ("3.2.2", "3.2", "statement",
      "It holds contact, bending, shear, axial and body stiffness.", _five_parts,
-     (f"{STIFFNESS}.pair_compliances",), "stiffness-parts-1"),
+     (f"{SPRING_MODEL}.pair_compliances",), "stiffness-parts-1"),
     ("3.2.3", "3.2, thermal stiffness", "formula",
      "Heat adds to each gear a stiffness: normal force over deformation times width.",
      _thermal_spring, (f"{THERMAL}.thesis_thermal_stiffness", CYCLE), "stiffness-1"),
@@ -338,9 +344,9 @@ _ROWS = (
     ("3.2.8", "3.2, results", "statement", "Heat changes how far the stiffness swings.",
      _fluctuation, (CYCLE,), "stiffness-bars"),
     ("3.2.9", "3.2, results", "figure", "The average mesh stiffness is 4.875·10⁸ N/m.", _average,
-     (f"{STIFFNESS}.mesh_figures",), "stiffness-1"),
+     (f"{SPRING_MODEL}.mesh_figures",), "stiffness-1"),
     ("3.2.10", "3.2, results", "figure", "The stiffness fluctuates by 2.75·10⁸ N/m.", _amplitude,
-     (f"{STIFFNESS}.mesh_figures",), "stiffness-1"),
+     (f"{SPRING_MODEL}.mesh_figures",), "stiffness-1"),
     ("3.3.1", "3.3", "statement", "Lumped masses give a torsional model of two rotations.",
      _two_gears, (f"{MODELS}.PairModel", "thermogear.dynamics.integrate.simulate"), ""),
     ("3.3.2", "3.3, equations of motion", "formula",

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thermogear.base.display import CELSIUS, PERCENT
 from thermogear.base.parameters import PARAMETERS
-from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import UNDEFORMED, told_labels
 from thermogear.dynamics.models import TorsionalModel
 from thermogear.thesis import base_sets, motions
@@ -91,7 +91,7 @@ def _cold_motion(e: Evidence) -> Finding:
 
 def _less_stable(e: Evidence) -> Finding:
     thesis, right = (e.warming["multiplier"].sel(row=r).values for r in ("thesis", "consistent"))
-    flip = float(e.warming["flip"].sel(row="thesis")) - ZERO_CELSIUS
+    flip = CELSIUS(float(e.warming["flip"].sel(row="thesis")))
     return Finding(
         f"largest multiplier {thesis[0]:.4f} cold; period doubling at {flip:.4g} °C",
         f"{right[0]:.4f} cold to {right[-1]:.4f} hottest: ever further from its loss",
@@ -259,7 +259,7 @@ def _diagrams(e: Evidence) -> Finding:
         f"{count} diagrams over ζ, ω_h and ε, {values} directions each",
         "without heat, with the document's heat, with E(T)",
         verdict_of(count == 9, assumption=True),
-        f"Heat is that at {e.row_points.temperature - ZERO_CELSIUS:.0f} °C. {SET}",
+        f"Heat is that at {CELSIUS(e.row_points.temperature):.0f} °C. {SET}",
     )
 
 
@@ -307,7 +307,7 @@ def _same_points(e: Evidence) -> Finding:
     first = e.flips["value"].sel(flip=1)
     cold = first.sel(heat="none").values
     shifts = {
-        heat: 100.0 * (first.sel(heat=heat).values / cold - 1.0)
+        heat: PERCENT(first.sel(heat=heat).values / cold - 1.0)
         for heat in ("thesis", "consistent", "backlash")
     }
     worst = max(abs(x) for x in shifts["backlash"])
@@ -451,8 +451,8 @@ def _over_sets(claim: Claim) -> Claim:
         share = (
             f"It holds for {hits} of {count} sampled base sets that meet the table"
             f"{f', {open_sets} of them not judged' * (open_sets > 0)} "
-            f"({100.0 * hits / count:.0f} %, 95 % interval {100.0 * low:.0f} to "
-            f"{100.0 * high:.0f} %)."
+            f"({PERCENT(hits / count):.0f} %, 95 % interval {PERCENT(low):.0f} to "
+            f"{PERCENT(high):.0f} %)."
         )
         return replace(
             finding,

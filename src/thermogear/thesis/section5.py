@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from thermogear.base.units import RPM
+from thermogear.base.display import HERTZ, MICROMETRE, MILLIMETRE, PERCENT, SPEED, Display
 from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.measured.published import (
     THESIS_5_2,
@@ -21,7 +21,7 @@ from thermogear.thesis.evidence import Evidence
 PUBLISHED = "thermogear.measured.published.THESIS_5_2"
 COMPARE = "thermogear.study.compare.compare"
 MODELS = ("with heat", "without heat")
-QUANTITIES = {"frequency": ("Hz", 1.0), "displacement": ("µm", 1e6)}
+QUANTITIES = {"frequency": Display("Hz"), "displacement": MICROMETRE}
 
 
 def _lines() -> tuple[SpeedLine, ...]:
@@ -39,9 +39,9 @@ def _row(e: Evidence, number: int, quantity: str) -> Row:
 def _platform(e: Evidence) -> Finding:
     pair = e.case.pair
     return Finding(
-        f"module {1e3 * pair.pinion.module:g} mm, {pair.pinion.teeth}:{pair.wheel.teeth}, "
+        f"module {MILLIMETRE(pair.pinion.module):g} mm, {pair.pinion.teeth}:{pair.wheel.teeth}, "
         f"{np.degrees(pair.pinion.pressure_angle):g}°",
-        f"centre distance {1e3 * pair.centre_distance:.4g} mm, contact ratio "
+        f"centre distance {MILLIMETRE(pair.centre_distance):.4g} mm, contact ratio "
         f"{pair.contact_ratio:.6f}",
         Verdict.REPRODUCED,
         "The stated geometry makes a sound pair; face width, shifts, bores and quality, which its "
@@ -50,8 +50,8 @@ def _platform(e: Evidence) -> Finding:
 
 
 def _tested_speeds(e: Evidence) -> Finding:
-    speeds = [line.speed / RPM for line in _lines()]
-    implied = [line.shaft_speed(_teeth()) / RPM for line in _lines()]
+    speeds = [SPEED(line.speed) for line in _lines()]
+    implied = [SPEED(line.shaft_speed(_teeth())) for line in _lines()]
     ratio = e.bundle("mesh", "consistent", UNDEFORMED)["frequency_ratio"].values
     return Finding(
         f"nominal {listed(speeds, '.0f')} rpm",
@@ -66,7 +66,7 @@ def _integrated(e: Evidence) -> Finding:
     lines = _lines()
     highest = max(line.frequency for line in lines)
     rates = (5120.0, 25600.0)
-    lost = [100.0 * (float(trapezoid_factor(highest, rate=rate)) - 1.0) for rate in rates]
+    lost = [PERCENT(float(trapezoid_factor(highest, rate=rate)) - 1.0) for rate in rates]
     g = [line.acceleration_g for line in lines]
     return Finding(
         f"two sums lose {listed(lost, '.1f')} % at {highest:g} Hz and {listed(rates, '.0f')} Hz",
@@ -79,8 +79,8 @@ def _integrated(e: Evidence) -> Finding:
 
 
 def _near_mesh(e: Evidence) -> Finding:
-    offsets = [line.frequency - _teeth() * line.speed / (2.0 * np.pi) for line in _lines()]
-    share = [100.0 * o / line.frequency for o, line in zip(offsets, _lines(), strict=True)]
+    offsets = [line.frequency - HERTZ(_teeth() * line.speed) for line in _lines()]
+    share = [PERCENT(o / line.frequency) for o, line in zip(offsets, _lines(), strict=True)]
     return Finding(
         f"off the nominal mesh frequency by {listed(offsets, '+.2f')} Hz",
         f"that is {listed(share, '+.2f')} %",
@@ -93,7 +93,7 @@ def _measured_line(e: Evidence, number: int) -> Finding:
     line = _lines()[number]
     return Finding(
         f"{line.frequency:g} Hz",
-        f"implies {line.shaft_speed(_teeth()) / RPM:.1f} rpm instead of {line.speed / RPM:.0f}",
+        f"implies {SPEED(line.shaft_speed(_teeth())):.1f} rpm instead of {SPEED(line.speed):.0f}",
         Verdict.ASSUMED,
         "Measured values are taken as printed, as the mesh line of a shaft near its nominal speed.",
     )
@@ -102,9 +102,9 @@ def _measured_line(e: Evidence, number: int) -> Finding:
 def _measured_amplitude(e: Evidence, number: int) -> Finding:
     line = _lines()[number]
     found = unstated_processing(line.frequency, highest=max(one.frequency for one in _lines()))
-    total = 100.0 * float(np.sqrt(sum(part**2 for part in found.values())))
+    total = PERCENT(float(np.sqrt(sum(part**2 for part in found.values()))))
     return Finding(
-        f"{1e6 * line.displacement:g} µm",
+        f"{MICROMETRE(line.displacement):g} µm",
         f"implies {line.acceleration_g:.1f} g; unstated processing alone leaves ±{total:.0f} %",
         Verdict.UNDECIDED,
         "It is a housing's motion after a chain that is not described; whether it is the relative "
@@ -114,7 +114,7 @@ def _measured_amplitude(e: Evidence, number: int) -> Finding:
 
 def _simulated_line(e: Evidence, number: int, model: int) -> Finding:
     row = _row(e, number, "frequency")
-    forced = _teeth() * row.speed / (2.0 * np.pi)
+    forced = HERTZ(_teeth() * row.speed)
     value = row.simulated[model]
     own = e.groups["motion"].isel(operating=number, bundle=0, state=-1 if model == 0 else 0)
     line = own["line_amplitude"].values
@@ -138,9 +138,10 @@ def _simulated_amplitude(e: Evidence, number: int, model: int) -> Finding:
     for bundle in ("thesis", "consistent"):
         one = motion.sel(bundle=bundle)
         place = int(np.argmin(np.abs(one["order"].values - 1.0)))
-        ours.append(1e6 * float(one["line_amplitude"].values[place]))
+        ours.append(MICROMETRE(float(one["line_amplitude"].values[place])))
     return Finding(
-        f"{1e6 * row.simulated[model]:g} µm printed; {ours[0]:.3g} µm with the thesis's bundle",
+        f"{MICROMETRE(row.simulated[model]):g} µm printed; {ours[0]:.3g} µm with the thesis's "
+        "bundle",
         f"{ours[1]:.3g} µm with the consistent one",
         Verdict.UNDECIDED,
         "Torque, width, backlash, damping and error of the test are not stated. In the ranges of "
@@ -159,7 +160,7 @@ def _error(e: Evidence, number: int, quantity: str, model: int) -> Finding:
     agrees = allowed(printed, low=low, high=high)
     return Finding(
         f"printed {printed} %",
-        f"recomputed {100.0 * abs(row.errors[model]):.2f} %, {low:.2f} to {high:.2f} % as the "
+        f"recomputed {PERCENT(abs(row.errors[model])):.2f} %, {low:.2f} to {high:.2f} % as the "
         "entries are rounded",
         verdict_of(agrees),
         "From the table's own entries." if agrees else
@@ -168,7 +169,7 @@ def _error(e: Evidence, number: int, quantity: str, model: int) -> Finding:
 
 
 def _trends(e: Evidence) -> Finding:
-    gains = [100.0 * (abs(row.errors[1]) - abs(row.errors[0])) for row in e.comparison.rows]
+    gains = [PERCENT(abs(row.errors[1]) - abs(row.errors[0])) for row in e.comparison.rows]
     better = sum(gain > 0 for gain in gains)
     return Finding(
         f"the model with heat is nearer in {better} of {len(gains)} entries",
@@ -180,8 +181,8 @@ def _trends(e: Evidence) -> Finding:
 
 def _much_smaller(e: Evidence) -> Finding:
     rows = [row for row in e.comparison.rows if row.quantity == "displacement"]
-    gains = [100.0 * (abs(row.errors[1]) - abs(row.errors[0])) for row in rows]
-    u = [100.0 * row.u_val for row in rows]
+    gains = [PERCENT(abs(row.errors[1]) - abs(row.errors[0])) for row in rows]
+    u = [PERCENT(row.u_val) for row in rows]
     resolved = [row for row in rows if row.verdict != "not resolvable"]
     return Finding(
         f"displacement errors smaller by {listed(gains, '.1f')} percentage points",
@@ -196,7 +197,7 @@ def _more_accurate(e: Evidence) -> Finding:
     change = e.sensitivity.data.sel(output="swing_change")
     low, high = float(change["low"]), float(change["high"])
     row = _row(e, 0, "displacement")
-    printed = 100.0 * (row.simulated[0] / row.simulated[1] - 1.0)
+    printed = PERCENT(row.simulated[0] / row.simulated[1] - 1.0)
     return Finding(
         f"printed: heat raises the displacement by {printed:.1f} % at the lowest speed",
         f"ours, over the unstated inputs: {low:+.1f} to {high:+.1f} %",
@@ -209,26 +210,26 @@ def _more_accurate(e: Evidence) -> Finding:
 def _entries() -> list[Claim]:
     found = []
     for number, line in enumerate(_lines()):
-        rpm = f"{line.speed / RPM:.0f} rpm"
-        for q, (quantity, (unit, scale)) in enumerate(QUANTITIES.items()):
+        rpm = f"{SPEED(line.speed):.0f} rpm"
+        for q, (quantity, scale) in enumerate(QUANTITIES.items()):
             place = f"5.2, table, {rpm}, {quantity}"
             base = f"5.2.{100 * (number + 1) + 10 * q}"
             judge = _measured_line if quantity == "frequency" else _measured_amplitude
             other = _simulated_line if quantity == "frequency" else _simulated_amplitude
-            value = scale * getattr(line, quantity)
+            value = scale(getattr(line, quantity))
             found.append(
                 Claim(
-                    base, place, "table entry", f"Measured {quantity} {value:g} {unit}.",
+                    base, place, "table entry", f"Measured {quantity} {value:g} {scale.unit}.",
                     lambda e, n=number, f=judge: f(e, n),  # type: ignore[misc]
                     (PUBLISHED, COMPARE), "experiment",
                 )
             )  # fmt: skip
             for m, model in enumerate(MODELS):
-                shown = scale * getattr(THESIS_5_2.models[model].lines[number], quantity)
+                shown = scale(getattr(THESIS_5_2.models[model].lines[number], quantity))
                 found.append(
                     Claim(
                         f"{base[:-1]}{1 + m}", place, "table entry",
-                        f"Simulated {quantity} {shown:g} {unit} {model}.",
+                        f"Simulated {quantity} {shown:g} {scale.unit} {model}.",
                         lambda e, n=number, m=m, f=other: f(e, n, m),  # type: ignore[misc]
                         (PUBLISHED, "thermogear.study.run.run"), f"motion-0-{number}",
                     )

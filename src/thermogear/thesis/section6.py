@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from thermogear.base.display import PERCENT
 from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.thesis import section2, section2_growth, section3, section4, section5
 from thermogear.thesis.claim import Claim, Finding, Verdict, listed, verdict_of
@@ -24,7 +25,7 @@ def judged(e: Evidence, number: str) -> Finding:
 
 def _holds(e: Evidence, output: str) -> str:
     here = e.sensitivity.data.sel(output=output)
-    return f"{here['conclusion'].item()} in {100 * float(here['holds']):.0f} % of the samples"
+    return f"{here['conclusion'].item()} in {PERCENT(float(here['holds'])):.0f} % of the samples"
 
 
 def _rise(e: Evidence) -> Finding:

@@ -1,23 +1,23 @@
 """One declaration of a table: rows along named dimensions, columns with words, unit and digits.
 
-A page's table, its lines in a terminal and its numbers in JSON are made of the same rows.
+A page's table, its lines in a terminal, its rows of CSV and its numbers in JSON are made of the
+same columns.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import zip_longest
-from textwrap import wrap
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
-from markupsafe import Markup
+import numpy as np
 
-from thermogear.base.display import Display, display, number
+from thermogear.base.display import Display, display, number, span
 from thermogear.base.vocabulary import QUANTITIES
 from thermogear.results import tables
-from thermogear.views.page import Block, Cell, Table, Text
+from thermogear.views.page import Cell, Table
+from thermogear.views.style import names_of
 from thermogear.views.typesetting import operating_names
 
 if TYPE_CHECKING:
@@ -27,11 +27,6 @@ Row = Mapping[str, Any]
 """One place: stored names with their values, SI numbers or words."""
 
 PLAIN = Display("")
-TYPEWRITTEN = str.maketrans(
-    {"µ": "u", "±": "+-", "−": "-", "–": "-", "→": "->", "°": "deg", "′": "'", "⁻": "-"}
-    | dict(zip("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789", strict=True))
-)
-"""Letters of a page as any terminal has them."""
 
 
 @dataclass(frozen=True)
@@ -42,13 +37,14 @@ class Column:
     or a function of the row that returns it: an SI number; words and whole numbers are shown as
     they are, None and what is not finite as a dash. ``digits`` of a number: how many significant
     figures, a format as ".2f", or a function that writes it. ``shown``: its unit as shown and how
-    to get there; without it the vocabulary's, or none.
+    to get there; without it the vocabulary's, or none. ``key``: its name in JSON, where it has one.
     """
 
     head: Cell
     value: str | Callable[[Row], Any]
     digits: int | str | Callable[[float], str] = 3
     shown: Display | None = None
+    key: str = ""
 
     @property
     def display(self) -> Display:
@@ -64,11 +60,15 @@ class Column:
         return self.head + f" [{unit}]" if unit else self.head
 
     def figure(self, row: Row) -> Any:
-        """What it holds in ``row``, in full: a word, a whole number or a number in its unit."""
+        """What it holds in ``row``, in full: a word, a whole number or a number in its unit.
+
+        Of a Dataset in place of a row the whole array, as lists.
+        """
         value = self.value(row) if callable(self.value) else row.get(self.value)
-        if value is None or isinstance(value, str | int):
+        if value is None or isinstance(value, str | int | list | Mapping):
             return value
-        return float(self.display(value))
+        values = np.asarray(value)
+        return (self.display(values) if values.dtype.kind == "f" else values).tolist()
 
     def cell(self, row: Row) -> Cell:
         """What stands in it in ``row``."""
@@ -84,6 +84,43 @@ class Column:
         if isinstance(self.digits, int):
             return number(figure, self.digits)
         return format(figure, self.digits.replace(".", "z.")).replace("-", "−")
+
+
+def key(name: str, value: str | Callable[[Any], Any] = "", shown: Display | None = PLAIN) -> Column:
+    """A number for JSON alone, as it is stored unless ``shown`` says how: its name and value."""
+    return Column("", value or name, shown=shown, key=name)
+
+
+def in_full(columns: Iterable[Column], row: Row) -> dict[str, Any]:
+    """The numbers of ``row`` under their names in JSON, nothing rounded."""
+    return {column.key: column.figure(row) for column in columns if column.key}
+
+
+def by_name(data: xr.Dataset, columns: Sequence[Column], *dims: str) -> dict[str, Any]:
+    """The arrays of ``data`` under their names in JSON: a table for each place along ``dims``."""
+
+    def at(here: xr.Dataset, *along: str) -> dict[str, Any]:
+        if not along:
+            return in_full(columns, cast(Row, here))
+        first, *rest = along
+        places = enumerate(names_of(here, first))
+        return {name: at(here.isel({first: place}), *rest) for place, name in places}
+
+    return at(tables.in_words(data), *dims)
+
+
+def units(columns: Iterable[Column], data: xr.Dataset) -> dict[str, str]:
+    """The stored units of the numbers that have their stored names in JSON, pure numbers aside."""
+    stored = {c.key: data[c.key].attrs.get("units", "1") for c in columns if c.key in data}
+    return {name: unit for name, unit in stored.items() if unit != "1"}
+
+
+def reaches(caption: str, columns: Iterable[Column], data: xr.Dataset) -> Table:
+    """The least and the greatest of each of the ``columns`` over all of ``data``."""
+    row = cast(Row, data)
+    return pairs(
+        caption, ("", "least to greatest"), {c.title: span(c.figure(row)) for c in columns}
+    )
 
 
 OF_STATE = (Column("state", "state"), Column("operating point", "operating"))
@@ -109,8 +146,12 @@ def declared(
     marked: Callable[[Row], bool] = lambda row: False,
     wordy: bool = False,
 ) -> Table:
-    """The page's table of ``rows``; the first ``names`` columns hold words."""
+    """The page's table of ``rows``; the first ``names`` columns hold words.
+
+    What has a name in JSON and no words is left out.
+    """
     there = list(rows)
+    columns = [column for column in columns if column.head or not column.key]
     cells = [[column.cell(row) for column in columns] for row in there]
     stand_out = frozenset(place for place, row in enumerate(there) if marked(row))
     figures = [[column.figure(row) for column in columns] for row in there]
@@ -125,34 +166,3 @@ def pairs(
     name, value = head
     columns = (Column(name, "name"), Column(value, lambda row: str(row["value"])))
     return declared(caption, columns, rows, names=1 + wordy, wordy=wordy)
-
-
-def typed(text: Cell) -> str:
-    """A cell of a page as any terminal shows it: no marks, no letters that may be missing."""
-    words = text.striptags() if isinstance(text, Markup) else text
-    return words.replace("·10", "e").replace("10⁸", "1e8").translate(TYPEWRITTEN)
-
-
-def lines_of(*blocks: Block) -> list[str]:
-    """Texts and tables as lines of a terminal: words to the left, numbers to the right.
-
-    Heads are folded over their columns; what is neither is left out.
-    """
-    lines: list[str] = []
-    for block in blocks:
-        if isinstance(block, Text):
-            lines.append(typed(block.words))
-        elif isinstance(block, Table):
-            lines += [*[typed(block.caption)] * bool(block.caption), *_grid(block)]
-    return lines
-
-
-def _grid(table: Table) -> Iterator[str]:
-    columns = [[*map(typed, cells)] for cells in zip(table.head, *table.rows, strict=True)]
-    widths = [max(map(len, [" ", *head.split(), *cells])) for head, *cells in columns]
-    heads = [wrap(head, width) for (head, *_), width in zip(columns, widths, strict=True)]
-    body = zip(*(cells[1:] for cells in columns), strict=True)
-    for line in [*zip_longest(*heads, fillvalue=""), *body]:
-        placed = zip(line, widths, range(len(widths)), strict=True)
-        words = (c.ljust(w) if k < table.names else c.rjust(w) for c, w, k in placed)
-        yield f"  {'  '.join(words)}".rstrip()

@@ -6,6 +6,8 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
 from importlib.resources import files
+from itertools import zip_longest
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any, overload
 
 from markupsafe import Markup
@@ -103,6 +105,45 @@ class Code:
 
 
 Block = Text | Table | Gallery | Code
+
+TYPEWRITTEN = str.maketrans(
+    {"µ": "u", "±": "+-", "−": "-", "–": "-", "→": "->", "°": "deg", "′": "'", "⁻": "-"}
+    | dict(zip("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789", strict=True))
+)
+"""Letters of a page as any terminal has them."""
+
+
+def typed(text: Cell) -> str:
+    """A cell of a page as any terminal shows it: no marks, no letters that may be missing."""
+    words = text.striptags() if isinstance(text, Markup) else text
+    return words.replace("·10", "e").replace("10⁸", "1e8").translate(TYPEWRITTEN)
+
+
+def lines_of(*blocks: Block) -> list[str]:
+    """Texts, codes and tables as lines of a terminal: words to the left, numbers to the right.
+
+    Heads are folded over their columns; what is neither is left out.
+    """
+    lines: list[str] = []
+    for block in blocks:
+        if isinstance(block, Text):
+            lines.append(typed(block.words))
+        elif isinstance(block, Code):
+            lines += block.words.splitlines()
+        elif isinstance(block, Table):
+            lines += [*[typed(block.caption)] * bool(block.caption), *_grid(block)]
+    return lines
+
+
+def _grid(table: Table) -> Iterator[str]:
+    columns = [[*map(typed, cells)] for cells in zip(table.head, *table.rows, strict=True)]
+    widths = [max(map(len, [" ", *head.split(), *cells])) for head, *cells in columns]
+    heads = [wrap(head, width) for (head, *_), width in zip(columns, widths, strict=True)]
+    body = zip(*(cells[1:] for cells in columns), strict=True)
+    for line in [*zip_longest(*heads, fillvalue=""), *body]:
+        placed = zip(line, widths, range(len(widths)), strict=True)
+        words = (c.ljust(w) if k < table.names else c.rjust(w) for c, w, k in placed)
+        yield f"  {'  '.join(words)}".rstrip()
 
 
 @dataclass(frozen=True)
@@ -214,7 +255,7 @@ SHOWN = ("first", "all", "none")
 
 
 def nothing() -> Any:
-    """No tables, no lines."""
+    """No numbers, no tables."""
     return {}
 
 
@@ -222,10 +263,11 @@ def nothing() -> Any:
 class Page:
     """Everything a reader gets of one result, in a page, in a terminal, as files.
 
-    ``numbers`` makes the figures a script wants (JSON-ready), ``lines`` the text of the terminal,
-    ``tables`` CSV texts by the names of their files. ``files`` are the kinds of picture that
-    stand beside the page. ``first`` are the pictures that carry the answer, each by its names in
-    order of preference: what a page shows that is asked for no more.
+    ``numbers`` makes the figures a script wants (JSON-ready), ``told`` the texts and tables that a
+    terminal shows, ``tables`` CSV texts by the names of their files. ``files`` are the kinds of
+    picture that stand beside the page, ``most`` is how many notices a terminal shows at the most.
+    ``first`` are the pictures that carry the answer, each by its names in order of preference: what
+    a page shows that is asked for no more.
     """
 
     result: Result
@@ -233,9 +275,10 @@ class Page:
     sections: Sequence[Section]
     tiles: Sequence[Tile] = ()
     numbers: Callable[[], Mapping[str, Any]] = nothing
-    lines: Callable[[], Sequence[str]] = nothing
+    told: Callable[[], Iterable[Block]] = nothing
     tables: Callable[[], Mapping[str, str]] = nothing
     files: tuple[str, ...] = ()
+    most: int | None = None
     first: Sequence[Sequence[str]] = ()
 
     def showing(self, which: str, every: str) -> Page:
@@ -277,9 +320,14 @@ class Page:
     @property
     def figures(self) -> dict[str, Any]:
         """The figures a script wants, with the notices; what is not finite is None."""
-        numbers = finite(self.numbers())
-        notices = [notice.as_dict() for notice in self.result.notices]
-        return {**numbers, "notices": notices} if numbers else {}
+        numbers, result = self.numbers(), self.result
+        head = {"thermogear": result.text("thermogear"), "title": result.title, "kind": result.kind}
+        notices = [notice.as_dict() for notice in result.notices]
+        return {**finite({**head, **numbers}), "notices": notices} if numbers else {}
+
+    def lines(self) -> list[str]:
+        """What a terminal shows, the notices last."""
+        return [*lines_of(*self.told()), *notice_lines(self.result, self.most)]
 
     @property
     def pictures(self) -> Iterator[Shown]:

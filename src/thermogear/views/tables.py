@@ -12,6 +12,7 @@ from markupsafe import Markup
 from thermogear.base.display import (
     KELVIN,
     MICROMETRE,
+    PERCENT,
     celsius,
     exactly,
     number,
@@ -155,7 +156,7 @@ def _half_order(row: Row) -> float | str | None:
 
 PROOF = Column("proof", _reason)
 CONTACT = (
-    Column("out of contact", "contact_loss_share", lambda part: f"{100.0 * max(part, 0.0):.1f} %"),
+    Column("out of contact", "contact_loss_share", lambda part: f"{PERCENT(max(part, 0.0)):.1f} %"),
     Column("back-side hits per period", "back_impacts", ".3g"),
 )
 

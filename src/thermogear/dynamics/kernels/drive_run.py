@@ -2,6 +2,8 @@
 
 Steps of halved lengths stand ready (``ladder``). A step that misses the tolerance, or whose sweeps
 do not settle, is taken again on a shorter one; where a contact changes the step ends.
+Checked by ``tests/dynamics/test_geared_truth.py`` against public truth cases, and by
+``tests/dynamics/test_geared_reference.py``.
 """
 
 from __future__ import annotations

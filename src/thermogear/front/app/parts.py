@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.display import CELSIUS, MICROMETRE, SPEED
+from thermogear.base.display import CELSIUS, MICROMETRE, PERCENT, SPEED
 from thermogear.base.errors import ThermogearError
 from thermogear.base.plan import Alive, slices
 from thermogear.base.vocabulary import STILL
@@ -271,7 +271,7 @@ def record(look: Look) -> Iterator[Part]:
     half = np.array([one.half_width * one.displacement for one in rows])
     lines = [
         f"{one.channel}, {one.name}: {MICROMETRE(one.displacement):.4g} µm "
-        f"± {100.0 * one.half_width:.2g} %"
+        f"± {PERCENT(one.half_width):.2g} %"
         for one in rows
     ]
     yield Part(

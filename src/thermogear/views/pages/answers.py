@@ -4,16 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import groupby
+from typing import TYPE_CHECKING
 
+import numpy as np
 from markupsafe import Markup
 
+from thermogear.base.display import display
 from thermogear.base.limits import FINE, LOOK, OPEN
 from thermogear.results.answer import Answer, worst
 from thermogear.results.result import Result
 from thermogear.views.columns import Column, declared
-from thermogear.views.page import Block, Made, Page, Pictures, Section, Table, notice_lines
+from thermogear.views.page import Block, Made, Page, Pictures, Section, Table, Text
 from thermogear.views.pages.background import background
-from thermogear.views.plots.speeds import speeds_picture
+from thermogear.views.picture import Axis, Panel, Picture
+from thermogear.views.style import HOT, INK, QUIET, WIDE
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 KINDS = ("answers",)
 MOST_POINTS = 6
@@ -27,8 +34,8 @@ def page(result: Result) -> Page:
         result,
         summary(result),
         Made(lambda: sections(result, pictures) + background(result)),
-        numbers=lambda: numbers(result),
-        lines=lambda: [*lines(result), *notice_lines(result)],
+        numbers=lambda: {"answers": result.rows("answers")},
+        told=lambda: told(result),
     )
 
 
@@ -114,21 +121,32 @@ def _sentence(one: Answer) -> str:
     return f"{one.sentence[:-1]}, at {one.operating}." if one.operating else one.sentence
 
 
-def lines(result: Result) -> list[str]:
+def told(result: Result) -> Iterator[Text]:
     """The answers for a terminal: one line each, under their questions."""
-    found: list[str] = []
     for first, one in _firsts(gravest(result.answers)):
         if first:
-            found.append(one.question)
-        found.append(f"  {one.verdict:<11}  {_sentence(one)} [{one.limit}]")
-    return found
+            yield Text(one.question)
+        yield Text(f"  {one.verdict:<11}  {_sentence(one)} [{one.limit}]")
 
 
-def numbers(result: Result) -> dict[str, object]:
-    """The answers for a script."""
-    return {
-        "thermogear": result.text("thermogear"),
-        "title": result.title,
-        "kind": result.kind,
-        "answers": [one.row for one in result.answers],
-    }
+# --- pictures -----------------------------------------------------------------------------------
+
+
+KEPT = 1e-3
+"""Share of time out of contact below which contact is kept."""
+
+
+def speeds_picture(data: xr.Dataset) -> Picture:
+    """Every motion's dynamic factor over pinion speed: open in contact, filled where it is lost."""
+    panel = Panel(Axis("pinion speed [rpm]"), Axis("dynamic factor [–]"))
+    rpm = display("pinion_speed")(data["pinion_speed"].values)
+    factor, lost = data["dynamic_factor"].values, data["contact_loss_share"].values > KEPT
+    for where, colour, label in ((~lost, INK, "in contact"), (lost, HOT, "flanks part")):
+        if where.any():
+            panel.points(
+                rpm[where], factor[where], colour=colour, size=4.0, open=not lost[where].all(),
+                label=label,
+            )  # fmt: skip
+    for own in np.unique(np.atleast_1d(data.attrs.get("own_speeds", ()))):
+        panel.line(x=float(display("pinion_speed")(own)), colour=QUIET, width=1.0, dash=(4.0, 3.0))
+    return Picture([[panel]], size=(WIDE, 3.2))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.display import MICROMETRE, MILLIMETRE, number, span
+from thermogear.base.display import MICROMETRE, MILLIMETRE, PERCENT, number, span
 from thermogear.base.vocabulary import told_operating
 from thermogear.views.plots.curves import hot_state
 from thermogear.views.plots.path import BAND, own_law
@@ -113,7 +113,7 @@ def _regime_along(one: xr.Dataset) -> str:
         return f"{names[index[0]]} throughout"
     if cuts.size > 3:
         shares = [(name, float(np.mean(index == k))) for k, name in enumerate(names)]
-        return ", ".join(f"{name} on {100 * part:.0f} %" for name, part in shares if part)
+        return ", ".join(f"{name} on {PERCENT(part):.0f} %" for name, part in shares if part)
     runs = [names[index[0]], *(names[index[c]] for c in cuts)]
     ends = [f" up to {number(0.5 * (s[c - 1] + s[c]), 4)} mm" for c in cuts] + [" to the end"]
     return ", ".join(run + end for run, end in zip(runs, ends, strict=True))
@@ -330,7 +330,7 @@ def row_views(*, columns: int, most: int) -> str:
 def stiffness(mesh: xr.Dataset, bundle: int) -> str:
     """Of the mesh stiffness over a mesh period."""
     one = mesh.isel(operating=told_operating(mesh), bundle=bundle)["mean_stiffness"].values
-    change = 100.0 * (float(one[-1]) / float(one[0]) - 1.0)
+    change = PERCENT(float(one[-1]) / float(one[0]) - 1.0)
     words = where(mesh, "mean_stiffness")
     ratio = float(mesh.attrs.get("contact_ratio", np.nan))
     if 1.0 < ratio < 2.0:

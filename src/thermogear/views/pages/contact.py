@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,12 +17,14 @@ from thermogear.base.display import (
     exactly,
     number,
 )
+from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.results.result import Result
-from thermogear.views.columns import Column, declared, rows_along
+from thermogear.views.columns import Column, by_name, declared, key, rows_along, units
 from thermogear.views.page import Page, Shown
-from thermogear.views.pages import survey_captions as words
-from thermogear.views.pages.survey import survey, table_of
-from thermogear.views.plots import loaded
+from thermogear.views.pages import survey_captions as captions
+from thermogear.views.pages.survey import survey
+from thermogear.views.picture import Axis, Panel, Picture
+from thermogear.views.style import COLD, HOT, INK, OKABE_ITO, WIDE, ramp
 from thermogear.views.typesetting import prose
 
 if TYPE_CHECKING:
@@ -33,7 +35,7 @@ KINDS = ("contact",)
 
 def page(result: Result) -> Page:
     """Loaded contact over position, load and temperature."""
-    data, light, iso = (
+    data, light, beside = (
         result.groups["contact"],
         result.groups["base_pitch"],
         result.groups["iso_6336"],
@@ -44,44 +46,44 @@ def page(result: Result) -> Page:
         Shown(
             "phase",
             "Stiffness and transmission error over a mesh period, hot",
-            words.contact_phase(data),
-            partial(loaded.over_phase, data),
+            captions.contact_phase(data),
+            partial(over_phase, data),
             wide=True,
         ),
         Shown(
             "path",
             "Load share and pressure of one tooth pair",
-            words.contact_path(data),
-            partial(loaded.along_path, data, points),
+            captions.contact_path(data),
+            partial(along_path, data, points),
             wide=True,
         ),
         Shown(
             "double_contact",
             "Double contact lost at light load",
-            words.double_contact(light),
-            partial(loaded.double_contact, light, pitch, "double_contact_length"),
+            captions.double_contact(light),
+            partial(double_contact, light, pitch, "double_contact_length"),
         ),
         Shown(
             "uneven_stiffness",
             "Mean stiffness of unequally hot gears",
-            words.uneven_stiffness(light),
-            partial(loaded.double_contact, light, pitch, "mean_stiffness"),
+            captions.uneven_stiffness(light),
+            partial(double_contact, light, pitch, "mean_stiffness"),
         ),
         Shown(
             "uneven_error",
             "Transmission error of unequally hot gears",
-            words.uneven_error(light),
-            partial(loaded.double_contact, light, pitch, "peak_to_peak_error"),
+            captions.uneven_error(light),
+            partial(double_contact, light, pitch, "peak_to_peak_error"),
         ),
         Shown(
             "iso",
             "Beside ISO 6336-1",
             "Method B knows neither bore nor rim, and lets the stiffness fall below 100 N/mm.",
-            partial(loaded.iso, iso),
+            partial(iso, beside),
         ),
     ]
     error = data["transmission_error"]
-    over_phase = data.assign(
+    of_period = data.assign(
         secant_stiffness=data["secant_stiffness"].mean("mesh_phase"),
         mean_error=error.mean("mesh_phase"),
         error_swing=error.max("mesh_phase") - error.min("mesh_phase"),
@@ -96,18 +98,26 @@ def page(result: Result) -> Page:
         "the wheel's tip corner carries (before A) / the pinion's (beyond E). The Hertzian "
         "pressure is not valid on a corner; the greatest one is that of the flanks alone.",
         COLUMNS,
-        rows_along(over_phase, "load", "temperature"),
+        rows_along(of_period, "load", "temperature"),
         names=2,
     )
     against = declared(
-        "Mean mesh stiffness, undeformed [10⁸ N/m].", AGAINST_ISO, rows_along(iso, "load")
+        "Mean mesh stiffness, undeformed [10⁸ N/m].", AGAINST_ISO, rows_along(beside, "load")
     )
     summary = (
-        f"{data.sizes['mesh_phase']} mesh positions, {words.several(data.sizes['load'], 'load')} "
+        f"{data.sizes['mesh_phase']} mesh positions, "
+        f"{captions.several(data.sizes['load'], 'load')} "
         f"and {data.sizes['temperature']} temperatures; body "
         f"{result.text('body').replace('_', ' ')}."
     )
-    return survey(result, summary, pictures, [against, table], numbers=_numbers)
+    every = data.assign(iso_6336_stiffness=beside["iso_stiffness"])
+    return survey(
+        result,
+        summary,
+        pictures,
+        [against, table],
+        numbers=lambda: {**by_name(every, IN_JSON), "units": units(IN_JSON, every)},
+    )
 
 
 COLUMNS = (
@@ -121,7 +131,7 @@ COLUMNS = (
     Column(
         "edge contact [%]",
         lambda row: " / ".join(
-            number(100.0 * row[f"{gear}_corner"], 2) for gear in ("wheel", "pinion")
+            number(PERCENT(row[f"{gear}_corner"]), 2) for gear in ("wheel", "pinion")
         ),
     ),
     Column("greatest pressure on the flanks", "contact_pressure", 3, MEGAPASCAL),
@@ -145,18 +155,129 @@ def _corner_share(data: xr.Dataset, bit: int) -> xr.DataArray:
     return carries.any("pair").mean("mesh_phase")
 
 
-def _numbers(result: Result) -> dict[str, Any]:
-    data, iso = result.groups["contact"], result.groups["iso_6336"]
-    return {
-        "pinion_torque_Nm": [float(v) for v in data["load"].values],
-        "temperature_degC": [
+IN_JSON = (
+    key("pinion_torque_Nm", "load"),
+    key(
+        "temperature_degC",
+        lambda data: [
             name if np.isnan(given) else float(CELSIUS(given))
             for name, given in zip(
                 data["temperature"].values.tolist(), data["gear_temperature"].values, strict=True
             )
         ],
-        "mean_stiffness": table_of(data["mean_stiffness"]),
-        "double_contact_length_m": table_of(data["double_contact_length"]),
-        "edge_contact_share": table_of(data["edge_contact_share"]),
-        "iso_6336_stiffness": [float(v) for v in iso["iso_stiffness"].values],
+    ),
+    key("mean_stiffness"),
+    key("double_contact_length_m", "double_contact_length"),
+    key("edge_contact_share"),
+    key("iso_6336_stiffness"),
+)
+
+
+# --- pictures -----------------------------------------------------------------------------------
+
+
+EDGE = OKABE_ITO[4]
+STATES: dict[str, tuple[str, tuple[float, ...]]] = {UNDEFORMED: (COLD, (5, 2)), "hot": (HOT, ())}
+
+
+def over_phase(data: xr.Dataset) -> Picture:
+    """Tangent and secant stiffness and transmission error over a mesh period, hot, by load."""
+    here = data.sel(temperature="hot")
+    panels = []
+    for name, scale, words in (
+        ("tangent_stiffness", STIFFNESS, "tangent stiffness [10⁸ N/m]"),
+        ("secant_stiffness", STIFFNESS, "secant stiffness [10⁸ N/m]"),
+        ("transmission_error", MICROMETRE, "transmission error δ, heat's shift in it [µm]"),
+    ):
+        panel = Panel(Axis("mesh phase φ [–]", low=0.0, high=1.0), Axis(words))
+        for place, colour in enumerate(ramp(here.sizes["load"])):
+            label = f"{float(here['load'][place]):.4g} N m"
+            values = scale(here[name].values[place])
+            panel.curve(here["mesh_phase"].values, values, colour=colour, label=label)
+        panels.append(panel)
+    return Picture([panels], size=(WIDE, 3.3), legend=6)
+
+
+def along_path(data: xr.Dataset, points: dict[str, float]) -> Picture:
+    """Load share and pressure of a tooth pair along the path at the first and the last load.
+
+    The pressure stops where a tip corner carries, and those stretches are shaded.
+    """
+    across = "distance from the pinion's tangent point [mm]"
+    share = Panel(Axis(across), Axis("share of the load [–]", low=0.0))
+    pressure = Panel(Axis(across), Axis("greatest Hertzian pressure on the flanks [MPa]", low=0.0))
+    for name, (colour, dash) in STATES.items():
+        if name not in data["temperature"].values:
+            continue
+        here = data.sel(temperature=name)
+        last = here.sizes["load"] - 1
+        for load in sorted({0, last}):
+            one, width = here.isel(load=load), 1.8 if load == last else 1.0
+            s = MILLIMETRE(one["pair_position"].values.ravel())
+            order = np.argsort(s)
+            words = f"{name}, {float(one['load']):.4g} N m"
+            shares = one["load_share"].values.ravel()[order]
+            pressures = MEGAPASCAL(one["contact_pressure"].values.ravel()[order])
+            for panel, values in ((share, shares), (pressure, pressures)):
+                panel.curve(s[order], values, colour=colour, dash=dash, width=width, label=words)
+    for panel in (share, pressure):
+        _corners(panel, data)
+        _marks(panel, points)
+    return Picture([[share, pressure]], size=(WIDE, 3.3), legend=4)
+
+
+def _corners(panel: Panel, data: xr.Dataset) -> None:
+    """Shade where a tip corner carries at any load and temperature."""
+    positions, flags = data["pair_position"].values, data["edge_contact"].values
+    label = "edge contact: pressure not valid"
+    for corner in (1, 2):
+        touched = MILLIMETRE(positions[(flags == corner).any(axis=tuple(range(flags.ndim - 2)))])
+        if touched.size:
+            ends = float(touched.min()), float(touched.max())
+            panel.span(x=ends, colour=EDGE, opacity=0.25, order=0.1, label=label)
+            label = ""
+
+
+def _marks(panel: Panel, points: dict[str, float]) -> None:
+    for name, position in points.items():
+        panel.line(x=MILLIMETRE(position), colour=INK, width=0.6, dash=(1, 2), order=0.5)
+        panel.text(MILLIMETRE(position), 1.015, name, at="x", up="bottom")
+    if points:
+        low, high = MILLIMETRE(min(points.values())), MILLIMETRE(max(points.values()))
+        panel.x.low, panel.x.high = low - 0.12 * (high - low), high + 0.12 * (high - low)
+
+
+def double_contact(data: xr.Dataset, base_pitch: float, name: str) -> Picture:
+    """``name`` over the load (logarithmic) for gears of unequal temperature."""
+    words = {
+        "double_contact_length": (MILLIMETRE, "length of double contact [mm]"),
+        "mean_stiffness": (STIFFNESS, "mean tangent stiffness [10⁸ N/m]"),
+        "peak_to_peak_error": (MICROMETRE, "transmission error, peak to peak [µm]"),
     }
+    scale, text = words[name]
+    panel = Panel(Axis("pinion torque [N m]", log="full"), Axis(text, low=0.0))
+    colours = (OKABE_ITO[0], OKABE_ITO[5], INK, OKABE_ITO[4], OKABE_ITO[1])
+    for place, difference in enumerate(data["temperature_difference"].values):
+        panel.curve(
+            data["load"].values,
+            scale(data[name].values[place]),
+            colour=colours[place % len(colours)],
+            label=f"pinion {difference:+.0f} K".replace("-", "−") if difference else "equally hot",
+        )
+    if name == "double_contact_length":
+        panel.y.high = 1.03 * MILLIMETRE(base_pitch)
+    return Picture([[panel]])
+
+
+def iso(data: xr.Dataset) -> Picture:
+    """Mean stiffness of the loaded contact beside that of ISO 6336-1 over the load."""
+    panel = Panel(Axis("pinion torque [N m]"), Axis("mean mesh stiffness [10⁸ N/m]", low=0.0))
+    for name, words, colour in (
+        ("loaded_stiffness", "loaded contact, undeformed", HOT),
+        ("iso_stiffness", "ISO 6336-1, method B", COLD),
+    ):
+        values = STIFFNESS(data[name].values)
+        panel.curve(
+            data["load"].values, values, colour=colour, marker="circle", size=3.5, label=words
+        )
+    return Picture([[panel]], legend=2)

@@ -10,7 +10,7 @@ import numpy as np
 from thermogear.base.display import MILLIMETRE, number
 from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.results.result import Result
-from thermogear.views.columns import Column, declared, lines_of
+from thermogear.views.columns import Column, declared
 from thermogear.views.gears import NEEDS, PINION, WHEEL, GearDrawing, gear_drawing
 from thermogear.views.page import Page, Pictures, Section, Shown, Table
 from thermogear.views.pages.survey import survey
@@ -52,8 +52,7 @@ def page(result: Result) -> Page:
         f"{drawing.words}, {result.text('state')}; mesh phase {drawing.phase[place]:.3g}.",
         [shown],
         [table(result, drawing)],
-        numbers=numbers,
-        lines=lines,
+        numbers=lambda: {"drawing": drawing.to_json()},
     )
 
 
@@ -109,6 +108,7 @@ def table(result: Result, drawing: GearDrawing) -> Table:
         "tip clearance, cold [mm]": clearance[0],
         "tip clearance, hot [mm]": clearance[-1],
         "centre distance, cold and hot [mm]": (cold.centre_distance, hot.centre_distance),
+        "least gap between the back flanks, cold and hot [µm]": (_least(cold), _least(hot)),
     }
     return declared(
         "Sizes as drawn, the backlash taken off both gears' flanks alike; hot where it says so. "
@@ -116,21 +116,3 @@ def table(result: Result, drawing: GearDrawing) -> Table:
         SIZES,
         [{"name": name, "sizes": values} for name, values in sizes.items()],
     )
-
-
-def numbers(result: Result) -> dict[str, Any]:
-    """The drawing as data, as a page's script takes it."""
-    return {"drawing": gear_drawing(result.groups["drawing"]).to_json()}
-
-
-def lines(result: Result) -> list[str]:
-    """The sizes as a terminal shows them."""
-    drawing = gear_drawing(result.groups["drawing"])
-    least = [f"{_least(drawing.state(name))} um {word}" for name, word in
-             ((UNDEFORMED, "cold"), ("hot", "hot"))]  # fmt: skip
-    return [
-        result.title,
-        drawing.words + f", {result.text('state')}",
-        *lines_of(table(result, drawing)),
-        f"least gap between the back flanks: {', '.join(least)}",
-    ]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from thermogear.base.display import Display, number
 from thermogear.results.result import Result
-from thermogear.views.columns import Column, Row, declared, lines_of
+from thermogear.views.columns import Column, Row, by_name, declared, key
 from thermogear.views.page import Page, Shown
 from thermogear.views.pages import captions
 from thermogear.views.pages import survey_captions as words
@@ -97,8 +97,8 @@ def page(result: Result) -> Page:
         summary,
         pictures,
         [table, regimes],
-        numbers=_numbers,
-        lines=lambda _: [summary, *lines_of(means_alone, regimes)],
+        numbers=partial(_numbers, data),
+        told=[means_alone, regimes],
     )
 
 
@@ -113,13 +113,12 @@ def _regime_shares(data: xr.Dataset) -> list[dict[str, float]]:
     return [dict(zip(names, row.tolist(), strict=True)) for row in data["regime_share"].values]
 
 
-def _numbers(result: Result) -> dict[str, Any]:
-    data = result.groups["laws"]
+def _numbers(data: xr.Dataset) -> dict[str, Any]:
     return {
         "operating": operating_rows(data),
-        "laws": [
-            {"law": law, "mean_friction": mean.tolist()}
-            for law, mean in zip(names_of(data, "law"), data["mean_friction"].values, strict=True)
-        ],
+        "laws": [by_name(data.sel(law=law), OF_LAW) for law in names_of(data, "law")],
         "regime_share": _regime_shares(data),
     }
+
+
+OF_LAW = (key("law"), key("mean_friction"))

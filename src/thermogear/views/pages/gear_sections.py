@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermogear.base.display import MICROMETRE, MILLIMETRE, celsius
+from thermogear.base.display import MICROMETRE, MILLIMETRE, PERCENT, celsius
 from thermogear.results.result import Result
 from thermogear.views import tables
 from thermogear.views.columns import Column, declared, rows_along
@@ -296,7 +296,7 @@ def _motion_caption(here: xr.Dataset) -> str:
         one = here.isel(state=s)
         share = float(one["contact_loss_share"]) if "contact_loss_share" in one else np.nan
         if np.isfinite(share):
-            lost = f"{100.0 * share:.1f} % of the time without drive-side contact"
+            lost = f"{PERCENT(share):.1f} % of the time without drive-side contact"
             lost = "always in contact" if share < 1e-6 else lost
             parts.append(f"{state}: {motion.label_of(one)}, {lost}")
     return "; ".join(parts) + "." if parts else "Undeformed against hot."

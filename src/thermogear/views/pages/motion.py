@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from thermogear.base.display import MICROMETRE, NANOMETRE, PERCENT, Display, number
 from thermogear.results.result import Result
-from thermogear.views.columns import Column, Row, declared, lines_of, pairs, typed
+from thermogear.views.columns import Column, Row, declared, pairs
 from thermogear.views.csv_files import cell_text, head_text
 from thermogear.views.page import (
     LEAD,
@@ -20,13 +20,10 @@ from thermogear.views.page import (
     Shown,
     Table,
     Text,
-    notice_lines,
 )
 from thermogear.views.picture import Picture
 from thermogear.views.plots import one_motion as plots
-from thermogear.views.plots.event_plane import plane_picture
 from thermogear.views.plots.parameters import page_words
-from thermogear.views.plots.shared import shared_picture
 from thermogear.views.typesetting import prose
 
 if TYPE_CHECKING:
@@ -105,7 +102,7 @@ def page(result: Result) -> Page:
     caption = _caption(kind, summary, groups)
     shown = [Shown(kind, HEADINGS[kind], caption, _picture(kind, groups), wide=True)]
     if "curve_0" in groups:
-        made = partial(plane_picture, _numbered(groups, "curve_"))
+        made = partial(plots.plane_picture, _numbered(groups, "curve_"))
         shown.append(Shown("plane", PLANE, plane_caption(summary), made, wide=True))
     headline, blocks = _headline(kind, summary), _TABLES[kind](summary)
     return Page(
@@ -116,12 +113,7 @@ def page(result: Result) -> Page:
             Section(LEAD, "In pictures", [Gallery(shown)], folded=False),
         ],
         numbers=lambda: summary,
-        lines=lambda: [
-            summary["title"],
-            typed(headline),
-            *lines_of(*blocks),
-            *notice_lines(result),
-        ],
+        told=lambda: [Text(summary["title"]), Text(headline), *blocks],
         tables=lambda: csv_tables(kind, groups),
         files=("svg", "png"),
     )
@@ -132,7 +124,7 @@ def _picture(kind: str, groups: Groups) -> Callable[[], Picture]:
         maker = plots.branch_picture if kind == "branch" else plots.cascade_picture
         return partial(maker, _numbered(groups, "branch_"))
     if kind == "shared":
-        return partial(shared_picture, groups["rest"], groups["motion"])
+        return partial(plots.shared_picture, groups["rest"], groups["motion"])
     return partial(plots.orbit_picture if kind == "orbit" else plots.lyapunov_picture, groups[kind])
 
 
@@ -329,7 +321,7 @@ def _train_words(train: Summary) -> list[Block]:
     if straight is not None:
         words.append(
             f"Half way between computed values the greatest mesh force is off by "
-            f"{100.0 * straight['force']:.2g} %, the largest multiplier by "
+            f"{PERCENT(straight['force']):.2g} %, the largest multiplier by "
             f"{straight['multiplier']:.2g}."
         )
     return [Text(text, "note") for text in words]
@@ -394,7 +386,7 @@ def _shared_tables(summary: Summary) -> list[Block]:
 
 
 def _percent(part: float | None) -> str:
-    return "–" if part is None else f"{100.0 * part:.2f} %"
+    return "–" if part is None else f"{PERCENT(part):.2f} %"
 
 
 ORBIT = (Column("quantity", "name"), Column("value", "value"), Column("unit", "unit"))

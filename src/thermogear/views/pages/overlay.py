@@ -7,14 +7,14 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from thermogear.base.display import Display, number
+from thermogear.base.display import PERCENT, Display, number
 from thermogear.base.parameters import Parameter
 from thermogear.results.result import Result
-from thermogear.views.columns import Column, declared, lines_of
+from thermogear.views.columns import Column, declared
 from thermogear.views.csv_files import table_text
-from thermogear.views.page import LEAD, Page, Pictures, Section, Table, notice_lines
+from thermogear.views.page import LEAD, Page, Pictures, Section, Table, Text
 from thermogear.views.pages.findings import finding
-from thermogear.views.pages.sweep_numbers import numbers
+from thermogear.views.pages.sweeps import numbers
 from thermogear.views.plots.parameters import parameter_of
 from thermogear.views.plots.sweeps import overlay_picture, state_of
 
@@ -48,10 +48,7 @@ def page(result: Result) -> Page:
     return Page(
         result, " ".join((*parts, _headline(result))), sections,
         numbers=lambda: _numbers(result),
-        lines=lambda: [
-            *parts, _headline(result), *lines_of(*[table] * bool(table.rows)),
-            *notice_lines(result),
-        ],
+        told=lambda: [*map(Text, parts), Text(_headline(result)), *[table] * bool(table.rows)],
         tables=lambda: {
             "overlay_bifurcations.csv": table_text([*map(str, table.head)], table.figures)
         },
@@ -75,7 +72,7 @@ def _numbers(result: Result) -> dict[str, Any]:
         return numbers(part.with_(parameter=name))
 
     return {
-        "kind": result.kind, "parameter": name, "states": result.values("states"),
+        "parameter": name, "states": result.values("states"),
         "one": alone(0), "other": alone(1), "moved": _moved(result),
     }  # fmt: skip
 
@@ -111,7 +108,7 @@ def table_of(result: Result) -> Table:
 def _became(row: Mapping[str, Any], unit: str) -> str:
     """What became of a bifurcation on the way to the other state."""
     share = row["share"] if row["one"] is not None else 1.0 - row["share"]
-    at = f"at {number(100.0 * share, 3)} % of the way"
+    at = f"at {number(PERCENT(share), 3)} % of the way"
     if row["partner"] == "matched":
         return "" if row["drawn"] else "its branch is not among those drawn"
     if row["partner"] == "meets another":

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermogear.base.display import SPEED, number
+from thermogear.base.display import HERTZ, SPEED, number
 from thermogear.results.result import Result
-from thermogear.views.columns import pairs
-from thermogear.views.page import Page, Pictures, Section, Text
-from thermogear.views.pages import record_lines, record_slices, record_tables
+from thermogear.views.columns import Column, by_name, key, pairs
+from thermogear.views.page import Block, Page, Pictures, Section, Text
+from thermogear.views.pages.record_tables import comparison_tables, line_table
 from thermogear.views.picture import Axis, Panel, Picture
-from thermogear.views.style import COLD, HOT, INK, WIDE
+from thermogear.views.plots.sweeps import edges
+from thermogear.views.style import COLD, HOT, INK, OKABE_ITO, WIDE, scale
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -33,7 +35,7 @@ def page(result: Result) -> Page:
         _findings,
         _record,
         _spectrum,
-        record_slices.section,
+        _orders,
         _lines,
         _evidence,
         _settings,
@@ -42,12 +44,9 @@ def page(result: Result) -> Page:
         result,
         result.text("conclusion") or _summary(result),
         [section for make in made if (section := make(result)) is not None],
-        numbers=lambda: record_slices.numbers(result),
-        lines=lambda: LINES[result.kind](result),
+        numbers=lambda: numbers(result),
+        told=lambda: TOLD[result.kind](result),
     )
-
-
-LINES = {"measured": record_lines.measured, "comparison": record_lines.comparison}
 
 
 def _summary(results: Result) -> str:
@@ -192,7 +191,7 @@ _COLOURS = (COLD, HOT, "#009E73", "#CC79A7")
 
 
 def _lines(results: Result) -> Section | None:
-    table = record_tables.line_table(results, _SHOWN)
+    table = line_table(results, _SHOWN)
     return None if table is None else Section("lines", "Lines", [table])
 
 
@@ -208,7 +207,7 @@ def _evidence(results: Result) -> Section | None:
     found = results.values("evidence")
     if not found:
         return None
-    told = [*record_lines.given_and_found(results.table("figures")), *map(str, found)]
+    told = [*given_and_found(results.table("figures")), *map(str, found)]
     return Section("evidence", "How the gearing was found", [Text(text) for text in told])
 
 
@@ -221,7 +220,244 @@ def _settings(results: Result) -> Section | None:
 
 
 def _comparison(results: Result) -> Section | None:
-    tables = record_tables.comparison_tables(results)
+    tables = comparison_tables(results)
     if results.group("comparison") is None:
         return None
     return Section("comparison", "Comparison", tables, folded=False)
+
+
+# --- pictures -----------------------------------------------------------------------------------
+
+
+_TOLD = 5e-4
+"""Weight that three digits show."""
+
+
+def measured(result: Result) -> list[Block]:
+    """Evidence, settings, and a row for each line."""
+    found = result.table("figures")
+    told = given_and_found(found)
+    told += [f"evidence: {text}" for text in found["evidence"]]
+    told += [f"{name}: {value}" for name, value in result.table("settings").items()]
+    if found.get("shaft_speed") is not None:
+        told.append(_shaft(found))
+    table = line_table(result)
+    tables = [table] if table else []
+    return [*map(Text, told), *tables, *map(Text, slices(found.get("slices")))]
+
+
+def slices(found: Mapping[str, Any] | None) -> list[str]:
+    """Greatest amplitude of every order of a run over speed, and resonances."""
+    if found is None:
+        return []
+    what = "the mesh line" if found["of_mesh"] else "the first shaft"
+    told = [
+        f"orders of {what} over speed, {found['steps']} steps; where each reads highest, and the "
+        "95 % interval of the greatest true amplitude of all its steps (one step alone is known "
+        "better, but the highest of many is high by noise too):"
+    ]
+    told += [_greatest(one) for one in found["greatest"]]
+    return told + [resonance(one) for one in found["resonances"]]
+
+
+def _greatest(one: Mapping[str, Any]) -> str:
+    interval = ""
+    if "greatest_low" in one:  # not stored by older versions
+        low, high = one["greatest_low"], one["greatest_high"]
+        interval = f"; greatest of {one['steps']} steps {low:.5g}..{high:.5g}"
+    return (
+        f"{one['channel'][:12]:12} {one['name'][:22]:22} order {one['order']:9.3f}: "
+        f"{one['reading']:.5g} at {SPEED(one['speed']):.5g} rpm, "
+        f"{one['frequency']:.5g} Hz{interval}"
+    )
+
+
+def _shaft(found: Mapping[str, Any]) -> str:
+    """The shaft's speed with its interval, or as a mean with its range."""
+    speed, half = SPEED(found["shaft_speed"]), found["shaft_speed_half_width"]
+    span = found.get("shaft_speed_range")
+    if span is not None:
+        low, high = (SPEED(one) for one in span)
+        return f"mean shaft speed over the record: {speed:.6g} rpm (from {low:.5g} to {high:.5g})"
+    around = f" +- {SPEED(half):.3g} rpm (95 %)" if half is not None else ""
+    return f"shaft speed: {speed:.8g} rpm{around}"
+
+
+def resonance(one: Mapping[str, Any]) -> str:
+    """A peak of orders in a sentence."""
+    seen = ", ".join(one["seen"])
+    half = one.get("frequency_half_width", one.get("half_width"))
+    place = f"{one['frequency']:.5g} +- {half:.2g} Hz"
+    damping = "" if one["damping"] is None else f", damping ratio {one['damping']:.3g}"
+    if one["kind"] == "resonance":
+        return f"resonance at {place}{damping}: {seen} peak there at different speeds"
+    if one["kind"] == "speed":
+        rpm = SPEED(one["speed"])
+        return f"at {rpm:.5g} rpm {seen} peak together: the speed's doing, no resonance in hertz"
+    return f"{seen} alone peaks, at {place}: one order cannot tell a resonance from a speed"
+
+
+def given_and_found(figures: Mapping[str, Any]) -> list[str]:
+    """What the user said, and what the lines say, apart; nothing for results of older versions."""
+    if "found" not in figures:
+        return []
+    given, found = figures["given"], figures["found"]
+    said = [f"{given['teeth']} teeth"] if given["teeth"] is not None else []
+    said += [f"{SPEED(given['speed']):.6g} rpm"] if given["speed"] is not None else []
+    told = [f"given: {', '.join(said) if said else 'neither teeth nor speed'}"]
+    if found["teeth"]:
+        return [*told, f"found: {_decided(found)}"]
+    told.append(f"found: {_open(found['verdict'])}")
+    told += [f"weight {one['weight']:.3f}: {one['words']}" for one in found["hypotheses"]]
+    if found.get("rest", 0.0) >= _TOLD:
+        told.append(f"weight {found['rest']:.3f}: all other readings")
+    return told
+
+
+def _decided(found: Mapping[str, Any]) -> str:
+    """Teeth with the weight of all readings that have them, and what is left for the others."""
+    gears = reversed(found.get("gears", []))
+    weights = {one["teeth"]: one["weight"] for one in gears}
+    told = [
+        f"{z} teeth, decided (weight {weights[z]:.4f}, of all readings without them "
+        f"{1.0 - weights[z]:.4f})"
+        if z in weights
+        else f"{z} teeth, decided"
+        for z in found["teeth"]
+    ]
+    return "; ".join(told)
+
+
+def _open(verdict: str) -> str:
+    return "no gear" if verdict == "no gear found" else "teeth undecided"
+
+
+def comparison(result: Result) -> list[Block]:
+    """The tables of the page, the conclusion."""
+    return [*comparison_tables(result), Text(result.table("figures")["conclusion"])]
+
+
+TOLD = {"measured": measured, "comparison": comparison}
+
+
+# --- pictures -----------------------------------------------------------------------------------
+
+
+def _moved(name: str) -> tuple[Column, Column]:
+    """A reading turned into acceleration or displacement, with its half width."""
+    value = f"slice_{name}"
+    return key(name, value), key(
+        f"{name}_half_width", lambda data: data["slice_half_width"] * data[value]
+    )
+
+
+STEPS = [key(name, f"slice_{name}") for name in ("time", "speed", "speed_rate")]
+OF_ORDER = (
+    key("channel"),
+    key("name"),
+    key("order", "slice_order"),
+    *(
+        key(name, f"slice_{name}")
+        for name in ("frequency", "reading", "reading_half_width", "phase", "turns")
+    ),
+    *_moved("acceleration"),
+    *_moved("displacement"),
+)
+
+
+def numbers(results: Result) -> dict[str, Any]:
+    """The figures, with every order at every step of a run over speed."""
+    found, data = results.table("figures"), results.group("slices")
+    if data is None or not isinstance(found.get("slices"), dict):
+        return found
+    orders = [
+        by_name(data.sel(channel=channel).isel(slice=place), OF_ORDER)
+        for channel in data["channel"].values
+        for place in range(data.sizes["slice"])
+    ]
+    return {**found, "slices": {**found["slices"], **by_name(data, STEPS), "orders": orders}}
+
+
+def _orders(results: Result) -> Section | None:
+    """Order map, slices with their intervals, resonances in words; None for a steady speed."""
+    data, shown = results.group("slices"), results.group("map")
+    if data is None or shown is None:
+        return None
+    unit = results.text("unit") or "the file's numbers"
+    count = "the mesh line" if int(data.attrs.get("of_mesh", 0)) else "the first shaft"
+    resonances = results.group("resonances")
+    pictures = Pictures()
+    pictures.add(
+        "order-map",
+        "Order map",
+        "Amplitude by order over speed, Hann window, the first channel. Orders lie level; what "
+        "has a fixed frequency falls from left to right (dotted: resonances found).",
+        shown,
+        ["map_reading"],
+        partial(order_map, shown, resonances, unit, count),
+        wide=True,
+    )
+    for place, channel in enumerate(data["channel"].values[:4]):
+        pictures.add(
+            f"slices-{place + 1}",
+            f"Order slices, {channel}",
+            "The highest orders over speed; shaded: 95 % intervals.",
+            data,
+            ["slice_reading", "slice_reading_half_width"],
+            partial(over_speed, data, place, unit),
+            wide=True,
+        )
+    told = results.table("figures").get("slices") or {}
+    words = [Text(resonance(one)) for one in told.get("resonances", [])]
+    return Section("orders", "Orders over speed", [*pictures.take(), *words], folded=False)
+
+
+# --- pictures -----------------------------------------------------------------------------------
+
+
+LEAST = 1e-4
+"""Of the greatest amplitude, below which nothing is told apart."""
+MOST = 6
+"""Orders drawn as slices."""
+
+
+def order_map(data: xr.Dataset, resonances: xr.Dataset | None, unit: str, count: str) -> Picture:
+    """Amplitude over order and speed; dotted where a resonance in hertz would be."""
+    rpm, order = SPEED(data["map_speed"].values), data["map_order"].values
+    rising = np.argsort(rpm, kind="stable")
+    rpm, values = rpm[rising], data["map_reading"].values[rising]
+    kept = np.concatenate([[True], np.diff(rpm) > 1e-9 * rpm[-1]])
+    rpm, values = rpm[kept], values[kept]
+    top = float(np.nanmax(values, initial=1e-300))
+    panel = Panel(Axis("speed [rpm]"), Axis(f"order of {count} [–]"))
+    panel.field(
+        edges(rpm), edges(order), np.clip(values, LEAST * top, None).T, low=LEAST * top, high=top,
+        log=True, colours=scale("magma"), words=f"amplitude (peak) [{unit}]",
+    )  # fmt: skip
+    if resonances is not None:
+        for one in range(resonances.sizes["resonance"]):
+            if str(resonances["kind"].values[one]) != "resonance":
+                continue
+            along = float(resonances["resonance_frequency"].values[one]) / HERTZ(SPEED.stored(rpm))
+            inside = (along >= order[0]) & (along <= order[-1])
+            panel.curve(
+                rpm[inside], along[inside], colour="white", width=0.8, dash=(1.0, 2.5),
+                label=f"{float(resonances['resonance_frequency'].values[one]):.5g} Hz",
+            )  # fmt: skip
+    return Picture([[panel]], size=(WIDE, 4.4), legend=4)
+
+
+def over_speed(data: xr.Dataset, channel: int, unit: str) -> Picture:
+    """Amplitudes of the highest orders of a channel over speed, with their 95 % intervals."""
+    rpm = SPEED(data["slice_speed"].values)
+    a = data["slice_reading"].values[channel]
+    half = data["slice_reading_half_width"].values[channel]
+    seen = np.flatnonzero(np.isfinite(a).any(axis=-1))
+    tops = np.array([np.nanmax(a[k]) for k in seen])
+    panel = Panel(Axis("speed [rpm]"), Axis(f"amplitude (peak) [{unit}]"))
+    rising = np.argsort(rpm, kind="stable")
+    for k, colour in zip(seen[np.argsort(-tops)][:MOST], OKABE_ITO, strict=False):
+        y, h = a[k][rising], half[k][rising]
+        panel.band(rpm[rising], low=np.maximum(y - h, 0.0), high=y + h, colour=colour, opacity=0.25)
+        panel.curve(rpm[rising], y, colour=colour, width=1.2, label=str(data["name"].values[k]))
+    return Picture([[panel]], size=(WIDE, 3.6), legend=3)

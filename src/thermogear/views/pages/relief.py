@@ -3,22 +3,28 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING
 
-from thermogear.base.display import CELSIUS, MICROMETRE, MILLIMETRE, exactly
+import numpy as np
+
+from thermogear.base.display import CELSIUS, MICROMETRE, MILLIMETRE, STIFFNESS, Display, exactly
 from thermogear.results.result import Result
 from thermogear.views.columns import Column, declared
-from thermogear.views.page import Page, Shown
+from thermogear.views.page import Code, Page, Shown, Text
 from thermogear.views.pages import survey_captions as words
 from thermogear.views.pages.survey import survey
-from thermogear.views.plots import relief
+from thermogear.views.picture import Axis, Panel, Picture
+from thermogear.views.style import COLD, HOT, INK, names_of
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 KINDS = ("relief",)
 
 
 def page(result: Result) -> Page:
     """The relief found, beside the unrelieved pair."""
-    torque = float(result.text("torque"))
+    torque, paste = float(result.text("torque")), result.text("paste")
     before, after = (
         MICROMETRE(float(result.text("unrelieved"))),
         MICROMETRE(float(result.text("relieved"))),
@@ -34,19 +40,19 @@ def page(result: Result) -> Page:
             "error",
             "Transmission error over a mesh period",
             words.relief_error(result.groups["error"]),
-            partial(relief.error, result.groups["error"]),
+            partial(error, result.groups["error"]),
         ),
         Shown(
             "stiffness",
             "Tangent stiffness over a mesh period",
             words.relief_stiffness(result.groups["error"]),
-            partial(relief.stiffness, result.groups["error"]),
+            partial(stiffness, result.groups["error"]),
         ),
         Shown(
             "loads",
             "What the relief does at other loads",
             words.relief_loads(result.groups["loads"]),
-            partial(relief.over_load, result.groups["loads"], torque),
+            partial(over_load, result.groups["loads"], torque),
         ),
     ]
     columns = (
@@ -62,34 +68,62 @@ def page(result: Result) -> Page:
         summary,
         pictures,
         [table],
-        numbers=_numbers,
-        lines=_lines,
-        code=result.text("paste"),
+        numbers=lambda: {
+            "torque_Nm": torque,
+            **{f"{name}_m": float(result.text(name)) for name in ("unrelieved", "relieved")},
+            "evaluations": int(result.text("evaluations")),
+            "reliefs": result.table("reliefs"),
+            "edge_contact_share": dict(result.groups["error"]["edge_contact_share"].to_series()),
+            "paste": paste,
+        },
+        told=[
+            table,
+            Text("# for the case file, in place of tip reliefs it has already"),
+            Code(paste),
+        ],
+        code=paste,
     )
 
 
-def _numbers(result: Result) -> dict[str, Any]:
-    error = result.groups["error"]
-    return {
-        "torque_Nm": float(result.text("torque")),
-        "unrelieved_m": float(result.text("unrelieved")),
-        "relieved_m": float(result.text("relieved")),
-        "evaluations": int(result.text("evaluations")),
-        "reliefs": result.table("reliefs"),
-        "edge_contact_share": {
-            str(one["pair_kind"].values): float(one) for one in error["edge_contact_share"]
-        },
-        "paste": result.text("paste"),
-    }
+# --- pictures -----------------------------------------------------------------------------------
 
 
-def _lines(result: Result) -> list[str]:
-    before, after = (MICROMETRE(float(result.text(name))) for name in ("unrelieved", "relieved"))
-    return [
-        f"transmission error at {float(result.text('torque')):g} N m: {before:.3f} um peak to peak "
-        f"without, {after:.3f} um with relief",
-        "",
-        "# for the case file, in place of tip reliefs it has already",
-        *result.text("paste").splitlines(),
-        "",
-    ]
+COLOURS = {"unrelieved": COLD, "relieved": HOT}
+
+
+def error(data: xr.Dataset) -> Picture:
+    """Static transmission error over a mesh period at the design load, mean taken off."""
+    panel = Panel(
+        Axis("mesh phase φ [–]", low=0.0, high=1.0), Axis("transmission error, mean removed [µm]")
+    )
+    x = data["mesh_phase"].values
+    for place, name in enumerate(names_of(data, "pair_kind")):
+        values = MICROMETRE(data["transmission_error"].values[place])
+        label = f"{name}, {float(np.ptp(values)):.2f} µm peak to peak"
+        panel.curve(x, values - values.mean(), colour=COLOURS.get(name, INK), label=label)
+    return Picture([[panel]], legend=1)
+
+
+def stiffness(data: xr.Dataset) -> Picture:
+    """Tangent stiffness over a mesh period at the design load."""
+    panel = Panel(
+        Axis("mesh phase φ [–]", low=0.0, high=1.0),
+        Axis("tangent mesh stiffness [10⁸ N/m]", low=0.0),
+    )
+    _pairs(panel, data["mesh_phase"], data["tangent_stiffness"], STIFFNESS)
+    return Picture([[panel]], legend=2)
+
+
+def over_load(data: xr.Dataset, design: float) -> Picture:
+    """Peak-to-peak error over the torque, the design torque marked."""
+    panel = Panel(
+        Axis("pinion torque [N m]", low=0.0), Axis("transmission error, peak to peak [µm]", low=0.0)
+    )
+    _pairs(panel, data["load"], data["peak_to_peak_error"], MICROMETRE)
+    panel.line(x=design, colour=INK, width=0.9, dash=(2, 2), label="designed for")
+    return Picture([[panel]])
+
+
+def _pairs(panel: Panel, x: xr.DataArray, y: xr.DataArray, shown: Display) -> None:
+    for place, name in enumerate(str(n) for n in y["pair_kind"].values):
+        panel.curve(x.values, shown(y.values[place]), colour=COLOURS.get(name, INK), label=name)

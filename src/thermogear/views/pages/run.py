@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import isfinite
 from typing import TYPE_CHECKING, Any
@@ -11,9 +11,9 @@ from thermogear.base.display import SPEED
 from thermogear.base.vocabulary import DIMENSIONLESS
 from thermogear.results.result import Result
 from thermogear.views import tables
-from thermogear.views.columns import Row, rows_along
+from thermogear.views.columns import Column, in_full, key, rows_along, units
 from thermogear.views.csv_files import curve_tables
-from thermogear.views.page import OPEN, Page, Pictures, Section, notice_lines
+from thermogear.views.page import OPEN, Page, Pictures, Section
 from thermogear.views.pages import (
     answers,
     dial,
@@ -31,114 +31,92 @@ if TYPE_CHECKING:
 
 
 def numbers(result: Result) -> dict[str, Any]:
-    """The figures a script wants, JSON-ready (non-finite numbers are None)."""
-    found: dict[str, Any] = {
-        "thermogear": result.text("thermogear"),
-        "title": result.title,
-        "kind": result.kind,
-        "answers": [one.row for one in result.answers],
-    }
+    """The figures a script wants (non-finite numbers are None)."""
     groups = result.groups
+    found: dict[str, Any] = {"answers": [one.row for one in result.answers]}
     if "mesh" in groups:
-        found["operating"] = _operating_summary(groups)
+        operating = ("bundle", "state", "operating")
+        data = _operating(groups)
+        found["operating"] = _rows(data, AT_STATE, *operating)
+        found["units"] = units(AT_STATE, data)
     if "temperature" in groups:
-        found["temperature_row"] = _temperature_summary(groups["temperature"])
+        operating = ("bundle", "gear_temperature", "operating")
+        found["temperature_row"] = _rows(groups["temperature"], AT_TEMPERATURE, *operating)
     sets = {
-        name: data for name, data in groups.items() if name.split("/")[0] in ("points", "base_sets")
+        name.split("/")[-1]: _rows(data, OF_POINT, "point")
+        for name, data in groups.items()
+        if name.split("/")[0] in ("points", "base_sets")
     }
-    if sets:
-        found["points"] = {name.split("/")[-1]: _point_summary(data) for name, data in sets.items()}
-    return found
+    return found | ({"points": sets} if sets else {})
 
 
-FIGURES = (
-    "mean_stiffness",
-    "peak_to_peak_stiffness",
-    "half_backlash",
-    "least_half_backlash",
-    "cold_half_backlash",
-    "jam_temperature",
-    "proportional_jam_temperature",
-    "edge_contact_share",
-    "natural_frequency",
-    *DIMENSIONLESS[1:],
+def _rows(data: xr.Dataset, columns: Sequence[Column], *dims: str) -> list[dict[str, Any]]:
+    """The numbers of every place, as far as they are stored."""
+    there = [column for column in columns if column.key in data or column.value in data]
+    return [in_full(there, row) for row in rows_along(data, *dims)]
+
+
+def _count(name: str) -> Column:
+    """A count, None where there is none."""
+    return key(name, lambda row: int(row[name]) if isfinite(row[name]) else None)
+
+
+FOLLOWED = (_count("followed_periods"), _count("followed_starts"))
+MOTION = (
+    key("label"),
+    key("dte_peak_to_peak"),
+    key("peak_to_peak_displacement"),
+    key("half_order_amplitude"),
+    key("contact_loss_share"),
+    *FOLLOWED,
 )
-FOLLOWED = ("followed_periods", "followed_starts")
-MOTION_FIGURES = (
-    "dte_peak_to_peak",
-    "peak_to_peak_displacement",
-    "half_order_amplitude",
-    "contact_loss_share",
+FIGURES = (
+    key("bundle"),
+    key("pinion_speed_rpm", "pinion_speed", SPEED),
+    key("status"),
+    key("mean_stiffness"),
+    key("peak_to_peak_stiffness"),
+    key("half_backlash"),
+    key("least_half_backlash"),
+    key("cold_half_backlash"),
+    key("jam_temperature"),
+    key("proportional_jam_temperature"),
+    key("edge_contact_share"),
+    key("natural_frequency"),
+    *map(key, DIMENSIONLESS[1:]),
+    *MOTION,
+)
+AT_STATE = (
+    key("state"),
+    key("pinion_torque_Nm", "pinion_torque"),
+    key("greatest_flash_temperature_K", "flash"),
+    key("greatest_friction", "friction"),
+    *FIGURES,
+)
+AT_TEMPERATURE = (key("gear_temperature_K", "gear_temperature"), *FIGURES)
+OF_POINT = (
+    key("row"),
+    key("parameter"),
+    key("value"),
+    key("unit", "value_unit"),
+    key("reason", "label_reason"),
+    key("expected"),
+    key("label"),
+    key("half_order_amplitude"),
     *FOLLOWED,
 )
 
 
-def _of_point(row: Row) -> dict[str, Any]:
-    """The figures of a mesh and of its motion, as far as they are there."""
-    found = {name: float(row[name]) for name in FIGURES if name in row}
-    if "label" in row:
-        found["label"] = row["label"]
-        found |= {name: float(row[name]) for name in MOTION_FIGURES if name in row}
-    return found
-
-
-def _operating_summary(groups: Mapping[str, xr.Dataset]) -> list[dict[str, Any]]:
+def _operating(groups: Mapping[str, xr.Dataset]) -> xr.Dataset:
+    """The figures of the mesh with the extremes along the path and those of the motion."""
     path, motion = groups["path"], groups.get("motion")
     data = groups["mesh"].assign(
         flash=path["flash_temperature"].max("path_position"),
         friction=path["friction_coefficient"].max("path_position"),
     )
-    if motion is not None and "label" in motion:
-        data = data.assign({n: motion[n] for n in ("label", *MOTION_FIGURES) if n in motion})
-    return [
-        {
-            "bundle": row["bundle"],
-            "state": row["state"],
-            "pinion_speed_rpm": SPEED(row["pinion_speed"]),
-            "pinion_torque_Nm": row["pinion_torque"],
-            "status": row["status"],
-            "greatest_flash_temperature_K": row["flash"],
-            "greatest_friction": row["friction"],
-            **_of_point(row),
-        }
-        for row in rows_along(data, "bundle", "state", "operating")
-    ]
-
-
-def _temperature_summary(data: xr.Dataset) -> list[dict[str, Any]]:
-    return [
-        {
-            "bundle": row["bundle"],
-            "gear_temperature_K": row["gear_temperature"],
-            "pinion_speed_rpm": SPEED(row["pinion_speed"]),
-            "status": row["status"],
-            "label": row["label"],
-            **_of_point(row),
-        }
-        for row in rows_along(data, "bundle", "gear_temperature", "operating")
-    ]
-
-
-def _count(number: float) -> int | None:
-    """A count, None where there is none."""
-    return int(number) if isfinite(number) else None
-
-
-def _point_summary(points: xr.Dataset) -> list[dict[str, Any]]:
-    return [
-        {
-            "row": row["row"],
-            "parameter": row["parameter"],
-            "value": row["value"],
-            "unit": row["value_unit"],
-            "label": row["label"],
-            "reason": row["label_reason"],
-            **{name: _count(row[name]) for name in FOLLOWED if name in row},
-            "expected": row["expected"],
-            "half_order_amplitude": row["half_order_amplitude"],
-        }
-        for row in rows_along(points, "point")
-    ]
+    if motion is None or "label" not in motion:
+        return data
+    return data.assign({one.key: motion[one.key] for one in MOTION if one.key in motion})
 
 
 ORDER = (
@@ -180,11 +158,8 @@ def page(result: Result) -> Page:
         _sections(whole),
         tiles=headline.tiles(whole),
         numbers=lambda: numbers(result),
-        lines=lambda: [
-            *answers.lines(result),
-            *train_motion.lines(result),
-            *notice_lines(result, OPEN if result.answers else None),
-        ],
+        told=lambda: [*answers.told(result), *train_motion.told(result)],
+        most=OPEN if result.answers else None,
         tables=lambda: curve_tables(result),
         first=(*FIRST, *gear_sections.first(result)),
     )

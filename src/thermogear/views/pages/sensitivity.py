@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermogear.base.display import SPEED
+from thermogear.base.display import PERCENT, SPEED
 from thermogear.results.result import Result
-from thermogear.views.columns import Column, Row, declared, rows_along
+from thermogear.views.columns import Column, Row, declared, in_full, key, rows_along
 from thermogear.views.page import Block, Page, Pictures, Section, Text
 from thermogear.views.pages.background import background
 from thermogear.views.plots import claims as plots
@@ -29,11 +29,8 @@ def page(result: Result) -> Page:
         result,
         _study_words(result),
         sections,
-        numbers=lambda: _numbers(result),
-        lines=lambda: [
-            *(f"- {text}" for text in data["sentence"].values),
-            f"{data.attrs['evaluations']} evaluations in {data.attrs['seconds']:.1f} s",
-        ],
+        numbers=lambda: _numbers(data),
+        told=lambda: map(Text, [_study_words(result), *data["sentence"].values.tolist()]),
     )
 
 
@@ -42,7 +39,7 @@ def _study_words(results: Result) -> str:
     return (
         f"{int(data.attrs['evaluations'])} evaluations of the chain from friction to vibration at "
         f"{SPEED(float(data.attrs['speed'])):.0f} rpm in {float(data.attrs['seconds']):.0f} s; "
-        f"intervals at {100 * float(data.attrs['confidence']):.0f} %. Every input runs through "
+        f"intervals at {PERCENT(float(data.attrs['confidence'])):.0f} %. Every input runs through "
         "its whole range, independently of the others."
     )
 
@@ -108,41 +105,31 @@ def _strongest(data: xr.Dataset) -> list[Row]:
 
 # --- figures as JSON wants them ---------------------------------------------------------------
 
+OF_OUTPUT = (
+    key("output"),
+    key("mean"),
+    key("low"),
+    key("high"),
+    key("unit", "output_unit"),
+    key("conclusion"),
+    key("holds", lambda row: row["holds"] if row["conclusion"] else None),
+)
+OF_INPUT = tuple(map(key, ("input", "first_order", "first_order_conf", "total", "total_conf")))
+SETTINGS = ("evaluations", "samples", "confidence", "seconds", "jammed", "speed", "seed")
 
-def _numbers(result: Result) -> dict[str, Any]:
-    """The study JSON-ready: settings, and for every output its spread, conclusion and ranking."""
-    data = result.groups["sensitivity"]
-    names = ("evaluations", "samples", "confidence", "seconds", "jammed", "speed", "seed")
-    found: dict[str, Any] = {
-        "thermogear": result.text("thermogear"),
-        "title": result.title,
-        "kind": result.kind,
-        **{name: _number(data.attrs[name]) for name in names},
-    }
-    found["outputs"] = [
+
+def _numbers(data: xr.Dataset) -> dict[str, Any]:
+    """The study: settings, and for every output its spread, conclusion and ranking."""
+    outputs = [
         {
-            "output": str(output),
-            "mean": float(here["mean"]),
-            "low": float(here["low"]),
-            "high": float(here["high"]),
-            "unit": str(here["output_unit"].item()),
-            "conclusion": str(here["conclusion"].item()),
-            "holds": float(here["holds"]) if here["conclusion"].item() else None,
+            **in_full(OF_OUTPUT, row),
             "inputs": [
-                {
-                    "input": str(name),
-                    "first_order": float(here["first_order"].sel(input=name)),
-                    "first_order_conf": float(here["first_order_conf"].sel(input=name)),
-                    "total": float(here["total"].sel(input=name)),
-                    "total_conf": float(here["total_conf"].sel(input=name)),
-                }
-                for name in data["input"].values
+                in_full(OF_INPUT, each) for each in rows_along(data.isel(output=k), "input")
             ],
         }
-        for output in data["output"].values
-        for here in (data.sel(output=output),)
+        for k, row in enumerate(rows_along(data, "output"))
     ]
-    return found
+    return {**{name: _number(data.attrs[name]) for name in SETTINGS}, "outputs": outputs}
 
 
 def _number(value: object) -> float | int:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import partial
+from operator import itemgetter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,7 +23,17 @@ from thermogear.base.display import (
 )
 from thermogear.results.files import finite
 from thermogear.results.result import Result
-from thermogear.views.columns import OF_STATE, Column, Row, declared, rows_along
+from thermogear.views.columns import (
+    OF_STATE,
+    PLAIN,
+    Column,
+    Row,
+    by_name,
+    declared,
+    in_full,
+    key,
+    rows_along,
+)
 from thermogear.views.page import Page, Pictures, Section, Shown, Table
 from thermogear.views.pages.survey import operating_rows, survey
 from thermogear.views.plots import shafts as plots
@@ -93,7 +104,9 @@ def _statics(result: Result) -> Page:
         f"Bearings carry up to {number(float(hottest))} N; the centres move apart by up to "
         f"{MICROMETRE(float(np.nanmax(mesh['centre_distance_growth'].values))):.1f} µm."
     )
-    return survey(result, summary, pictures, _static_tables(result), numbers=_static_numbers)
+    return survey(
+        result, summary, pictures, _static_tables(result), numbers=partial(_static_numbers, result)
+    )
 
 
 def _clearances(rings: xr.Dataset) -> Shown:
@@ -146,28 +159,23 @@ def _static_tables(result: Result) -> list[Table]:
 
 def _static_numbers(result: Result) -> dict[str, Any]:
     mesh, rings = result.groups["statics"], result.groups["bearings"]
+    at_rings = by_name(rings, _stored(rings), "state", "bearing")
     return {
         "operating": operating_rows(mesh),
         "states": {
-            state: {
-                **_stored(mesh.isel(state=s)),
-                "bearings": {
-                    bearing: _stored(rings.isel(state=s, bearing=b))
-                    for b, bearing in enumerate(names_of(rings, "bearing"))
-                },
-            }
-            for s, state in enumerate(names_of(mesh, "state"))
+            state: {**figures, "bearings": at_rings[state]}
+            for state, figures in by_name(mesh, _stored(mesh), "state").items()
         },
     }
 
 
-def _stored(data: xr.Dataset) -> dict[str, list[float]]:
+def _stored(data: xr.Dataset) -> list[Column]:
     """Every variable with a unit, its unit in the name."""
-    return {
-        f"{name}_{variable.attrs['units'].replace('/', '_per_')}": variable.values.ravel().tolist()
+    return [
+        key(f"{name}_{variable.attrs['units'].replace('/', '_per_')}", str(name))
         for name, variable in data.data_vars.items()
         if "units" in variable.attrs
-    }
+    ]
 
 
 # --- modes ------------------------------------------------------------------------------------
@@ -215,24 +223,25 @@ def _modes(result: Result) -> Page:
     )
     rows = rows_along(table.isel(state=last).assign(hertz), "mode")
     tables = [declared("Natural frequencies and what they are.", columns, rows)]
-    return survey(result, summary, pictures, tables, numbers=_mode_numbers)
-
-
-def _mode_numbers(result: Result) -> dict[str, Any]:
-    table = result.groups["modes"]
-    return {
-        "speed_rpm": SPEED(float(result.text("speed"))),
-        "torque_Nm": float(result.text("torque")),
-        "states": {
-            state: {
-                "natural_frequency_Hz": HERTZ(table["natural_frequency"].values[s]).tolist(),
-                "modal_damping_ratio": table["modal_damping_ratio"].values[s].tolist(),
-                "mesh_share": table["mesh_share"].values[s].tolist(),
-                "mostly": table["mode_name"].values[s].tolist(),
-            }
-            for s, state in enumerate(names_of(table, "state"))
+    return survey(
+        result,
+        summary,
+        pictures,
+        tables,
+        numbers=lambda: {
+            "speed_rpm": SPEED(speed),
+            "torque_Nm": torque,
+            "states": by_name(table, IN_JSON, "state"),
         },
-    }
+    )
+
+
+IN_JSON = (
+    key("natural_frequency_Hz", "natural_frequency", HERTZ),
+    key("modal_damping_ratio"),
+    key("mesh_share"),
+    key("mostly", "mode_name"),
+)
 
 
 # --- critical speeds --------------------------------------------------------------------------
@@ -258,46 +267,34 @@ def criticals(result: Result) -> Iterator[dict[str, Any]]:
         lifted = np.isfinite(row["lift_off"])
         felt = lifted or row["resonant_force"] >= FELT * row["greatest_force"]
         if (row["amplification"] >= NIL or felt) and row["low"] <= limit:
-            yield {
-                "state": row["state"],
-                "order": row["line"],
-                "mode": row["mode"],
-                "rpm": SPEED(row["critical_speed"]),
-                "rpm_least": SPEED(row["low"]),
-                "rpm_greatest": SPEED(row["high"]),
-                "frequency_Hz": HERTZ(row["critical_speed"] * row["order"]),
-                "participation": row["participation"],
-                "amplification": row["amplification"],
-                "bearing_force_N": finite(row["resonant_force"]),
-                "lifts_off_from_rpm": SPEED(row["lift_off"]) if lifted else None,
-                "mostly": row["mode_name"],
-            }
+            frequency = row["critical_speed"] * row["order"]
+            yield {**row, "frequency": frequency, "lift_off": row["lift_off"] if lifted else None}
 
 
 def _force(row: Row) -> float | str | None:
     """The dynamic force of a resonance on a bearing [N], or why there is none."""
-    lifts_off = row["lifts_off_from_rpm"]
-    return (
-        row["bearing_force_N"]
-        if lifts_off is None
-        else plots.not_valid(float(SPEED.stored(lifts_off)))
-    )
+    lift_off = row["lift_off"]
+    return row["resonant_force"] if lift_off is None else plots.not_valid(lift_off)
 
 
 CRITICAL = (
-    Column("state", "state"),
-    Column("speed [rpm]", "rpm", ".0f"),
+    Column("state", "state", key="state"),
+    Column("speed", "critical_speed", ".0f", SPEED, "rpm"),
     Column(
         "over the mesh's stiffness [rpm]",
-        lambda row: f"{row['rpm_least']:.0f} to {row['rpm_greatest']:.0f}",
+        lambda row: f"{SPEED(row['low']):.0f} to {SPEED(row['high']):.0f}",
     ),
-    Column("frequency [Hz]", "frequency_Hz", ".1f"),
-    Column("excited by", "order"),
-    Column("mode", "mode"),
-    Column("bearing force [N]", _force, ".1f"),
-    Column("participation", "participation", ".4f"),
-    Column("amplification", "amplification", ".2f"),
-    Column("mostly", "mostly"),
+    Column("frequency", "frequency", ".1f", HERTZ, "frequency_Hz"),
+    Column("excited by", "line", key="order"),
+    Column("mode", "mode", key="mode"),
+    Column("bearing force", _force, ".1f", NEWTON),
+    Column("participation", "participation", ".4f", PLAIN, "participation"),
+    Column("amplification", "amplification", ".2f", PLAIN, "amplification"),
+    Column("mostly", "mode_name", key="mostly"),
+    key("rpm_least", "low", SPEED),
+    key("rpm_greatest", "high", SPEED),
+    key("bearing_force_N", "resonant_force"),
+    key("lifts_off_from_rpm", "lift_off", SPEED),
 )
 
 
@@ -339,21 +336,22 @@ def _campbell(result: Result) -> Page:
             )
         )
     hot = [one for one in found if one["state"] == names_of(data, "state")[-1]]
-    strong = max(hot, key=lambda row: row["bearing_force_N"] or 0.0, default=None)
+    strong = max(hot, key=lambda row: finite(row["resonant_force"]) or 0.0, default=None)
     summary = "No order meets a mode it can drive in this range."
     if strong is not None:
         summary = (
-            f"{len(hot)} critical speeds hot; the loudest at {strong['rpm']:.0f} rpm, where "
-            f"{strong['order']} meets {strong['frequency_Hz']:.0f} Hz ({strong['mostly']}): "
-            f"{Column('', 'bearing_force_N', '.0f').cell(strong)} N on a bearing."
+            f"{len(hot)} critical speeds hot; the loudest at {SPEED(strong['critical_speed']):.0f} "
+            f"rpm, where {strong['line']} meets {HERTZ(strong['frequency']):.0f} Hz "
+            f"({strong['mode_name']}): "
+            f"{Column('', 'resonant_force', '.0f').cell(strong)} N on a bearing."
         )
-    lost = [one for one in hot if one["lifts_off_from_rpm"] is not None]
+    lost = [one for one in hot if one["lift_off"] is not None]
     if lost:
-        first = min(lost, key=lambda one: one["lifts_off_from_rpm"])
+        first = min(lost, key=itemgetter("lift_off"))
         summary += (
             f" At {len(lost)} of them a bearing lifts off or the teeth part, first from "
-            f"{first['lifts_off_from_rpm']:.0f} rpm on (that at {first['rpm']:.0f} rpm): no linear "
-            "force is valid there."
+            f"{SPEED(first['lift_off']):.0f} rpm on (that at {SPEED(first['critical_speed']):.0f} "
+            "rpm): no linear force is valid there."
         )
     caption = (
         "Critical speeds: where an order meets a mode that it lifts by 0.1 or more, or that shakes "
@@ -366,5 +364,8 @@ def _campbell(result: Result) -> Page:
         summary,
         pictures,
         [declared(caption, CRITICAL, found)],
-        numbers=lambda _: {"torque_Nm": float(result.text("torque")), "critical": found},
+        numbers=lambda: {
+            "torque_Nm": float(result.text("torque")),
+            "critical": [in_full(CRITICAL, row) for row in found],
+        },
     )

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from thermogear.base.display import SPEED
 from thermogear.results.result import Result
 from thermogear.results.tables import csv_text, frames
-from thermogear.views.columns import lines_of, typed
+from thermogear.views.columns import in_full, key, rows_along
 from thermogear.views.page import (
     LEAD,
     Block,
@@ -18,14 +18,12 @@ from thermogear.views.page import (
     Section,
     Shown,
     Table,
-    notice_lines,
+    Text,
 )
 from thermogear.views.pages.background import case_file
 
 if TYPE_CHECKING:
     import xarray as xr
-
-Lines = Sequence[str]
 
 
 def survey(
@@ -34,13 +32,13 @@ def survey(
     pictures: Sequence[Shown],
     tables: Sequence[Table],
     *,
-    numbers: Callable[[Result], dict[str, Any]],
-    lines: Callable[[Result], Lines] | None = None,
+    numbers: Callable[[], Mapping[str, Any]],
+    told: Sequence[Block] = (),
     code: str = "",
 ) -> Page:
     """Wide pictures come first; ``code`` is what may be copied into a case file.
 
-    Without ``lines`` of its own a terminal shows the summary and the tables.
+    A terminal shows the summary, then what is ``told``, without it the tables.
     """
     small = [one for one in pictures if not one.wide]
     drawn: list[Block] = [Gallery([one]) for one in pictures if one.wide]
@@ -54,11 +52,8 @@ def survey(
         result,
         summary,
         sections,
-        numbers=lambda: {"title": result.title, **numbers(result)},
-        lines=lambda: [
-            *(lines(result) if lines else [typed(summary), *lines_of(*tables)]),
-            *notice_lines(result),
-        ],
+        numbers=numbers,
+        told=lambda: [Text(summary), *(told or tables)],
         tables=lambda: csv_tables(result),
         files=("svg", "png"),
     )
@@ -76,15 +71,15 @@ def csv_tables(result: Result) -> dict[str, str]:
     return found
 
 
-# --- figures as the terminal and JSON want them -----------------------------------------------
+# --- figures as JSON wants them ---------------------------------------------------------------
 
 
-def operating_rows(data: xr.Dataset) -> list[dict[str, float]]:
+OPERATING = (
+    key("pinion_speed_rpm", "pinion_speed", SPEED),
+    key("pinion_torque_Nm", "pinion_torque"),
+)
+
+
+def operating_rows(data: xr.Dataset) -> list[dict[str, Any]]:
     """Speed and torque of every operating point."""
-    pairs = zip(data["pinion_speed"].values, data["pinion_torque"].values, strict=True)
-    return [{"pinion_speed_rpm": SPEED(float(s)), "pinion_torque_Nm": float(t)} for s, t in pairs]
-
-
-def table_of(data: xr.DataArray) -> list[list[float]]:
-    """A grid as rows of numbers."""
-    return [[float(v) for v in row] for row in data.values]
+    return [in_full(OPERATING, row) for row in rows_along(data, "operating")]

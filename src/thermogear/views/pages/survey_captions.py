@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.display import MICROMETRE, MILLIMETRE, SPEED, exactly, number, span
+from thermogear.base.display import MICROMETRE, MILLIMETRE, PERCENT, SPEED, exactly, number, span
 from thermogear.base.vocabulary import is_known
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ def one_point(data: xr.Dataset) -> str:
     if not is_known(int(here["status"])):
         return ""
     shares = zip(here["regime_name"].values, here["regime_share"].values, strict=True)
-    film = ", ".join(f"{name} on {100 * float(part):.0f} %" for name, part in shares if part)
+    film = ", ".join(f"{name} on {PERCENT(float(part)):.0f} %" for name, part in shares if part)
     return (
         f" Lubrication is {film} of the path, with a mean friction coefficient of "
         f"{number(float(here['mean_friction']), 2)}."
@@ -92,7 +92,7 @@ def relief_error(data: xr.Dataset) -> str:
 def relief_stiffness(data: xr.Dataset) -> str:
     """Of the tangent stiffness under the design load."""
     without, with_it = data["tangent_stiffness"].values.mean(axis=-1)
-    change = 100.0 * (with_it / without - 1.0)
+    change = PERCENT(with_it / without - 1.0)
     return f"Relief changes the mean stiffness by {change:+.1f} %.".replace("-", "−")
 
 
@@ -163,7 +163,7 @@ def double_contact(data: xr.Dataset) -> str:
 def uneven_stiffness(data: xr.Dataset) -> str:
     """Of the mean stiffness of unequally hot gears."""
     mean, apart = data["mean_stiffness"].values, data["temperature_difference"].values
-    ratio = 100.0 * (mean / mean[int(np.argmin(np.abs(apart)))] - 1.0)
+    ratio = PERCENT(mean / mean[int(np.argmin(np.abs(apart)))] - 1.0)
     low, high = (_percent(float(v)) for v in (ratio.min(), ratio.max()))
     return f"Against equally hot gears the mean stiffness changes by {low} to {high} %."
 

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermogear.base.display import PERCENT, exactly, number
+from thermogear.base.display import CELSIUS, MICROMETRE, PERCENT, SPEED, exactly, number
 from thermogear.base.vocabulary import ASSUMED, FASTER_RULE
 from thermogear.results.result import Result
-from thermogear.views.columns import Column, Row, declared, lines_of, pairs
+from thermogear.results.tables import in_words
+from thermogear.views.columns import PLAIN, Column, Row, declared, in_full, key, pairs, rows_along
 from thermogear.views.page import LEAD, Block, Page, Pictures, Section, Table, Text
-from thermogear.views.pages.findings import finding, ways_apart
-from thermogear.views.pages.lost_words import lost_words
-from thermogear.views.pages.sweep_numbers import lines, numbers
+from thermogear.views.pages.findings import finding, lost_rows, lost_words, ways_apart
 from thermogear.views.picture import Picture
 from thermogear.views.plots import sweeps
 from thermogear.views.plots.lost_contact import (
@@ -25,7 +25,7 @@ from thermogear.views.plots.lost_contact import (
     map_picture,
     things,
 )
-from thermogear.views.plots.parameters import page_words, shown
+from thermogear.views.plots.parameters import page_words, parameter_of, shown
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -73,17 +73,17 @@ def page(result: Result) -> Page:
     data = result.data
     if not result.title:
         result = replace(result, title=TITLES[result.kind])
-    points = _points(data, result)
-    # what loses contact is among the lines
+    points, settings = _points(data, result), _settings(data)
+    # what loses contact at each value is for the page
     located = [
         block for block in points.blocks if isinstance(block, Table) and block.caption != CONTACT
     ]
     return Page(
         result,
         _summary(data),
-        [_pictures(data), points, _settings(data)],
+        [_pictures(data), points, settings],
         numbers=lambda: numbers(result),
-        lines=lambda: [*lines(result), *lines_of(*located)],
+        told=lambda: [Text(_summary(data)), *located, *settings.blocks],
     )
 
 
@@ -94,7 +94,7 @@ def _summary(data: xr.Dataset) -> str:
         if kind in ("diagram", "run-up"):  # of the others the finding counts the points
             code = sweeps.classes_of(data)
             parts = [
-                f"{sweeps.CLASSES[n][0]} at {100.0 * np.mean(code == n):.3g} %"
+                f"{sweeps.CLASSES[n][0]} at {PERCENT(np.mean(code == n)):.3g} %"
                 for n in np.unique(code)
             ]
             said.insert(2, f"Of {code.size} points: {', '.join(parts)}.")
@@ -192,18 +192,18 @@ def _run_up_caption(data: xr.Dataset) -> str:
 
 def _points(data: xr.Dataset, result: Result) -> Section:
     blocks: list[Block] = [lost_table(data)] if result.kind == "diagram" and has_lost(data) else []
-    parameter = str(data.attrs.get("parameter", "pinion_speed"))
-    told = numbers(result)
-    if told.get("bifurcations"):
-        found = told["bifurcations"]
-        value = page_words(parameter, data["bifurcation_value"])
-        columns = [KIND, Column("period", "period"), Column(value, "value", 8)]
-        columns += [GEARS] * ("gears_degC" in found[0])
+    if "label" in data:
+        blocks.append(_motions(data))
+    if has_lost(data):
+        blocks.append(declared("What loses contact.", LOST_AT, lost_rows(data)))
+    columns, found = _bifurcations(data)
+    if found:
         blocks.append(declared("Located bifurcations", columns, found))
-        kinds = {row["kind"] for row in found}
+        kinds = {columns[0].figure(row) for row in found}
         blocks.append(Text(" ".join(w for kind, w in EXPLAINED.items() if kind in kinds)))
-    if told.get("jumps"):
-        blocks.append(declared("Jumps", JUMPS, told["jumps"]))
+    jumps = _jumps(data)
+    if jumps:
+        blocks.append(declared("Jumps", JUMPS, jumps))
         blocks.append(Text(JUMPS_EXPLAINED))
     elif str(data.attrs["kind"]) == "run-up":
         blocks.append(
@@ -212,13 +212,9 @@ def _points(data: xr.Dataset, result: Result) -> Section:
                 "notes), a motion ended in another way, as chaos does, which is not located."
             )
         )
-    if told.get("attractors"):
-        sizes = data["attractor_multiplier"].values
-        rows = [
-            {**attractor, "multiplier": size}
-            for attractor, size in zip(told["attractors"], sizes, strict=True)
-        ]
-        blocks.append(declared("Attractors", ATTRACTORS, rows))
+    attractors = _attractors(data)
+    if attractors:
+        blocks.append(declared("Attractors", ATTRACTORS, attractors))
         entropy = data.attrs
         blocks.append(
             Text(
@@ -229,6 +225,32 @@ def _points(data: xr.Dataset, result: Result) -> Section:
             )
         )
     return Section("points", "Located points", blocks)
+
+
+LOST_AT = (
+    Column("state", "state"),
+    Column("what", "what"),
+    Column("where", "where"),
+    Column("points computed", "points"),
+    Column("of", "of"),
+    Column("points assumed", "assumed"),
+)
+MOTIONS = (
+    Column("motion", "motion"),
+    Column("points computed", "labels"),
+    Column("points assumed", "assumed"),
+)
+
+
+def _motions(data: xr.Dataset) -> Table:
+    """How often each motion was found."""
+    found = _labels(data)
+    counts = {name: found[name] for name in ("labels", "assumed")}
+    rows = [
+        {"motion": motion, **{name: here.get(motion, 0) for name, here in counts.items()}}
+        for motion in dict.fromkeys((*counts["labels"], *counts["assumed"]))
+    ]
+    return declared("Motions found.", MOTIONS, rows)
 
 
 def lost_table(data: xr.Dataset) -> Table:
@@ -269,36 +291,80 @@ LOST = (
 )
 
 
-def _returns(jump: Row) -> str:
-    """Where a run back jumps again, in words where it does not."""
-    if np.isfinite(jump["return_rpm"]):
-        return number(jump["return_rpm"], 8)
-    return "not in range" if jump["into_period"] else "from chaos"
+def _returns(jump: Row) -> float | str:
+    """Where a run back jumps again [rad/s], in words where it does not."""
+    if np.isfinite(jump["jump_return"]):
+        return float(jump["jump_return"])
+    return "not in range" if jump["jump_into"] else "from chaos"
 
 
-KIND = Column("kind", "kind")
-GEARS = Column("gears [°C]", "gears_degC", 4)
+JUMPS_AT: tuple[str, ...] = ("fold", "subcritical period doubling")
+GEARS = Column("gears", "gears", 4, CELSIUS, "gears_degC")
 JUMPS = (
-    Column("run", "direction"),
+    Column("run", lambda row: "up" if row["jump_direction"] > 0 else "down", key="direction"),
     GEARS,
-    Column("jumps at [rpm]", "fold_rpm", 8),
-    Column("which is a", "at"),
-    Column("run back jumps at [rpm]", _returns),
-    Column("p-p before [µm]", "before_um"),
-    Column("p-p after [µm]", "after_um"),
+    Column("jumps at", "jump_fold", 8, SPEED, "fold_rpm"),
+    Column("which is a", lambda row: JUMPS_AT[row["jump_kind"]], key="at"),
+    Column("run back jumps at", _returns, 8, SPEED),
+    Column("p-p before", "jump_before", 3, MICROMETRE, "before_um"),
+    Column("p-p after", "jump_after", 3, MICROMETRE, "after_um"),
+    key("from_rpm", "jump_from", SPEED),
+    key("to_rpm", "jump_to", SPEED),
+    key("return_rpm", "jump_return", SPEED),
+    key("into_period", "jump_into"),
 )
 ATTRACTORS = (
     Column(
         "attractor",
         lambda row: f"period {row['period']}" if row["period"] else "chaotic, estimate",
     ),
-    Column("x", "x", 9),
-    Column("x′", "v", 9),
-    Column("multiplier", "multiplier", 6),
-    Column("starts", "count"),
+    Column("x", "x", 9, key="x"),
+    Column("x′", "v", 9, key="v"),
+    Column("multiplier", "attractor_multiplier", 6),
+    Column("starts", "count", key="count"),
     Column("share", "fraction", 5, PERCENT),
-    Column("to the border [b]", "border_distance"),
+    Column("to the border [b]", "border_distance", key="border_distance"),
+    key("period"),
+    key("fraction"),
 )
+
+
+def _located(data: xr.Dataset, dim: str) -> list[dict[str, Any]]:
+    """The rows of bifurcations or jumps, with the temperature of the gears at each."""
+    if f"{dim}_state" in data:
+        gears = data["gear_temperature"].values[data[f"{dim}_state"].values]
+        data = data.assign(gears=(dim, gears))
+    return rows_along(data, dim)
+
+
+def _jumps(data: xr.Dataset) -> list[dict[str, Any]]:
+    return _located(data, "jump") if "jump_kind" in data else []
+
+
+def _bifurcations(data: xr.Dataset) -> tuple[list[Column], list[dict[str, Any]]]:
+    """Columns and rows of the located bifurcations; no rows where none were looked for."""
+    if "bifurcation_kind" not in data:
+        return [], []
+    name, values = str(data.attrs.get("parameter", "pinion_speed")), data["bifurcation_value"]
+    unit = parameter_of(name, values)
+    columns = [
+        Column("kind", lambda row: row["bifurcation_kind"].replace("_", " "), key="kind"),
+        Column("period", "bifurcation_period", key="period"),
+        Column(
+            page_words(name, values), lambda row: float(unit.show(row["bifurcation_value"])), 8,
+            PLAIN, "value",
+        ),
+    ]  # fmt: skip
+    return columns + [GEARS] * ("bifurcation_state" in data), _located(data, "bifurcation")
+
+
+def _attractors(data: xr.Dataset) -> list[dict[str, Any]]:
+    """The attractors, each with its first section."""
+    if "attractor_x" not in data:
+        return []
+    first = {name: data[f"attractor_{name}"][:, 0] for name in ("x", "v")}
+    periods = data["attractor_period"].drop_attrs()
+    return rows_along(data.assign(first | {"period": periods}), "attractor_number")
 
 
 def _settings(data: xr.Dataset) -> Section:
@@ -312,3 +378,48 @@ def _settings(data: xr.Dataset) -> Section:
     there = {words: data.attrs[name] for name, words in shown.items() if data.attrs.get(name)}
     tables = [pairs("", ("what", "value"), there)] if there else []
     return Section("settings", "How it was computed", tables)
+
+
+# --- figures as JSON wants them ---------------------------------------------------------------
+
+
+def numbers(result: Result) -> dict[str, Any]:
+    """The figures of a stored result."""
+    data, kind = result.data, result.kind
+    found = _basin_numbers(data) if kind == "basins" else _labels(data)
+    if kind == "diagram":
+        parameter = str(data.attrs["parameter"])
+        apart = shown(parameter, data[parameter])[ways_apart(data)]
+        found |= {"parameter": parameter, "ways_apart": apart.tolist()}
+    if kind == "run-up":
+        found["jumps"] = [in_full(JUMPS, row) for row in _jumps(data)]
+    if kind in ("diagram", "run-up"):
+        columns, rows = _bifurcations(data)
+        found["bifurcations"] = [in_full(columns, row) for row in rows]
+    seconds = result.text("seconds")
+    return found | {"rule": FASTER_RULE} | ({"seconds": float(seconds)} if seconds else {})
+
+
+def _labels(data: xr.Dataset) -> dict[str, Any]:
+    """How often each motion was found, and how often it is assumed."""
+    told = np.char.replace(in_words(data)["label"].values, "_", " ").astype("U32")
+    periodic = told == "periodic"
+    told[periodic] = np.char.add("period-", data["period"].values[periodic].astype(str))
+    assumed = data["status"].values == ASSUMED
+    found: dict[str, Any] = {
+        "points": told.size,
+        "labels": dict(Counter(sorted(told[~assumed].tolist())).most_common()),
+        "assumed": dict(Counter(sorted(told[assumed].tolist())).most_common()),
+    }
+    counts = ("total_periods", "full_periods", "computed_points")
+    found |= {name: int(data.attrs[name]) for name in counts if name in data.attrs}
+    return found | ({"lost_contact": lost_rows(data)} if has_lost(data) else {})
+
+
+def _basin_numbers(data: xr.Dataset) -> dict[str, Any]:
+    names = ("basin_entropy", "boundary_basin_entropy", "unassigned")
+    return {
+        "points": data["attractor"].size,
+        "attractors": [in_full(ATTRACTORS, row) for row in _attractors(data)],
+        **{name: float(data.attrs[name]) for name in names},
+    }

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from markupsafe import Markup
 
-from thermogear.base.display import celsius
+from thermogear.base.display import MICROMETRE, PERCENT, celsius
 from thermogear.results.result import Result
-from thermogear.views.columns import PLAIN, Column, Row, declared, rows_along
+from thermogear.views.columns import PLAIN, Column, Row, declared, in_full, key, pairs, rows_along
 from thermogear.views.page import (
     LEAD,
     Block,
@@ -71,7 +71,7 @@ def page(result: Result) -> Page:
         sections + background(result),
         tiles=_tiles(result),
         numbers=lambda: _numbers(result),
-        lines=lambda: _lines(result),
+        told=lambda: _told(result),
     )
 
 
@@ -145,7 +145,7 @@ def _tiles(results: Result) -> list[Tile]:
     found = results.table("counts")
     total = sum(found.values())
     return [
-        Tile(name, str(count), f"{100 * count / total:.0f} % of {total} claims")
+        Tile(name, str(count), f"{PERCENT(count / total):.0f} % of {total} claims")
         for name, count in found.items()
     ]
 
@@ -279,9 +279,14 @@ def _deformation(results: Result, pictures: Pictures) -> list[Block]:
     grid = results.group("grid")
     if grid is not None:
         for name, heading, unit, scale in (
-            ("friction", "Friction over speed and torque", "mean friction coefficient [–]", 1.0),
-            ("flash", "Flash temperature over speed and torque", "highest flash [K]", 1.0),
-            ("growth", "Growth over speed and torque", "mean growth of both flanks [µm]", 1e6),
+            ("friction", "Friction over speed and torque", "mean friction coefficient [–]", PLAIN),
+            ("flash", "Flash temperature over speed and torque", "highest flash [K]", PLAIN),
+            (
+                "growth",
+                "Growth over speed and torque",
+                "mean growth of both flanks [µm]",
+                MICROMETRE,
+            ),
         ):
             pictures.add(
                 f"grid-{name}", heading,
@@ -372,23 +377,20 @@ def _tests(results: Result, pictures: Pictures) -> list[Block]:
     return found + _blocks(gear_sections.vibration(results, pictures))
 
 
-# --- figures as the terminal and JSON want them -----------------------------------------------
+# --- figures as JSON wants them ---------------------------------------------------------------
 
 
 def _numbers(result: Result) -> dict[str, Any]:
     """Counts, verdicts and the ranking of the inputs, JSON-ready."""
     claims = result.groups["claims"]
-    names = [*map(str, claims.data_vars)]
-    rows = [{name: str(row[name]) for name in names} for row in rows_along(claims, "claim")]
+    columns = [key(str(name)) for name in claims.data_vars]
+    rows = [in_full(columns, row) for row in rows_along(claims, "claim")]
     found = {
-        "thermogear": result.text("thermogear"),
-        "title": result.title,
-        "kind": "thesis",
         "claims": len(rows),
         "claims_in_all": int(result.text("claims_in_all")),
         "verdicts": result.table("counts"),
         "sentences": result.table("sentences"),
-        "seconds": round(float(result.text("seconds")), 1),
+        "seconds": float(result.text("seconds")),
         "rows": rows,
     }
     trains = result.group("rig_trains")
@@ -398,17 +400,18 @@ def _numbers(result: Result) -> dict[str, Any]:
         ranked = result.groups["sensitivity"]
         found["sensitivity"] = {
             "evaluations": int(ranked.attrs["evaluations"]),
-            "seconds": round(float(ranked.attrs["seconds"]), 1),
-            "results": [str(text) for text in ranked["sentence"].values],
+            "seconds": float(ranked.attrs["seconds"]),
+            "results": ranked["sentence"].values.tolist(),
         }
     return found
 
 
-def _lines(result: Result) -> list[str]:
-    found = _numbers(result)
-    cut = found["claims"] < found["claims_in_all"]
-    of = f" of {found['claims_in_all']}" if cut else ""
+def _told(result: Result) -> list[Block]:
+    counts, all_ = result.table("counts"), int(result.text("claims_in_all"))
+    claims = sum(counts.values())
+    of = f" of {all_}" if claims < all_ else ""
+    seconds = float(result.text("seconds"))
     return [
-        f"{found['claims']}{of} claims in {found['seconds']:.0f} s",
-        *(f"{count:6d}  {verdict}" for verdict, count in found["verdicts"].items()),
+        Text(f"{claims}{of} claims in {seconds:.0f} s"),
+        pairs("", ("verdict", "claims"), counts),
     ]

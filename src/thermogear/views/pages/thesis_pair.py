@@ -14,6 +14,7 @@ from thermogear.base.display import (
     CELSIUS,
     KELVIN,
     MICROMETRE,
+    PERCENT,
     SPEED,
     celsius,
     exactly,
@@ -24,13 +25,13 @@ from thermogear.base.parameters import PARAMETERS
 from thermogear.base.vocabulary import STATUS, moves
 from thermogear.results.result import Result
 from thermogear.results.tables import rows_of
-from thermogear.views.columns import Column, declared
-from thermogear.views.page import Block, Gallery, Page, Pictures, Section, Text, notice_lines
+from thermogear.views.columns import Column, by_name, declared, in_full, key, rows_along
+from thermogear.views.page import Block, Gallery, Page, Pictures, Section, Text
 from thermogear.views.pages import captions, gear_sections, overlay
 from thermogear.views.pages.background import background
-from thermogear.views.pages.findings import finding
-from thermogear.views.pages.lost_words import lost_words
+from thermogear.views.pages.findings import finding, lost_words
 from thermogear.views.pages.record_tables import comparison_table
+from thermogear.views.pages.survey import OPERATING
 from thermogear.views.pages.sweeps import LOST_DIAGRAM, lost_table
 from thermogear.views.plots import laws
 from thermogear.views.plots.lost_contact import forces_picture
@@ -65,11 +66,7 @@ def page(result: Result) -> Page:
         summary,
         sections + background(result),
         numbers=lambda: _numbers(result, findings),
-        lines=lambda: [
-            summary,
-            *(f"{title}: {words}" for title, words in findings.items()),
-            *notice_lines(result),
-        ],
+        told=lambda: map(Text, [summary, *(f"{t}: {words}" for t, words in findings.items())]),
     )
 
 
@@ -200,7 +197,7 @@ def _diagram(name: str, result: Result, pictures: Pictures) -> Told:
 def _shares(one: xr.Dataset) -> str:
     """Which motions one state settles on, by their shares of the values."""
     code = classes_of(one)
-    parts = (f"{CLASSES[n][0]} at {number(100.0 * np.mean(code == n))} %" for n in np.unique(code))
+    parts = (f"{CLASSES[n][0]} at {number(PERCENT(np.mean(code == n)))} %" for n in np.unique(code))
     return ", ".join(parts)
 
 
@@ -297,27 +294,20 @@ STEPS: tuple[tuple[str, str, Callable[[Result, Pictures], Told]], ...] = (
 )
 
 
+AT_TEMPERATURE = (
+    key("gear_temperature_K", "gear_temperature"),
+    *map(key, ("status", "label", "half_backlash", SWING, HALF, "multiplier_modulus")),
+)
+
+
 def _numbers(result: Result, findings: dict[str, str]) -> dict[str, Any]:
     """Findings as sentences, and the figures behind them in SI."""
-    mesh = _hot(result.groups["mesh"])
-    kept = ("half_backlash", SWING, HALF, "multiplier_modulus")
+    row = result.groups["temperature"].isel(bundle=0, operating=0)
+    there = [one for one in AT_TEMPERATURE if one.value in row]
     return {
-        "thermogear": result.text("thermogear"),
-        "title": result.title,
-        "kind": result.kind,
-        "pinion_speed_rpm": SPEED(float(mesh["pinion_speed"])),
-        "pinion_torque_Nm": float(mesh["pinion_torque"]),
-        "frequency_ratio": float(mesh["frequency_ratio"]),
+        **by_name(_hot(result.groups["mesh"]), (*OPERATING, key("frequency_ratio"))),
         "findings": findings,
-        "temperature": [
-            {
-                "gear_temperature_K": float(one["gear_temperature"]),
-                "status": STATUS[int(one["status"])],
-                "label": str(one["label"].item()),
-                **{name: float(one[name]) for name in kept if name in one},
-            }
-            for one in _temperatures(result)
-        ],
+        "temperature": [in_full(there, place) for place in rows_along(row, "gear_temperature")],
         "bifurcations": result.table("matches"),
         "left_out": result.rows("left_out"),
     }

@@ -11,23 +11,18 @@ import numpy as np
 from markupsafe import Markup
 
 from thermogear.base.display import display, in_words, percent
+from thermogear.base.vocabulary import UNDEFORMED, label
 from thermogear.results.result import Result
-from thermogear.views.columns import Column, Row, declared, rows_along
+from thermogear.views.columns import Column, Row, declared, in_full, key, rows_along
 from thermogear.views.csv_files import table_text
-from thermogear.views.page import (
-    Block,
-    Code,
-    Page,
-    Pictures,
-    Section,
-    Table,
-    Text,
-    notice_lines,
-)
-from thermogear.views.plots import versus as plots
-from thermogear.views.style import chosen, names_of
+from thermogear.views.page import Block, Code, Page, Pictures, Section, Table, Text
+from thermogear.views.picture import Axis, Panel, Picture
+from thermogear.views.plots.curves import along_path
+from thermogear.views.plots.motion import HALF_ORDERS
+from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
+from thermogear.views.style import INK, OKABE_ITO, WIDE, chosen, names_of
 from thermogear.views.tables import jam_words
-from thermogear.views.typesetting import field_name, operating_names, prose
+from thermogear.views.typesetting import axis_label, field_name, operating_names, plain, prose
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -77,8 +72,15 @@ def page(result: Result) -> Page:
         result,
         _summary(data),
         [_differences(data), _figures(data), *_pictures(data), _cases(data)],
-        numbers=lambda: _numbers(result),
-        lines=lambda: notice_lines(result),
+        numbers=lambda: {
+            "kind": result.text("of"),
+            "cases": names_of(data, "case"),
+            "differences": result.rows("differences"),
+            "choices": result.rows("choices"),
+            "units": _numbers_there(data),
+            "figures": _rows(data),
+        },
+        told=lambda: [Text(_summary(data))],
         tables=lambda: {
             f"versus_{name}.csv": table_text(head, rows)
             for name, (head, rows) in _csv_tables(data).items()
@@ -226,19 +228,19 @@ def _pictures(data: xr.Dataset) -> list[Section]:
         for o in (int(of[i]) for i in chosen(of.size, most=MOST_POINTS)):
             for name, heading, words in CURVES:
                 repeats = any(_alike(data, name, b, o, p) for p in before)
-                if repeats or not plots.has_curve(data, name, bundle=b, operating=o):
+                if repeats or not has_curve(data, name, bundle=b, operating=o):
                     continue
                 pictures.add(
                     f"{name}-{b}-{o}", f"{heading}, {points[o]}", words, data, (name,),
-                    lambda n=name, o=o, b=b: plots.curve(data, n, bundle=b, operating=o),  # type: ignore[misc]
+                    lambda n=name, o=o, b=b: curve(data, n, bundle=b, operating=o),  # type: ignore[misc]
                 )  # fmt: skip
-            if plots.has_curve(data, "line_amplitude", bundle=b, operating=o):
+            if has_curve(data, "line_amplitude", bundle=b, operating=o):
                 pictures.add(
                     f"spectrum-{b}-{o}", f"Spectrum of the displacement, {points[o]}",
                     "Lines of one order stand side by side: they are set apart by "
-                    f"{plots.SHIFT:g} orders for each case, so that none hides another.",
+                    f"{SHIFT:g} orders for each case, so that none hides another.",
                     data, ("line_amplitude",),
-                    lambda o=o, b=b: plots.spectrum(data, bundle=b, operating=o), wide=True,  # type: ignore[misc]
+                    lambda o=o, b=b: spectrum(data, bundle=b, operating=o), wide=True,  # type: ignore[misc]
                 )  # fmt: skip
             before.append(o)
         blocks = pictures.take()
@@ -278,10 +280,10 @@ def _cases(data: xr.Dataset) -> Section:
 
 def _rows(data: xr.Dataset) -> list[dict[str, Any]]:
     """The figures of every case, bundle, point and state that there are."""
-    names = ("case", "bundle", "point", "state", "label", *_numbers_there(data))
+    names = [*map(key, ("case", "bundle", "point", "state", "label", *_numbers_there(data)))]
     places = data.assign_coords(operating=data["point"].values)
     rows = rows_along(places, "case", "bundle", "operating", "state")
-    return [{name: row[name] for name in names} for row in rows if row["present"]]
+    return [in_full(names, row) for row in rows if row["present"]]
 
 
 def _numbers_there(data: xr.Dataset) -> dict[str, str]:
@@ -308,19 +310,126 @@ def _csv_tables(data: xr.Dataset) -> dict[str, tuple[list[str], list[list[Any]]]
     }
 
 
-# --- figures as JSON wants them ---------------------------------------------------------------
+# --- pictures -----------------------------------------------------------------------------------
 
 
-def _numbers(result: Result) -> dict[str, Any]:
-    """What a machine wants to read of :func:`versus`: texts, and a row for each point."""
-    data = result.data
-    return {
-        "thermogear": result.text("thermogear"),
-        "title": result.title,
-        "kind": result.text("of"),
-        "cases": names_of(data, "case"),
-        "differences": result.rows("differences"),
-        "choices": result.rows("choices"),
-        "units": _numbers_there(data),
-        "figures": _rows(data),
-    }
+DASHES: dict[str, tuple[float, ...]] = {UNDEFORMED: (4, 2), "hot": ()}
+HIGHEST_ORDER = 8.0
+SHIFT = 0.07
+"""Lines of neighbouring cases in a spectrum stand so far apart [orders]."""
+
+
+def has_curve(data: xr.Dataset, name: str, *, bundle: int, operating: int) -> bool:
+    """Whether any case has a curve ``name`` there that is not zero throughout."""
+    if name not in data:
+        return False
+    values = data[name].isel(bundle=bundle, operating=operating).values
+    return bool((np.isfinite(values) & (values != 0.0)).any())
+
+
+def curve(data: xr.Dataset, name: str, *, bundle: int, operating: int) -> Picture:
+    """``name`` of every case and state over its own positions, at one bundle and point."""
+    along = "path_position" if "path_place" in data[name].dims else "mesh_phase"
+    unit = str(data[name].attrs["units"])
+    here = data.isel(bundle=bundle, operating=operating)
+    y = Axis(axis_label(name, None if len(axis_label(name)) < 40 else WORDS.get(name)))
+    panel = (
+        Panel(Axis(axis_label(along), low=0.0, high=1.0), y)
+        if along == "mesh_phase"
+        else _path(data, y)
+    )
+    drawn: set[str] = set()
+    count = data.sizes["case"]
+    for c, colour in zip(range(count), OKABE_ITO, strict=False):
+        # earlier cases are broader, so that a later one on the same curve does not hide them
+        width = 1.3 + min(1.8, 3.0 / max(count - 1, 1)) * (count - 1 - c)
+        x = display(along)(here[along].isel(case=c).values)
+        for s, state in enumerate(str(one) for one in data["state"].values):
+            values = here[name].isel(case=c, state=s).values
+            if not (np.isfinite(values) & (values != 0.0)).any():
+                continue
+            drawn.add(state)
+            dash = DASHES.get(state, ())
+            panel.curve(x, display(name, unit)(values), colour=colour, dash=dash, width=width)
+    y.low = min(0.0, panel.extent("y")[0])
+    _entries(panel, data)
+    for state in sorted(drawn) if len(drawn) > 1 else ():
+        panel.curve([], [], colour=INK, dash=DASHES.get(state, ()), label=plain(state))
+    return Picture([[panel]], legend=4)
+
+
+WORDS = {
+    "friction_coefficient": "friction coefficient",
+    "flash_temperature": "flash temperature rise",
+    "deformation_sum": "growth of both flanks",
+    "half_backlash_curve": "half backlash",
+    "mesh_stiffness": "mesh stiffness",
+    "line_amplitude": "amplitude of displacement",
+}
+"""Words of an axis where the long name would not fit beside it."""
+
+
+def spectrum(data: xr.Dataset, *, bundle: int, operating: int) -> Picture:
+    """Spectral lines of the displacement: a colour for each case, open undeformed and full hot."""
+    here = data.isel(bundle=bundle, operating=operating)
+    unit = str(data["line_amplitude"].attrs["units"])
+    scale = display("line_amplitude", unit)
+    count = data.sizes["case"]
+    ends = [
+        floor_of(
+            scale(here["line_amplitude"].isel(case=c).values),
+            order=here["order"].isel(case=c).values,
+            highest=HIGHEST_ORDER,
+        )
+        for c in range(count)
+        if np.isfinite(here["line_amplitude"].isel(case=c).values).any()
+    ]
+    panel = over_orders(
+        HALF_ORDERS, axis_label("line_amplitude", WORDS["line_amplitude"], unit),
+        floor=max(low for low, _ in ends), top=max(high for _, high in ends), highest=HIGHEST_ORDER,
+    )  # fmt: skip
+    drawn: set[str] = set()
+    for c, colour in zip(range(count), OKABE_ITO, strict=False):
+        order = here["order"].isel(case=c).values
+        for s, state in enumerate(str(one) for one in data["state"].values):
+            lines = here["line_amplitude"].isel(case=c, state=s).values
+            if not np.isfinite(lines).any():
+                continue
+            drawn.add(state)
+            # the line at zero goes before the shift could move it away from zero
+            kept = np.isfinite(order) & (order > 0.0)
+            shift = SHIFT * (c - 0.5 * (count - 1))
+            draw_lines(
+                panel, order=order[kept] + shift, amplitude=scale(lines[kept]), colour=colour,
+                label="", filled=state != UNDEFORMED,
+            )  # fmt: skip
+    _entries(panel, data)
+    for state in sorted(drawn) if len(drawn) > 1 else ():
+        cold = state == UNDEFORMED
+        panel.points([], [], size=6.4 if cold else 4.2, open=cold, colour=INK, label=plain(state))
+    return Picture([[panel]], size=(WIDE, 3.6), legend=4)
+
+
+def _entries(panel: Panel, data: xr.Dataset) -> None:
+    """An entry of the legend for each case in its colour."""
+    for title, colour in zip(data["case"].values, OKABE_ITO, strict=False):
+        panel.curve([], [], colour=colour, width=2.4, label=plain(title))
+
+
+def _path(data: xr.Dataset, y: Axis) -> Panel:
+    """Over the path of contact, A..E marked where the cases share one."""
+    points = json.loads(str(data.attrs.get("path_points", "[]")))
+    x = Axis(axis_label("path_position"))
+    alike = bool(points) and all(
+        set(each) == set(points[0])
+        and np.allclose(list(each.values()), list(points[0].values()), rtol=1e-9)
+        for each in points
+    )
+    if not alike:
+        return Panel(x, y)
+    values = data["path_position"].values
+    told = {"path_points": json.dumps(points[0])}
+    one = label({}, {"path_position": np.sort(values[np.isfinite(values)])}, told)
+    panel = along_path(one, y)
+    panel.x.words = x.words
+    return panel

@@ -8,15 +8,18 @@ from operator import itemgetter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from thermogear.base.display import HERTZ, NEWTON, SPEED, number
 from thermogear.base.vocabulary import STATUS, STILL
 from thermogear.results.result import Result
-from thermogear.views.columns import Column, Row, declared
+from thermogear.views.columns import Column, Row, by_name, declared, in_full, key, rows_along
 from thermogear.views.page import Page, Shown, Table
 from thermogear.views.pages.survey import survey
-from thermogear.views.plots import waterfall as plots
+from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.shafts import not_valid
+from thermogear.views.plots.sweeps import edges
+from thermogear.views.style import INK, QUIET, STATES, WIDE, scale
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -35,14 +38,14 @@ LINES = (
 def page(result: Result) -> Page:
     """Vibration over speed both ways, order waterfalls, jumps and critical speeds."""
     data = result.data
-    made = [("speed", "Vibration over speed", OVER, partial(plots.over_speed, data))]
+    made = [("speed", "Vibration over speed", OVER, partial(over_speed, data))]
     if data.sizes["pinion_speed"] > 1:
-        made.append(("orders", "Bearing forces by order", LINES, partial(plots.lines, data, 0)))
+        made.append(("orders", "Bearing forces by order", LINES, partial(lines, data, 0)))
         if np.isfinite(data["housing_line"].values).any():
-            made.append(("sound", "Housing by order", LINES, partial(plots.sound, data, 0)))
+            made.append(("sound", "Housing by order", LINES, partial(sound, data, 0)))
     pictures = [Shown(*one, wide=True) for one in made]
     tables = [jumps(data), _critical(data)]
-    return survey(result, summary(data), pictures, tables, numbers=numbers)
+    return survey(result, summary(data), pictures, tables, numbers=partial(numbers, data))
 
 
 def summary(data: xr.Dataset) -> str:
@@ -53,7 +56,7 @@ def summary(data: xr.Dataset) -> str:
         why = [STILL[STATUS[code]] for code in np.unique(data["status"].values)]
         return f"No state of heat moves: {'; '.join(why)}."
     place = np.unravel_index(int(np.nanargmax(rms)), rms.shape)
-    state = plots.states_of(data)[place[0]]
+    state = states_of(data)[place[0]]
     way = ("up", "down")[place[1]]
     count = int(data["apart_held"].values.sum())
     jumps = f"two motions on {count} stretch{'es' * (count != 1)}" if count else "no jump"
@@ -64,34 +67,29 @@ def summary(data: xr.Dataset) -> str:
     )
 
 
-def _apart(data: xr.Dataset) -> list[dict[str, Any]]:
-    """The stretches on which the ways up and down differ."""
-    states = plots.states_of(data)
-    parts = ["mesh force", *json.loads(data.attrs["bearing_names"])]
-    stretches = [data.isel(stretch=i) for i in range(data.sizes["stretch"])]
-    return [
-        {
-            "state": states[int(one["apart_state"])],
-            **{f"{end}_rpm": SPEED(float(one[f"apart_{end}"])) for end in ("from", "to", "at")},
-            "of": parts[int(one["apart_part"])],
-            "up_rms_N": float(one["apart_up"]),
-            "down_rms_N": float(one["apart_down"]),
-            "because_of": "two motions" if int(one["apart_held"]) else "the rate of the run",
-        }
-        for one in stretches
-    ]
-
-
 APART = (
-    Column("state", "state"),
-    Column("from [rpm]", "from_rpm", ".6g"),
-    Column("to [rpm]", "to_rpm", ".6g"),
-    Column("most at [rpm]", "at_rpm", ".6g"),
-    Column("of", "of"),
-    Column("up, rms [N]", "up_rms_N"),
-    Column("down, rms [N]", "down_rms_N"),
-    Column("because of", "because_of"),
+    Column("state", "apart_state", key="state"),
+    Column("from", "apart_from", ".6g", SPEED, "from_rpm"),
+    Column("to", "apart_to", ".6g", SPEED, "to_rpm"),
+    Column("most at", "apart_at", ".6g", SPEED, "at_rpm"),
+    Column("of", "apart_part", key="of"),
+    Column("up, rms", "apart_up", 3, NEWTON, "up_rms_N"),
+    Column("down, rms", "apart_down", 3, NEWTON, "down_rms_N"),
+    Column(
+        "because of",
+        lambda row: "two motions" if row["apart_held"] else "the rate of the run",
+        key="because_of",
+    ),
 )
+
+
+def _apart(data: xr.Dataset) -> list[dict[str, Any]]:
+    """The stretches on which the ways up and down differ, with the words of states and parts."""
+    states = np.array(states_of(data))[data["apart_state"].values]
+    parts = np.array(["mesh force", *json.loads(data.attrs["bearing_names"])])
+    parts = parts[data["apart_part"].values]
+    named = data.assign(apart_state=("stretch", states), apart_part=("stretch", parts))
+    return rows_along(named, "stretch")
 
 
 def jumps(data: xr.Dataset) -> Table:
@@ -122,37 +120,125 @@ def _critical(data: xr.Dataset) -> Table:
     low, high = data["pinion_speed"].values[[0, -1]]
     rows = [
         {"state": state, **resonance}
-        for state, found in zip(
-            plots.states_of(data), json.loads(data.attrs["critical"]), strict=True
-        )
+        for state, found in zip(states_of(data), json.loads(data.attrs["critical"]), strict=True)
         for resonance in sorted(found, key=itemgetter("speed"))
         if low <= resonance["speed"] <= high
     ]
     return declared("Critical speeds of the linear train within the run.", CRITICAL, rows, names=2)
 
 
-def numbers(result: Result) -> dict[str, Any]:
+IN_JSON = (
+    key("mesh_force_rms_N", "mesh_force_rms"),
+    key("mesh_force_max_N", "mesh_force_max"),
+    key("contact_loss_share"),
+    key("bearing_force_max_N", lambda data: np.nanmax(data["bearing_force_max"].values, axis=1)),
+    key("housing_rms_m_per_s2", "housing_rms"),
+)
+
+
+def numbers(data: xr.Dataset) -> dict[str, Any]:
     """The figures of a run-up, JSON-ready."""
-    data = result.data
     return {
-        "speeds_rpm": (SPEED(data["pinion_speed"].values)).tolist(),
-        **{
-            state: {
-                way: _of_one_way(data.isel(state=s, direction=d))
-                for d, way in enumerate(("up", "down"))
-            }
-            for s, state in enumerate(plots.states_of(data))
-        },
-        "apart": _apart(data),
+        "speeds_rpm": SPEED(data["pinion_speed"].values).tolist(),
+        **by_name(data, IN_JSON, "state", "direction"),
+        "apart": [in_full(APART, row) for row in _apart(data)],
     }
 
 
-def _of_one_way(data: xr.Dataset) -> dict[str, list[float]]:
-    """Vibration over speed of one state and direction."""
-    return {
-        "mesh_force_rms_N": data["mesh_force_rms"].values.tolist(),
-        "mesh_force_max_N": data["mesh_force_max"].values.tolist(),
-        "contact_loss_share": data["contact_loss_share"].values.tolist(),
-        "bearing_force_max_N": np.nanmax(data["bearing_force_max"].values, axis=1).tolist(),
-        "housing_rms_m_per_s2": data["housing_rms"].values.tolist(),
-    }
+# --- pictures -----------------------------------------------------------------------------------
+
+
+Floats = NDArray[np.float64]
+LEAST = 1e-4
+"""Of the greatest line, below which nothing is told apart."""
+LEAST_FORCE = 0.1
+"""Of the greatest resonant force on a bearing, from which a critical speed is drawn."""
+WAYS = ((0, "up", ()), (1, "down", (4.0, 3.0)))
+
+
+def over_speed(data: xr.Dataset) -> Picture:
+    """Vibration of the mesh force, the bearings and the housing over speed, up and down."""
+    rpm = SPEED(data["pinion_speed"].values)
+    panels = []
+    wanted = [
+        ("mesh_force_rms", "mesh force, rms [N]"),
+        ("bearing_force_rms", "bearing force, rms [N]"),
+        ("housing_rms", "housing, rms [m/s²]"),
+        ("contact_loss_share", "out of contact [%]"),
+    ]
+    for name, words in wanted:
+        values = data[name].values
+        if name == "bearing_force_rms":
+            values = np.nanmax(values, axis=-1)
+        if not np.isfinite(values).any() or (name == "contact_loss_share" and not values.any()):
+            continue
+        panel = Panel(Axis(""), Axis(words))
+        factor = 100.0 if name == "contact_loss_share" else 1.0
+        for s, state in enumerate(states_of(data)):
+            for d, way, dash in WAYS:
+                panel.curve(
+                    rpm, factor * values[s, d], colour=STATES.get(state, INK), dash=dash,
+                    width=1.3, label=f"{state}, {way}",
+                )  # fmt: skip
+        for speed in critical(data):
+            panel.line(x=SPEED(speed), colour=QUIET, width=0.8, dash=(1.0, 2.5))
+        panels.append([panel])
+    panels[-1][0].x = Axis("pinion speed [rpm]")
+    size = (WIDE, 1.9 * len(panels) + 0.9)
+    return Picture(panels, size=size, above=0.2, share_x="column", legend=4)
+
+
+def states_of(data: xr.Dataset) -> list[str]:
+    """Names of the states of heat."""
+    return [str(one) for one in json.loads(data.attrs["state_names"])]
+
+
+def critical(data: xr.Dataset) -> list[float]:
+    """Critical speeds [rad/s] of the last state within the run that a bearing feels."""
+    rows = [one for one in json.loads(data.attrs.get("critical", "[]")) if one]
+    if not rows:
+        return []
+    speeds = data["pinion_speed"].values
+    inside = [one for one in rows[-1] if speeds[0] <= one["speed"] <= speeds[-1]]
+    known = [one["force"] for one in inside if np.isfinite(one["force"])]
+    least = LEAST_FORCE * max(known, default=0.0)
+    return sorted(
+        {one["speed"] for one in inside if not np.isfinite(one["force"]) or one["force"] >= least}
+    )
+
+
+def lines(data: xr.Dataset, direction: int) -> Picture:
+    """Largest line of any bearing's force over speed and order, one panel a state."""
+    rpm, order = SPEED(data["pinion_speed"].values), data["order"].values
+    values = np.nanmax(data["bearing_force_line"].values[:, direction], axis=2)
+    return _field(data, rpm, order, values, "line of bearing force [N]")
+
+
+def sound(data: xr.Dataset, direction: int) -> Picture:
+    """Lines of the housing's acceleration over speed and order, one panel a state."""
+    rpm, order = SPEED(data["pinion_speed"].values), data["order"].values
+    return _field(
+        data, rpm, order, data["housing_line"].values[:, direction], "acceleration [m/s²]"
+    )
+
+
+def _field(
+    data: xr.Dataset,
+    rpm: Floats,
+    order: Floats,
+    values: Floats,
+    words: str,
+) -> Picture:
+    # halves alone: the shafts' own orders lie too near for cells
+    half = np.isclose(2.0 * order, np.round(2.0 * order))
+    top = float(np.nanmax(values[..., half], initial=1e-12))
+    panels = []
+    for s, state in enumerate(states_of(data)):
+        panel = Panel(Axis("pinion speed [rpm]"), Axis("order of the mesh frequency [–]"), state)
+        shown = np.clip(np.nan_to_num(values[s][:, half], nan=LEAST * top), LEAST * top, None)
+        panel.field(
+            edges(rpm), edges(order[half]), shown.T, low=LEAST * top, high=top, log=True,
+            colours=scale("magma"), words=words,
+        )  # fmt: skip
+        panels.append(panel)
+    return Picture([panels], size=(WIDE, 4.4), share_y="row")

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermogear.base.display import CELSIUS, SPEED
+from thermogear.base.display import CELSIUS, PERCENT, SPEED, Display
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import (
     COLD,
@@ -32,7 +32,7 @@ HEATS = {
 }
 
 
-def over_grid(data: xr.Dataset, name: str, unit: str, scale: float = 1.0) -> Picture:
+def over_grid(data: xr.Dataset, name: str, unit: str, scale: Display) -> Picture:
     """One quantity over speed, a curve per torque: temperatures given beside the heat balance."""
     rpm = SPEED(data["speed"].values)
     torques = data["torque"].values
@@ -47,7 +47,7 @@ def over_grid(data: xr.Dataset, name: str, unit: str, scale: float = 1.0) -> Pic
         for place, colour in enumerate(ramp(len(torques))):
             for kind, (words, dash) in kinds.items():
                 if name + kind in here:
-                    values = scale * here[name + kind].values[:, place]
+                    values = scale(here[name + kind].values[:, place])
                     label = f"{words}{torques[place]:.0f} N m"
                     panel.curve(rpm, values, colour=colour, dash=dash, label=label)
         panels.append(panel)
@@ -86,12 +86,12 @@ def experiment(data: xr.Dataset) -> Picture:
         Axis("pinion speed [rpm]", ticks=place, names=[f"{v:.0f}" for v in rpm]),
         Axis("error of the displacement [%]"),
     )
-    words, uncertain = "validation uncertainty u_val", 100.0 * here["u_val"].values
+    words, uncertain = "validation uncertainty u_val", PERCENT(here["u_val"].values)
     panel.bars(place, uncertain, width=0.86, colour=FAINT, label=words, order=0.6)
     for column, (shift, colour) in enumerate(((-0.2, HOT), (0.2, COLD))):
         one = here.isel(model=column)
         panel.bars(
-            place + shift, 100.0 * np.abs(one["comparison_error"].values), width=0.36,
+            place + shift, PERCENT(np.abs(one["comparison_error"].values)), width=0.36,
             colour=colour, label=f"{one['model'].item()}, recomputed",
         )  # fmt: skip
         printed = [float(v) for v in one["printed"].values]
@@ -115,7 +115,7 @@ def sensitivity(data: xr.Dataset) -> Picture:
     spread = data["total_conf"].values
     for r, c in np.argwhere(total - spread > 0.01).tolist():
         value = float(total[r, c])
-        words = f"{100 * value:.0f}±{100 * float(spread[r, c]):.0f}"
+        words = f"{PERCENT(value):.0f}±{PERCENT(float(spread[r, c])):.0f}"
         panel.text(c, r, words, size=7.4, colour="#ffffff" if value > 0.6 else INK)
     size = (WIDE, 0.36 * len(outputs) + 2.5)
     return Picture([[panel]], size=size, left=3.1, top=0.2, bottom=1.45)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from thermogear.base.display import PERCENT
 from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.views.gears import PINION, WHEEL, GearDrawing, Points
 from thermogear.views.picture import Axis, Panel, Picture
@@ -152,7 +153,7 @@ def _mesh(drawing: GearDrawing, place: int, shown: list[str]) -> Panel:
                 edge=INK, edge_width=0.9, order=5.0,
             )  # fmt: skip
             panel.text(
-                point.real, point.imag, f"{100.0 * share:.0f} %", offset=(9.0, 0.0),
+                point.real, point.imag, f"{PERCENT(share):.0f} %", offset=(9.0, 0.0),
                 across="left", size=8.5, box=True, order=6.0,
             )  # fmt: skip
     return panel

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermogear.base.display import MILLIMETRE
+from thermogear.base.display import MILLIMETRE, PERCENT
 from thermogear.views.picture import Axis, Picture
 from thermogear.views.plots.curves import along_path
 from thermogear.views.style import DRY, FAINT, INK, OKABE_ITO, QUIET, WIDE, chosen
@@ -55,7 +55,7 @@ def laws(data: xr.Dataset, place: int, means: frozenset[str] = frozenset()) -> P
         panel.band(
             x, low=low, high=np.ones(x.size), step=True, at="x",
             colour=REGIME_COLOURS.get(name, QUIET),
-            label=f"band: {name}, {100.0 * float(shares[k]):.0f} % of the path",
+            label=f"band: {name}, {PERCENT(float(shares[k])):.0f} % of the path",
         )  # fmt: skip
     return Picture([[panel]], size=(WIDE, 4.6), top=0.55, legend=4)
 

@@ -12,9 +12,8 @@ from thermogear.base.display import CELSIUS, MICROMETRE, SPEED, STIFFNESS, numbe
 from thermogear.base.vocabulary import STATUS, STILL, is_known
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.curves import axis_of
-from thermogear.views.plots.motion import HALF_ORDERS, HIGHEST_ORDER
+from thermogear.views.plots.motion import HALF_ORDERS, HIGHEST_ORDER, thinned
 from thermogear.views.plots.one_motion import edges_in_sight
-from thermogear.views.plots.orbits import thinned
 from thermogear.views.plots.parameters import axis_words
 from thermogear.views.plots.parameters import shown as by_unit
 from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders

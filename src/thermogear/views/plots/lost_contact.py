@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.display import PERCENT
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.parameters import axis_words, each_state, named, shown
 from thermogear.views.plots.sweeps import edges, hatch_assumed, regimes
@@ -156,7 +157,7 @@ def forces_picture(data: xr.Dataset) -> Picture:
                 label = f"{words}, {way}" if start == 0 else ""
                 look = {"colour": colour, "dash": dash, "width": 1.3, "marker": dot}
                 force.curve(p, forces[direction, start], label=label, **look)  # type: ignore[arg-type]
-                free.curve(p, 100.0 * shares[direction, start], **look)  # type: ignore[arg-type]
+                free.curve(p, PERCENT(shares[direction, start]), **look)  # type: ignore[arg-type]
     if not np.nansum(data["drive_free_share"].values) + np.nansum(
         data["bearing_free_share"].values
     ):

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.display import MICROMETRE, MILLIMETRE_PER_SECOND, SPEED, STIFFNESS, Display
 from thermogear.views.picture import Axis, Panel, Picture, Top
-from thermogear.views.plots.orbits import refined
+from thermogear.views.plots.motion import refined
 from thermogear.views.plots.parameters import axis_words, shown
 from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
-from thermogear.views.style import COLD, HOT, OKABE_ITO, QUIET, WIDE
+from thermogear.views.style import COLD, HOT, INK, OKABE_ITO, QUIET, WIDE
 from thermogear.views.typesetting import plain
 
 if TYPE_CHECKING:
@@ -37,7 +38,7 @@ MARKS = {
 def orbit_picture(data: xr.Dataset) -> Picture:
     """Time history, phase plane with section, Floquet multipliers and spectrum of one orbit."""
     si = data["displacement"].attrs.get("units") == "m"
-    length, speed = (1e6, 1e3) if si else (1.0, 1.0)
+    length, speed = (MICROMETRE, MILLIMETRE_PER_SECOND) if si else (Display("–"), Display("–"))
     x_words, v_words = (
         ("displacement x [µm]", "velocity [mm/s]")
         if si
@@ -54,20 +55,20 @@ def orbit_picture(data: xr.Dataset) -> Picture:
     )
     t, x, v = refined(t, x=x, v=v, times=4)
     turns = t * float(data["orbit_period"]) / t[-1]
-    x, v = x * length, v * speed
+    x, v = length(x), speed(v)
     history = Panel(Axis("time in mesh periods t/T [–]"), Axis(x_words), "One orbit")
     phase = Panel(Axis(x_words), Axis(v_words), "Phase plane, section at phase 0")
     history.curve(turns, x, colour=COLD, width=1.3)
     phase.curve(x, v, colour=COLD, width=1.3)
     phase.points(
-        data["section_displacement"].values * length, data["section_velocity"].values * speed,
+        length(data["section_displacement"].values), speed(data["section_velocity"].values),
         size=6.5, colour=HOT, edge="white",
     )  # fmt: skip
     for place in edges_in_sight(data):
-        history.line(y=length * place, colour=QUIET, width=1.0, dash=DASHED)
-        phase.line(x=length * place, colour=QUIET, width=1.0, dash=DASHED)
+        history.line(y=length(place), colour=QUIET, width=1.0, dash=DASHED)
+        phase.line(x=length(place), colour=QUIET, width=1.0, dash=DASHED)
     unit = _multipliers(data["multiplier_real"].values, data["multiplier_imag"].values)
-    spectrum = _spectrum(data, length, "µm" if si else "–")
+    spectrum = _spectrum(data, length)
     return Picture([[history, phase], [unit, spectrum]], size=(WIDE, 6.6), above=0.95, between=0.9)
 
 
@@ -91,11 +92,11 @@ def _multipliers(real: Floats, imag: Floats) -> Panel:
     return panel
 
 
-def _spectrum(data: xr.Dataset, length: float, unit: str) -> Panel:
-    order, amplitude = data["order"].values, data["line_amplitude"].values * length
+def _spectrum(data: xr.Dataset, length: Display) -> Panel:
+    order, amplitude = data["order"].values, length(data["line_amplitude"].values)
     floor, top = floor_of(amplitude, order=order, highest=HIGHEST_ORDER)
     panel = over_orders(
-        "order of the mesh frequency [–]", f"amplitude [{unit}]", floor=floor, top=top,
+        "order of the mesh frequency [–]", f"amplitude [{length.unit}]", floor=floor, top=top,
         highest=HIGHEST_ORDER,
     )  # fmt: skip
     draw_lines(panel, order=order, amplitude=amplitude, colour=COLD, label="")
@@ -234,3 +235,78 @@ def cascade_picture(branches: Sequence[xr.Dataset]) -> Picture:
         panels.append(panel)
     panels[0].y.words = "displacement X at phase 0 [–]"
     return Picture([panels], size=(WIDE, 3.6), between=0.62)
+
+
+# --- pictures -----------------------------------------------------------------------------------
+
+
+FORMS: dict[str, tuple[str, str, tuple[float, ...]]] = {
+    "exact": ("exact loaded contact", INK, (5, 2)),
+    "shared": ("one spring for each tooth pair", COLD, ()),
+    "one_spring": ("one spring k(t)", HOT, ()),
+}
+
+
+def shared_picture(rest: xr.Dataset, motion: xr.Dataset) -> Picture:
+    """Stiffness and error over load; swing of the error in motion over speed at two loads."""
+    load = rest["load"].values
+    mean = float(load[np.argmin(np.abs(rest["factor"].values - 1.0))])
+    stiffness = Panel(
+        Axis("normal force [N]", log="full"), Axis("mean stiffness [10⁸ N/m]"),
+        "At rest: stiffness",
+    )  # fmt: skip
+    swing = Panel(
+        Axis("normal force [N]", log="full"), Axis("peak to peak [µm]", log="full"),
+        "At rest: transmission error",
+    )  # fmt: skip
+    for panel, name, scale in ((stiffness, "stiffness", STIFFNESS), (swing, "swing", MICROMETRE)):
+        for form, (words, colour, dash) in FORMS.items():
+            values = scale(rest[f"{form}_{name}"].values)
+            panel.curve(load, values, colour=colour, dash=dash, width=1.5, label=words)
+        panel.line(x=mean, colour=QUIET, width=1.0, dash=(1, 2))
+    rpm = SPEED(motion["speed"].values)
+    below = []
+    for place, part in enumerate(motion["part"].values):
+        panel = Panel(
+            Axis("pinion speed [rpm]"), Axis("transmission error, peak to peak [µm]"),
+            f"In motion at {float(part):g} of the mean load",
+        )  # fmt: skip
+        for form in ("shared", "one_spring"):
+            words, colour, dash = FORMS[form]
+            values = MICROMETRE(motion[f"{form}_swing"].values[:, place])
+            panel.curve(rpm, values, colour=colour, dash=dash, width=1.3, marker="dot", label=words)
+        below.append(panel)
+    return Picture([[stiffness, swing], below], size=(WIDE, 6.4), above=0.85, between=0.85)
+
+
+# --- pictures -----------------------------------------------------------------------------------
+
+
+def plane_picture(curves: Sequence[xr.Dataset]) -> Picture:
+    """Every curve over both parameters: solid where a stable motion meets it, else dotted."""
+    first, second = str(curves[0].attrs["first"]), str(curves[0].attrs["second"])
+    panel = Panel(
+        Axis(axis_words(first, curves[0]["first"])), Axis(axis_words(second, curves[0]["second"]))
+    )
+    for data in curves:
+        kind = str(data.attrs["kind"])
+        marker, colour = MARKS[kind]
+        label = f"{kind}, period {int(data.attrs['period'])}"
+        x, y = shown(first, data["first"]), shown(second, data["second"])
+        met = data["stable"].values.astype(bool)
+        cuts = [0, *(np.flatnonzero(np.diff(met.astype(int))) + 1).tolist(), met.size]
+        for low, high in pairwise(cuts):
+            end = min(high + 1, met.size)
+            if met[low]:
+                panel.curve(x[low:end], y[low:end], colour=colour, width=1.6, label=label)
+            else:
+                panel.curve(
+                    x[low:end], y[low:end], colour=colour, width=1.1, dash=DOTTED,
+                    label=f"{label}, no motion meets it",
+                )  # fmt: skip
+        asked = data["asked"].values.astype(bool)
+        panel.points(
+            x[asked], y[asked], marker=marker, size=4.5, colour=colour, edge="white",
+            edge_width=0.5,
+        )  # fmt: skip
+    return Picture([[panel]], size=(WIDE, 4.4), legend=3)

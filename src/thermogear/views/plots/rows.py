@@ -9,8 +9,7 @@ import numpy as np
 from thermogear.base.display import CELSIUS
 from thermogear.base.vocabulary import QUANTITIES
 from thermogear.views.picture import Axis, Panel, Picture
-from thermogear.views.plots.motion import HISTORY, label_of
-from thermogear.views.plots.orbits import periods_to_draw, thinned
+from thermogear.views.plots.motion import HISTORY, label_of, periods_to_draw, thinned
 from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
 from thermogear.views.style import COLD, FAINT, HOT, INK, OKABE_ITO, QUIET
 from thermogear.views.typesetting import math_symbol, plain

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermogear.base.display import HERTZ, MICROMETRE, MILLIMETRE, SPEED, display
+from thermogear.base.display import HERTZ, MICROMETRE, MILLIMETRE, PERCENT, SPEED, display
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import (
     FAINT,
@@ -229,7 +229,7 @@ def _rows(panels: Sequence[Panel], columns: int) -> list[list[Panel]]:
 
 def energies(table: xr.Dataset, state: int) -> Picture:
     """Which part bends in which mode: shares of the strain energy."""
-    values = 100.0 * table["energy_share"].values[state].T
+    values = PERCENT(table["energy_share"].values[state].T)
     parts = names_of(table, "part")
     columns = np.arange(table.sizes["mode"] + 1) - 0.5
     rows = np.arange(len(parts) + 1) - 0.5

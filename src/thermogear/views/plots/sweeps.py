@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.display import CELSIUS, MICROMETRE
+from thermogear.base.display import CELSIUS, KILONEWTON, MICROMETRE, PERCENT, Display
 from thermogear.base.vocabulary import ASSUMED, STATUS, UNDEFORMED
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.parameters import axis_words, parameter_of, shown
@@ -232,7 +232,7 @@ def basins_picture(data: xr.Dataset) -> Picture:
     for n in range(len(colours)):
         period = int(data["attractor_period"].values[n])
         kind = f"period {period}" if period else "chaotic, estimate"
-        names.append(f"{kind}: {100.0 * float(data['fraction'].values[n]):.3g} %")
+        names.append(f"{kind}: {PERCENT(float(data['fraction'].values[n])):.3g} %")
     none = np.where(data["status"].values == DIVERGED, 0, 1)
     codes = np.where(np.isnan(data["attractor"].values), none, data["attractor"].values + 2)
     panel.field(
@@ -256,16 +256,16 @@ def run_up_picture(data: xr.Dataset) -> Picture:
     colours = [COLD, HOT, *OKABE_ITO[2:]]
     panels = []
     for name, words, factor in (
-        ("dte_peak_to_peak", "transmission error, p-p [µm]", 1e6),
-        ("mesh_force_max", "greatest mesh force [kN]", 1e-3),
-        ("dynamic_factor", "dynamic factor $K_{v}$ [–]", 1.0),
+        ("dte_peak_to_peak", "transmission error, p-p [µm]", MICROMETRE),
+        ("mesh_force_max", "greatest mesh force [kN]", KILONEWTON),
+        ("dynamic_factor", "dynamic factor $K_{v}$ [–]", Display("–")),
     ):
         panel = Panel(Axis(), Axis(words))
         for state in range(count):
             colour = colours[state % len(colours)]
             for direction, (dash, word) in enumerate((((), "up"), ((3, 2), "down"))):
                 panel.curve(
-                    n, factor * data[name].values[state, direction], colour=colour, dash=dash,
+                    n, factor(data[name].values[state, direction]), colour=colour, dash=dash,
                     width=1.2, marker=_dot(n), label=f"{_state_words(data, state)} {word}",
                 )  # fmt: skip
             if "bifurcation_kind" in data:
