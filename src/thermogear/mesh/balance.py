@@ -26,7 +26,7 @@ from thermogear.heat.lubrication import density, kinematic_viscosity
 from thermogear.heat.network import SteadyState, ThermalNetwork
 from thermogear.mesh.elastic import ElasticPair, elastic_pair
 from thermogear.mesh.friction_path import FrictionPath
-from thermogear.mesh.mesh_heat import mesh_heat
+from thermogear.mesh.mesh_heat import Loads, loads_around, mesh_heat
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import ALIKE, Operating, Temperatures, Varied
 from thermogear.mesh.thermal import HotPair
@@ -42,8 +42,11 @@ FIRST, LARGEST, SHARE = 2.0, 8.0, 0.15
 """First step of a point [K]; largest one [K], or this share of the way it still has to go."""
 CAREFUL = 0.8
 """Part of the step that would just keep the order of states by the last slope."""
-NEAR, NEAREST, FARTHEST = 0.5, 1.0, 10.0
-"""Change [K] below which steps are extrapolated; how far [K] and how many times they then go."""
+NEAR, NEAREST = 0.5, 1.0
+"""Change [K] below which steps are Newton's; how far [K] they then go."""
+FAR = 0.1
+"""While a point changes by more than this share of its way from the start [K/K], its tooth pairs
+share the load as they last did: the contact is not solved again."""
 WARMER, TRIALS = 5.0, 16
 """A start at which no law answers is made warmer by this [K], this often."""
 
@@ -53,6 +56,10 @@ class Response(NamedTuple):
 
     reached: Floats
     known: Flags
+
+    def put(self, places: Indices, part: Response) -> None:
+        """Set the answers at ``places``."""
+        self.reached[places], self.known[places] = part
 
 
 Respond = Callable[[Floats, Indices], Response]
@@ -95,6 +102,8 @@ def asked(respond: Respond, nodes: Floats, index: Indices, lost: dict[int, str])
 
     A batch that is refused is halved until the points that fail are alone.
     """
+    if not index.size:
+        return Response(nodes, np.zeros(0, np.bool_))
     try:
         return respond(nodes, index)
     except ThermogearError as error:
@@ -110,7 +119,13 @@ def asked(respond: Respond, nodes: Floats, index: Indices, lost: dict[int, str])
 
 
 def follow(
-    respond: Respond, start: Floats, held: Flags, *, tolerance: float, most_iterations: int
+    respond: Respond,
+    start: Floats,
+    held: Flags,
+    *,
+    tolerance: float,
+    most_iterations: int,
+    rough: Respond | None = None,
 ) -> Course:
     """Iterate T <- T + w (N(T) - T) from ``start`` to a fixed point, every point by itself.
 
@@ -118,10 +133,13 @@ def follow(
     the last slope of N it keeps the order of states (w < 1/(1 - N') where N falls), and never
     more than a few kelvins. Where N keeps the order, iterates from below all steady states rise
     to the lowest of them, and from above fall to the highest: the iteration cannot step over
-    one. Near the end, within :data:`NEAR`, steps are extrapolated by Aitken's factor.
+    one. Near the end, within :data:`NEAR`, steps are Newton's, with Broyden's update of the
+    inverse derivative from the steps before.
 
     ``held`` (count, nodes): nodes of given temperature. A start that the laws refuse is made
     warmer, in steps of 5 K; a point that is refused later is lost, and stays where it was.
+    ``rough`` answers in place of ``respond``, after the first answer, while a point is
+    :data:`FAR`: no point settles by it.
     """
     count = start.shape[0]
     found = Course(
@@ -130,33 +148,50 @@ def follow(
         residual=np.full(count, np.inf),
         known=np.zeros(count, np.bool_),
     )
-    factor, before = np.ones(count), np.full(start.shape, np.nan)
-    moved = np.full(start.shape, np.nan)
-    going = np.arange(count)
+    before, moved = np.full(start.shape, np.nan), np.full(start.shape, np.nan)
+    inverse = np.tile(np.eye(start.shape[1]), (count, 1, 1))
+    going, far = np.arange(count), np.zeros(count, np.bool_)
     with warnings.catch_warnings():
         # iterates on the way may leave an oil's range; the result is asked once more
         warnings.simplefilter("ignore", ValidityWarning)
         answer = _first(respond, found, held)
+        begin = found.nodes.copy()
         going = going[[place not in found.lost for place in going]]
         for turn in range(most_iterations):
             if not going.size:
                 break
             refused: dict[int, str] = {}
             if turn:
-                answer = asked(respond, found.nodes[going], going, refused)
-            else:
-                answer = Response(answer.reached[going], answer.known[going])
-            change = answer.reached - found.nodes[going]
+                places = going[far[going]]
+                if rough is not None:
+                    part = asked(rough, found.nodes[places], places, refused)
+                    answer.put(places, part)
+                    far[places] = _far(part.reached, found.nodes[places], begin[places])
+                exact = going[~far[going]]
+                part = asked(respond, found.nodes[exact], exact, refused)
+                # the last slope of a point that was far is that of the rough answers
+                ended = np.isin(exact, places)[:, None]
+                before[exact] += np.where(ended, part.reached - answer.reached[exact], 0.0)
+                answer.put(exact, part)
+            elif rough is not None:
+                far = _far(answer.reached, found.nodes, begin)
+            change = answer.reached[going] - found.nodes[going]
             residual = np.abs(change).max(axis=1)
-            found.residual[going], found.known[going] = residual, answer.known
+            found.residual[going], found.known[going] = residual, answer.known[going]
             found.iterations[going] += 1
             found.lost |= refused
-            step, factor[going] = _steps(change, before[going], moved[going], factor[going])
+            step, inverse[going] = _steps(change, before[going], moved[going], inverse[going])
             before[going], moved[going] = change, step
             on = (residual > tolerance) & [place not in refused for place in going]
             going = going[on]
             found.nodes[going] = np.clip(found.nodes[going] + step[on], BODY.least, BODY.most)
     return found
+
+
+def _far(reached: Floats, nodes: Floats, begin: Floats) -> Flags:
+    """Which points have more than :data:`FAR` of their way before them."""
+    left, whole = (np.abs(reached - place).max(axis=1) for place in (nodes, begin))
+    return np.asarray(left > FAR * whole)
 
 
 def _first(respond: Respond, found: Course, held: Flags) -> Response:
@@ -171,14 +206,16 @@ def _first(respond: Respond, found: Course, held: Flags) -> Response:
         found.nodes[again] = np.where(held[again], found.nodes[again], warm)
         reasons: dict[int, str] = {}
         part = asked(respond, found.nodes[again], again, reasons)
-        answer.reached[again], answer.known[again] = part.reached, part.known
+        answer.put(again, part)
         # the first refusal says why
         found.lost = {place: found.lost[place] for place in reasons}
     return answer
 
 
-def _steps(change: Floats, before: Floats, moved: Floats, factor: Floats) -> tuple[Floats, Floats]:
-    """The next step [K] of each point and its Aitken factor, from the last change and step."""
+def _steps(
+    change: Floats, before: Floats, moved: Floats, inverse: Floats
+) -> tuple[Floats, Floats]:
+    """The next step [K] of each point and its inverse derivative, from the last change and step."""
     residual = np.abs(change).max(axis=1)
     square = np.einsum("ij,ij->i", moved, moved)
     along = np.einsum("ij,ij->i", change - before, moved)
@@ -188,21 +225,29 @@ def _steps(change: Floats, before: Floats, moved: Floats, factor: Floats) -> tup
     part = np.minimum(1.0, CAREFUL / (1.0 + np.maximum(-slope, 0.0)))
     part = np.where((slope >= 0.0) & known, 1.0, part)
     furthest = np.where(known, np.maximum(LARGEST, SHARE * residual), FIRST)
-    careful = np.minimum(part, furthest / np.maximum(residual, 1e-300))
-    extrapolated = np.clip(aitken(factor, before=before, change=change), 0.05, FARTHEST)
-    near = np.isfinite(before).all(axis=1) & (residual <= NEAR)
-    close = np.minimum(extrapolated, NEAREST / np.maximum(residual, 1e-300))
-    chosen = np.where(near, close, careful)
-    return chosen[:, None] * change, chosen
+    careful = np.minimum(part, furthest / np.maximum(residual, 1e-300))[:, None] * change
+    inverse = broyden(inverse, fell=before - change, moved=moved)
+    newton = np.einsum("ijk,ik->ij", inverse, change)
+    newton *= np.minimum(1.0, NEAREST / np.maximum(np.abs(newton).max(axis=1), 1e-300))[:, None]
+    near = known & (residual <= NEAR) & (np.einsum("ij,ij->i", newton, change) > 0.0)
+    return np.where(near[:, None], newton, careful), inverse
 
 
-def aitken(factor: Floats, *, before: Floats, change: Floats) -> Floats:
-    """Aitken's relaxation factor of each point from its last two changes."""
-    turn = change - before
-    square = np.einsum("ij,ij->i", turn, turn)
-    along = np.einsum("ij,ij->i", before, turn)
-    known = np.isfinite(square) & (square > 0.0)
-    return np.asarray(-factor * np.divide(along, square, out=-np.ones_like(factor), where=known))
+def broyden(inverse: Floats, *, fell: Floats, moved: Floats) -> Floats:
+    """Broyden's inverse derivatives, (count, n, n), after a step by which each point ``moved``.
+
+    H <- H + (s - H y) (s^T H)/(s^T H y), s the step and y = ``fell`` by how much the change has
+    become less, both (count, n): then H y = s. A step that says nothing leaves H as it was.
+
+    Source: C. G. Broyden, Mathematics of Computation 19 (1965) 577.
+    """
+    guess = np.einsum("ijk,ik->ij", inverse, fell)
+    row = np.einsum("ij,ijk->ik", moved, inverse)
+    scale = np.einsum("ij,ij->i", moved, guess)
+    known = np.abs(scale) > 1e-6 * np.einsum("ij,ij->i", moved, moved)
+    over = np.divide(1.0, scale, out=np.zeros_like(scale), where=known)[:, None]
+    each = np.where(known[:, None], over * (moved - guess), 0.0)
+    return np.asarray(inverse + each[:, :, None] * np.where(known[:, None], row, 0.0)[:, None, :])
 
 
 SAME = 0.01
@@ -367,18 +412,22 @@ def heat_balance(
         housing,
         tuple(deviations),
     )
-    loop.refuse_what_never_works()
-    stand_in = np.full((loop.count, len(box.nodes)), max(STAND_IN, reference + OVER))
+    loop.operating(loop.at(loop.stand_in), loop.everything)
     starts = [box.surroundings.ambient] + [HOTTEST] * from_hot
     # both ways at once: every point goes its own
+    begin = np.concatenate([loop.at(kelvin) for kelvin in starts])
+    kept = _Kept(loop, len(begin))
     ways = follow(
-        lambda nodes, index: loop.respond(nodes, index % loop.count),
-        np.concatenate([loop.at(kelvin) for kelvin in starts]),
+        kept.respond,
+        begin,
         np.concatenate([loop.held] * len(starts)),
         tolerance=tolerance,
         most_iterations=most_iterations,
+        rough=kept.roughly if loop.model.sharing == "loaded" else None,
     )
     cold = ways.part(slice(0, loop.count))
+    if len(cold.lost) == loop.count:
+        loop.refuse_what_never_works()
     lost = np.zeros(loop.count, np.bool_)
     lost[list(cold.lost)] = True
     settled = cold.settled(tolerance)
@@ -389,10 +438,10 @@ def heat_balance(
         hot[down] = warm.nodes[down]
         # a start from hot that does not settle shows no other state
         several = settled & down & (np.abs(warm.nodes - cold.nodes).max(axis=1) > SAME)
-    nodes = np.where(lost[:, None], stand_in, cold.nodes)
+    nodes = np.where(lost[:, None], loop.stand_in, cold.nodes)
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always", ValidityWarning)
-        network, losses, known = loop.network(nodes, loop.everything)
+        network, losses, known, _ = loop.network(nodes, loop.everything)
     for text in dict.fromkeys(str(one.message) for one in told):
         warnings.warn(text, ValidityWarning, stacklevel=2)
     return HeatBalance(
@@ -458,6 +507,11 @@ class _Loop:
         row = np.array([name in self.box.measured for name in self.box.nodes])
         return np.broadcast_to(row, (self.count, row.size))
 
+    @property
+    def stand_in(self) -> float:
+        """Where a point without a state stands [K]."""
+        return max(STAND_IN, self.reference + OVER)
+
     def at(self, kelvin: float) -> Floats:
         """The state with every free node at one temperature."""
         names = self.box.nodes
@@ -469,11 +523,10 @@ class _Loop:
 
     def refuse_what_never_works(self) -> None:
         """Raise what is wrong with the whole: no state of any point would have a value."""
-        nodes, lost = self.at(max(STAND_IN, self.reference + OVER)), dict[int, str]()
-        self.operating(nodes, self.everything)
+        nodes, lost = self.at(self.stand_in), dict[int, str]()
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ValidityWarning)
-            asked(self.respond, nodes, self.everything, lost)
+            asked(_Kept(self, self.count).respond, nodes, self.everything, lost)
             if len(lost) == self.count:
                 self.respond(nodes[:1], self.everything[:1])
 
@@ -495,11 +548,16 @@ class _Loop:
             varied=self.varied.part(index),
         )
 
-    def network(self, nodes: Floats, index: Indices) -> tuple[ThermalNetwork, Losses, Flags]:
-        """The network with the losses of the state, and whether its loaded contact is known."""
+    def network(
+        self, nodes: Floats, index: Indices, loads: Loads | None = None
+    ) -> tuple[ThermalNetwork, Losses, Flags, Loads | None]:
+        """The network with the losses of the state, whether its contact is known, and its loads."""
         here = self.operating(nodes, index)
         elastic = elastic_pair(HotPair(self.pair, here, self.model), self.deviations)
-        losses, known = pair_losses(self.pair, here, elastic, self.box, self.named(nodes))
+        if loads is None and self.model.sharing == "loaded":
+            loads = loads_around(elastic)
+        named = self.named(nodes)
+        losses, known = pair_losses(self.pair, here, elastic, self.box, named, loads)
         network = thermal_network(
             self.pair.pinion,
             self.pair.wheel,
@@ -509,17 +567,43 @@ class _Loop:
             here.oil_temperature,
             self.box.surroundings,
             {name: values[index] for name, values in self.measured.items()},
-            self.named(nodes)["housing"],
+            named["housing"],
         )
-        return network, losses, known
+        return network, losses, known, loads
 
-    def respond(self, nodes: Floats, index: Indices) -> Response:
+    def respond(
+        self, nodes: Floats, index: Indices, loads: Loads | None = None
+    ) -> tuple[Response, Loads | None]:
         """The steady state of that network; one beyond 700 K is none."""
-        network, _, known = self.network(nodes, index)
+        network, _, known, loads = self.network(nodes, index, loads)
         steady = network.steady()
         found = [np.broadcast_to(steady[name], (index.size,)) for name in self.box.nodes]
         reached = np.stack(found, axis=1)
-        return Response(np.minimum(reached, HOTTEST), known & (reached < HOTTEST).all(axis=1))
+        within = (reached < HOTTEST).all(axis=1)
+        return Response(np.minimum(reached, HOTTEST), known & within), loads
+
+
+@dataclass(eq=False)
+class _Kept:
+    """The loads of the tooth pairs of ``count`` states, each as last solved."""
+
+    loop: _Loop
+    count: int
+    loads: Loads | None = None
+
+    def respond(self, nodes: Floats, index: Indices) -> Response:
+        """The answer of the loop, its loads kept."""
+        answer, loads = self.loop.respond(nodes, index % self.loop.count)
+        if loads is not None:
+            if self.loads is None:
+                self.loads = loads.room(self.count)
+            self.loads.put(index, loads)
+        return answer
+
+    def roughly(self, nodes: Floats, index: Indices) -> Response:
+        """The answer with the loads as they were last solved."""
+        assert self.loads is not None
+        return self.loop.respond(nodes, index % self.loop.count, self.loads.part(index))[0]
 
 
 def node_temperatures(nodes: Mapping[str, ArrayLike], reference: float) -> Temperatures:
@@ -542,14 +626,15 @@ def pair_losses(
     elastic: ElasticPair,
     box: Gearbox,
     nodes: Mapping[str, ArrayLike],
+    loads: Loads | None = None,
 ) -> tuple[Losses, Flags]:
     """Mesh, churning and bearing losses [W] and the flanks' conductance [W/K], (count,).
 
     At the present temperatures, the rings' those of ``nodes`` [K]; with them whether the loaded
-    contact is known, (count,). Warns where the film at the flanks leaves the range of the oil's
+    contact is known, (count,). ``loads``: where the contact is solved already. Warns where the film at the flanks leaves the range of the oil's
     viscosity line.
     """
-    means = mesh_heat(elastic)
+    means = mesh_heat(elastic, loads=loads)
     FrictionPath(elastic, np.array([pair.path.c])).warn_beyond_oil()
     oil = operating.lubricant
     wheel_speed = operating.speed / pair.ratio

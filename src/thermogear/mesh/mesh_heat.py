@@ -35,7 +35,31 @@ class MeshHeat(NamedTuple):
     settled: NDArray[np.bool_]
 
 
-def mesh_heat(elastic: ElasticPair, phases: int = PHASES) -> MeshHeat:
+class Loads(NamedTuple):
+    """Positions [m] of all candidates of contact at uniform phases, weights [m], shares there."""
+
+    s: Floats
+    weights: Floats
+    shares: PathShare
+
+    def room(self, count: int) -> Loads:
+        """Loads of ``count`` points at the same places, all to be put."""
+        return self.part(np.zeros(count, np.int64))
+
+    def part(self, places: NDArray[np.int64]) -> Loads:
+        """Those of some points."""
+        return self._replace(
+            shares=PathShare(self.shares.share[places], self.shares.edge[places])
+        )
+
+    def put(self, places: NDArray[np.int64], part: Loads) -> None:
+        """Set those of some points."""
+        self.shares.share[places], self.shares.edge[places] = part.shares
+
+
+def mesh_heat(
+    elastic: ElasticPair, phases: int = PHASES, *, loads: Loads | None = None
+) -> MeshHeat:
     """Friction power, its partition and the conductance between the flanks, time means.
 
     P = (b/p_b) int |mu| w |v_1 - v_2| ds,   G = (b/p_b) int g ds
@@ -50,11 +74,13 @@ def mesh_heat(elastic: ElasticPair, phases: int = PHASES) -> MeshHeat:
     Off the path a corner slides at (omega_1 + omega_2)(s - s_C) to first order in the distance
     from the path's end (the corner moves along the line of action as the involute's point
     would), with the friction coefficient of flanks of the involutes' curvature there.
+
+    ``loads``: those of ``elastic``, or of a state near it, where they are solved already.
     """
     pair = elastic.hot.pair
     beyond = elastic.hot.model.sharing == "loaded"
     if beyond:
-        s, weights, shares = _around(elastic, phases)
+        s, weights, shares = loads or loads_around(elastic, phases)
     else:
         s, weights = _between_steps(pair)
         shares = None
@@ -77,8 +103,8 @@ def mesh_heat(elastic: ElasticPair, phases: int = PHASES) -> MeshHeat:
     )
 
 
-def _around(elastic: ElasticPair, phases: int) -> tuple[Floats, Floats, PathShare]:
-    """Positions [m] of every candidate at uniform phases, their weights [m] and shares."""
+def loads_around(elastic: ElasticPair, phases: int = PHASES) -> Loads:
+    """The load on every candidate of contact at uniform ``phases``, solved."""
     pair, count = elastic.pair, elastic.hot.count
     solved = loaded_pair(elastic).solve(np.arange(phases) / phases)
     s = solved.points.s.ravel()
@@ -88,7 +114,7 @@ def _around(elastic: ElasticPair, phases: int) -> tuple[Floats, Floats, PathShar
     shares = PathShare(
         solved.share.reshape(count, -1)[:, inside], solved.edge.reshape(count, -1)[:, inside]
     )
-    return s[inside], np.full(int(inside.sum()), pair.base_pitch / phases), shares
+    return Loads(s[inside], np.full(int(inside.sum()), pair.base_pitch / phases), shares)
 
 
 def _between_steps(pair: GearPair) -> tuple[Floats, Floats]:
