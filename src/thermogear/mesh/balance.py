@@ -441,7 +441,9 @@ def heat_balance(
     nodes = np.where(lost[:, None], loop.stand_in, cold.nodes)
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always", ValidityWarning)
-        network, losses, known, _ = loop.network(nodes, loop.everything)
+        # settled points stand where their loads were solved last
+        loads = kept.part(loop.everything) if settled.all() else None
+        network, losses, known, _ = loop.network(nodes, loop.everything, loads)
     for text in dict.fromkeys(str(one.message) for one in told):
         warnings.warn(text, ValidityWarning, stacklevel=2)
     return HeatBalance(
@@ -602,8 +604,11 @@ class _Kept:
 
     def roughly(self, nodes: Floats, index: Indices) -> Response:
         """The answer with the loads as they were last solved."""
-        assert self.loads is not None
-        return self.loop.respond(nodes, index % self.loop.count, self.loads.part(index))[0]
+        return self.loop.respond(nodes, index % self.loop.count, self.part(index))[0]
+
+    def part(self, index: Indices) -> Loads | None:
+        """The loads of some states, as last solved; None by a rule of thumb, and at first."""
+        return None if self.loads is None else self.loads.part(index)
 
 
 def node_temperatures(nodes: Mapping[str, ArrayLike], reference: float) -> Temperatures:
