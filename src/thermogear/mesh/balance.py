@@ -212,9 +212,7 @@ def _first(respond: Respond, found: Course, held: Flags) -> Response:
     return answer
 
 
-def _steps(
-    change: Floats, before: Floats, moved: Floats, inverse: Floats
-) -> tuple[Floats, Floats]:
+def _steps(change: Floats, before: Floats, moved: Floats, inverse: Floats) -> tuple[Floats, Floats]:
     """The next step [K] of each point and its inverse derivative, from the last change and step."""
     residual = np.abs(change).max(axis=1)
     square = np.einsum("ij,ij->i", moved, moved)
@@ -636,8 +634,8 @@ def pair_losses(
     """Mesh, churning and bearing losses [W] and the flanks' conductance [W/K], (count,).
 
     At the present temperatures, the rings' those of ``nodes`` [K]; with them whether the loaded
-    contact is known, (count,). ``loads``: where the contact is solved already. Warns where the film at the flanks leaves the range of the oil's
-    viscosity line.
+    contact is known, (count,). ``loads``: of these points, where the contact is solved already.
+    Warns where the film at the flanks leaves the range of the oil's viscosity line.
     """
     means = mesh_heat(elastic, loads=loads)
     FrictionPath(elastic, np.array([pair.path.c])).warn_beyond_oil()

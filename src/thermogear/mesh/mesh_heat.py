@@ -48,9 +48,7 @@ class Loads(NamedTuple):
 
     def part(self, places: NDArray[np.int64]) -> Loads:
         """Those of some points."""
-        return self._replace(
-            shares=PathShare(self.shares.share[places], self.shares.edge[places])
-        )
+        return self._replace(shares=PathShare(self.shares.share[places], self.shares.edge[places]))
 
     def put(self, places: NDArray[np.int64], part: Loads) -> None:
         """Set those of some points."""

@@ -12,8 +12,8 @@ from thermogear.case.allowed import LANE
 from thermogear.case.case import GearCase
 from thermogear.case.family import BESIDE, GearFamily
 from thermogear.mesh.scuffing_rating import Scuffing, flash_rating, integral_rating
-from thermogear.study.answers.steady import borne_by, unrated
-from thermogear.study.scuffing import load_stage
+from thermogear.study.answers.steady import borne_by
+from thermogear.study.scuffing import load_stage, not_steel
 
 Floats = NDArray[np.float64]
 
@@ -117,19 +117,20 @@ def _scuffing(
 def _rated(
     case: GearCase, torque: Floats, speed: Floats, oil: Floats
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    nan = np.full(torque.shape, np.nan)
-    margin, safety = nan.copy(), nan.copy()
-    stage = load_stage(case).stage
-    for place in range(torque.size):
-        load, turning, warm = float(torque[place]), float(speed[place]), float(oil[place])
-        if unrated(case, load, warm):
-            continue
-        state = Scuffing(lubricant=case.stated.lubricant, oil_temperature=warm, load_stage=stage)
-        for values, rate, name in (
-            (margin, flash_rating, "margin"), (safety, integral_rating, "safety")
-        ):  # fmt: skip
-            try:
-                values[place] = float(getattr(rate(case.pair, load, turning, state), name))
-            except InputError:
-                continue  # the standard does not cover it
+    margin, safety = np.full(torque.shape, np.nan), np.full(torque.shape, np.nan)
+    rated = (torque > 0.0) & (speed > 0.0) & np.isfinite(oil)
+    if not_steel(case) or not rated.any():
+        return margin, safety
+    state = Scuffing(
+        lubricant=case.stated.lubricant,
+        oil_temperature=oil[rated],
+        load_stage=load_stage(case).stage,
+    )
+    for values, rate, name in (
+        (margin, flash_rating, "margin"), (safety, integral_rating, "safety")
+    ):  # fmt: skip
+        try:
+            values[rated] = getattr(rate(case.pair, torque[rated], speed[rated], state), name)
+        except InputError:
+            continue  # the standard does not cover this pair
     return margin, safety
