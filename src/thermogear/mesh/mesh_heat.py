@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.gauss import gauss
+from thermogear.gears.candidates import mesh_points
 from thermogear.gears.pair import GearPair
 from thermogear.mesh.elastic import ElasticPair, PathShare, loaded_pair
 from thermogear.mesh.friction_path import FrictionPath
@@ -25,7 +26,8 @@ class MeshHeat(NamedTuple):
 
     ``power`` [W] of friction, ``partition`` [-] of it into the pinion, ``conductance`` [W/K]
     between both flanks, ``beyond`` [-] the share of the power off the path of contact (tip
-    corners), ``settled`` whether the loaded contact is known.
+    corners), ``settled`` whether the loaded contact is known, ``share`` [-] of the load on every
+    position (count, positions).
     """
 
     power: Floats
@@ -33,30 +35,11 @@ class MeshHeat(NamedTuple):
     conductance: Floats
     beyond: Floats
     settled: NDArray[np.bool_]
-
-
-class Loads(NamedTuple):
-    """Positions [m] of all candidates of contact at uniform phases, weights [m], shares there."""
-
-    s: Floats
-    weights: Floats
-    shares: PathShare
-
-    def room(self, count: int) -> Loads:
-        """Loads of ``count`` points at the same places, all to be put."""
-        return self.part(np.zeros(count, np.int64))
-
-    def part(self, places: NDArray[np.int64]) -> Loads:
-        """Those of some points."""
-        return self._replace(shares=PathShare(self.shares.share[places], self.shares.edge[places]))
-
-    def put(self, places: NDArray[np.int64], part: Loads) -> None:
-        """Set those of some points."""
-        self.shares.share[places], self.shares.edge[places] = part.shares
+    share: Floats
 
 
 def mesh_heat(
-    elastic: ElasticPair, phases: int = PHASES, *, loads: Loads | None = None
+    elastic: ElasticPair, phases: int = PHASES, *, share: Floats | None = None
 ) -> MeshHeat:
     """Friction power, its partition and the conductance between the flanks, time means.
 
@@ -73,16 +56,17 @@ def mesh_heat(
     from the path's end (the corner moves along the line of action as the involute's point
     would), with the friction coefficient of flanks of the involutes' curvature there.
 
-    ``loads``: those of ``elastic``, or of a state near it, where they are solved already.
+    ``share`` of a result of the same pair, in a state near this one: the load is not shared anew.
     """
     pair = elastic.hot.pair
     beyond = elastic.hot.model.sharing == "loaded"
-    if beyond:
-        s, weights, shares = loads or loads_around(elastic, phases)
-    else:
-        s, weights = _between_steps(pair)
-        shares = None
-    path = FrictionPath(elastic, s, shares)
+    s, weights, inside = _around(elastic, phases) if beyond else _between_steps(pair)
+    if share is None and beyond:
+        solved = loaded_pair(elastic).solve(np.arange(phases) / phases)
+        share = solved.share.reshape(elastic.hot.count, -1)[:, inside]
+    elif share is None:
+        share = elastic.share(s).share
+    path = FrictionPath(elastic, s, PathShare(share, np.zeros(share.shape, np.int8)))
     scale = elastic.hot.face_width / pair.base_pitch * weights
     heat = np.asarray(path.heat * scale)
     power = heat.sum(axis=-1)
@@ -98,24 +82,21 @@ def mesh_heat(
         conductance=np.asarray((path.exchange * scale).sum(axis=-1)),
         beyond=np.divide(outside, power, out=np.zeros_like(power), where=busy),
         settled=path.settled,
+        share=share,
     )
 
 
-def loads_around(elastic: ElasticPair, phases: int = PHASES) -> Loads:
-    """The load on every candidate of contact at uniform ``phases``, solved."""
-    pair, count = elastic.pair, elastic.hot.count
-    solved = loaded_pair(elastic).solve(np.arange(phases) / phases)
-    s = solved.points.s.ravel()
+def _around(elastic: ElasticPair, phases: int) -> tuple[Floats, Floats, NDArray[np.int64]]:
+    """Positions [m] of the candidates at uniform phases, weights [m], and which of all they are."""
+    pair, extended = elastic.pair, elastic.hot.model.loaded.extended
+    s = mesh_points(pair, np.arange(phases) / phases, extended=extended).s.ravel()
     # beyond the tangent points there is no flank: no candidate carries there
     margin = 1e-3 * pair.base_pitch
-    inside = (s > margin) & (s < pair.line_of_action - margin)
-    shares = PathShare(
-        solved.share.reshape(count, -1)[:, inside], solved.edge.reshape(count, -1)[:, inside]
-    )
-    return Loads(s[inside], np.full(int(inside.sum()), pair.base_pitch / phases), shares)
+    inside = np.flatnonzero((s > margin) & (s < pair.line_of_action - margin))
+    return s[inside], np.full(inside.size, pair.base_pitch / phases), inside
 
 
-def _between_steps(pair: GearPair) -> tuple[Floats, Floats]:
+def _between_steps(pair: GearPair) -> tuple[Floats, Floats, NDArray[np.int64]]:
     """Gauss's nodes and weights [m] from A to E, split where a pair enters or leaves and at C."""
     a, c, e = pair.path.a, pair.path.c, pair.path.e
     whole = np.arange(int(np.ceil(pair.contact_ratio)) + 1) * pair.base_pitch
@@ -123,4 +104,5 @@ def _between_steps(pair: GearPair) -> tuple[Floats, Floats]:
     ends = np.unique(np.clip(cuts, a, e))
     u, w = gauss(GAUSS)
     half, middle = 0.5 * np.diff(ends)[:, None], 0.5 * (ends[1:] + ends[:-1])[:, None]
-    return (middle + half * u).ravel(), (half * w).ravel()
+    s = (middle + half * u).ravel()
+    return s, (half * w).ravel(), np.arange(s.size)
