@@ -126,9 +126,9 @@ def _figures(
     points: Points, x: Floats, phase: Floats, record: Recording, lines: bool
 ) -> dict[str, Floats]:
     """The figures of motions ``x`` (point, sample)."""
-    length, periods = points.length[:, None], (1, record.periods)
+    length, b = points.length[:, None], points.flat.half_backlash[:, None]
+    periods = 1, record.periods
     dte = length * x + np.tile(points.kinematic(phase), periods)
-    b = points.flat.half_backlash[:, None]
     stiffness = np.tile(points.flat.values("stiffness", phase).T, periods)
     force = (points.stiffness[:, None] * length) * stiffness * (x - np.clip(x, -b, b))
     loaded, greatest = points.force > 0.0, np.abs(force).max(axis=1)

@@ -60,12 +60,11 @@ def mesh_heat(
     """
     pair = elastic.hot.pair
     beyond = elastic.hot.model.sharing == "loaded"
-    s, weights, inside = _around(elastic, phases) if beyond else _between_steps(pair)
-    if share is None and beyond:
-        solved = loaded_pair(elastic).solve(np.arange(phases) / phases)
-        share = solved.share.reshape(elastic.hot.count, -1)[:, inside]
-    elif share is None:
-        share = elastic.share(s).share
+    if beyond:
+        s, weights, share = _around(elastic, phases, share)
+    else:
+        s, weights = _between_steps(pair)
+        share = elastic.share(s).share if share is None else share
     path = FrictionPath(elastic, s, PathShare(share, np.zeros(share.shape, np.int8)))
     scale = elastic.hot.face_width / pair.base_pitch * weights
     heat = np.asarray(path.heat * scale)
@@ -86,17 +85,22 @@ def mesh_heat(
     )
 
 
-def _around(elastic: ElasticPair, phases: int) -> tuple[Floats, Floats, NDArray[np.int64]]:
-    """Positions [m] of the candidates at uniform phases, weights [m], and which of all they are."""
-    pair, extended = elastic.pair, elastic.hot.model.loaded.extended
-    s = mesh_points(pair, np.arange(phases) / phases, extended=extended).s.ravel()
+def _around(
+    elastic: ElasticPair, phases: int, share: Floats | None
+) -> tuple[Floats, Floats, Floats]:
+    """Positions [m] of every candidate at uniform phases, their weights [m] and shares."""
+    pair, phase = elastic.pair, np.arange(phases) / phases
+    s = mesh_points(pair, phase, extended=elastic.hot.model.loaded.extended).s.ravel()
     # beyond the tangent points there is no flank: no candidate carries there
     margin = 1e-3 * pair.base_pitch
-    inside = np.flatnonzero((s > margin) & (s < pair.line_of_action - margin))
-    return s[inside], np.full(inside.size, pair.base_pitch / phases), inside
+    inside = (s > margin) & (s < pair.line_of_action - margin)
+    if share is None:
+        solved = loaded_pair(elastic).solve(phase).share
+        share = solved.reshape(elastic.hot.count, -1)[:, inside]
+    return s[inside], np.full(int(inside.sum()), pair.base_pitch / phases), share
 
 
-def _between_steps(pair: GearPair) -> tuple[Floats, Floats, NDArray[np.int64]]:
+def _between_steps(pair: GearPair) -> tuple[Floats, Floats]:
     """Gauss's nodes and weights [m] from A to E, split where a pair enters or leaves and at C."""
     a, c, e = pair.path.a, pair.path.c, pair.path.e
     whole = np.arange(int(np.ceil(pair.contact_ratio)) + 1) * pair.base_pitch
@@ -104,5 +108,4 @@ def _between_steps(pair: GearPair) -> tuple[Floats, Floats, NDArray[np.int64]]:
     ends = np.unique(np.clip(cuts, a, e))
     u, w = gauss(GAUSS)
     half, middle = 0.5 * np.diff(ends)[:, None], 0.5 * (ends[1:] + ends[:-1])[:, None]
-    s = (middle + half * u).ravel()
-    return s, (half * w).ravel(), np.arange(s.size)
+    return (middle + half * u).ravel(), (half * w).ravel()

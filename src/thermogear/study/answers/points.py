@@ -65,13 +65,15 @@ def answer_numbers(family: GearFamily, rows: ArrayLike) -> dict[str, Floats]:
     points = np.asarray(rows, dtype=float)
     case = family.case
     found = family.quasi_static(points, WANT, path_positions=case.path_positions)
-    flash, film = found["flash_temperature"], found["film_parameter"]
     margin, safety = _scuffing(family, points, found)
     jam, teeth = found["jam_temperature"], found["pinion_temperature"]
     borne = borne_by(case.pair)[0]
     # a jammed pair has no running contact
     running = found["status"] != STATUS.index("jammed")
-    flash, film = (np.where(running[:, None], values, np.nan) for values in (flash, film))
+    flash, film = (
+        np.where(running[:, None], found[name], np.nan)
+        for name in ("flash_temperature", "film_parameter")
+    )
     margin, safety = (np.where(running, values, np.nan) for values in (margin, safety))
     return {
         "oil_temperature": found["oil_temperature"],
