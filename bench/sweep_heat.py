@@ -53,11 +53,13 @@ sys.stdout.buffer.write(pickle.dumps((took / {POINTS}, found)))
 
 
 def difference(one: np.ndarray, other: np.ndarray) -> float:
-    """The greatest difference over the greatest number; infinite where other ones are nan."""
-    if not np.array_equal(np.isnan(one), np.isnan(other)):
+    """The greatest difference over the greatest number; infinite where other ones are finite."""
+    known = np.isfinite(one)
+    if not np.array_equal(known, np.isfinite(other)):
         return float("inf")
-    scale = np.nanmax(np.abs(one), initial=1e-300)
-    return float(np.nanmax(np.abs(other - one.astype(float)), initial=0.0) / scale)
+    first, second = one[known].astype(float), other[known].astype(float)
+    scale = np.max(np.abs(first), initial=1e-300)
+    return float(np.max(np.abs(first - second), initial=0.0) / scale)
 
 
 def main(trees: list[str]) -> None:
