@@ -12,7 +12,15 @@ from thermogear import Gear, GearPair, InputError, MeshModel, mesh_cycle
 from thermogear.base.errors import ValidityWarning
 from thermogear.base.materials import lubricant
 from thermogear.heat.gearbox import Surroundings
-from thermogear.mesh.balance import NODES, Gearbox, HeatBalance, heat_balance
+from thermogear.mesh import elastic
+from thermogear.mesh.balance import (
+    NODES,
+    Gearbox,
+    HeatBalance,
+    Response,
+    follow,
+    heat_balance,
+)
 from thermogear.mesh.warm_up import Duty, warm_up
 
 OIL = lubricant("M100")
@@ -242,3 +250,61 @@ def test_a_point_beyond_a_law_is_a_status_and_the_others_are_the_same_to_the_las
 def test_impossible_settings_are_refused() -> None:
     with pytest.raises(InputError, match=r"gearbox.immersion: got 1.5; allowed 0 .. 1"):
         Gearbox(immersion=1.5)
+
+
+def test_near_the_end_of_a_linear_network_the_steps_are_newtons() -> None:
+    """T = A T + b with A of rank 2: (I - A)^-1 b within 1e-9 K after few of Broyden's steps."""
+    random = np.random.default_rng(8)
+    first, second = random.uniform(0.05, 0.2, (2, 6, 3)), random.uniform(-0.5, 0.1, (2, 6, 3))
+    falls = np.einsum("cin,cjn->cij", first[:, :, :2], second[:, :, :2])
+    steady = 330.0 + random.uniform(0.0, 5.0, (2, 6))
+
+    def respond(nodes: np.ndarray, index: np.ndarray, share: np.ndarray | None) -> Response:
+        reached = steady[index] + np.einsum("cij,cj->ci", falls[index], nodes - steady[index])
+        return Response(reached, np.ones(index.size, np.bool_), np.zeros((index.size, 1)))
+
+    start, held = np.full((2, 6), 329.9), np.zeros((2, 6), np.bool_)
+    found = follow(respond, start, held, tolerance=1e-10, most_iterations=60)
+    assert found.settled(1e-10).all()
+    np.testing.assert_allclose(found.nodes, steady, atol=1e-9)
+    # Broyden's update ends after 2 n + 2 steps on a derivative of rank n; source: Gay 1979
+    assert found.iterations.max() < 3 + 2 * 2 + 2 + 6
+
+
+@pytest.mark.parametrize(("start", "end"), [(293.0, 320.0), (700.0, 420.0)])
+def test_of_three_steady_states_the_nearest_on_the_way_is_taken(start: float, end: float) -> None:
+    """N(T) - T = -(T - 320)(T - 340)(T - 420)/5000: stable at 320 K and 420 K."""
+    anew: list[bool] = []
+
+    def respond(nodes: np.ndarray, index: np.ndarray, share: np.ndarray | None) -> Response:
+        anew.append(share is None)
+        rise = -(nodes - 320.0) * (nodes - 340.0) * (nodes - 420.0) / 5e3
+        # a load that is shared as before is off by 2 % of the way
+        rise = rise if share is None else rise + 0.02 * (nodes - start)
+        return Response(nodes + rise, np.ones(index.size, np.bool_), np.zeros((index.size, 1)))
+
+    held = np.zeros((1, 1), np.bool_)
+    found = follow(respond, np.array([[start]]), held, tolerance=1e-9, most_iterations=200)
+    assert found.settled(1e-9).all()
+    assert found.nodes.item() == pytest.approx(end, abs=1e-8)
+    assert 3 <= anew.count(True) < len(anew)
+
+
+def test_the_load_is_shared_anew_at_the_start_and_near_the_end_alone(
+    rig: GearPair, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    solves: list[int] = []
+    solve = elastic.solve_mesh
+
+    def counted(*of: object, **how: object) -> object:
+        solves.append(1)
+        return solve(*of, **how)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(elastic, "solve_mesh", counted)
+    speed = 1500.0 * np.pi / 30.0
+    found = heat_balance(rig, speed, 300.0, OIL, 125e-6, from_hot=False)
+    assert found.settled.all()
+    assert 3 <= len(solves) < 0.7 * found.iterations[0]
+    # what is told was made with the load of the very state
+    cycle = mesh_cycle(rig, found.operating, path_positions=5)
+    np.testing.assert_allclose(found.losses.mesh, cycle["frictional_power"].values, rtol=1e-12)

@@ -15,7 +15,7 @@ from thermogear.gears.loaded import solve_mesh
 from thermogear.heat.friction import LAWS, ROUGHNESS_LIMIT, friction_law
 from thermogear.heat.losses import churning_loss
 from thermogear.heat.lubrication import density, kinematic_viscosity
-from thermogear.mesh.balance import Gearbox, aitken, heat_balance
+from thermogear.mesh.balance import Gearbox, broyden, heat_balance
 from thermogear.mesh.elastic import TextbookPair, elastic_pair
 from thermogear.mesh.friction_path import FrictionPath
 from thermogear.mesh.mesh_heat import mesh_heat
@@ -105,17 +105,24 @@ def test_churning_is_that_of_the_wheel_as_deep_as_it_dips(rig: GearPair) -> None
         assert (float(expected[0]) > 0.0) == (depth > 0.0)
 
 
-def test_relaxation_is_exact_for_one_straight_unknown_and_keeps_its_factor_on_no_news() -> None:
-    """x' = x + f c with c = a (x* - x): Aitken's next factor is 1/a. Source: Aitken 1926."""
-    slope = np.array([0.5, 1.6, -0.4])
-    before = slope * 3.0
-    after = before - slope * before  # after a full step
-    found = aitken(np.ones(3), before=before[:, None], change=after[:, None])
-    assert found == pytest.approx(1.0 / slope, rel=1e-12)
-    same = np.array([[1.0, 2.0], [0.0, 3.0]])
-    assert aitken(np.array([0.7, 1.2]), before=same, change=same).tolist() == [0.7, 1.2]
-    unknown = np.full((2, 2), np.nan)
-    assert aitken(np.array([0.7, 1.2]), before=unknown, change=same).tolist() == [0.7, 1.2]
+def test_broyden_meets_the_last_step_and_leaves_alone_what_it_says_nothing_about() -> None:
+    """H y = s, and H u as it was for u at right angles to H^T s; no news changes nothing.
+
+    Source: Broyden 1965.
+    """
+    random = np.random.default_rng(4)
+    inverse = np.eye(3) + 0.2 * random.standard_normal((2, 3, 3))
+    fell, moved = random.standard_normal((2, 2, 3))
+    new = broyden(inverse, fell=fell, moved=moved)
+    assert np.einsum("ijk,ik->ij", new, fell) == pytest.approx(moved, rel=1e-12)
+    row = np.einsum("ij,ijk->ik", moved, inverse)
+    aside = np.cross(row, fell)
+    for matrix in (new, inverse):
+        kept = np.einsum("ijk,ik->ij", matrix, aside)
+        assert kept == pytest.approx(np.einsum("ijk,ik->ij", inverse, aside), rel=1e-10)
+    still, unknown = np.zeros((2, 3)), np.full((2, 3), np.nan)
+    assert np.array_equal(broyden(inverse, fell=fell, moved=still), inverse)
+    assert np.array_equal(broyden(inverse, fell=unknown, moved=unknown), inverse)
 
 
 @pytest.mark.parametrize("flank", ["growth", "thesis"])

@@ -20,7 +20,7 @@ from thermogear.heat.gearbox import (
 from thermogear.heat.losses import gear_loss_factor
 from thermogear.heat.network import Link, ThermalNetwork
 from thermogear.heat.temperature import flank_exchange
-from thermogear.mesh.balance import Gearbox, heat_balance
+from thermogear.mesh.balance import FAR, Gearbox, heat_balance
 from thermogear.mesh.elastic import elastic_pair
 from thermogear.mesh.friction_path import FrictionPath
 from thermogear.mesh.mesh_heat import MeshHeat, mesh_heat
@@ -48,6 +48,22 @@ def test_equal_shares_lose_what_ohlendorfs_factor_says(rig: GearPair, hot_rig: O
     expected = DRY.dry_coefficient * hot_rig.speed * hot_rig.torque * factor
     np.testing.assert_allclose(found.power, expected, rtol=1e-12)
     assert found.beyond.tolist() == [0.0, 0.0, 0.0]
+
+
+def test_a_share_that_is_known_already_gives_the_very_heat_and_near_by_nearly_so(
+    rig: GearPair, hot_rig: Operating
+) -> None:
+    for sharing in ("loaded", "equal"):
+        model = DRY.override(sharing=sharing)
+        found = means(rig, hot_rig, model)
+        again = mesh_heat(elastic_pair(HotPair(rig, hot_rig, model)), share=found.share)
+        for one, other in zip(found, again, strict=True):
+            np.testing.assert_array_equal(one, other)
+    warm = replace(hot_rig, temperatures=replace(hot_rig.temperatures, pinion_addendum=375.0))
+    near = elastic_pair(HotPair(rig, warm, DRY))
+    kept = mesh_heat(near, share=means(rig, hot_rig, DRY).share)
+    # the balance goes by a kept share no nearer to its end than this part of its way
+    np.testing.assert_allclose(kept.power, mesh_heat(near).power, rtol=FAR)
 
 
 def test_load_off_the_path_rubs_as_well(rig: GearPair, hot_rig: Operating) -> None:

@@ -85,7 +85,8 @@ class Points:
         """e [m] at ``phase`` [mesh periods], (point, phase)."""
         ranks = np.arange(self.error.shape[1])
         waves = np.exp(2j * np.pi * np.multiply.outer(ranks, phase))
-        return np.asarray((self.error @ waves).real)
+        # one product a point: the same to the last bit in every batch
+        return np.asarray((self.error[:, None] @ waves)[:, 0].real)
 
     def take(self, index: Whole) -> Points:
         """Some of the points."""

@@ -110,10 +110,9 @@ def respond(
         maps = exact.prepare_maps(lanes, borders, marks)
         run = exact.State.start(x=state[index, 0], y=state[index, 1], backlash=lanes.half_backlash)
         _, _, samples = exact.advance(maps, run, record.periods, sampled=True)
-        for row, lane in enumerate(index):
-            one = _figures(points, int(lane), samples[:, 0, row], phase, record, lines)
-            for name, value in one.items():
-                found[name][lane] = value
+        each = _figures(points.take(index), samples[:, 0].T, phase, record, lines)
+        for name, values in each.items():
+            found[name][index] = values
         drive = run.spent[2] / (record.periods * lanes.period)
         found["contact_loss_share"][index] = lost_share(drive)
     here = moves(points.status)
@@ -124,26 +123,28 @@ def respond(
 
 
 def _figures(
-    points: Points, lane: int, x: Floats, phase: Floats, record: Recording, lines: bool
-) -> dict[str, Any]:
-    length, scale = points.length[lane], points.stiffness[lane] * points.length[lane]
-    (error,) = points.take(np.array([lane])).kinematic(phase)
-    dte = length * x + np.tile(error, record.periods)
-    b = float(points.flat.half_backlash[lane])
-    stiffness = points.flat.take(np.array([lane])).values("stiffness", phase)[:, 0]
-    force = scale * np.tile(stiffness, record.periods) * (x - np.clip(x, -b, b))
-    mean = points.force[lane]
-    row: dict[str, Any] = {
-        "dte_mean": dte.mean(),
-        "dte_rms": dte.std(),
-        "dte_peak_to_peak": dte.max() - dte.min(),
-        "mesh_force_max": force.max(),
-        "mesh_force_min": force.min(),
-        "mesh_force_rms": force.std(),
-        "dynamic_factor": np.max(np.abs(force)) / mean if mean > 0.0 else np.inf,
+    points: Points, x: Floats, phase: Floats, record: Recording, lines: bool
+) -> dict[str, Floats]:
+    """The figures of motions ``x`` (point, sample)."""
+    length, b = points.length[:, None], points.flat.half_backlash[:, None]
+    periods = 1, record.periods
+    dte = length * x + np.tile(points.kinematic(phase), periods)
+    stiffness = np.tile(points.flat.values("stiffness", phase).T, periods)
+    force = (points.stiffness[:, None] * length) * stiffness * (x - np.clip(x, -b, b))
+    loaded, greatest = points.force > 0.0, np.abs(force).max(axis=1)
+    found = {
+        "dte_mean": dte.mean(axis=1),
+        "dte_rms": dte.std(axis=1),
+        "dte_peak_to_peak": np.ptp(dte, axis=1),
+        "mesh_force_max": force.max(axis=1),
+        "mesh_force_min": force.min(axis=1),
+        "mesh_force_rms": force.std(axis=1),
+        "dynamic_factor": np.divide(
+            greatest, points.force, out=np.full(greatest.shape, np.inf), where=loaded
+        ),
     }
     if lines:
-        row["dte_line"] = order_amplitudes(
+        found["dte_line"] = order_amplitudes(
             dte, samples_per_period=record.samples, periods=record.periods, orders=record.orders
         )
-    return row
+    return found

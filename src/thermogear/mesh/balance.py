@@ -26,7 +26,7 @@ from thermogear.heat.lubrication import density, kinematic_viscosity
 from thermogear.heat.network import SteadyState, ThermalNetwork
 from thermogear.mesh.elastic import ElasticPair, elastic_pair
 from thermogear.mesh.friction_path import FrictionPath
-from thermogear.mesh.mesh_heat import mesh_heat
+from thermogear.mesh.mesh_heat import MeshHeat, mesh_heat
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import ALIKE, Operating, Temperatures, Varied
 from thermogear.mesh.thermal import HotPair
@@ -42,71 +42,76 @@ FIRST, LARGEST, SHARE = 2.0, 8.0, 0.15
 """First step of a point [K]; largest one [K], or this share of the way it still has to go."""
 CAREFUL = 0.8
 """Part of the step that would just keep the order of states by the last slope."""
-NEAR, NEAREST, FARTHEST = 0.5, 1.0, 10.0
-"""Change [K] below which steps are extrapolated; how far [K] and how many times they then go."""
+NEAR, NEAREST = 0.5, 1.0
+"""Change [K] below which steps are Newton's; how far [K] they then go."""
+FAR = 0.1
+"""While a point changes by more than this share of its way from the start [K/K], its tooth pairs
+share the load as they last did: the contact is not solved again."""
 WARMER, TRIALS = 5.0, 16
 """A start at which no law answers is made warmer by this [K], this often."""
 
 
 class Response(NamedTuple):
-    """What the network's steady state at the losses of a state is [K], and whether it counts."""
+    """What the network's steady state at the losses of a state is [K], whether it counts, and how
+    the tooth pairs share the load (count, positions)."""
 
     reached: Floats
     known: Flags
+    share: Floats
 
 
-Respond = Callable[[Floats, Indices], Response]
+Respond = Callable[[Floats, Indices, Floats | None], Response]
+"""The answer at states of the places of points, the load shared anew or as it is given."""
 
 
-@dataclass(eq=False, kw_only=True)
+@dataclass(eq=False)
 class Course:
-    """Where the iteration from one start ended, arrays (count, ...).
+    """Where the iteration from one start is, arrays (count, ...).
 
-    ``nodes`` [K]; ``iterations``; ``residual`` [K] the greatest change of a node in the last
-    one; ``lost``: in one line, by the place of the point, why it has no value.
+    ``nodes`` [K]; ``reached``, ``known`` and ``share`` of the last answer there; ``iterations``;
+    ``residual`` [K] the greatest change of a node in the last one; ``lost``: in one line, by the
+    place of the point, why it has no value.
     """
 
     nodes: Floats
-    iterations: NDArray[np.int64]
-    residual: Floats
-    known: Flags
+    reached: Floats = field(init=False)
+    known: Flags = field(init=False)
+    iterations: NDArray[np.int64] = field(init=False)
+    residual: Floats = field(init=False)
+    share: dict[int, Floats] = field(default_factory=dict)
     lost: dict[int, str] = field(default_factory=dict)
 
-    def part(self, places: slice) -> Course:
-        """The points at ``places``, a slice without steps, counted from its start."""
-        lost = range(places.start, places.stop)
-        return Course(
-            nodes=self.nodes[places],
-            iterations=self.iterations[places],
-            residual=self.residual[places],
-            known=self.known[places],
-            lost={p - lost.start: why for p, why in self.lost.items() if p in lost},
-        )
+    def __post_init__(self) -> None:
+        count = len(self.nodes)
+        self.reached, self.known = self.nodes.copy(), np.zeros(count, np.bool_)
+        self.iterations, self.residual = np.zeros(count, np.int64), np.full(count, np.inf)
+
+    def shares(self, index: Indices) -> Floats:
+        """How the load was last shared at some points."""
+        return np.stack([self.share[place] for place in index.tolist()])
+
+    def ask(self, respond: Respond, index: Indices, *, anew: bool = True) -> None:
+        """Set the answer at some points; those at which it raises are ``lost``.
+
+        A batch that is refused is halved until the points that fail are alone.
+        """
+        if not index.size:
+            return
+        try:
+            found = respond(self.nodes[index], index, None if anew else self.shares(index))
+        except ThermogearError as error:
+            if index.size == 1:
+                self.lost[int(index[0])] = str(error)
+            else:
+                for half in np.array_split(index, 2):
+                    self.ask(respond, half, anew=anew)
+        else:
+            self.reached[index], self.known[index] = found.reached, found.known
+            self.share.update(zip(index.tolist(), found.share, strict=True))
 
     def settled(self, tolerance: float) -> Flags:
-        """Whether a point ended at a steady state."""
-        found = (self.residual <= tolerance) & self.known
-        found[list(self.lost)] = False
-        return np.asarray(found)
-
-
-def asked(respond: Respond, nodes: Floats, index: Indices, lost: dict[int, str]) -> Response:
-    """``respond``, with the points at which it raises named in ``lost`` and left as they are.
-
-    A batch that is refused is halved until the points that fail are alone.
-    """
-    try:
-        return respond(nodes, index)
-    except ThermogearError as error:
-        if index.size == 1:
-            lost[int(index[0])] = str(error)
-            return Response(nodes.copy(), np.zeros(1, np.bool_))
-    middle = index.size // 2
-    parts = [
-        asked(respond, nodes[part], index[part], lost)
-        for part in (slice(None, middle), slice(middle, None))
-    ]
-    return Response(*(np.concatenate(both) for both in zip(*parts, strict=True)))
+        """Whether a point ended at a steady state; one that is lost was still on its way."""
+        return np.asarray((self.residual <= tolerance) & self.known)
 
 
 def follow(
@@ -118,91 +123,93 @@ def follow(
     the last slope of N it keeps the order of states (w < 1/(1 - N') where N falls), and never
     more than a few kelvins. Where N keeps the order, iterates from below all steady states rise
     to the lowest of them, and from above fall to the highest: the iteration cannot step over
-    one. Near the end, within :data:`NEAR`, steps are extrapolated by Aitken's factor.
+    one. Near the end, within :data:`NEAR`, steps are Newton's with the inverse derivative of
+    :func:`broyden`.
+
+    While a point is :data:`FAR`, N takes the load as it was last shared; none settles by that.
 
     ``held`` (count, nodes): nodes of given temperature. A start that the laws refuse is made
     warmer, in steps of 5 K; a point that is refused later is lost, and stays where it was.
     """
-    count = start.shape[0]
-    found = Course(
-        nodes=start.copy(),
-        iterations=np.zeros(count, np.int64),
-        residual=np.full(count, np.inf),
-        known=np.zeros(count, np.bool_),
-    )
-    factor, before = np.ones(count), np.full(start.shape, np.nan)
-    moved = np.full(start.shape, np.nan)
-    going = np.arange(count)
+    found, going = Course(start.copy()), np.arange(len(start))
+    before, moved = np.full(start.shape, np.nan), np.full(start.shape, np.nan)
+    inverse = np.tile(np.eye(start.shape[1]), (going.size, 1, 1))
     with warnings.catch_warnings():
         # iterates on the way may leave an oil's range; the result is asked once more
         warnings.simplefilter("ignore", ValidityWarning)
-        answer = _first(respond, found, held)
-        going = going[[place not in found.lost for place in going]]
-        for turn in range(most_iterations):
+        _begin(respond, found, held)
+        way = np.abs(found.reached - found.nodes).max(axis=1)
+        begin, far = found.nodes.copy(), way > 0.0
+        for _ in range(most_iterations):
+            going = going[[place not in found.lost for place in going]]
+            change = found.reached[going] - found.nodes[going]
+            residual = np.abs(change).max(axis=1)
+            found.residual[going] = residual
+            found.iterations[going] += 1
+            step, inverse[going] = _steps(change, before[going], moved[going], inverse[going])
+            before[going], moved[going] = change, step
+            going, step = going[residual > tolerance], step[residual > tolerance]
             if not going.size:
                 break
-            refused: dict[int, str] = {}
-            if turn:
-                answer = asked(respond, found.nodes[going], going, refused)
-            else:
-                answer = Response(answer.reached[going], answer.known[going])
-            change = answer.reached - found.nodes[going]
-            residual = np.abs(change).max(axis=1)
-            found.residual[going], found.known[going] = residual, answer.known
-            found.iterations[going] += 1
-            found.lost |= refused
-            step, factor[going] = _steps(change, before[going], moved[going], factor[going])
-            before[going], moved[going] = change, step
-            on = (residual > tolerance) & [place not in refused for place in going]
-            going = going[on]
-            found.nodes[going] = np.clip(found.nodes[going] + step[on], BODY.least, BODY.most)
+            found.nodes[going] = np.clip(found.nodes[going] + step, BODY.least, BODY.most)
+            rough = going[far[going]]
+            found.ask(respond, rough, anew=False)
+            reached = found.reached[rough]
+            left, way = (np.abs(reached - at[rough]).max(axis=1) for at in (found.nodes, begin))
+            far[rough] = left > FAR * way
+            found.ask(respond, going[~far[going]])
+            # the slope of a point whose load is shared anew is that of the answers before
+            before[rough] += found.reached[rough] - reached
     return found
 
 
-def _first(respond: Respond, found: Course, held: Flags) -> Response:
-    """The answer at the start, which is made warmer where it is refused."""
-    everything = np.arange(found.nodes.shape[0])
-    answer = asked(respond, found.nodes, everything, found.lost)
+def _begin(respond: Respond, found: Course, held: Flags) -> None:
+    """Ask at the start, which is made warmer where it is refused."""
+    found.ask(respond, np.arange(len(found.nodes)))
     for _ in range(TRIALS):
-        again = np.array(sorted(found.lost), dtype=np.int64)
-        if not again.size:
-            break
+        again, reasons = np.array(sorted(found.lost), dtype=np.int64), found.lost
         warm = np.minimum(found.nodes[again] + WARMER, BODY.most)
         found.nodes[again] = np.where(held[again], found.nodes[again], warm)
-        reasons: dict[int, str] = {}
-        part = asked(respond, found.nodes[again], again, reasons)
-        answer.reached[again], answer.known[again] = part.reached, part.known
+        found.lost = {}
+        found.ask(respond, again)
         # the first refusal says why
-        found.lost = {place: found.lost[place] for place in reasons}
-    return answer
+        found.lost = {place: reasons[place] for place in found.lost}
 
 
-def _steps(change: Floats, before: Floats, moved: Floats, factor: Floats) -> tuple[Floats, Floats]:
-    """The next step [K] of each point and its Aitken factor, from the last change and step."""
+def _steps(change: Floats, before: Floats, moved: Floats, inverse: Floats) -> tuple[Floats, Floats]:
+    """The next step [K] of each point and its inverse derivative, from the last change and step."""
     residual = np.abs(change).max(axis=1)
     square = np.einsum("ij,ij->i", moved, moved)
     along = np.einsum("ij,ij->i", change - before, moved)
     known = np.isfinite(square) & (square > 0.0)
     # N' along the last step: change = N(T) - T
     slope = 1.0 + np.divide(along, square, out=np.zeros_like(residual), where=known)
-    part = np.minimum(1.0, CAREFUL / (1.0 + np.maximum(-slope, 0.0)))
-    part = np.where((slope >= 0.0) & known, 1.0, part)
+    falling = np.minimum(1.0, CAREFUL / (1.0 + np.maximum(-slope, 0.0)))
+    part = np.where((slope >= 0.0) & known, 1.0, falling)
     furthest = np.where(known, np.maximum(LARGEST, SHARE * residual), FIRST)
-    careful = np.minimum(part, furthest / np.maximum(residual, 1e-300))
-    extrapolated = np.clip(aitken(factor, before=before, change=change), 0.05, FARTHEST)
-    near = np.isfinite(before).all(axis=1) & (residual <= NEAR)
-    close = np.minimum(extrapolated, NEAREST / np.maximum(residual, 1e-300))
-    chosen = np.where(near, close, careful)
-    return chosen[:, None] * change, chosen
+    careful = np.minimum(part, furthest / np.maximum(residual, 1e-300))[:, None] * change
+    inverse = broyden(inverse, fell=before - change, moved=moved)
+    newton = np.einsum("ijk,ik->ij", inverse, change)
+    newton *= np.minimum(1.0, NEAREST / np.maximum(np.abs(newton).max(axis=1), 1e-300))[:, None]
+    near = known & (residual <= NEAR) & (np.einsum("ij,ij->i", newton, change) > 0.0)
+    return np.where(near[:, None], newton, careful), inverse
 
 
-def aitken(factor: Floats, *, before: Floats, change: Floats) -> Floats:
-    """Aitken's relaxation factor of each point from its last two changes."""
-    turn = change - before
-    square = np.einsum("ij,ij->i", turn, turn)
-    along = np.einsum("ij,ij->i", before, turn)
-    known = np.isfinite(square) & (square > 0.0)
-    return np.asarray(-factor * np.divide(along, square, out=-np.ones_like(factor), where=known))
+def broyden(inverse: Floats, *, fell: Floats, moved: Floats) -> Floats:
+    """Broyden's inverse derivatives, (count, n, n), after a step by which each point ``moved``.
+
+    H <- H + (s - H y) (s^T H)/(s^T H y), s the step and y = ``fell`` by how much the change has
+    become less, both (count, n): then H y = s. A step that says nothing leaves H as it was.
+
+    Source: C. G. Broyden, Mathematics of Computation 19 (1965) 577.
+    """
+    guess = np.einsum("ijk,ik->ij", inverse, fell)
+    row = np.einsum("ij,ijk->ik", moved, inverse)
+    scale = np.einsum("ij,ij->i", moved, guess)
+    known = np.abs(scale) > 1e-6 * np.einsum("ij,ij->i", moved, moved)
+    over = np.divide(1.0, scale, out=np.zeros_like(scale), where=known)[:, None]
+    each = np.where(known[:, None], over * (moved - guess), 0.0)
+    return np.asarray(inverse + each[:, :, None] * np.where(known[:, None], row, 0.0)[:, None, :])
 
 
 SAME = 0.01
@@ -367,45 +374,46 @@ def heat_balance(
         housing,
         tuple(deviations),
     )
-    loop.refuse_what_never_works()
-    stand_in = np.full((loop.count, len(box.nodes)), max(STAND_IN, reference + OVER))
+    stand_in, cold = max(STAND_IN, reference + OVER), np.arange(loop.count)
+    loop.operating(loop.at(stand_in), cold)
     starts = [box.surroundings.ambient] + [HOTTEST] * from_hot
     # both ways at once: every point goes its own
     ways = follow(
-        lambda nodes, index: loop.respond(nodes, index % loop.count),
+        lambda nodes, index, share: loop.respond(nodes, index % loop.count, share),
         np.concatenate([loop.at(kelvin) for kelvin in starts]),
         np.concatenate([loop.held] * len(starts)),
         tolerance=tolerance,
         most_iterations=most_iterations,
     )
-    cold = ways.part(slice(0, loop.count))
-    lost = np.zeros(loop.count, np.bool_)
-    lost[list(cold.lost)] = True
-    settled = cold.settled(tolerance)
-    hot, several = np.full(cold.nodes.shape, np.nan), np.zeros(loop.count, np.bool_)
+    reasons = {place: why for place, why in ways.lost.items() if place < loop.count}
+    lost = np.isin(cold, list(reasons))
+    if lost.all():
+        loop.refuse_what_never_works(loop.at(stand_in))
+    down, settled = ways.settled(tolerance)[loop.count :], ways.settled(tolerance)[cold]
+    hot, several = np.full((loop.count, len(box.nodes)), np.nan), np.zeros(loop.count, np.bool_)
     if from_hot:
-        warm = ways.part(slice(loop.count, 2 * loop.count))
-        down = warm.settled(tolerance)
-        hot[down] = warm.nodes[down]
+        hot[down] = ways.nodes[loop.count :][down]
         # a start from hot that does not settle shows no other state
-        several = settled & down & (np.abs(warm.nodes - cold.nodes).max(axis=1) > SAME)
-    nodes = np.where(lost[:, None], stand_in, cold.nodes)
+        several = settled & (np.abs(hot - ways.nodes[cold]).max(axis=1) > SAME)
+    nodes = np.where(lost[:, None], stand_in, ways.nodes[cold])
+    # the load is shared as at these very states, but where a point stands in
+    share = None if lost.any() else ways.shares(cold)
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always", ValidityWarning)
-        network, losses, known = loop.network(nodes, loop.everything)
+        network, losses, means = loop.network(nodes, cold, share)
     for text in dict.fromkeys(str(one.message) for one in told):
         warnings.warn(text, ValidityWarning, stacklevel=2)
     return HeatBalance(
-        operating=loop.operating(nodes, loop.everything),
+        operating=loop.operating(nodes, cold),
         network=network,
         steady=_unknown_where(lost, network.steady()),
         losses=losses.unknown_where(lost),
-        iterations=cold.iterations,
-        residual=np.where(lost, np.nan, cold.residual),
-        settled=settled & known & ~lost,
+        iterations=ways.iterations[cold],
+        residual=np.where(lost, np.nan, ways.residual[cold]),
+        settled=settled & means.settled,
         several=several,
         hot={name: hot[:, place] for place, name in enumerate(box.nodes)},
-        lost=dict(sorted(cold.lost.items())),
+        lost=dict(sorted(reasons.items())),
     )
 
 
@@ -443,10 +451,6 @@ class _Loop:
         return self.speed.size
 
     @property
-    def everything(self) -> Indices:
-        return np.arange(self.count)
-
-    @property
     def measured(self) -> dict[str, Floats]:
         """Given temperatures [K] of nodes, (count,)."""
         given = self.box.measured.items()
@@ -467,15 +471,14 @@ class _Loop:
                 nodes[:, names.index(name)] = values
         return nodes
 
-    def refuse_what_never_works(self) -> None:
-        """Raise what is wrong with the whole: no state of any point would have a value."""
-        nodes, lost = self.at(max(STAND_IN, self.reference + OVER)), dict[int, str]()
-        self.operating(nodes, self.everything)
+    def refuse_what_never_works(self, nodes: Floats) -> None:
+        """Raise what is wrong with the whole, where no point has a value at its ``nodes`` [K]."""
+        found = Course(nodes)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ValidityWarning)
-            asked(self.respond, nodes, self.everything, lost)
-            if len(lost) == self.count:
-                self.respond(nodes[:1], self.everything[:1])
+            found.ask(self.respond, np.arange(self.count))
+            if len(found.lost) == self.count:
+                self.respond(nodes[:1], np.arange(1), None)
 
     def named(self, nodes: Floats) -> dict[str, Floats]:
         """The temperatures [K] of a state by node."""
@@ -495,11 +498,14 @@ class _Loop:
             varied=self.varied.part(index),
         )
 
-    def network(self, nodes: Floats, index: Indices) -> tuple[ThermalNetwork, Losses, Flags]:
-        """The network with the losses of the state, and whether its loaded contact is known."""
-        here = self.operating(nodes, index)
+    def network(
+        self, nodes: Floats, index: Indices, share: Floats | None
+    ) -> tuple[ThermalNetwork, Losses, MeshHeat]:
+        """The network with the losses of the state, and what the mesh makes of heat."""
+        here, named = self.operating(nodes, index), self.named(nodes)
         elastic = elastic_pair(HotPair(self.pair, here, self.model), self.deviations)
-        losses, known = pair_losses(self.pair, here, elastic, self.box, self.named(nodes))
+        means = mesh_heat(elastic, share=share)
+        losses, _ = pair_losses(self.pair, here, elastic, self.box, named, means)
         network = thermal_network(
             self.pair.pinion,
             self.pair.wheel,
@@ -509,17 +515,19 @@ class _Loop:
             here.oil_temperature,
             self.box.surroundings,
             {name: values[index] for name, values in self.measured.items()},
-            self.named(nodes)["housing"],
+            named["housing"],
         )
-        return network, losses, known
+        return network, losses, means
 
-    def respond(self, nodes: Floats, index: Indices) -> Response:
+    def respond(self, nodes: Floats, index: Indices, share: Floats | None) -> Response:
         """The steady state of that network; one beyond 700 K is none."""
-        network, _, known = self.network(nodes, index)
+        network, _, means = self.network(nodes, index, share)
         steady = network.steady()
-        found = [np.broadcast_to(steady[name], (index.size,)) for name in self.box.nodes]
-        reached = np.stack(found, axis=1)
-        return Response(np.minimum(reached, HOTTEST), known & (reached < HOTTEST).all(axis=1))
+        reached = np.stack(
+            [np.broadcast_to(steady[name], index.shape) for name in self.box.nodes], axis=1
+        )
+        known = means.settled & (reached < HOTTEST).all(axis=1)
+        return Response(np.minimum(reached, HOTTEST), known, means.share)
 
 
 def node_temperatures(nodes: Mapping[str, ArrayLike], reference: float) -> Temperatures:
@@ -542,14 +550,15 @@ def pair_losses(
     elastic: ElasticPair,
     box: Gearbox,
     nodes: Mapping[str, ArrayLike],
+    means: MeshHeat | None = None,
 ) -> tuple[Losses, Flags]:
     """Mesh, churning and bearing losses [W] and the flanks' conductance [W/K], (count,).
 
     At the present temperatures, the rings' those of ``nodes`` [K]; with them whether the loaded
-    contact is known, (count,). Warns where the film at the flanks leaves the range of the oil's
-    viscosity line.
+    contact is known, (count,). ``means`` of these points where the mesh is solved already.
+    Warns where the film at the flanks leaves the range of the oil's viscosity line.
     """
-    means = mesh_heat(elastic)
+    means = means or mesh_heat(elastic)
     FrictionPath(elastic, np.array([pair.path.c])).warn_beyond_oil()
     oil = operating.lubricant
     wheel_speed = operating.speed / pair.ratio

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.gauss import gauss
+from thermogear.gears.candidates import mesh_points
 from thermogear.gears.pair import GearPair
 from thermogear.mesh.elastic import ElasticPair, PathShare, loaded_pair
 from thermogear.mesh.friction_path import FrictionPath
@@ -25,7 +26,8 @@ class MeshHeat(NamedTuple):
 
     ``power`` [W] of friction, ``partition`` [-] of it into the pinion, ``conductance`` [W/K]
     between both flanks, ``beyond`` [-] the share of the power off the path of contact (tip
-    corners), ``settled`` whether the loaded contact is known.
+    corners), ``settled`` whether the loaded contact is known, ``share`` [-] of the load on every
+    position (count, positions).
     """
 
     power: Floats
@@ -33,9 +35,12 @@ class MeshHeat(NamedTuple):
     conductance: Floats
     beyond: Floats
     settled: NDArray[np.bool_]
+    share: Floats
 
 
-def mesh_heat(elastic: ElasticPair, phases: int = PHASES) -> MeshHeat:
+def mesh_heat(
+    elastic: ElasticPair, phases: int = PHASES, *, share: Floats | None = None
+) -> MeshHeat:
     """Friction power, its partition and the conductance between the flanks, time means.
 
     P = (b/p_b) int |mu| w |v_1 - v_2| ds,   G = (b/p_b) int g ds
@@ -50,15 +55,17 @@ def mesh_heat(elastic: ElasticPair, phases: int = PHASES) -> MeshHeat:
     Off the path a corner slides at (omega_1 + omega_2)(s - s_C) to first order in the distance
     from the path's end (the corner moves along the line of action as the involute's point
     would), with the friction coefficient of flanks of the involutes' curvature there.
+
+    ``share`` of a result of the same pair, in a state near this one: the load is not shared anew.
     """
     pair = elastic.hot.pair
     beyond = elastic.hot.model.sharing == "loaded"
     if beyond:
-        s, weights, shares = _around(elastic, phases)
+        s, weights, share = _around(elastic, phases, share)
     else:
         s, weights = _between_steps(pair)
-        shares = None
-    path = FrictionPath(elastic, s, shares)
+        share = elastic.share(s).share if share is None else share
+    path = FrictionPath(elastic, s, PathShare(share, np.zeros(share.shape, np.int8)))
     scale = elastic.hot.face_width / pair.base_pitch * weights
     heat = np.asarray(path.heat * scale)
     power = heat.sum(axis=-1)
@@ -74,21 +81,23 @@ def mesh_heat(elastic: ElasticPair, phases: int = PHASES) -> MeshHeat:
         conductance=np.asarray((path.exchange * scale).sum(axis=-1)),
         beyond=np.divide(outside, power, out=np.zeros_like(power), where=busy),
         settled=path.settled,
+        share=share,
     )
 
 
-def _around(elastic: ElasticPair, phases: int) -> tuple[Floats, Floats, PathShare]:
+def _around(
+    elastic: ElasticPair, phases: int, share: Floats | None
+) -> tuple[Floats, Floats, Floats]:
     """Positions [m] of every candidate at uniform phases, their weights [m] and shares."""
-    pair, count = elastic.pair, elastic.hot.count
-    solved = loaded_pair(elastic).solve(np.arange(phases) / phases)
-    s = solved.points.s.ravel()
+    pair, phase = elastic.pair, np.arange(phases) / phases
+    s = mesh_points(pair, phase, extended=elastic.hot.model.loaded.extended).s.ravel()
     # beyond the tangent points there is no flank: no candidate carries there
     margin = 1e-3 * pair.base_pitch
     inside = (s > margin) & (s < pair.line_of_action - margin)
-    shares = PathShare(
-        solved.share.reshape(count, -1)[:, inside], solved.edge.reshape(count, -1)[:, inside]
-    )
-    return s[inside], np.full(int(inside.sum()), pair.base_pitch / phases), shares
+    if share is None:
+        solved = loaded_pair(elastic).solve(phase).share
+        share = solved.reshape(elastic.hot.count, -1)[:, inside]
+    return s[inside], np.full(int(inside.sum()), pair.base_pitch / phases), share
 
 
 def _between_steps(pair: GearPair) -> tuple[Floats, Floats]:

@@ -57,7 +57,8 @@ _FASTEST = 50.0  # m/s
 class Scuffing:
     """The oil, how it comes to the mesh, and its stage in the FZG test.
 
-    ``oil_temperature`` [K]; ``load_stage`` S_FZG of A/8.3/90, 1..14 or the last one passed;
+    ``oil_temperature`` [K], a number or one for each point; ``load_stage`` S_FZG of A/8.3/90,
+    1..14 or the last one passed;
     ``steel`` out of :data:`~thermogear.heat.scuffing.STRUCTURE_FACTORS`; ``lubrication`` out of
     :data:`LUBRICATIONS`; ``overload``: product of the load factors, K_A K_v and the rest;
     ``missing_relief`` C_eff - C_a2 [m] >= 0 as :func:`~thermogear.heat.scuffing.approach_factor`;
@@ -65,7 +66,7 @@ class Scuffing:
     """
 
     lubricant: Lubricant
-    oil_temperature: float
+    oil_temperature: ArrayLike
     load_stage: float = 12.0
     steel: str = "case-hardened"
     lubrication: str = "dip"
@@ -195,7 +196,7 @@ def flash_rating(
     """
     load, v = _load_and_speed(pair, torque, speed, scuffing.overload)
     path, s = pair.path, path_of_contact(pair, _POINTS)
-    oil = scuffing.oil_temperature
+    oil = np.asarray(scuffing.oil_temperature, dtype=float)
     friction = iso_13989_1(
         load,
         2.0 * np.minimum(v, _FASTEST) * np.sin(pair.operating_pressure_angle),
@@ -251,7 +252,7 @@ def integral_rating(
     Source: ISO/TR 13989-2.
     """
     load, v = _load_and_speed(pair, torque, speed, scuffing.overload)
-    oil = scuffing.oil_temperature
+    oil = np.asarray(scuffing.oil_temperature, dtype=float)
     working = pair.operating_pressure_angle
     friction = iso_13989_2(
         load,

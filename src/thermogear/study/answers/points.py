@@ -12,8 +12,8 @@ from thermogear.case.allowed import LANE
 from thermogear.case.case import GearCase
 from thermogear.case.family import BESIDE, GearFamily
 from thermogear.mesh.scuffing_rating import Scuffing, flash_rating, integral_rating
-from thermogear.study.answers.steady import borne_by, unrated
-from thermogear.study.scuffing import load_stage
+from thermogear.study.answers.steady import borne_by
+from thermogear.study.scuffing import load_stage, not_steel
 
 Floats = NDArray[np.float64]
 
@@ -65,13 +65,15 @@ def answer_numbers(family: GearFamily, rows: ArrayLike) -> dict[str, Floats]:
     points = np.asarray(rows, dtype=float)
     case = family.case
     found = family.quasi_static(points, WANT, path_positions=case.path_positions)
-    flash, film = found["flash_temperature"], found["film_parameter"]
     margin, safety = _scuffing(family, points, found)
     jam, teeth = found["jam_temperature"], found["pinion_temperature"]
     borne = borne_by(case.pair)[0]
     # a jammed pair has no running contact
     running = found["status"] != STATUS.index("jammed")
-    flash, film = (np.where(running[:, None], values, np.nan) for values in (flash, film))
+    flash, film = (
+        np.where(running[:, None], found[name], np.nan)
+        for name in ("flash_temperature", "film_parameter")
+    )
     margin, safety = (np.where(running, values, np.nan) for values in (margin, safety))
     return {
         "oil_temperature": found["oil_temperature"],
@@ -117,19 +119,20 @@ def _scuffing(
 def _rated(
     case: GearCase, torque: Floats, speed: Floats, oil: Floats
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    nan = np.full(torque.shape, np.nan)
-    margin, safety = nan.copy(), nan.copy()
-    stage = load_stage(case).stage
-    for place in range(torque.size):
-        load, turning, warm = float(torque[place]), float(speed[place]), float(oil[place])
-        if unrated(case, load, warm):
-            continue
-        state = Scuffing(lubricant=case.stated.lubricant, oil_temperature=warm, load_stage=stage)
-        for values, rate, name in (
-            (margin, flash_rating, "margin"), (safety, integral_rating, "safety")
-        ):  # fmt: skip
-            try:
-                values[place] = float(getattr(rate(case.pair, load, turning, state), name))
-            except InputError:
-                continue  # the standard does not cover it
+    margin, safety = np.full(torque.shape, np.nan), np.full(torque.shape, np.nan)
+    rated = (torque > 0.0) & (speed > 0.0) & np.isfinite(oil)
+    if not_steel(case) or not rated.any():
+        return margin, safety
+    state = Scuffing(
+        lubricant=case.stated.lubricant,
+        oil_temperature=oil[rated],
+        load_stage=load_stage(case).stage,
+    )
+    for values, rate, name in (
+        (margin, flash_rating, "margin"), (safety, integral_rating, "safety")
+    ):  # fmt: skip
+        try:
+            values[rated] = getattr(rate(case.pair, torque[rated], speed[rated], state), name)
+        except InputError:
+            continue  # the standard does not cover this pair
     return margin, safety
