@@ -12,6 +12,8 @@ import numpy as np
 from points import Points
 
 STEPS = 256
+MOST_STEPS = 2**31 - 1
+"""For a solver that stops after a number of steps, numbalsoda after 10 000: no stop."""
 Run = Callable[[Points, int], np.ndarray]
 
 
@@ -103,7 +105,10 @@ def numba_loop(points: Points, periods: int) -> np.ndarray:
 def _numbalsoda(method: str) -> Run:
     if importlib.util.find_spec("numbalsoda") is None:
         raise Missing("no wheel for this Python, and its build needs a Fortran compiler")
-    import numbalsoda
+    try:
+        import numbalsoda
+    except (ImportError, OSError) as error:  # installed without the library it opens
+        raise Missing(f"installed, but it cannot be loaded: {error}") from error
 
     @numba.cfunc(numbalsoda.lsoda_sig)
     def rate(t, y, dy, p):
@@ -120,14 +125,20 @@ def _numbalsoda(method: str) -> Run:
     def work(parameters, start, ends, out):
         for i in range(start.shape[0]):
             times = np.array([0.0, ends[i]])
-            found, _ = solver(address, start[i], times, parameters[i], rtol=1e-9, atol=1e-12)
+            found, reached = solver(
+                address, start[i], times, parameters[i], rtol=1e-9, atol=1e-12, mxstep=MOST_STEPS
+            )
             out[i] = found[-1]
+            if not reached:
+                out[i] = np.nan
 
     def run(points: Points, periods: int) -> np.ndarray:
         p = points
         parameters = np.stack([p.zeta, p.w, p.eps, p.mean, p.force], axis=1)
         out = np.empty((len(p), 2))
         work(parameters, p.start.copy(), 2 * np.pi / p.w * periods, out)
+        if np.isnan(out).any():  # a run that was cut short would count as fast
+            raise RuntimeError(f"numbalsoda {method}: an end was not reached")
         return out
 
     return run

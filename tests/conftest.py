@@ -58,7 +58,7 @@ def _scanned(make: Callable[..., str]) -> Callable[..., str]:
 
 
 tables.csv_text = _scanned(tables.csv_text)
-csv_files.table_text = _scanned(csv_files.table_text)
+csv_files.lined = _scanned(csv_files.lined)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

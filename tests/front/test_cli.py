@@ -126,7 +126,14 @@ def test_before_the_first_computation_numba_alone_is_heavy(study: str) -> None:
         "from thermogear.case.case import load_case\n"
         "load_case('rig')\n"
         f"importlib.import_module('thermogear.study.{study}')\n"
-        "heavy = ('scipy.linalg', 'scipy.special', 'xarray', 'pint', 'jinja2', 'h5py')\n"
+        # nor do the teeth, the flash and the convection of a pair load scipy's solvers
+        "from thermogear.gears.geometry import Gear\n"
+        "from thermogear.gears.tooth import start_angle\n"
+        "from thermogear.heat.convection import rotating_disc_flow\n"
+        "from thermogear.heat.moving_source import peclet_factor\n"
+        "start_angle(Gear(20, 4e-3), '30-degree'), rotating_disc_flow(), peclet_factor(1.0)\n"
+        "heavy = ('scipy.linalg', 'scipy.optimize', 'scipy.integrate', 'scipy.interpolate',"
+        " 'scipy.special', 'xarray', 'pint', 'jinja2', 'h5py')\n"
         "print([m for m in heavy if m in sys.modules], file=sys.stderr)"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

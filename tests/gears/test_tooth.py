@@ -9,8 +9,8 @@ import pytest
 from scipy.integrate import quad
 
 from conftest import Compared
-from thermogear.base.errors import InputError
-from thermogear.gears.geometry import Gear, Rack
+from thermogear.base.errors import ConvergenceError, InputError
+from thermogear.gears.geometry import Gear, Rack, Trochoid
 from thermogear.gears.tooth import FlankPoint, _moments, flank_point, start_angle, tooth_compliances
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(20)
@@ -151,6 +151,20 @@ def test_the_30_degree_section_has_that_tangent_at_every_profile_shift(shift: fl
     x, y = gear.fillet.point(np.array([gamma - h, gamma + h]))
     assert gear.junction[0] < gamma < 0.5 * math.pi
     assert abs((x[1] - x[0]) / (y[1] - y[0])) == pytest.approx(math.tan(math.pi / 6), rel=1e-7)
+
+
+@pytest.mark.parametrize("depth", [2.0, 0.3, 0.0, -0.3])
+def test_a_section_lies_where_the_tangent_has_the_slope_or_nowhere(depth: float) -> None:
+    """gamma - phi(gamma) = slope on both sides of the rolling line; at it, slope + b1/r."""
+    fillet = Trochoid(pitch_radius=20.0, centre_depth=depth, centre_offset=-3.0, radius=0.5)
+    for slope in np.radians([40.0, 60.0, 80.0]):
+        gamma = fillet.section_at_slope(slope)
+        assert abs(gamma - float(fillet.roll(gamma)) - slope) < 4e-16
+        if depth == 0.0:
+            assert gamma == pytest.approx(slope - 3.0 / 20.0, rel=1e-15)
+    high = Trochoid(pitch_radius=1.0, centre_depth=-0.5, centre_offset=-3.0, radius=0.5)
+    with pytest.raises(ConvergenceError, match=r"^fillet: no section at 30 degrees$"):
+        high.section_at_slope(math.pi / 6)
 
 
 def test_compliance_scales_with_modulus_and_width() -> None:

@@ -32,6 +32,12 @@ def test_von_karman_flow_meets_its_known_wall_values(compared: Compared) -> None
     assert inflow == pytest.approx(0.88447, abs=1e-5)
 
 
+def test_the_stored_wall_values_are_those_of_the_flow() -> None:
+    from thermogear.heat import convection
+
+    assert pytest.approx(convection._flow()[1], rel=1e-11) == rotating_disc_flow()
+
+
 @pytest.mark.parametrize(
     ("prandtl", "uniform", "growing"),
     [

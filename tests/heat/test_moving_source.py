@@ -54,6 +54,26 @@ def test_published_factors(distribution: str, compared: Compared) -> None:
     )
 
 
+def test_the_stored_maxima_are_those_of_the_rise() -> None:
+    from thermogear.heat import moving_source
+
+    solved = moving_source._solved_maxima("ellipse")
+    assert pytest.approx(solved, rel=1e-12) == moving_source._MAXIMA
+
+
+@pytest.mark.parametrize("distribution", TABLE)
+def test_the_spline_is_that_of_the_library(distribution: str) -> None:
+    """A cubic with a continuous second derivative, not-a-knot at its ends."""
+    from scipy.interpolate import CubicSpline
+
+    from thermogear.heat import moving_source
+
+    knots, probe = moving_source._knots(), np.geomspace(1e-4, 1e5, 301)
+    spline = CubicSpline(knots, moving_source._solved_maxima(distribution))
+    expected = spline(np.log(probe))
+    np.testing.assert_allclose(peclet_factor(probe, distribution), expected, rtol=1e-13)
+
+
 @pytest.mark.parametrize("distribution", TABLE)
 def test_limits_of_the_factor(distribution: str) -> None:
     fast = peclet_factor([1e5, 1e9], distribution)

@@ -15,11 +15,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base import bounds
-from thermogear.base.errors import GeometryError, InputError
+from thermogear.base.errors import ConvergenceError, GeometryError, InputError
 from thermogear.base.materials import MATERIALS, Material
 from thermogear.base.units import ROUNDED, half_digit
 
 Floats = NDArray[np.float64]
+
+_MOST_STEPS = 60
+"""Newton's steps to a section: they double a start far off before they settle, about 15."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,15 +77,18 @@ class Trochoid:
 
         The tangent is normal to the contact normal: the angle is gamma - phi(gamma). It rises
         towards the root circle, with the centre above the rolling line only from
-        sin^2(gamma) = -a1/r on.
+        sin^2(gamma) = -a1/r on. Newton's steps begin where the angle bends away from its
+        tangents, so that none goes past the section; ConvergenceError where there is none.
         """
-        from scipy.optimize import brentq  # half a second that checking a case need not spend
-
-        turning = math.asin(math.sqrt(min(max(-self.centre_depth / self.pitch_radius, 0.0), 1.0)))
-        low = max(turning, 1e-3)
-        return float(
-            brentq(lambda g: g - float(self.roll(g)) - slope, low, 0.5 * math.pi, xtol=1e-15)
-        )
+        a1, r = self.centre_depth, self.pitch_radius
+        gamma = 1e-3 if a1 > 0.0 else 0.5 * math.pi
+        for _ in range(_MOST_STEPS):
+            step = slope - gamma + float(self.roll(gamma))
+            step /= 1.0 + a1 / (r * math.sin(gamma) ** 2)
+            gamma += step
+            if abs(step) < 1e-12:  # the error that is left goes as its square
+                return gamma
+        raise ConvergenceError(f"fillet: no section at {math.degrees(slope):g} degrees")
 
     def crossing(self, base_radius: float, base_half_angle: float) -> float | None:
         """gamma [rad] where an undercut fillet leaves the involute, None if it never meets it.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -38,14 +38,20 @@ def frames(data: xr.Dataset, units: str = "si") -> dict[tuple[str, ...], pd.Data
     return {dims: _frame(data[names], units) for dims, names in families.items()}
 
 
-def stretched(data: xr.Dataset, dims: Iterable[str]) -> dict[str, NDArray[Any]]:
+def stretched(
+    data: xr.Dataset, dims: Iterable[str], made: Callable[[NDArray[Any]], NDArray[Any]] = np.asarray
+) -> dict[str, NDArray[Any]]:
     """Every variable that runs along no other dimension than ``dims``, spread over all of them.
 
-    Its values in the order of the rows, the last dimension fastest; flags as their words.
+    Its values, or what is ``made`` of them, in the order of the rows, the last dimension fastest;
+    flags as their words.
     """
     sizes = {dim: data.sizes[dim] for dim in dims}
     return {
-        str(name): variable.set_dims(sizes).values.ravel()  # type: ignore[no-untyped-call]
+        str(name): variable.to_base_variable()  # type: ignore[no-untyped-call]
+        .copy(data=made(variable.values))
+        .set_dims(sizes)
+        .values.ravel()
         for name, variable in in_words(data).variables.items()
         if set(variable.dims) <= set(sizes)
     }

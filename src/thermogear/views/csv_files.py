@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from thermogear.base.display import CELSIUS
 from thermogear.results.result import Result
@@ -29,7 +30,7 @@ CURVES = {
 ROWS = ("operating", "point", "trace")
 """Dimensions whose places stand below each other in one file."""
 
-Column = tuple[str, list[object]]
+Column = tuple[str, list[str]]
 
 
 def curve_tables(result: Result) -> dict[str, str]:
@@ -40,8 +41,9 @@ def curve_tables(result: Result) -> dict[str, str]:
     their own. Figures without a curve stand in ``..._figures.csv``.
     """
     return {
-        f"csv/{_slug(stem)}.csv": table_text(
-            [head for head, _ in columns], zip(*(values for _, values in columns), strict=True)
+        f"csv/{_slug(stem)}.csv": lined(
+            [quoted(head) for head, _ in columns],
+            *zip(*(cells for _, cells in columns), strict=True),
         )
         for name, data in result.groups.items()
         for stem, columns in _files(name, data)
@@ -88,12 +90,13 @@ def _place_name(data: xr.Dataset, dimension: str, place: int) -> str:
 
 
 def _columns(data: xr.Dataset, dims: list[str]) -> list[Column]:
-    """Every coordinate and variable of ``data``, stretched over ``dims`` and laid flat."""
+    """Every coordinate and variable of ``data`` as cells, stretched over ``dims`` and laid flat."""
     numbered = {d: np.arange(data.sizes[d]) for d in dims if d not in data.coords}
-    values = stretched(data.assign(numbered), dims)
+    # a number is written once, however many rows repeat it
+    cells = stretched(data.assign(numbered), dims, _cells)
     axes = [str(name) for name, axis in data.coords.items() if axis.dims]
     return [
-        (head_text(data, name), values[name].tolist())
+        (head_text(data, name), cells[name].tolist())
         for name in (*numbered, *axes, *map(str, data.data_vars))
     ]
 
@@ -102,6 +105,13 @@ def head_text(data: xr.Dataset, name: str) -> str:
     """The name of a column with the unit it is stored in, if there is one."""
     unit = data[name].attrs.get("units", "") if name in data.variables else ""
     return f"{name} [{unit}]" if unit else name
+
+
+def _cells(values: NDArray[Any]) -> NDArray[np.object_]:
+    """The text of every value."""
+    texts = np.empty(values.size, object)
+    texts[:] = [cell_text(value) for value in values.ravel().tolist()]
+    return texts.reshape(values.shape)
 
 
 def cell_text(value: object) -> str:
@@ -113,7 +123,12 @@ def cell_text(value: object) -> str:
 
 def table_text(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
     """A CSV text: one header line, then a line for each row, its numbers in full."""
-    return "".join(",".join(map(cell_text, line)) + "\n" for line in (head, *rows))
+    return lined(*(map(cell_text, line) for line in (head, *rows)))
+
+
+def lined(*lines: Iterable[str]) -> str:
+    """A CSV text of lines of cells."""
+    return "".join(f"{','.join(line)}\n" for line in lines)
 
 
 def quoted(text: str) -> str:
