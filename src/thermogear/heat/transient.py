@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -35,8 +34,10 @@ _SOLVED = 1e-3
 """Part of the tolerance that Newton's next correction would have."""
 _BEND = 5.0
 """Part of a step [K] that is cubic: a step that leaps to another steady state has more."""
-_PROBED = 10
+_PROBED = 7
 """Moments of a stretch at which the law's own slopes are found."""
+_SLOW = 0.1
+"""Share of the last correction above which the slopes are found anew."""
 _SHORTEST = 1e-4
 """Part of a stretch below which no window is made smaller."""
 _ROUGH = 0.01
@@ -68,12 +69,11 @@ class Stretch:
 
 @dataclass(frozen=True, eq=False)
 class _Window:
-    """Steps between ``time`` (steps + 1,) of some courses, solved together.
+    """Steps between ``time`` (steps + 1,) that are solved together.
 
-    ``ends`` (steps + 1, courses, nodes + 2) and ``first`` (steps, courses, nodes + 2): temperatures
-    [K] of the free nodes, heat in and out [J] at the ends and at the first stages; ``slopes``
-    (steps + 1, courses, nodes + 2) their rates at the ends; ``ahead`` (steps + 1, courses) how far
-    [K] the steady state is from there.
+    ``ends`` (steps + 1, nodes + 2) and ``first`` (steps, nodes + 2): temperatures [K] of the free
+    nodes, heat in and out [J] at the ends and at the first stages; ``slopes`` (steps + 1,
+    nodes + 2) their rates at the ends; ``ahead`` (steps + 1,) how far [K] the steady state is.
     """
 
     time: Floats
@@ -85,22 +85,20 @@ class _Window:
     def at(self, t: Floats) -> Floats:
         """The states at any times: cubics through both stages with the slope at the begin."""
         place = np.clip(np.searchsorted(self.time, t, side="right") - 1, 0, self.first.shape[0] - 1)
-        h = np.diff(self.time)[place][:, None, None]
-        s = (t - self.time[place])[:, None, None] / h
+        h = np.diff(self.time)[place][:, None]
+        s = (t - self.time[place])[:, None] / h
         begin = self.ends[place]
         middle, end = self.first[place] - begin, self.ends[place + 1] - begin
         slope = 4.5 * middle - 0.5 * end
         cubic = 3.0 * (h * self.slopes[place] - slope)
-        return np.asarray(
-            begin + s * (slope + s * (end - slope) + cubic * (s - 1.0 / 3.0) * (s - 1.0))
-        )
+        parabola = slope + s * (end - slope)
+        return np.asarray(begin + s * (parabola + cubic * (s - 1.0 / 3.0) * (s - 1.0)))
 
     def bend(self) -> Floats:
         """h^3 T'''/6 [K] of every step, (steps,): the cubic part of its course."""
-        h = np.diff(self.time)[:, None, None]
-        begin = self.ends[:-1]
+        h, begin = np.diff(self.time)[:, None], self.ends[:-1]
         each = h * self.slopes[:-1] - 4.5 * (self.first - begin) + 0.5 * (self.ends[1:] - begin)
-        return np.asarray(3.0 * np.abs(each[..., :-2]).max(axis=(1, 2)))
+        return np.asarray(3.0 * np.abs(each[:, :-2]).max(axis=1))
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -129,21 +127,20 @@ class Course:
     evaluations: int
     error: float
     _windows: Sequence[_Window] = field(repr=False)
-    _lane: int = field(repr=False)
 
     def at(self, times: ArrayLike) -> dict[str, Floats]:
         """Temperatures [K] of the free nodes at any ``times`` [s] of the course, their shape."""
         t = np.asarray(times, dtype=float)
         if not np.all((t >= 0.0) & (t <= self.time[-1])):
             raise InputError("times", f"{t} s", allowed=f"0..{self.time[-1]:g} s")
-        y = _states(self._windows, t.ravel())[:, self._lane]
+        y = _states(self._windows, t.ravel())
         return {name: y[:, i].reshape(t.shape) for i, name in enumerate(self.temperatures)}
 
 
 def _states(windows: Sequence[_Window], t: Floats) -> Floats:
-    """The states at any times of consecutive windows, (count, courses, nodes + 2)."""
+    """The states at any times of consecutive windows, (count, nodes + 2)."""
     place = np.searchsorted([window.time[-1] for window in windows[:-1]], t, side="left")
-    y = np.empty((t.size, *windows[0].ends.shape[1:]))
+    y = np.empty((t.size, windows[0].ends.shape[1]))
     for k in np.unique(place):
         y[place == k] = windows[k].at(t[place == k])
     return y
@@ -153,8 +150,8 @@ def _states(windows: Sequence[_Window], t: Floats) -> Floats:
 class _Law:
     """Rates of the free nodes [K/s], then of heat in and out [W], and how they change.
 
-    ``bent`` (places, courses, nodes, nodes) [1/s] at ``places`` [s]: what the law's dependence on
-    the temperatures adds to -G/C, kept from one solution to the next.
+    ``bent`` (places, nodes, nodes) [1/s] at ``places`` [s]: what the law's dependence on the
+    temperatures adds to -G/C, kept from one solution to the next.
     """
 
     stretch: Stretch
@@ -165,50 +162,47 @@ class _Law:
     bent: Floats = field(default_factory=lambda: np.zeros(0))
 
     def rates(self, y: Floats) -> tuple[Floats, Floats]:
-        """(rates, (..., nodes + 2), and G/C [1/s], (..., nodes, nodes)) at ``y`` (..., nodes)."""
+        """(rates, (count, nodes + 2); G/C [1/s], (count, nodes, nodes)) at ``y`` (count, nodes)."""
         self.calls += 1
-        flat = y.reshape(-1, y.shape[-1])
-        held = np.clip(flat, BODY.least, BODY.most)
+        held = np.clip(y, BODY.least, BODY.most)
         network = self.stretch.network(dict(zip(self.nodes, held.T, strict=True)))
-        kept, source, out = network.flows(dict(zip(self.nodes, flat.T, strict=True)))
+        kept, source, out = network.flows(dict(zip(self.nodes, y.T, strict=True)))
         free = [network.nodes.index(name) for name in self.nodes]
         inner = network.laplacian()[..., free, :][..., :, free] / self.capacity[:, None]
-        relaxing = np.broadcast_to(inner, (*flat.shape, flat.shape[1]))
-        rates = np.column_stack([kept / self.capacity, source, out])
-        return rates.reshape(*y.shape[:-1], -1), relaxing.reshape(*y.shape, y.shape[-1])
+        relaxing = np.broadcast_to(inner, (*y.shape, y.shape[1]))
+        return np.column_stack([kept / self.capacity, source, out]), relaxing
 
     def probe(self, t: Floats, y: Floats) -> None:
-        """Find ``bent`` at the states ``y`` (count, courses, nodes) of the times ``t``."""
+        """Find ``bent`` at the states ``y`` (count, nodes) of the times ``t``."""
         count = self.capacity.size
-        moves = _PROBE * np.vstack([np.zeros(count), np.eye(count)])
-        rates, relaxing = self.rates(y[:, None] + moves[:, None])
-        each = rates[..., :count]
-        slopes = np.moveaxis(each[:, 1:] - each[:, :1], 1, -1) / _PROBE
-        self.places, self.bent = t, slopes + relaxing[:, 0]
+        moved = y[:, None] + _PROBE * np.vstack([np.zeros(count), np.eye(count)])
+        rates, relaxing = self.rates(moved.reshape(-1, count))
+        each = rates[:, :count].reshape(moved.shape)
+        slopes = np.swapaxes(each[:, 1:] - each[:, :1], 1, 2) / _PROBE
+        self.places, self.bent = t, slopes + relaxing[:: count + 1]
 
     def slopes(self, t: Floats, relaxing: Floats) -> Floats:
-        """d(rates)/dT [1/s] at the times ``t``, (count, courses, nodes, nodes)."""
+        """d(rates)/dT [1/s] at the times ``t``, (count, nodes, nodes)."""
         if not self.places.size:
             return -relaxing
         place = np.clip(np.searchsorted(self.places, t) - 1, 0, self.places.size - 2)
         part = (t - self.places[place]) / np.diff(self.places)[place]
-        part = np.clip(part, 0.0, 1.0)[:, None, None, None]
-        return (1.0 - part) * self.bent[place] + part * self.bent[place + 1] - relaxing
+        part = np.clip(part, 0.0, 1.0)[:, None, None]
+        return np.asarray((1.0 - part) * self.bent[place] + part * self.bent[place + 1] - relaxing)
 
 
 def _solved(law: _Law, begin: Floats, time: Floats, guess: Floats, goal: float) -> _Window:
-    """The steps between ``time`` from the states ``begin`` (courses, nodes + 2), all at once.
+    """The steps between ``time`` from the state ``begin`` (nodes + 2,), all at once.
 
-    Unknown are the temperatures at both stages of every step, ``guess`` (2 steps, courses, nodes).
-    Ended where Newton's next correction would be below ``goal`` [K].
+    Unknown are the temperatures at both stages of every step, ``guess`` (2 steps, nodes). Ended
+    where Newton's next correction would be below ``goal`` [K].
     """
     count, h = law.capacity.size, np.diff(time)
-    when = _stages(time)
-    known, shape = begin[None, :, :count], (h.size, 2, *begin.shape)
+    when, known = _stages(time), begin[None, :count]
     y, size, probed = guess, np.inf, 0
     for turn in range(_TURNS):
         rates, relaxing = law.rates(np.concatenate([known, y]))
-        gains = np.einsum("k,ij,kjcn->kicn", h, _RADAU, rates[1:].reshape(shape))
+        gains = np.einsum("k,ij,kjn->kin", h, _RADAU, rates[1:].reshape(h.size, 2, -1))
         starts = np.concatenate([known, y[1:-1:2]])
         residual = (starts[:, None] + gains[..., :count]).reshape(y.shape) - y
         move = _correction(h, residual, law.slopes(when, relaxing[1:]))
@@ -217,13 +211,16 @@ def _solved(law: _Law, begin: Floats, time: Floats, guess: Floats, goal: float) 
             break
         y = y + np.clip(move, -_LEAP, _LEAP)
         if min(size / last if turn else 1.0, 1.0) * size <= goal:
-            heat = np.concatenate([begin[None, :, count:], gains[:, 1, :, count:]]).cumsum(axis=0)
-            ends = np.concatenate([np.concatenate([known, y[1::2]]), heat], axis=-1)
-            first = np.concatenate([y[::2], heat[:-1] + gains[:, 0, :, count:]], axis=-1)
-            slopes = law.slopes(time, relaxing[::2])
-            ahead = np.linalg.solve(slopes, rates[::2, :, :count, None])[..., 0]
-            return _Window(time, ends, first, rates[::2], np.abs(ahead).max(axis=-1))
-        if (turn == 0 and not law.places.size) or (turn - probed > 1 and size > 0.1 * last):
+            heat = np.vstack([begin[count:], gains[:, 1, count:]]).cumsum(axis=0)
+            ahead = np.linalg.solve(law.slopes(time, relaxing[::2]), rates[::2, :count, None])
+            return _Window(
+                time=time,
+                ends=np.hstack([np.concatenate([known, y[1::2]]), heat]),
+                first=np.hstack([y[::2], heat[:-1] + gains[:, 0, count:]]),
+                slopes=rates[::2],
+                ahead=np.abs(ahead).max(axis=(1, 2)),
+            )
+        if (turn == 0 and not law.places.size) or (turn - probed > 1 and size > _SLOW * last):
             probed = turn
             chosen = np.unique(np.linspace(0, h.size - 1, _PROBED).round().astype(int))
             law.probe(when[1::2][chosen], y[1::2][chosen])
@@ -238,43 +235,42 @@ def _stages(time: Floats) -> Floats:
 
 
 def _correction(h: Floats, residual: Floats, slopes: Floats) -> Floats:
-    """Newton's correction of all stages, (2 steps, courses, nodes), from their ``residual``.
+    """Newton's correction of all stages, (2 steps, nodes), from their ``residual``.
 
     The linear system is bidiagonal in blocks of one step: each block is solved by itself, for its
     own residual and for a change of its begin, then they are joined one after the other.
     """
-    _, lanes, count = residual.shape
-    whole, steps = 2 * count, h.size
-    each = slopes.reshape(steps, 2, lanes, count, count)
-    blocks = np.einsum("k,ij,kjcmn->kcimjn", h, _RADAU, each).reshape(steps, lanes, whole, whole)
-    mine = np.moveaxis(residual.reshape(steps, 2, lanes, count), 1, 2)
-    carried = np.broadcast_to(np.tile(np.eye(count), (2, 1)), (steps, lanes, whole, count))
-    right = np.concatenate([mine.reshape(steps, lanes, whole, 1), carried], axis=-1)
+    steps, count = h.size, residual.shape[1]
+    whole = 2 * count
+    each = slopes.reshape(steps, 2, count, count)
+    blocks = np.einsum("k,ij,kjmn->kimjn", h, _RADAU, each).reshape(steps, whole, whole)
+    carried = np.broadcast_to(np.tile(np.eye(count), (2, 1)), (steps, whole, count))
+    right = np.concatenate([residual.reshape(steps, whole, 1), carried], axis=-1)
     apart = np.linalg.solve(np.eye(whole) - blocks, right)
-    step, before = apart[..., :1].copy(), np.zeros((lanes, count, 1))
+    step, before = apart[..., 0].copy(), np.zeros(count)
     for k in range(steps):
-        step[k] += apart[k, ..., 1:] @ before
-        before = step[k, :, count:]
-    return np.moveaxis(step.reshape(steps, lanes, 2, count), 2, 1).reshape(residual.shape)
+        step[k] += apart[k, :, 1:] @ before
+        before = step[k, count:]
+    return step.reshape(residual.shape)
 
 
 def _window(law: _Law, begin: Floats, time: Floats, tolerance: float) -> tuple[_Window, float]:
     """The steps from ``begin`` on a mesh that keeps the ``tolerance`` [K], and the error [K].
 
     Every mesh is halved: for a method of order 3 the finer solution errs by a seventh of the
-    difference. Where that is too much a mesh is drawn anew, on which all steps have the same cubic
-    part.
+    difference at the ends of its steps. A third is taken: between them the cubic errs more. Where
+    that is too much a mesh is drawn anew, on which all steps have the same cubic part.
     """
     goal, error, steps = _SOLVED * tolerance, np.inf, time.size - 1
     count = law.capacity.size
-    guess = np.broadcast_to(begin[:, :count], (2 * steps, begin.shape[0], count))
+    guess = np.broadcast_to(begin[:count], (2 * steps, count))
     found = _solved(law, begin, time, guess, max(_ROUGH, goal))
     for _ in range(_ROUNDS):
         coarse_time = _drawn(found.time, found.bend(), steps)
-        time = np.sort(np.concatenate([coarse_time, 0.5 * (coarse_time[1:] + coarse_time[:-1])]))
-        coarse = _solved(law, begin, coarse_time, found.at(_stages(coarse_time))[..., :count], goal)
-        found = _solved(law, begin, time, coarse.at(_stages(time))[..., :count], goal)
-        error = float(np.abs(coarse.at(time) - found.ends)[..., :count].max()) / 7.0
+        time = np.sort(np.append(coarse_time, 0.5 * (coarse_time[1:] + coarse_time[:-1])))
+        coarse = _solved(law, begin, coarse_time, found.at(_stages(coarse_time))[:, :count], goal)
+        found = _solved(law, begin, time, coarse.at(_stages(time))[:, :count], goal)
+        error = float(np.abs(coarse.at(time) - found.ends)[:, :count].max()) / 3.0
         if error <= tolerance and found.bend().max() <= _BEND:
             return found, error
         steps = int(np.ceil(steps * np.clip(1.2 * np.cbrt(error / tolerance), 1.3, 4.0)))
@@ -295,118 +291,26 @@ def _drawn(time: Floats, bend: Floats, steps: int) -> Floats:
 
 
 def _first_mesh(begun: float, end: float, relaxing: Floats) -> Floats:
-    """Steps [s] that grow by half, from half the shortest time constant or an eighth of all."""
-    fastest = 1.0 / np.abs(np.diagonal(relaxing, axis1=-2, axis2=-1)).max()
-    first = min((end - begun) / 8.0, 0.5 * fastest)
-    count = int(np.ceil(np.log1p(0.5 * (end - begun) / first) / np.log(1.5)))
-    grown = 1.5 ** np.arange(count + 1) - 1.0
-    time = begun + (end - begun) * grown / grown[-1]
-    time[-1] = end
-    return np.asarray(time)
-
-
-Event = Callable[[State, int], Floats]
-
-
-def follow(stretches: Sequence[Stretch], start: Mapping[str, float], **how: Any) -> Course:
-    """One course of :func:`follow_many`: ``start`` [K] of every free node, a number each."""
-    return follow_many(stretches, {name: [t] for name, t in start.items()}, **how)[0]
-
-
-def follow_many(
-    stretches: Sequence[Stretch],
-    start: Mapping[str, ArrayLike],
-    *,
-    times: ArrayLike = (),
-    moments: int = 60,
-    tolerance: float = 1e-3,
-    settled_within: float = 0.01,
-    events: Mapping[str, Event] | None = None,
-    progress: Progress = silent,
-) -> list[Course]:
-    """Temperatures of networks whose conductances and sources depend on them, over time.
-
-    C dT/dt = q(T) - G(T) T by collocation at two Radau points a step (order 3, stiffly accurate):
-    all steps of a stretch are one system, solved by Newton's method with the network asked at all
-    of them together. Steps are halved until the error, a seventh of the change, is below
-    ``tolerance`` [K] everywhere. Where Newton's method does not settle the stretch is solved in
-    shorter windows. Heat in and out are integrated by the same rule, so that the balance closes if
-    every flow is counted.
-
-    ``stretches`` one after the other from time 0; ``start`` [K] of every free node, (courses,):
-    several go side by side, and the network then gets the states of all of them, one course after
-    the other, for one moment after the other; ``times`` [s] to be stored with some ``moments`` of
-    each stretch; a stretch without end runs until its steady state is no more than
-    ``settled_within`` [K] away; ``events`` [K or m, any] of states (count,) and the place of their
-    stretch that are located where they fall through 0. Raises InputError for stretches that do not
-    follow each other, and ConvergenceError where the steps fail.
-    """
-    ends = np.array([one.end for one in stretches])
-    if not ends.size or not np.all(np.diff(np.concatenate([[0.0], ends])) > 0.0):
-        raise InputError("stretches", f"ends {ends} s", allowed="one or more, rising from 0 s")
-    if not tolerance > 0.0:
-        raise InputError("tolerance", f"{tolerance} K", allowed="> 0 K")
-    first = stretches[0].network({n: np.asarray(t, dtype=float) for n, t in start.items()})
-    nodes, capacity = first.free, _capacities(first)
-    given = np.stack([np.asarray(start[name], dtype=float) for name in nodes], axis=-1)
-    y = np.concatenate([given, np.zeros((given.shape[0], 2))], axis=-1)
-    lanes = [_Lane(k, {name: [] for name in events or {}}) for k in range(given.shape[0])]
-    wanted = np.unique(np.asarray(times, dtype=float))
-    windows: list[_Window] = []
-    begun, calls, error = 0.0, 1, 0.0
-    for place, stretch in enumerate(stretches):
-        law = _Law(stretch, nodes, capacity)
-        going = [lane for lane in lanes if not lane.too_hot]
-        for window, error_here in _windows(law, y, begun, tolerance, progress):
-            error = max(error, error_here)
-            windows.append(window)
-            y = window.ends[-1]
-            values = {name: _asked(nodes, event, place) for name, event in (events or {}).items()}
-            _look(
-                window, [lane for lane in going if not lane.ended], values, stretch, settled_within
-            )
-            if all(lane.ended for lane in going):
-                break
-        for lane in going:
-            lane.stored.append((place, _moments(begun, lane.stop, moments, wanted)))
-        calls += law.calls
-        begun = stretch.end
-        if all(lane.too_hot for lane in lanes):
-            break
-    return [_course(lane, windows, nodes, capacity, calls, error) for lane in lanes]
-
-
-Values = Callable[[Floats], Floats]
-
-
-@dataclass
-class _Lane:
-    """What is known on the way of one course of some: where it stops [s], and why."""
-
-    place: int
-    events: dict[str, list[float]]
-    stop: float = 0.0
-    settled: bool = False
-    too_hot: bool = False
-    stored: list[tuple[int, Floats]] = field(default_factory=list)
-
-    @property
-    def ended(self) -> bool:
-        return self.settled or self.too_hot
+    """Steps [s] that double, from half the shortest time constant or an eighth of all."""
+    first = min((end - begun) / 8.0, 0.5 / np.diagonal(relaxing[0]).max())
+    count = int(np.ceil(np.log2(1.0 + (end - begun) / first)))
+    grown = (2.0 ** np.arange(count + 1) - 1.0) / (2.0**count - 1.0)
+    # both ends to the last bit
+    return np.asarray(begun * (1.0 - grown) + end * grown)
 
 
 def _windows(
     law: _Law, y: Floats, begun: float, tolerance: float, progress: Progress
 ) -> Iterator[tuple[_Window, float]]:
-    """The windows of a stretch one after the other, each with its error [K], from the states ``y``.
+    """The windows of a stretch one after the other, each with its error [K], from the state ``y``.
 
     The whole stretch first; a quarter of it where that fails.
     """
     end = law.stretch.end
-    relaxing = law.rates(y[None, :, : law.capacity.size])[1]
+    relaxing = law.rates(y[None, :-2])[1]
     length = end - begun
     if not np.isfinite(end):
-        # G/C is similar to a symmetric matrix
+        # similar to a symmetric matrix
         slowest = 1.0 / float(np.linalg.eigvals(relaxing).real.min())
         end, length = begun + _SLOWEST * slowest, _WINDOW * slowest
     first, shortest = begun, _SHORTEST * length
@@ -425,103 +329,117 @@ def _windows(
     progress("course in time", 1000, 1000)
 
 
-def _asked(nodes: tuple[str, ...], event: Event, place: int) -> Values:
-    """An event of states (count, courses, nodes + 2), (count, courses)."""
-
-    def values(y: Floats) -> Floats:
-        flat = y[..., : len(nodes)].reshape(-1, len(nodes))
-        return event(dict(zip(nodes, flat.T, strict=True)), place).reshape(y.shape[:2])
-
-    return values
-
-
-def _left(y: Floats) -> Floats:
-    """How much hotter [K] the hottest node may become."""
-    return np.asarray(HOTTEST - y[..., :-2].max(axis=-1))
-
-
-def _look(
-    window: _Window,
-    lanes: Sequence[_Lane],
-    values: Mapping[str, Values],
-    stretch: Stretch,
-    within: float,
-) -> None:
-    """Where each course stops in a window, and what happened before."""
-    t, hot = window.time, _left(window.ends)
-    seen = {name: value(window.ends) for name, value in values.items()}
-    for lane in lanes:
-        k = lane.place
-        lane.stop = float(t[-1])
-        for when in _falls(window, k, hot, _left)[:1]:
-            lane.stop, lane.too_hot = when, True
-        rest = np.inf if np.isfinite(stretch.end) else _rest(t, window.ahead[:, k], within)
-        if rest <= lane.stop:
-            lane.stop, lane.settled, lane.too_hot = rest, True, False
-        for name, value in values.items():
-            found = _falls(window, k, seen[name], value)
-            lane.events[name] += [when for when in found if when <= lane.stop]
-
-
-def _rest(time: Floats, ahead: Floats, within: float) -> float:
-    """When [s] the steady state is no more than ``within`` [K] ahead; inf: not yet."""
-    near = np.flatnonzero(ahead <= within)
-    if not near.size:
-        return np.inf
-    if near[0] == 0:
-        # at rest from the start: about one time constant of it
-        return float(time[0] + (time[-1] - time[0]) / _WINDOW)
-    place = slice(near[0] - 1, near[0] + 1)
-    # an exponential between both
-    part = np.log(np.maximum(ahead[place], 1e-9 * within) / within)
-    begun, end = time[place]
-    return float(begun + (end - begun) * part[0] / (part[0] - part[1]))
-
-
-def _falls(window: _Window, lane: int, seen: Floats, value: Values) -> list[float]:
-    """When [s] a ``value``, ``seen`` at the ends of the steps, falls through 0 in one course."""
-    found = []
-    for k in np.flatnonzero((seen[:-1, lane] > 0.0) & (seen[1:, lane] <= 0.0)):
-        t, v = window.time[k : k + 2], seen[k : k + 2, lane]
-        for _ in range(3):
-            t = np.linspace(t[0], t[-1], 9)
-            v = value(window.at(t))[:, lane]
-            place = max(int(np.argmax(v <= 0.0)), 1)
-            t, v = t[place - 1 : place + 1], v[place - 1 : place + 1]
-        found.append(float(t[0] + (t[1] - t[0]) * v[0] / (v[0] - v[1])))
-    return found
-
-
-def _course(
-    lane: _Lane,
-    windows: Sequence[_Window],
-    nodes: tuple[str, ...],
-    capacity: Floats,
-    calls: int,
-    error: float,
+def follow(
+    stretches: Sequence[Stretch],
+    start: Mapping[str, float],
+    *,
+    times: ArrayLike = (),
+    moments: int = 60,
+    tolerance: float = 1e-3,
+    settled_within: float = 0.01,
+    events: Mapping[str, Callable[[State, int], Floats]] | None = None,
+    progress: Progress = silent,
 ) -> Course:
-    time = np.concatenate([t for _, t in lane.stored])
-    states = _states(windows, time)[:, lane.place]
-    kept = (states[:, :-2] - states[0, :-2]) @ capacity
+    """Temperatures of a network whose conductances and sources depend on them, over time.
+
+    C dT/dt = q(T) - G(T) T by collocation at the two Radau points of every step (order 3): all
+    steps of a stretch are one system, which Newton's method solves with the network asked at all
+    of them together. Steps are halved until the error, a third of what that changes, is below
+    ``tolerance`` [K] everywhere. Where that fails the stretch is solved in shorter windows. Heat in
+    and out are integrated by the same rule, so that the balance closes if every flow is counted.
+
+    ``stretches`` one after the other from time 0; ``start`` [K] of every free node; ``times`` [s]
+    to be stored with some ``moments`` of each stretch; a stretch without end runs until its steady
+    state is no more than ``settled_within`` [K] away; ``events`` [K or m, any] of states (count,)
+    and the place of their stretch that are located where they fall through 0. Raises InputError
+    for stretches that do not follow each other, and ConvergenceError where the steps fail.
+    """
+    ends = np.array([one.end for one in stretches])
+    if not ends.size or not np.all(np.diff(np.concatenate([[0.0], ends])) > 0.0):
+        raise InputError("stretches", f"ends {ends} s", allowed="one or more, rising from 0 s")
+    if not tolerance > 0.0:
+        raise InputError("tolerance", f"{tolerance} K", allowed="> 0 K")
+    known = {name: np.atleast_1d(np.asarray(t, dtype=float)) for name, t in start.items()}
+    first = stretches[0].network(known)
+    nodes, capacity = first.free, _capacities(first)
+    y = np.array([*(float(start[name]) for name in nodes), 0.0, 0.0])
+    wanted = np.unique(np.asarray(times, dtype=float))
+    happened: dict[str, list[float]] = {name: [] for name in events or {}}
+    windows: list[_Window] = []
+    stored: list[tuple[int, Floats]] = []
+    stop, calls, error, settled, too_hot = 0.0, 1, 0.0, False, False
+    for place, stretch in enumerate(stretches):
+        law, begun = _Law(stretch, nodes, capacity), stop
+        for window, here in _windows(law, y, begun, tolerance, progress):
+            windows.append(window)
+            y, error = window.ends[-1], max(error, here)
+            stop, settled, too_hot = _stop(window, stretch.end, settled_within)
+            for name, event in (events or {}).items():
+                value = _value(window, nodes, event, place)
+                happened[name] += [t for t in _falls(window.time, value) if t <= stop]
+            if settled or too_hot:
+                break
+        calls += law.calls
+        stored.append((place, _moments(begun, stop, moments, wanted)))
+        if too_hot:
+            break
+    time = np.concatenate([t for _, t in stored])
+    states = _states(windows, time)
     heat_in, heat_out = states[:, -2], states[:, -1]
+    kept = (states[:, :-2] - states[0, :-2]) @ capacity
     turned = heat_in + np.abs(heat_out) + np.abs(kept)
     left = np.abs(kept - heat_in + heat_out)
     return Course(
         time=time,
-        stretch=np.concatenate([np.full(t.size, place) for place, t in lane.stored]),
+        stretch=np.concatenate([np.full(t.size, place) for place, t in stored]),
         temperatures={name: states[:, i] for i, name in enumerate(nodes)},
         heat_in=heat_in,
         heat_out=heat_out,
         kept=kept,
         imbalance=np.divide(left, turned, out=np.zeros_like(left), where=turned > 0.0),
-        events={name: np.asarray(when) for name, when in lane.events.items()},
-        settled=lane.settled,
-        too_hot=lane.too_hot,
+        events={name: np.asarray(found) for name, found in happened.items()},
+        settled=settled,
+        too_hot=too_hot,
         evaluations=calls,
         error=error,
         _windows=windows,
-        _lane=lane.place,
     )
+
+
+def _value(
+    window: _Window, nodes: tuple[str, ...], event: Callable[[State, int], Floats], place: int
+) -> Callable[[Floats], Floats]:
+    """An event over time [s]."""
+    return lambda t: event(dict(zip(nodes, window.at(t).T, strict=False)), place)
+
+
+def _stop(window: _Window, end: float, within: float) -> tuple[float, bool, bool]:
+    """(When [s] a window is left, whether it came to rest before, whether it got too hot)."""
+    t = window.time
+    hot = _falls(t, lambda when: HOTTEST - window.at(when)[:, :-2].max(axis=1))
+    stop = min([float(t[-1]), *hot])
+    if not np.isfinite(end):
+        ahead = np.log(np.maximum(window.ahead / within, 1e-300))
+        # at rest from the start: about one time constant of it
+        still = [float(t[0] + (t[-1] - t[0]) / _WINDOW)] * int(ahead[0] <= 0.0)
+        rest = still + _falls(t, lambda when: np.interp(when, t, ahead))
+        if rest and rest[0] <= stop:
+            return rest[0], True, False
+    return stop, False, bool(hot)
+
+
+def _falls(time: Floats, value: Callable[[Floats], Floats]) -> list[float]:
+    """When [s] a ``value`` over time falls through 0, looked for between the ends of steps."""
+    found, seen = [], value(time)
+    for k in np.flatnonzero((seen[:-1] > 0.0) & (seen[1:] <= 0.0)):
+        t, v = time[k : k + 2], seen[k : k + 2]
+        for _ in range(3):
+            t = np.linspace(t[0], t[1], 9)
+            v = value(t)
+            place = max(int(np.argmax(v <= 0.0)), 1)
+            t, v = t[place - 1 : place + 1], v[place - 1 : place + 1]
+        found.append(float(t[0] + (t[1] - t[0]) * v[0] / (v[0] - v[1])))
+    return found
 
 
 def _capacities(network: ThermalNetwork) -> Floats:
