@@ -111,8 +111,8 @@ def test_states_between_the_moments_are_those_of_the_steps() -> None:
 
 
 def test_a_falling_quantity_is_located() -> None:
-    def left(state: State, place: int) -> float:
-        return T0 + 30.0 - float(state["body"][0]) - 50.0 * place
+    def left(state: State, place: int) -> np.ndarray:
+        return T0 + 30.0 - state["body"] - 50.0 * place
 
     found = run([(2000.0, one_node()), (4000.0, one_node(0.0))], events={"full": left})
     assert found.events["full"].tolist() == pytest.approx([-np.log(0.4) / RATE], abs=0.3)

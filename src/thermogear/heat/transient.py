@@ -1,21 +1,17 @@
-"""Thermal networks in time: implicit steps with error control, heat counted in and out."""
+"""Thermal networks in time: collocation over the whole course, heat counted in and out."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.bounds import BODY
-from thermogear.base.errors import ConvergenceError, InputError
+from thermogear.base.errors import ConvergenceError, InputError, ThermogearError
 from thermogear.base.progress import Progress, silent
 from thermogear.heat.network import ThermalNetwork
-
-if TYPE_CHECKING:
-    from scipy.integrate import OdeSolution
 
 Floats = NDArray[np.float64]
 State = Mapping[str, Floats]
@@ -23,10 +19,31 @@ State = Mapping[str, Floats]
 
 HOTTEST = 700.0
 """A node [K] that gets there ends the course: no gear lives there, and no law was made for it."""
-_RELATIVE = 0.1
-"""Relative tolerance over the absolute one, per kelvin."""
+_STAGES = np.array([1.0 / 3.0, 1.0])
+_RADAU = np.array([[5.0 / 12.0, -1.0 / 12.0], [3.0 / 4.0, 1.0 / 4.0]])
+"""Radau IIA with two stages: places in a step and weights of the rates there, order 3."""
 _SLOWEST = 40.0
 """Time constants after which a course that does not settle is given up."""
+_WINDOW = 12.0
+"""Time constants that a stretch without end is first solved over: exp(-12) of 700 K is 4 mK."""
+_LEAP = 60.0
+"""Newton's corrections [K] are held below it."""
+_TURNS, _ROUNDS = 12, 6
+"""Newton's corrections at most, and meshes at most, before a window is made smaller."""
+_SOLVED = 1e-3
+"""Part of the tolerance that Newton's next correction would have."""
+_BEND = 5.0
+"""Part of a step [K] that is cubic: a step that leaps to another steady state has more."""
+_PROBED = 7
+"""Moments of a stretch at which the law's own slopes are found."""
+_SLOW = 0.1
+"""Share of the last correction above which the slopes are found anew."""
+_SHORTEST = 1e-4
+"""Part of a stretch below which no window is made smaller."""
+_ROUGH = 0.01
+"""What Newton's next correction [K] may be where only the steps are to be drawn."""
+_PROBE = 0.01
+"""Change of a node [K] by which the law's own slopes are found."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,6 +67,40 @@ class Stretch:
     network: Callable[[State], ThermalNetwork]
 
 
+@dataclass(frozen=True, eq=False)
+class _Window:
+    """Steps between ``time`` (steps + 1,) that are solved together.
+
+    ``ends`` (steps + 1, nodes + 2) and ``first`` (steps, nodes + 2): temperatures [K] of the free
+    nodes, heat in and out [J] at the ends and at the first stages; ``slopes`` (steps + 1,
+    nodes + 2) their rates at the ends; ``ahead`` (steps + 1,) how far [K] the steady state is.
+    """
+
+    time: Floats
+    ends: Floats
+    first: Floats
+    slopes: Floats
+    ahead: Floats
+
+    def at(self, t: Floats) -> Floats:
+        """The states at any times: cubics through both stages with the slope at the begin."""
+        place = np.clip(np.searchsorted(self.time, t, side="right") - 1, 0, self.first.shape[0] - 1)
+        h = np.diff(self.time)[place][:, None]
+        s = (t - self.time[place])[:, None] / h
+        begin = self.ends[place]
+        middle, end = self.first[place] - begin, self.ends[place + 1] - begin
+        slope = 4.5 * middle - 0.5 * end
+        cubic = 3.0 * (h * self.slopes[place] - slope)
+        parabola = slope + s * (end - slope)
+        return np.asarray(begin + s * (parabola + cubic * (s - 1.0 / 3.0) * (s - 1.0)))
+
+    def bend(self) -> Floats:
+        """h^3 T'''/6 [K] of every step, (steps,): the cubic part of its course."""
+        h, begin = np.diff(self.time)[:, None], self.ends[:-1]
+        each = h * self.slopes[:-1] - 4.5 * (self.first - begin) + 0.5 * (self.ends[1:] - begin)
+        return np.asarray(3.0 * np.abs(each[:, :-2]).max(axis=1))
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Course:
     """Temperatures and heat over ``time`` [s], arrays (time,); a jump of the law is there twice.
@@ -59,7 +110,8 @@ class Course:
     ``kept`` in the capacities, since the start [J]; ``imbalance`` = |kept - in + out| over the
     heat turned over; ``events`` [s]: when each watched quantity falls through 0; ``settled``:
     whether a last stretch without end came to rest; ``too_hot``: a node reached 700 K, which ends
-    the course; ``evaluations`` of the network.
+    the course; ``evaluations`` of the network, each at many moments together; ``error`` [K]:
+    greatest one of a temperature, as estimated.
     """
 
     time: Floats
@@ -73,49 +125,208 @@ class Course:
     settled: bool
     too_hot: bool
     evaluations: int
-    _solutions: tuple[OdeSolution, ...] = field(repr=False)
-    _nodes: tuple[str, ...] = field(repr=False)
-    _datum: float = field(repr=False)
+    error: float
+    _windows: Sequence[_Window] = field(repr=False)
 
     def at(self, times: ArrayLike) -> dict[str, Floats]:
         """Temperatures [K] of the free nodes at any ``times`` [s] of the course, their shape."""
         t = np.asarray(times, dtype=float)
         if not np.all((t >= 0.0) & (t <= self.time[-1])):
             raise InputError("times", f"{t} s", allowed=f"0..{self.time[-1]:g} s")
-        ends = np.array([one.t_max for one in self._solutions])
-        place = np.minimum(np.searchsorted(ends, t, side="left"), ends.size - 1)
-        y = np.empty((len(self._nodes), *t.shape))
-        for k, solution in enumerate(self._solutions):
-            here = place == k
-            if np.any(here):
-                y[:, here] = solution(t[here])[: len(self._nodes)]
-        return {name: y[i] + self._datum for i, name in enumerate(self._nodes)}
+        y = _states(self._windows, t.ravel())
+        return {name: y[:, i].reshape(t.shape) for i, name in enumerate(self.temperatures)}
+
+
+def _states(windows: Sequence[_Window], t: Floats) -> Floats:
+    """The states at any times of consecutive windows, (count, nodes + 2)."""
+    place = np.searchsorted([window.time[-1] for window in windows[:-1]], t, side="left")
+    y = np.empty((t.size, windows[0].ends.shape[1]))
+    for k in np.unique(place):
+        y[place == k] = windows[k].at(t[place == k])
+    return y
 
 
 @dataclass
 class _Law:
-    """Rates of the free nodes over ``datum`` [K], then of heat in and out over all capacity."""
+    """Rates of the free nodes [K/s], then of heat in and out [W], and how they change.
+
+    ``bent`` (places, nodes, nodes) [1/s] at ``places`` [s]: what the law's dependence on the
+    temperatures adds to -G/C, kept from one solution to the next.
+    """
 
     stretch: Stretch
     nodes: tuple[str, ...]
     capacity: Floats
-    datum: float
     calls: int = 0
+    places: Floats = field(default_factory=lambda: np.zeros(0))
+    bent: Floats = field(default_factory=lambda: np.zeros(0))
 
-    def temperatures(self, y: Floats) -> dict[str, Floats]:
-        return {name: y[i] + self.datum for i, name in enumerate(self.nodes)}
-
-    def network(self, y: Floats) -> ThermalNetwork:
+    def rates(self, y: Floats) -> tuple[Floats, Floats]:
+        """(rates, (count, nodes + 2); G/C [1/s], (count, nodes, nodes)) at ``y`` (count, nodes)."""
         self.calls += 1
-        held = {n: np.clip(t, BODY.least, BODY.most) for n, t in self.temperatures(y).items()}
-        return self.stretch.network(held)
+        held = np.clip(y, BODY.least, BODY.most)
+        network = self.stretch.network(dict(zip(self.nodes, held.T, strict=True)))
+        kept, source, out = network.flows(dict(zip(self.nodes, y.T, strict=True)))
+        free = [network.nodes.index(name) for name in self.nodes]
+        inner = network.laplacian()[..., free, :][..., :, free] / self.capacity[:, None]
+        relaxing = np.broadcast_to(inner, (*y.shape, y.shape[1]))
+        return np.column_stack([kept / self.capacity, source, out]), relaxing
 
-    def __call__(self, t: float, y: Floats) -> Floats:
-        flat = y.reshape(y.shape[0], -1)
-        kept, source, out = self.network(flat).flows(self.temperatures(flat))
-        whole = self.capacity.sum()
-        rates = np.vstack([(kept / self.capacity).T, source / whole, out / whole])
-        return rates.reshape(y.shape)
+    def probe(self, t: Floats, y: Floats) -> None:
+        """Find ``bent`` at the states ``y`` (count, nodes) of the times ``t``."""
+        count = self.capacity.size
+        moved = y[:, None] + _PROBE * np.vstack([np.zeros(count), np.eye(count)])
+        rates, relaxing = self.rates(moved.reshape(-1, count))
+        each = rates[:, :count].reshape(moved.shape)
+        slopes = np.swapaxes(each[:, 1:] - each[:, :1], 1, 2) / _PROBE
+        self.places, self.bent = t, slopes + relaxing[:: count + 1]
+
+    def slopes(self, t: Floats, relaxing: Floats) -> Floats:
+        """d(rates)/dT [1/s] at the times ``t``, (count, nodes, nodes)."""
+        if not self.places.size:
+            return -relaxing
+        place = np.clip(np.searchsorted(self.places, t) - 1, 0, self.places.size - 2)
+        part = (t - self.places[place]) / np.diff(self.places)[place]
+        part = np.clip(part, 0.0, 1.0)[:, None, None]
+        return np.asarray((1.0 - part) * self.bent[place] + part * self.bent[place + 1] - relaxing)
+
+
+def _solved(law: _Law, begin: Floats, time: Floats, guess: Floats, goal: float) -> _Window:
+    """The steps between ``time`` from the state ``begin`` (nodes + 2,), all at once.
+
+    Unknown are the temperatures at both stages of every step, ``guess`` (2 steps, nodes). Ended
+    where Newton's next correction would be below ``goal`` [K].
+    """
+    count, h = law.capacity.size, np.diff(time)
+    when, known = _stages(time), begin[None, :count]
+    y, size, probed = guess, np.inf, 0
+    for turn in range(_TURNS):
+        rates, relaxing = law.rates(np.concatenate([known, y]))
+        gains = np.einsum("k,ij,kjn->kin", h, _RADAU, rates[1:].reshape(h.size, 2, -1))
+        starts = np.concatenate([known, y[1:-1:2]])
+        residual = (starts[:, None] + gains[..., :count]).reshape(y.shape) - y
+        move = _correction(h, residual, law.slopes(when, relaxing[1:]))
+        last, size = size, float(np.abs(move).max())
+        if not np.isfinite(size):
+            break
+        y = y + np.clip(move, -_LEAP, _LEAP)
+        if min(size / last if turn else 1.0, 1.0) * size <= goal:
+            heat = np.vstack([begin[count:], gains[:, 1, count:]]).cumsum(axis=0)
+            ahead = np.linalg.solve(law.slopes(time, relaxing[::2]), rates[::2, :count, None])
+            return _Window(
+                time=time,
+                ends=np.hstack([np.concatenate([known, y[1::2]]), heat]),
+                first=np.hstack([y[::2], heat[:-1] + gains[:, 0, count:]]),
+                slopes=rates[::2],
+                ahead=np.abs(ahead).max(axis=(1, 2)),
+            )
+        if (turn == 0 and not law.places.size) or (turn - probed > 1 and size > _SLOW * last):
+            probed = turn
+            chosen = np.unique(np.linspace(0, h.size - 1, _PROBED).round().astype(int))
+            law.probe(when[1::2][chosen], y[1::2][chosen])
+    raise ConvergenceError(
+        f"thermal network at {time[0]:.6g} s: Newton's last correction was {size:.3g} K"
+    )
+
+
+def _stages(time: Floats) -> Floats:
+    """Times of both stages of every step, (2 steps,)."""
+    return np.asarray((time[:-1, None] + np.diff(time)[:, None] * _STAGES).ravel())
+
+
+def _correction(h: Floats, residual: Floats, slopes: Floats) -> Floats:
+    """Newton's correction of all stages, (2 steps, nodes), from their ``residual``.
+
+    The linear system is bidiagonal in blocks of one step: each block is solved by itself, for its
+    own residual and for a change of its begin, then they are joined one after the other.
+    """
+    steps, count = h.size, residual.shape[1]
+    whole = 2 * count
+    each = slopes.reshape(steps, 2, count, count)
+    blocks = np.einsum("k,ij,kjmn->kimjn", h, _RADAU, each).reshape(steps, whole, whole)
+    carried = np.broadcast_to(np.tile(np.eye(count), (2, 1)), (steps, whole, count))
+    right = np.concatenate([residual.reshape(steps, whole, 1), carried], axis=-1)
+    apart = np.linalg.solve(np.eye(whole) - blocks, right)
+    step, before = apart[..., 0].copy(), np.zeros(count)
+    for k in range(steps):
+        step[k] += apart[k, :, 1:] @ before
+        before = step[k, count:]
+    return step.reshape(residual.shape)
+
+
+def _window(law: _Law, begin: Floats, time: Floats, tolerance: float) -> tuple[_Window, float]:
+    """The steps from ``begin`` on a mesh that keeps the ``tolerance`` [K], and the error [K].
+
+    Every mesh is halved: for a method of order 3 the finer solution errs by a seventh of the
+    difference at the ends of its steps. A third is taken: between them the cubic errs more. Where
+    that is too much a mesh is drawn anew, on which all steps have the same cubic part.
+    """
+    goal, error, steps = _SOLVED * tolerance, np.inf, time.size - 1
+    count = law.capacity.size
+    guess = np.broadcast_to(begin[:count], (2 * steps, count))
+    found = _solved(law, begin, time, guess, max(_ROUGH, goal))
+    for _ in range(_ROUNDS):
+        coarse_time = _drawn(found.time, found.bend(), steps)
+        time = np.sort(np.append(coarse_time, 0.5 * (coarse_time[1:] + coarse_time[:-1])))
+        coarse = _solved(law, begin, coarse_time, found.at(_stages(coarse_time))[:, :count], goal)
+        found = _solved(law, begin, time, coarse.at(_stages(time))[:, :count], goal)
+        error = float(np.abs(coarse.at(time) - found.ends)[:, :count].max()) / 3.0
+        if error <= tolerance and found.bend().max() <= _BEND:
+            return found, error
+        steps = int(np.ceil(steps * np.clip(1.2 * np.cbrt(error / tolerance), 1.3, 4.0)))
+    raise ConvergenceError(
+        f"thermal network at {time[0]:.6g} s: the error stays at {error:.3g} K in "
+        f"{time.size - 1} steps; allowed {tolerance:g} K"
+    )
+
+
+def _drawn(time: Floats, bend: Floats, steps: int) -> Floats:
+    """As many ``steps`` over the same ``time``, each of about the same cubic part."""
+    weight = np.cbrt(bend)
+    weight = np.maximum(weight, 0.2 * weight.mean() + 1e-12)
+    # a step may not be much longer than its neighbours
+    beside = np.maximum(np.append(weight[1:], 0.0), np.append(0.0, weight[:-1]))
+    along = np.append(0.0, np.cumsum(np.maximum(weight, 0.5 * beside)))
+    return np.interp(np.linspace(0.0, along[-1], steps + 1), along, time)
+
+
+def _first_mesh(begun: float, end: float, relaxing: Floats) -> Floats:
+    """Steps [s] that double, from half the shortest time constant or an eighth of all."""
+    first = min((end - begun) / 8.0, 0.5 / np.diagonal(relaxing[0]).max())
+    count = int(np.ceil(np.log2(1.0 + (end - begun) / first)))
+    grown = (2.0 ** np.arange(count + 1) - 1.0) / (2.0**count - 1.0)
+    # both ends to the last bit
+    return np.asarray(begun * (1.0 - grown) + end * grown)
+
+
+def _windows(
+    law: _Law, y: Floats, begun: float, tolerance: float, progress: Progress
+) -> Iterator[tuple[_Window, float]]:
+    """The windows of a stretch one after the other, each with its error [K], from the state ``y``.
+
+    The whole stretch first; a quarter of it where that fails.
+    """
+    end = law.stretch.end
+    relaxing = law.rates(y[None, :-2])[1]
+    length = end - begun
+    if not np.isfinite(end):
+        # similar to a symmetric matrix
+        slowest = 1.0 / float(np.linalg.eigvals(relaxing).real.min())
+        end, length = begun + _SLOWEST * slowest, _WINDOW * slowest
+    first, shortest = begun, _SHORTEST * length
+    while begun < end:
+        progress("course in time", int(1000.0 * (begun - first) / (end - first)), 1000)
+        stop = begun + length if begun + (1.0 + 1e-9) * length < end else end
+        try:
+            window, error = _window(law, y, _first_mesh(begun, stop, relaxing), tolerance)
+        except ThermogearError:
+            if length <= shortest:
+                raise
+            length, law.places = 0.25 * length, np.zeros(0)
+            continue
+        yield window, error
+        begun, y, length = stop, window.ends[-1], 4.0 * length
+    progress("course in time", 1000, 1000)
 
 
 def follow(
@@ -126,23 +337,22 @@ def follow(
     moments: int = 60,
     tolerance: float = 1e-3,
     settled_within: float = 0.01,
-    events: Mapping[str, Callable[[State, int], float]] | None = None,
+    events: Mapping[str, Callable[[State, int], Floats]] | None = None,
     progress: Progress = silent,
 ) -> Course:
     """Temperatures of a network whose conductances and sources depend on them, over time.
 
-    C dT/dt = q(T) - G(T) T by backward differences of variable order and step (scipy's BDF), begun
-    anew at every jump of the law. Heat in and out are states of their own: dE_in/dt = sum q,
-    dE_out/dt = what leaves through the given nodes. The method is linear, so the balance closes
-    to rounding if every flow is counted.
+    C dT/dt = q(T) - G(T) T by collocation at the two Radau points of every step (order 3): all
+    steps of a stretch are one system, which Newton's method solves with the network asked at all
+    of them together. Steps are halved until the error, a third of what that changes, is below
+    ``tolerance`` [K] everywhere. Where that fails the stretch is solved in shorter windows. Heat in
+    and out are integrated by the same rule, so that the balance closes if every flow is counted.
 
     ``stretches`` one after the other from time 0; ``start`` [K] of every free node; ``times`` [s]
-    to be stored with some ``moments`` of each stretch; ``tolerance`` [K] of one step's error, a
-    tenth of it relative (the course may err by ten times as much); a stretch without end runs
-    until its slowest mode has no more than ``settled_within`` [K] to go; ``events`` [K or m, any]
-    of the state and the place of its stretch that are located where they fall through 0. Raises
-    InputError for stretches that do not follow each other, and ConvergenceError where the steps
-    fail.
+    to be stored with some ``moments`` of each stretch; a stretch without end runs until its steady
+    state is no more than ``settled_within`` [K] away; ``events`` [K or m, any] of states (count,)
+    and the place of their stretch that are located where they fall through 0. Raises InputError
+    for stretches that do not follow each other, and ConvergenceError where the steps fail.
     """
     ends = np.array([one.end for one in stretches])
     if not ends.size or not np.all(np.diff(np.concatenate([[0.0], ends])) > 0.0):
@@ -151,64 +361,38 @@ def follow(
         raise InputError("tolerance", f"{tolerance} K", allowed="> 0 K")
     known = {name: np.atleast_1d(np.asarray(t, dtype=float)) for name, t in start.items()}
     first = stretches[0].network(known)
-    from scipy.integrate import solve_ivp
-
     nodes, capacity = first.free, _capacities(first)
-    datum = min(float(start[name]) for name in nodes)
-    whole = float(capacity.sum())
-    y = np.array([*(float(start[name]) - datum for name in nodes), 0.0, 0.0])
+    y = np.array([*(float(start[name]) for name in nodes), 0.0, 0.0])
     wanted = np.unique(np.asarray(times, dtype=float))
-    watched = dict(events or {})
-    happened: dict[str, list[float]] = {name: [] for name in watched}
-    solutions: list[OdeSolution] = []
-    stored: list[tuple[int, Floats, Floats]] = []
-    begun, calls, settled, too_hot = 0.0, 1, False, False
+    happened: dict[str, list[float]] = {name: [] for name in events or {}}
+    windows: list[_Window] = []
+    stored: list[tuple[int, Floats]] = []
+    stop, calls, error, settled, too_hot = 0.0, 1, 0.0, False, False
     for place, stretch in enumerate(stretches):
-        law = _Law(stretch, nodes, capacity, datum)
-        endless, end, rests = not np.isfinite(stretch.end), stretch.end, False
-        rest = _coming_to_rest(law, capacity, settled_within)
-        if endless:
-            rests = rest(begun, y) <= 0.0
-            slowest = _slowest(law.network(y[:, None]), capacity)
-            end = begun + (1.0 if rests else _SLOWEST) * slowest
-        crossings = _crossings(law, watched, place, progress, begun, end)
-        if endless and not rests:
-            crossings.append(rest)
-        solved = solve_ivp(
-            law,
-            (begun, end),
-            y,
-            method="BDF",
-            vectorized=True,
-            dense_output=True,
-            rtol=_RELATIVE * tolerance,
-            atol=tolerance,
-            events=crossings,
-        )
+        law, begun = _Law(stretch, nodes, capacity), stop
+        for window, here in _windows(law, y, begun, tolerance, progress):
+            windows.append(window)
+            y, error = window.ends[-1], max(error, here)
+            stop, settled, too_hot = _stop(window, stretch.end, settled_within)
+            for name, event in (events or {}).items():
+                value = _value(window, nodes, event, place)
+                happened[name] += [t for t in _falls(window.time, value) if t <= stop]
+            if settled or too_hot:
+                break
         calls += law.calls
-        if solved.status < 0:
-            raise ConvergenceError(f"thermal network at {solved.t[-1]:.6g} s: {solved.message}")
-        for name, at in zip(watched, solved.t_events[1:], strict=False):
-            happened[name] += [float(t) for t in at]
-        too_hot = solved.t_events[0].size > 0
-        settled = endless and not too_hot and (rests or solved.status == 1)
-        last = float(solved.t[-1])
-        t = _moments(begun, last, moments, wanted)
-        stored.append((place, t, solved.sol(t)))
-        solutions.append(solved.sol)
-        begun, y = last, solved.y[:, -1]
+        stored.append((place, _moments(begun, stop, moments, wanted)))
         if too_hot:
             break
-    time = np.concatenate([t for _, t, _ in stored])
-    states = np.concatenate([s for _, _, s in stored], axis=1)
-    heat_in, heat_out = whole * states[-2], whole * states[-1]
-    kept = capacity @ (states[: len(nodes)] - states[: len(nodes), :1])
+    time = np.concatenate([t for _, t in stored])
+    states = _states(windows, time)
+    heat_in, heat_out = states[:, -2], states[:, -1]
+    kept = (states[:, :-2] - states[0, :-2]) @ capacity
     turned = heat_in + np.abs(heat_out) + np.abs(kept)
     left = np.abs(kept - heat_in + heat_out)
     return Course(
         time=time,
-        stretch=np.concatenate([np.full(t.size, place) for place, t, _ in stored]),
-        temperatures={name: states[i] + datum for i, name in enumerate(nodes)},
+        stretch=np.concatenate([np.full(t.size, place) for place, t in stored]),
+        temperatures={name: states[:, i] for i, name in enumerate(nodes)},
         heat_in=heat_in,
         heat_out=heat_out,
         kept=kept,
@@ -217,10 +401,45 @@ def follow(
         settled=settled,
         too_hot=too_hot,
         evaluations=calls,
-        _solutions=tuple(solutions),
-        _nodes=nodes,
-        _datum=datum,
+        error=error,
+        _windows=windows,
     )
+
+
+def _value(
+    window: _Window, nodes: tuple[str, ...], event: Callable[[State, int], Floats], place: int
+) -> Callable[[Floats], Floats]:
+    """An event over time [s]."""
+    return lambda t: event(dict(zip(nodes, window.at(t).T, strict=False)), place)
+
+
+def _stop(window: _Window, end: float, within: float) -> tuple[float, bool, bool]:
+    """(When [s] a window is left, whether it came to rest before, whether it got too hot)."""
+    t = window.time
+    hot = _falls(t, lambda when: HOTTEST - window.at(when)[:, :-2].max(axis=1))
+    stop = min([float(t[-1]), *hot])
+    if not np.isfinite(end):
+        ahead = np.log(np.maximum(window.ahead / within, 1e-300))
+        # at rest from the start: about one time constant of it
+        still = [float(t[0] + (t[-1] - t[0]) / _WINDOW)] * int(ahead[0] <= 0.0)
+        rest = still + _falls(t, lambda when: np.interp(when, t, ahead))
+        if rest and rest[0] <= stop:
+            return rest[0], True, False
+    return stop, False, bool(hot)
+
+
+def _falls(time: Floats, value: Callable[[Floats], Floats]) -> list[float]:
+    """When [s] a ``value`` over time falls through 0, looked for between the ends of steps."""
+    found, seen = [], value(time)
+    for k in np.flatnonzero((seen[:-1] > 0.0) & (seen[1:] <= 0.0)):
+        t, v = time[k : k + 2], seen[k : k + 2]
+        for _ in range(3):
+            t = np.linspace(t[0], t[1], 9)
+            v = value(t)
+            place = max(int(np.argmax(v <= 0.0)), 1)
+            t, v = t[place - 1 : place + 1], v[place - 1 : place + 1]
+        found.append(float(t[0] + (t[1] - t[0]) * v[0] / (v[0] - v[1])))
+    return found
 
 
 def _capacities(network: ThermalNetwork) -> Floats:
@@ -228,56 +447,6 @@ def _capacities(network: ThermalNetwork) -> Floats:
     if missing:
         raise InputError("capacity of", ", ".join(missing), why="the course in time needs it")
     return np.array([network.capacities[name] for name in network.free], dtype=float)
-
-
-def _slowest(network: ThermalNetwork, capacity: Floats) -> float:
-    """The slowest time constant [s] of the network as it is."""
-    names = network.nodes
-    free = [i for i, name in enumerate(names) if name not in network.fixed]
-    matrix = network.laplacian().reshape(-1, len(names), len(names))[0]
-    inner = matrix[np.ix_(free, free)]
-    root = np.sqrt(capacity)
-    return float(1.0 / np.linalg.eigvalsh(inner / np.outer(root, root))[0])
-
-
-def _crossings(
-    law: _Law,
-    watched: Mapping[str, Callable[[State, int], float]],
-    place: int,
-    progress: Progress,
-    begun: float,
-    end: float,
-) -> list[Callable[[float, Floats], float]]:
-    """Events of a stretch: a node too hot, which ends it, then what is watched."""
-
-    def heat(t: float, y: Floats) -> float:
-        progress("course in time", int(1000.0 * (t - begun) / (end - begun)), 1000)
-        return HOTTEST - float(np.max(y[: len(law.nodes)])) - law.datum
-
-    heat.terminal = True  # type: ignore[attr-defined]
-    found: list[Callable[[float, Floats], float]] = [heat]
-    for one in watched.values():
-
-        def falling(t: float, y: Floats, one: Callable[[State, int], float] = one) -> float:
-            return one(law.temperatures(y[:, None]), place)
-
-        falling.direction = -1.0  # type: ignore[attr-defined]
-        found.append(falling)
-    return found
-
-
-def _coming_to_rest(law: _Law, capacity: Floats, within: float) -> Callable[[float, Floats], float]:
-    """Positive until the slowest mode has at most ``within`` [K] to go; ends the stretch."""
-
-    def rest(t: float, y: Floats) -> float:
-        network = law.network(y[:, None])
-        kept = network.flows(law.temperatures(y[:, None]))[0][0]
-        ahead = float(np.max(np.abs(kept / capacity))) * _slowest(network, capacity)
-        return ahead - within
-
-    rest.terminal = True  # type: ignore[attr-defined]
-    rest.direction = -1.0  # type: ignore[attr-defined]
-    return rest
 
 
 def _moments(begun: float, end: float, count: int, wanted: Floats) -> Floats:

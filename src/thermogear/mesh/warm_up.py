@@ -171,7 +171,7 @@ def warm_up(
     the start; its ambient is the duty's), ``reference`` [K], ``housing`` and ``deviations`` as
     :func:`heat_balance`; ``start`` [K] of all nodes or by node, else the first ambient;
     ``factors`` on conductances [-] by the names of :data:`FACTORS`; ``times`` [s] to be stored
-    with some ``moments`` of each piece; ``tolerance`` [K] of a step's error.
+    with some ``moments`` of each piece; ``tolerance`` [K] of the temperatures' error.
 
     A jam does not end the course; a node of 700 K does. Raises ConvergenceError where the loaded
     contact does not settle. Warns once where the oil leaves its viscosity line.
@@ -211,8 +211,8 @@ def warm_up(
             events={"jam": chosen.gap},
             progress=progress,
         )
-        worst = chosen.worst(course)
-    left, margin = chosen.clearance_of(course.temperatures, course.stretch)
+        left, margin = chosen.clearance_of(course.temperatures, course.stretch)
+        worst = chosen.worst(course, left)
     # a leap of the speed may use up the backlash at once
     leaps = np.flatnonzero((left[1:] <= 0.0) & (left[:-1] > 0.0) & (np.diff(course.time) == 0.0))
     losses = chosen.losses_of(course)
@@ -395,26 +395,22 @@ class _Chain:
         hot = HotPair(self.pair, at, self.model)
         return Clearance(hot, np.arange(PHASES) / PHASES, self.deviations)
 
-    def gap(self, state: State, piece: int) -> float:
-        """Least half backlash [m] of one state in ``piece`` of the duty."""
-        return float(self._clearance(self.operating(state, piece)).half_backlash.min())
+    def gap(self, state: State, piece: int) -> Floats:
+        """Least half backlash [m] of states (count,) in ``piece`` of the duty."""
+        return self._clearance(self.operating(state, piece)).half_backlash.min(axis=1)
 
-    def worst(self, course: Course) -> Worst:
-        """The least half backlash of the course, located between the stored moments."""
-        from scipy.optimize import minimize_scalar
-
-        left, _ = self.clearance_of(course.temperatures, course.stretch)
+    def worst(self, course: Course, left: Floats) -> Worst:
+        """The least half backlash of the course, located between the moments that have ``left``."""
         place = int(np.argmin(left))
-        ends = course.time[max(place - 1, 0)], course.time[min(place + 1, left.size - 1)]
         when, piece = float(course.time[place]), int(course.stretch[place])
+        ends = course.time[max(place - 1, 0)], course.time[min(place + 1, left.size - 1)]
         if ends[0] < when < ends[1]:
-            found = minimize_scalar(
-                lambda t: self.gap({n: x[None] for n, x in course.at(t).items()}, piece),
-                bounds=ends,
-                method="bounded",
-                options={"xatol": 1e-4 * (ends[1] - ends[0])},
-            )
-            when = float(found.x) if found.fun <= left[place] else when
+            for _ in range(3):
+                near = np.linspace(*ends, 17)
+                gaps = self.gap(course.at(near), piece)
+                place = int(np.argmin(gaps))
+                ends = near[max(place - 1, 0)], near[min(place + 1, near.size - 1)]
+            when = float(near[place]) if gaps[place] <= left.min() else when
         state = {name: np.atleast_1d(t) for name, t in course.at(when).items()}
         gap, margin = self.clearance_of(state, piece)
         return Worst(
