@@ -14,7 +14,7 @@ from thermogear.base.limits import FINE, LOOK, OPEN
 from thermogear.results.answer import Answer, worst
 from thermogear.results.result import Result
 from thermogear.views.columns import Column, declared
-from thermogear.views.page import Block, Made, Page, Pictures, Section, Table, Text
+from thermogear.views.page import Block, Code, Made, Page, Pictures, Section, Table
 from thermogear.views.pages.background import background
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import HOT, INK, QUIET, WIDE
@@ -121,12 +121,12 @@ def _sentence(one: Answer) -> str:
     return f"{one.sentence[:-1]}, at {one.operating}." if one.operating else one.sentence
 
 
-def told(result: Result) -> Iterator[Text]:
-    """The answers for a terminal: one line each, under their questions."""
+def told(result: Result) -> Iterator[Code]:
+    """The answers for a terminal: one line each, under their questions, as they are."""
     for first, one in _firsts(gravest(result.answers)):
         if first:
-            yield Text(one.question)
-        yield Text(f"  {one.verdict:<11}  {_sentence(one)} [{one.limit}]")
+            yield Code(one.question)
+        yield Code(f"  {one.verdict:<11}  {_sentence(one)} [{one.limit}]")
 
 
 # --- pictures -----------------------------------------------------------------------------------
