@@ -56,7 +56,7 @@ def chosen_channels(
         picked = [record.channel(name) for name in channels]
         for channel in picked:
             if (told := _nothing(channel)) is not None:
-                raise InputError("channel", repr(channel.name), why=told.text, fix=_advice(record))
+                raise InputError("channel", repr(channel.name), why=told.text)
         return picked
     alive, silent = [], []
     for channel in record.signals():
@@ -67,7 +67,7 @@ def chosen_channels(
         notices += [told] if told not in notices else []
     if not alive:
         why = "; ".join(told.text for told in silent[:3])
-        raise InputError("record", record.source, why=why, fix=_advice(record))
+        raise InputError("record", record.source, why=why)
     moving = (c.unit for c in alive if c.unit is not None and kind_of(c.unit) in _MOTION)
     first = alive[0].unit or next(moving, None)
     others = [c for c in alive if c.unit != first]
@@ -90,10 +90,6 @@ def _nothing(channel: Channel) -> Notice | None:
     if told is None and counts(channel):
         return Notice.of("channel_counts", channel=channel.name)
     return told
-
-
-def _advice(record: Record) -> str:
-    return "" if record.rate is not None else "if it is the time, give --rate"
 
 
 def counts(channel: Channel) -> bool:
