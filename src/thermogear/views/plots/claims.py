@@ -32,7 +32,7 @@ HEATS = {
 }
 
 
-def over_grid(data: xr.Dataset, name: str, unit: str, scale: Display = Display("–")) -> Picture:
+def over_grid(data: xr.Dataset, name: str, unit: str, scale: Display) -> Picture:
     """One quantity over speed, a curve per torque: temperatures given beside the heat balance."""
     rpm = SPEED(data["speed"].values)
     torques = data["torque"].values
