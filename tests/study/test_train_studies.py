@@ -271,7 +271,8 @@ def test_the_words_say_where_each_flank_and_bearing_loses_contact() -> None:
         (0, 1),
         (3, 0),
     ]
-    assert lost_words(guessed) == SAID + " Where the motion is assumed, so is this."
+    more = " Where the motion is assumed, so is this."
+    assert lost_words(guessed) == SAID + more
     assert lost_words(stored(np.zeros((3, 4), np.int32))) == NOTHING
     assert lost_words(stored(np.full((3, 4), -1, np.int32), 4)) == UNKNOWN
     scattered = np.zeros((3, 4), np.int32)

@@ -7,30 +7,32 @@ import json
 import numpy as np
 import xarray as xr
 
+from thermogear.base.display import KELVIN
 from thermogear.base.vocabulary import STATUS
 from thermogear.views.gears import DrawnState, GearDrawing
+from thermogear.views.pages import contact as loaded
+from thermogear.views.pages import (
+    record,
+    records,
+    relief,
+    rig_trains,
+    train_motion,
+    warm_up,
+    waterfall,
+)
+from thermogear.views.pages import temperature as thermal_map
+from thermogear.views.pages.answers import speeds_picture
 from thermogear.views.picture import Picture
 from thermogear.views.plots import (
-    bearings,
     claims,
     flanks,
     gears,
     laws,
     live,
-    loaded,
     lost_contact,
     one_motion,
-    records,
-    relief,
-    rig_trains,
     shafts,
-    slices,
-    speeds,
     sweeps,
-    thermal_map,
-    train_motion,
-    warm_up,
-    waterfall,
 )
 from thermogear.views.plots.one_motion import plane_picture, shared_picture
 
@@ -119,7 +121,7 @@ def of_sweeps() -> dict[str, Picture]:
         "waterfall": sweeps.waterfall_picture(run_up),
         "sweep-1": sweeps.sweep_picture(line),
         "sweep-2": sweeps.sweep_picture(both),
-        "look": speeds.speeds_picture(look),
+        "look": speeds_picture(look),
     }
 
 
@@ -249,8 +251,8 @@ def of_records() -> dict[str, Picture]:
     names = [f"line {k}" for k in range(several.sizes["line"])]
     several = several.assign_coords(name=("line", names), channel=("line", ["a"] * len(names)))
     return {
-        "order-map": slices.order_map(shown, found, "g", "the first shaft"),
-        "order-slices": slices.over_speed(run, 0, "g"),
+        "order-map": record.order_map(shown, found, "g", "the first shaft"),
+        "order-slices": record.over_speed(run, 0, "g"),
         "records": records.course(several),
     }
 
@@ -311,7 +313,7 @@ def of_claims() -> dict[str, Picture]:
     return {
         "thesis-diagram": sweeps.over_each_other([diagram], ["without heat"]),
         "overlay": sweeps.overlay_picture(diagram.expand_dims(state=2), ["undeformed", "hot"], ()),
-        "over-grid": claims.over_grid(given, "flash", "flash temperature [K]"),
+        "over-grid": claims.over_grid(given, "flash", "flash temperature [K]", KELVIN),
         "warming": claims.warming(multiplier),
         "experiment": claims.experiment(entry),
         "sensitivity": claims.sensitivity(total),
@@ -406,10 +408,10 @@ def of_moving_trains() -> dict[str, Picture]:
     )  # fmt: skip
     return {
         "train-moving": train_motion.four_panels(moved, 0),
-        "train-orbits": bearings.bearing_orbits(moved, 0),
-        "train-forces": bearings.bearing_force_time(moved, 0),
-        "train-bearing-orders": bearings.bearing_force_order(moved, 0),
-        "train-torus": bearings.torus_section(moved, 0),
+        "train-orbits": train_motion.bearing_orbits(moved, 0),
+        "train-forces": train_motion.bearing_force_time(moved, 0),
+        "train-bearing-orders": train_motion.bearing_force_order(moved, 0),
+        "train-torus": train_motion.torus_section(moved, 0),
         "train-heard": train_motion.sound(moved, 0),
         "train-over-speed": waterfall.over_speed(swept),
         "train-orders": waterfall.lines(swept, 0),
