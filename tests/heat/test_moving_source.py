@@ -68,7 +68,7 @@ def test_the_spline_is_that_of_the_library(distribution: str) -> None:
 
     from thermogear.heat import moving_source
 
-    knots, probe = moving_source._knots(), np.geomspace(1e-4, 1e5, 301)
+    knots, probe = moving_source._KNOTS, np.geomspace(1e-4, 1e5, 301)
     spline = CubicSpline(knots, moving_source._solved_maxima(distribution))
     expected = spline(np.log(probe))
     np.testing.assert_allclose(peclet_factor(probe, distribution), expected, rtol=1e-13)

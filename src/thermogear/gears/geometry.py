@@ -21,9 +21,6 @@ from thermogear.base.units import ROUNDED, half_digit
 
 Floats = NDArray[np.float64]
 
-_MOST_STEPS = 60
-"""Newton's steps to a section: they double a start far off before they settle, about 15."""
-
 
 @dataclass(frozen=True, kw_only=True)
 class Trochoid:
@@ -80,15 +77,14 @@ class Trochoid:
         sin^2(gamma) = -a1/r on. Newton's steps begin where the angle bends away from its
         tangents, so that none goes past the section; ConvergenceError where there is none.
         """
-        a1, r = self.centre_depth, self.pitch_radius
-        gamma = 1e-3 if a1 > 0.0 else 0.5 * math.pi
-        for _ in range(_MOST_STEPS):
-            step = slope - gamma + float(self.roll(gamma))
-            step /= 1.0 + a1 / (r * math.sin(gamma) ** 2)
-            gamma += step
-            if abs(step) < 1e-12:  # the error that is left goes as its square
-                return gamma
-        raise ConvergenceError(f"fillet: no section at {math.degrees(slope):g} degrees")
+        gamma = 1e-3 if self.centre_depth > 0.0 else 0.5 * math.pi
+        for _ in range(60):  # they double a start far off before they settle, about 15
+            gamma -= (gamma - float(self.roll(gamma)) - slope) / (
+                1.0 + self.centre_depth / (self.pitch_radius * math.sin(gamma) ** 2)
+            )
+        if not abs(gamma - float(self.roll(gamma)) - slope) < 1e-12:
+            raise ConvergenceError(f"fillet: no section at {math.degrees(slope):g} degrees")
+        return gamma
 
     def crossing(self, base_radius: float, base_half_angle: float) -> float | None:
         """gamma [rad] where an undercut fillet leaves the involute, None if it never meets it.

@@ -15,6 +15,7 @@ from collections.abc import Callable
 from functools import cache
 
 import numpy as np
+from numpy.polynomial.polynomial import polyval
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import InputError
@@ -90,17 +91,6 @@ _LOWEST, _HIGHEST = 1e-4, 1e5
 _STILL = 1e-8
 
 
-@cache
-def _peak(peclet: float, distribution: str) -> float:
-    def minus(x: float) -> float:
-        return -float(moving_source_rise(x, peclet=peclet, distribution=distribution))
-
-    from scipy.optimize import minimize_scalar
-
-    found = minimize_scalar(minus, bounds=(-0.2, 1.0), method="bounded", options={"xatol": 1e-7})
-    return max(-float(found.fun), -minus(1.0))
-
-
 _MAXIMA = (
     0.03569070708829218, 0.04036277316877917, 0.04561185497338723, 0.051502281202783926,
     0.05810407824780244, 0.06549312785763083, 0.0737512264529919, 0.08296601020023528,
@@ -125,17 +115,29 @@ _MAXIMA = (
 import of scipy's optimisers, a fifth of a second. A test solves it."""
 
 
-def _knots() -> Floats:
-    return np.linspace(np.log(_LOWEST), np.log(_HIGHEST), len(_MAXIMA))
+_KNOTS = np.linspace(np.log(_LOWEST), np.log(_HIGHEST), len(_MAXIMA))
 
 
 def _solved_maxima(distribution: str) -> list[float]:
-    return [_peak(float(np.exp(knot)), distribution) for knot in _knots()]
+    from scipy.optimize import minimize_scalar
+
+    def minus(x: float, peclet: float) -> float:
+        return -float(moving_source_rise(x, peclet=peclet, distribution=distribution))
+
+    return [
+        -min(
+            minimize_scalar(
+                minus, (), (-0.2, 1.0), (pe,), method="bounded", options={"xatol": 1e-7}
+            ).fun,
+            minus(1.0, pe),
+        )
+        for pe in np.exp(_KNOTS).tolist()
+    ]
 
 
 @cache
 def _peak_table(distribution: str) -> Floats:
-    """C over ln Pe: the coefficients [power, interval] of a cubic spline over :func:`_knots`.
+    """C over ln Pe: the coefficients [power, interval] of a cubic spline over `_KNOTS`.
 
     Its third derivative is continuous at the second knot from either end.
     """
@@ -143,8 +145,8 @@ def _peak_table(distribution: str) -> Floats:
     rise = np.diff(peaks)
     matrix = 4.0 * np.eye(peaks.size) + np.eye(peaks.size, k=1) + np.eye(peaks.size, k=-1)
     matrix[0, :2] = matrix[-1, :-3:-1] = 1.0, 2.0
-    ends = 2.5 * rise[[0, -1]] + 0.5 * rise[[1, -2]]
-    slope = np.linalg.solve(matrix, [ends[0], *(3.0 * (rise[:-1] + rise[1:])), ends[1]])
+    begin, end = 2.5 * rise[[0, -1]] + 0.5 * rise[[1, -2]]
+    slope = np.linalg.solve(matrix, [begin, *(3.0 * (rise[:-1] + rise[1:])), end])
     bend = slope[:-1] + slope[1:] - 2.0 * rise
     return np.array([peaks[:-1], slope[:-1], rise - slope[:-1] - bend, bend])
 
@@ -163,18 +165,14 @@ def peclet_factor(peclet: ArrayLike, distribution: str = "ellipse") -> Floats:
     pe = np.asarray(peclet, dtype=float)
     if not np.all(pe >= 0.0):
         raise InputError("peclet", pe.min(), allowed=">= 0")
-    inside = np.clip(pe, _LOWEST, _HIGHEST)
-    table, knots = _peak_table(distribution), _knots()
-    place = (np.log(inside) - knots[0]) / (knots[1] - knots[0])
-    interval = np.minimum(place.astype(int), knots.size - 2)
-    part = place - interval
-    level_0, level_1, level_2, level_3 = table[:, interval]
-    exact = level_0 + part * (level_1 + part * (level_2 + part * level_3))
+    table = _peak_table(distribution)
+    place = (np.log(np.clip(pe, _LOWEST, _HIGHEST)) - _KNOTS[0]) / (_KNOTS[1] - _KNOTS[0])
+    interval = np.minimum(place.astype(int), _KNOTS.size - 2)
+    exact = polyval(place - interval, table[:, interval], tensor=False)
     slow = np.where(pe > 0.0, np.minimum(pe, _LOWEST), 1.0)
     level = np.pi * table[0, 0] / np.sqrt(_LOWEST) + np.log(_LOWEST)
     slowest = np.sqrt(slow) / np.pi * (level - np.log(slow))
-    value = np.where(pe < _LOWEST, slowest, exact)
-    return np.asarray(np.where(pe == 0.0, 0.0, value))
+    return np.where(pe == 0.0, 0.0, np.where(pe < _LOWEST, slowest, exact))
 
 
 def _carrying(

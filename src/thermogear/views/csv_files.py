@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermogear.base.display import CELSIUS
 from thermogear.results.result import Result
@@ -93,7 +92,11 @@ def _columns(data: xr.Dataset, dims: list[str]) -> list[Column]:
     """Every coordinate and variable of ``data`` as cells, stretched over ``dims`` and laid flat."""
     numbered = {d: np.arange(data.sizes[d]) for d in dims if d not in data.coords}
     # a number is written once, however many rows repeat it
-    cells = stretched(data.assign(numbered), dims, _cells)
+    cells = stretched(
+        data.assign(numbered),
+        dims,
+        lambda v: np.array([*map(cell_text, v.ravel().tolist())], object).reshape(v.shape),
+    )
     axes = [str(name) for name, axis in data.coords.items() if axis.dims]
     return [
         (head_text(data, name), cells[name].tolist())
@@ -105,13 +108,6 @@ def head_text(data: xr.Dataset, name: str) -> str:
     """The name of a column with the unit it is stored in, if there is one."""
     unit = data[name].attrs.get("units", "") if name in data.variables else ""
     return f"{name} [{unit}]" if unit else name
-
-
-def _cells(values: NDArray[Any]) -> NDArray[np.object_]:
-    """The text of every value."""
-    texts = np.empty(values.size, object)
-    texts[:] = [cell_text(value) for value in values.ravel().tolist()]
-    return texts.reshape(values.shape)
 
 
 def cell_text(value: object) -> str:
