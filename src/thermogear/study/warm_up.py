@@ -39,7 +39,7 @@ MOST_OF_ONE = 120
 """Moments that one piece has at most."""
 MOST_PIECES = 2000
 FIT_TOLERANCE = 3e-3
-"""Of a step's error [K] while factors are looked for: far below any thermometer's."""
+"""Error [K] of temperatures while factors are looked for: far below any thermometer's."""
 
 ALONG = ("moment",)
 
@@ -461,7 +461,7 @@ def _notices(
         )
     yield Notice(
         "info",
-        f"Losses by the whole chain at every step, {course.course.evaluations} times, in "
-        f"{seconds:.1f} s; the heat balance closes to "
-        f"{float(course.course.imbalance.max()):.1e} of the heat turned over.",
+        f"Losses by the whole chain, asked {course.course.evaluations} times at many moments "
+        f"together, in {seconds:.1f} s; temperatures within {course.course.error:.1g} K; the heat "
+        f"balance closes to {float(course.course.imbalance.max()):.1e} of the heat turned over.",
     )
