@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
+from scipy.linalg import expm
 
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.heat.network import Link, ThermalNetwork
@@ -85,6 +87,52 @@ def tangle(state: State) -> ThermalNetwork:
         {"ambient": T0, "cooler": T0 - 15.0},
         {"a": 50.0, "b": 800.0, "c": 3.0, "d": 9000.0},
     )
+
+
+def test_a_linear_network_is_its_matrix_exponential() -> None:
+    """Random networks of time constants from seconds to hours, within the tolerance asked for."""
+    rng = np.random.default_rng(51)
+    for tolerance in (1e-1, 1e-2, 1e-3) * 3:
+        names = [f"n{k}" for k in range(7)]
+        capacity = 10.0 ** rng.uniform(1.0, 5.0, 7)
+        pairs = [(i, j) for i in range(7) for j in range(i) if rng.random() < 0.6 or i - j == 1]
+        links = [Link(names[i], names[j], 10.0 ** rng.uniform(-1.0, 1.5)) for i, j in pairs]
+        network = ThermalNetwork(
+            (*links, Link("n0", "ambient", 5.0)),
+            dict(zip(names, rng.uniform(0.0, 60.0, 7), strict=True)),
+            {"ambient": T0},
+            dict(zip(names, capacity, strict=True)),
+        )
+        start = dict(zip(names, T0 + rng.uniform(-20.0, 60.0, 7), strict=True))
+        found = follow(
+            [Stretch(end=2e4, network=lambda _, n=network: n)], start, tolerance=tolerance
+        )
+        steady = network.steady()
+        inner = network.laplacian()[np.ix_(*[[network.nodes.index(n) for n in names]] * 2)]
+        away = np.array([start[n] - steady[n] for n in names])
+        exact = expm(-found.time[:, None, None] * inner / capacity[:, None]) @ away
+        worst = max(
+            np.abs(found.temperatures[n] - steady[n] - exact[:, k]).max()
+            for k, n in enumerate(names)
+        )
+        assert worst <= found.error <= tolerance
+        assert found.evaluations < 40
+
+
+def test_a_law_that_bends_is_what_another_method_finds() -> None:
+    start = {"a": T0, "b": T0 + 30.0, "c": T0, "d": T0 - 10.0}
+    found = follow([Stretch(end=4e4, network=tangle)], start, tolerance=1e-2)
+    nodes = tuple(found.temperatures)
+
+    def rates(t: float, y: np.ndarray) -> np.ndarray:
+        network = tangle(dict(zip(nodes, y, strict=True)))
+        kept = network.flows(dict(zip(nodes, y, strict=True)))[0]
+        return kept / np.array([network.capacities[name] for name in nodes])
+
+    first = [start[name] for name in nodes]
+    other = solve_ivp(rates, (0.0, 4e4), first, "Radau", found.time, rtol=1e-8, atol=1e-7)
+    worst = max(np.abs(found.temperatures[n] - other.y[k]).max() for k, n in enumerate(nodes))
+    assert worst <= found.error <= 1e-2
 
 
 def test_heat_adds_up_at_every_moment() -> None:

@@ -80,10 +80,12 @@ def test_starts_at_the_ambient_and_ends_at_the_steady_state(
     steady = heat_balance(rig, 200.0, 100.0, OIL, 125e-6, MODEL)
     assert steady.settled.all()
     assert steadily.course.settled
+    # many moments are asked for at once
+    assert steadily.course.evaluations < 40
     for name, values in steadily.temperatures.items():
         assert values.shape == steadily.time.shape
         assert values[0] == pytest.approx(AMBIENT, abs=1e-9)
-        assert values[-1] == pytest.approx(float(np.ravel(steady.steady[name])[0]), abs=0.15)
+        assert values[-1] == pytest.approx(float(np.ravel(steady.steady[name])[0]), abs=0.02)
     last = float(np.asarray(steadily.losses.mesh)[-1])
     assert last == pytest.approx(float(np.asarray(steady.losses.mesh)[0]), rel=1e-3)
     tooth, housing = (steadily.temperatures[n] for n in ("pinion_tooth", "housing"))

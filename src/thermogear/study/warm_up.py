@@ -40,7 +40,7 @@ MOST_OF_ONE = 120
 """Moments that one piece has at most."""
 MOST_PIECES = 2000
 FIT_TOLERANCE = 3e-3
-"""Of a step's error [K] while factors are looked for: far below any thermometer's."""
+"""Error [K] of temperatures while factors are looked for: far below any thermometer's."""
 
 ALONG = ("moment",)
 
@@ -440,8 +440,9 @@ def _notices(
     if np.any(course.duty.speed == 0.0):
         yield Notice.of("free_convection_at_rest")
     yield Notice.of(
-        "losses_at_every_step",
+        "losses_along_the_course",
         evaluations=course.course.evaluations,
         seconds=seconds,
+        error=course.course.error,
         imbalance=course.course.imbalance.max(),
     )

@@ -57,7 +57,7 @@ MOST_WETTED = 0.5
 """The other end of the band in which the wetted share of a gear is guessed (ours)."""
 NO_BATH = "it rests on an oil bath that cannot exist"
 WARM_UP_TOLERANCE = 0.1
-"""Of a step's error [K]."""
+"""Error [K] of temperatures."""
 
 
 @dataclass(frozen=True, eq=False)
