@@ -159,5 +159,7 @@ def test_the_summary_is_of_the_results_beside_it(tmp_path: Path, quick: dict[str
     assert json.loads((tmp_path / "summary.json").read_text()) == {
         "schema": SCHEMA,
         "thermogear": "0",
+        "title": "Rows",
+        "kind": "dimensionless",
         "notices": [],
     }

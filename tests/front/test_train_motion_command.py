@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -110,7 +109,7 @@ def test_waterfall_leaves_a_store_a_page_and_numbers(
     plain = {"state": 0, "part": 1, "held": 1}
     both = {f"apart_{name}": ("stretch", [value]) for name, value in (stretch | plain).items()}
     data = result.data.drop_dims("stretch", errors="ignore").assign(both)
-    (one,) = numbers(SimpleNamespace(data=data))["apart"]  # type: ignore[arg-type]
+    (one,) = numbers(data)["apart"]
     assert one["from_rpm"] == pytest.approx(240.0 * 30.0 / np.pi, rel=1e-15)
     assert (one["up_rms_N"], one["down_rms_N"]) == (1234567.8, 12.3456)
     told = lines_of(jumps(data))[-1]
