@@ -55,6 +55,12 @@ def test_a_source_that_grows_with_the_temperature_slows_the_exponential_down() -
     assert np.abs(found.temperatures["body"] - T0 - exact).max() < 1e-3
 
 
+def test_a_source_that_grows_as_the_loss_heats_evenly() -> None:
+    """No steady state, and nothing that leads to one: T - T0 = Q t/C."""
+    found = run([(3000.0, one_node(slope=G))])
+    np.testing.assert_allclose(found.temperatures["body"] - T0, Q / C * found.time, atol=1e-6)
+
+
 def test_jumps_of_source_and_ambient_are_begun_anew() -> None:
     pieces = [(500.0, one_node()), (900.0, one_node(0.0)), (1500.0, one_node(50.0, T0 - 20.0))]
     found = run(pieces, tolerance=1e-5)
@@ -104,9 +110,11 @@ def test_a_linear_network_is_its_matrix_exponential() -> None:
             dict(zip(names, capacity, strict=True)),
         )
         start = dict(zip(names, T0 + rng.uniform(-20.0, 60.0, 7), strict=True))
-        found = follow(
-            [Stretch(end=2e4, network=lambda _, n=network: n)], start, tolerance=tolerance
-        )
+
+        def constant(state: State, network: ThermalNetwork = network) -> ThermalNetwork:
+            return network
+
+        found = follow([Stretch(end=2e4, network=constant)], start, tolerance=tolerance)
         steady = network.steady()
         inner = network.laplacian()[np.ix_(*[[network.nodes.index(n) for n in names]] * 2)]
         away = np.array([start[n] - steady[n] for n in names])
@@ -127,7 +135,7 @@ def test_a_law_that_bends_is_what_another_method_finds() -> None:
     def rates(t: float, y: np.ndarray) -> np.ndarray:
         network = tangle(dict(zip(nodes, y, strict=True)))
         kept = network.flows(dict(zip(nodes, y, strict=True)))[0]
-        return kept / np.array([network.capacities[name] for name in nodes])
+        return np.asarray(kept / np.array([network.capacities[name] for name in nodes]))
 
     first = [start[name] for name in nodes]
     other = solve_ivp(rates, (0.0, 4e4), first, "Radau", found.time, rtol=1e-8, atol=1e-7)

@@ -207,12 +207,12 @@ def _solved(law: _Law, begin: Floats, time: Floats, guess: Floats, goal: float) 
         residual = (starts[:, None] + gains[..., :count]).reshape(y.shape) - y
         move = _correction(h, residual, law.slopes(when, relaxing[1:]))
         last, size = size, float(np.abs(move).max())
-        if not np.isfinite(size):
-            break
         y = y + np.clip(move, -_LEAP, _LEAP)
         if min(size / last if turn else 1.0, 1.0) * size <= goal:
             heat = np.vstack([begin[count:], gains[:, 1, count:]]).cumsum(axis=0)
-            ahead = np.linalg.solve(law.slopes(time, relaxing[::2]), rates[::2, :count, None])
+            # a rate slower than any course: the system has a solution where nothing leads back, too
+            slopes = law.slopes(time, relaxing[::2]) - 1e-15 * np.eye(count)
+            ahead = np.linalg.solve(slopes, rates[::2, :count, None])
             return _Window(
                 time=time,
                 ends=np.hstack([np.concatenate([known, y[1::2]]), heat]),

@@ -397,7 +397,8 @@ class _Chain:
 
     def gap(self, state: State, piece: int) -> Floats:
         """Least half backlash [m] of states (count,) in ``piece`` of the duty."""
-        return self._clearance(self.operating(state, piece)).half_backlash.min(axis=1)
+        left = self._clearance(self.operating(state, piece)).half_backlash
+        return np.asarray(left.min(axis=1))
 
     def worst(self, course: Course, left: Floats) -> Worst:
         """The least half backlash of the course, located between the moments that have ``left``."""
