@@ -1,6 +1,6 @@
 """Compiled kernel: least advance of flanks of polynomial pieces until they touch.
 
-The pinion's point at string length rho stands at S = s + c g, c its part of the advance g. It lies
+The point of the pinion at string length rho is at S = s + c g, c its part of the advance g. It lies
 on the wheel's involute of string sigma at W, so that this point asks for the advance
 
     E(rho, g) = S - W + e_2(sigma),   e_1 turns the point back about its gear,
@@ -22,8 +22,10 @@ from thermogear.base.kernel_cache import compiled
 Floats = NDArray[np.float64]
 
 _MOST_TURNS = 60
-_PLACE = 1e-9
-"""String [m] to which places are found: the gap, flat about them, is exact to 1e-16 m."""
+_PLACE = 1e-12
+"""String [m] to which borders of the wheel are found on the pinion."""
+_LEVEL = 1e-8
+"""dE/drho counted as 0: with d2E/drho2 > 1 /m the gap is exact to 1e-16 m."""
 _LAST = 3e-8
 """Newton's step of the gap [m] after which the next would be below 1e-13 m."""
 
@@ -31,14 +33,7 @@ _LAST = 3e-8
 @compiled
 def _piece(borders: Floats, at: float) -> int:
     """Index of the piece that holds ``at``; the first or last one beyond them."""
-    low, high = 0, borders.size - 1
-    while high - low > 1:
-        middle = (low + high) // 2
-        if borders[middle] <= at:
-            low = middle
-        else:
-            high = middle
-    return low
+    return min(max(int(np.searchsorted(borders, at, side="right")) - 1, 0), borders.size - 2)
 
 
 @compiled
@@ -108,8 +103,8 @@ def _reached(
             high = rho
         slope = 2.0 * (seen.conjugate() * along).real
         goal = rho - (square - string**2) / min(slope, -1e-30)
-        goal = min(max(goal, borders[0]), borders[-1])
-        if abs(goal - rho) < 1e-3 * _PLACE:
+        goal = float(min(max(goal, borders[0]), borders[-1]))
+        if abs(goal - rho) < _PLACE:
             return goal
         if not low < goal < high:
             goal = 0.5 * (max(low, borders[0]) + min(high, borders[-1]))
@@ -135,7 +130,7 @@ def _least_on(
 
     ``kept``: whether low and high are places of the wheel, which the pinion's point leaves with S.
 
-    The secant of dE/drho, halved where an end stands still (the Illinois rule).
+    The secant of dE/drho, halved at the end that stays, so that both ends close in.
     """
     at_low, down, by_low, kept_low = _advance(low, stands, mesh, one, first, i, two, second, j)
     at_high, up, by_high, kept_high = _advance(high, stands, mesh, one, first, i, two, second, j)
@@ -143,22 +138,16 @@ def _least_on(
         if at_low <= at_high:
             return at_low, kept_low if kept[0] else by_low, low
         return at_high, kept_high if kept[1] else by_high, high
-    side = 0
     value, by, rho = at_low, by_low, low
     for _ in range(_MOST_TURNS):
-        before = rho
         rho = (low * up - high * down) / (up - down)
         value, slope, by, _ = _advance(rho, stands, mesh, one, first, i, two, second, j)
-        if abs(rho - before) < _PLACE or slope == 0.0:
+        if abs(slope) < _LEVEL:
             break
         if slope < 0.0:
-            low, down = rho, slope
-            up *= 0.5 if side < 0 else 1.0
-            side = -1
+            low, down, up = rho, slope, 0.5 * up
         else:
-            high, up = rho, slope
-            down *= 0.5 if side > 0 else 1.0
-            side = 1
+            high, up, down = rho, slope, 0.5 * down
     return value, by, rho
 
 
@@ -174,15 +163,12 @@ def _least(
     second: Floats,
 ) -> tuple[float, float, int]:
     """Least E [m] over the flanks between ``begin`` and ``end``, its dE/dS and whose tip it is."""
-    tip, root = (
-        _reached(two[-1], begin, stands, mesh, one, first),
-        _reached(two[0], end, stands, mesh, one, first),
-    )
-    low, high, kept = max(begin, tip), min(end, root), tip > begin
+    tip = _reached(two[-1], begin, stands, mesh, one, first)
+    low, high = max(begin, tip), min(end, _reached(two[0], end, stands, mesh, one, first))
     best, by, edge = math.inf, 0.0, 0
     if low > high:
         return best, by, edge
-    i = _piece(one, low)
+    i, kept = _piece(one, low), tip > begin
     square = _meet(low, stands, mesh, one, first, i)[3]
     j = _piece(two, math.sqrt(max(square, 0.0)))
     following = _reached(two[j], low, stands, mesh, one, first)
@@ -194,17 +180,14 @@ def _least(
         if value < best:
             best, by = value, slope
             edge = 2 if rho == one[-1] else 1 if rho == tip > one[0] else 0
-        if upper >= high:
+        low, kept = upper, following <= upper
+        if low >= high or (kept and j == 0):
             return best, by, edge
-        if one[i + 1] <= upper:
+        if one[i + 1] <= low:
             i += 1
-        wheel = following <= upper
-        if wheel:
+        if kept:
             j -= 1
-            if j < 0:
-                return best, by, edge
-            following = _reached(two[j], upper, stands, mesh, one, first)
-        low, kept = upper, wheel
+            following = _reached(two[j], low, stands, mesh, one, first)
 
 
 @compiled
