@@ -7,11 +7,14 @@ full disk or a kill, numba 0.68 hands on whatever reading it raises, at every la
 from __future__ import annotations
 
 import warnings
-from typing import Any, TypeVar
+from collections.abc import Callable
+from typing import Any, TypeVar, cast
 
+import numba
 from numba.core.caching import IndexDataCacheFile
 
 Kernel = TypeVar("Kernel")
+Function = TypeVar("Function", bound=Callable[..., object])
 
 
 class KernelCacheWarning(UserWarning):
@@ -53,3 +56,8 @@ def rebuilt(kernel: Kernel) -> Kernel:
     if type(file) is IndexDataCacheFile:
         file.__class__ = RebuiltFile
     return kernel
+
+
+def compiled(function: Function) -> Function:
+    """numba's decorator with a type; no fast math, so that results do not depend on the lane."""
+    return rebuilt(cast(Function, numba.njit(cache=True)(function)))

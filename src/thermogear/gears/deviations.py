@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from dataclasses import KW_ONLY, dataclass
-from typing import ClassVar, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,6 +25,7 @@ Floats = NDArray[np.float64]
 
 GEARS = ("pinion", "wheel")
 FLANKS = ("drive", "back", "both")
+_BETWEEN = 9
 
 
 class Contacts(NamedTuple):
@@ -90,9 +91,6 @@ class FlankShape(ABC):
     gear: str
     flank: str
 
-    humped: ClassVar[bool] = False
-    """Whether it may rise and fall more than once, so that it has to be searched for valleys."""
-
     def acts_on(self, flank: str) -> bool:
         """Whether the flanks of that side, "drive" or "back", have this shape."""
         return self.flank in ("both", flank)
@@ -101,9 +99,12 @@ class FlankShape(ABC):
     def taken_off(self, pair: GearPair, rho: Floats) -> Floats:
         """e [m] at the string lengths ``rho`` [m] of the gear, any shape: (..., *rho.shape)."""
 
-    def finest(self, pair: GearPair) -> float:
-        """Shortest length of string [m] over which the shape may turn; inf for a straight one."""
-        return math.inf
+    def borders(self, pair: GearPair) -> Floats:
+        """String lengths [m], shape (n,), between which a polynomial of fifth degree will do.
+
+        Its corners, and so many places in between that it turns once from one to the next.
+        """
+        return np.empty(0)
 
     def gap(self, at: Contacts) -> Floats:
         """e [m] at the points named; 0 on the other side's flanks."""
@@ -156,9 +157,11 @@ class Relief(FlankShape):
         x = np.minimum(np.maximum(depth / self.length, 0.0), 1.0)
         return self.amount * (x if self.shape == "linear" else x * x)
 
-    def finest(self, pair: GearPair) -> float:
-        """Its own length."""
-        return self.length
+    def borders(self, pair: GearPair) -> Floats:
+        """Where it begins and where it has its whole amount."""
+        start, _, tip = active_profile(pair, self.gear)
+        ends = (tip, tip - self.length) if self.end == "tip" else (start, start + self.length)
+        return np.array(ends)
 
 
 @dataclass(frozen=True)
@@ -241,8 +244,6 @@ class FlankTable(FlankShape):
     added: ArrayLike
     flank: str = "both"
 
-    humped: ClassVar[bool] = True
-
     def __post_init__(self) -> None:
         require_choice("flank_table.gear", self.gear, GEARS)
         require_choice("flank_table.flank", self.flank, FLANKS)
@@ -257,12 +258,13 @@ class FlankTable(FlankShape):
         radius = np.hypot(gear.base_radius, rho)
         return -_interpolate(radius, np.asarray(self.radius), np.asarray(self.added))
 
-    def finest(self, pair: GearPair) -> float:
-        """Least distance between two of its points above the base circle."""
+    def borders(self, pair: GearPair) -> Floats:
+        """Its points, and places close enough to make r(rho) a polynomial to 1e-13 m."""
         gear = pair.pinion if self.gear == "pinion" else pair.wheel
         radius = np.maximum(np.asarray(self.radius), gear.base_radius)
-        steps = np.diff(np.sqrt((radius - gear.base_radius) * (radius + gear.base_radius)))
-        return float(np.min(steps[steps > 0.0], initial=math.inf))
+        points = np.sqrt((radius - gear.base_radius) * (radius + gear.base_radius))
+        start, _, tip = active_profile(pair, self.gear)
+        return np.concatenate([points, np.linspace(start, tip, _BETWEEN)])
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

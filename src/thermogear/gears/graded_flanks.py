@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from dataclasses import KW_ONLY, dataclass
 from functools import cached_property
-from typing import ClassVar, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -87,8 +87,6 @@ class WavyProfile(FlankShape):
     phase: float = 0.0
     flank: str = "both"
 
-    humped: ClassVar[bool] = True
-
     def __post_init__(self) -> None:
         require_choice("profile.gear", self.gear, GEARS)
         require_choice("profile.flank", self.flank, FLANKS)
@@ -127,10 +125,11 @@ class WavyProfile(FlankShape):
         start, _, tip = active_profile(pair, self.gear)
         return -self.added((rho - start) / (tip - start))
 
-    def finest(self, pair: GearPair) -> float:
-        """Half a wave; inf for a straight line."""
+    def borders(self, pair: GearPair) -> Floats:
+        """Ends of the active profile and, of a wave, every eighth in between."""
         start, _, tip = active_profile(pair, self.gear)
-        return (tip - start) / (2.0 * self.waves) if self.form else math.inf
+        count = math.ceil(8.0 * self.waves) if self.form else 1
+        return np.linspace(start, tip, count + 1)
 
 
 def hand_over(pair: GearPair, *, pinion: float, wheel: float) -> float:

@@ -14,29 +14,21 @@ it: nothing settles that is not a number.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, TypeVar, cast
+from typing import Any
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.kernel_cache import rebuilt
+from thermogear.base.kernel_cache import compiled
 
 Floats = NDArray[np.float64]
-Function = TypeVar("Function", bound=Callable[..., object])
 
 MOST_STEPS = 200
 _TOLERANCE = 1e-12
 NOUGHT: Any = np.int64(0)  # a plain 0 would have numba compile what takes it for itself
 
 
-def _compiled(function: Function) -> Function:
-    """numba's decorator with a type; no fast math, so that results do not depend on the lane."""
-    return rebuilt(cast(Function, numba.njit(cache=True)(function)))
-
-
-@_compiled
+@compiled
 def _solve_spd(matrix: Floats, size: int, right: Floats) -> None:
     """Overwrite the two columns of ``right`` by matrix^-1 right (Cholesky, in place)."""
     for i in range(size):
@@ -61,7 +53,7 @@ def _solve_spd(matrix: Floats, size: int, right: Floats) -> None:
             right[i, column] = total / matrix[i, i]
 
 
-@_compiled
+@compiled
 def _approach(force: float, first: float, second: float, law: Floats) -> tuple[float, float]:
     """delta_H [m] at ``force`` > 0 and its slope [m/N]; ``first``, ``second``: (h_i/a)^2 F [N].
 
@@ -85,14 +77,14 @@ def _approach(force: float, first: float, second: float, law: Floats) -> tuple[f
     return force * mean, slope
 
 
-@_compiled
+@compiled
 def _unsettled(force: Floats) -> tuple[float, float, bool]:
     """What a position gives that has no answer."""
     force[:] = np.nan
     return np.nan, np.nan, False
 
 
-@_compiled
+@compiled
 def _share_one(
     asked: float,
     by_load: bool,
@@ -197,7 +189,7 @@ def _share_one(
     return _unsettled(force)
 
 
-@_compiled
+@compiled
 def share_many(
     asked: Floats,
     by_load: bool,
