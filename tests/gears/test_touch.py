@@ -127,11 +127,11 @@ def test_the_gap_is_the_turn_until_the_drawn_flanks_touch(compared: Compared) ->
 
 
 def least_of_samples(pair: GearPair, s: float, gap: float, one: Shape, two: Shape) -> float:
-    """Least advance that 100 001 points of the pinion's flank ask for where a gap is closed."""
+    """Least advance that 10 001 points of the pinion's flank ask for where a gap is closed."""
     (low, high), (lowest, highest) = flank_ends(pair)
     stands = closed(pair, s, gap)
-    for _ in range(2):  # the whole flank, then the neighbourhood of the least advance
-        rho = np.linspace(low, high, 50_001)
+    for _ in range(3):  # the whole flank, then the neighbourhood of the least advance
+        rho = np.linspace(low, high, 10_001)
         string, advance = pinion_point(pair, stands - one(rho), rho=rho)
         total = advance + one(rho) + two(string)
         total[(string < lowest * (1.0 - 1e-14)) | (string > highest * (1.0 + 1e-14))] = np.inf
@@ -142,10 +142,10 @@ def least_of_samples(pair: GearPair, s: float, gap: float, one: Shape, two: Shap
 
 def test_a_closed_gap_is_the_least_advance_over_all_of_the_flank(compared: Compared) -> None:
     """No valley is missed, in gaps of many times the amount too, where the pinion moves far."""
-    phase, apart = np.array([0.04, 0.3, 0.62, 0.9]), []
+    phase, apart = np.array([0.04, 0.62, 0.9]), []
     wavy = [
-        WavyProfile("pinion", slope=4e-6, form=18e-6, waves=7.3, phase=1.0),
-        WavyProfile("wheel", slope=-7e-6, form=15e-6, waves=4.1, phase=2.0),
+        WavyProfile("pinion", slope=12e-6, form=60e-6, waves=7.3, phase=1.0),
+        WavyProfile("wheel", slope=-30e-6, form=50e-6, waves=4.1, phase=2.0),
     ]
     for pair, devices in [*random_cases(), (RIG, wavy)]:
         one, two = (shape_of(pair, devices, gear) for gear in ("pinion", "wheel"))

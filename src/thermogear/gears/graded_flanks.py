@@ -126,9 +126,9 @@ class WavyProfile(FlankShape):
         return -self.added((rho - start) / (tip - start))
 
     def borders(self, pair: GearPair) -> Floats:
-        """Ends of the active profile and, of a wave, every eighth in between."""
+        """Ends of the active profile and, of a wave, every tenth in between."""
         start, _, tip = active_profile(pair, self.gear)
-        count = math.ceil(8.0 * self.waves) if self.form else 1
+        count = math.ceil(10.0 * self.waves) if self.form else 1
         return np.linspace(start, tip, count + 1)
 
 

@@ -133,13 +133,13 @@ def _shaped(
     edge = np.tile(_corner_of(pair, s), (len(gap), 1))
     middle = np.clip(nominal.pinion, low, high)
     with np.errstate(divide="ignore"):
-        # twice as far as where x^2/(2 rho*) outgrows the span of the shapes
+        # half as far again as where x^2/(2 rho*) outgrows the span of the shapes
         softness = 2.0 * span * np.maximum(length - middle, 0.0) / (length * middle)
     touch_many(
         s,
         middle,
         (nominal.gap < _REACH * pair.pinion.module + span) & (span > _ROUNDING),
-        2.0 * pair.pinion.base_radius * np.sqrt(softness),
+        1.5 * pair.pinion.base_radius * np.sqrt(softness),
         np.array(
             [pair.pinion.base_radius, pair.wheel.base_radius, length, pair.path.a, pair.path.e]
         ),
