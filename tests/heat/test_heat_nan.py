@@ -52,9 +52,7 @@ def test_an_unknown_film_is_in_no_regime() -> None:
 
 
 def test_a_flow_without_numbers_carries_no_heat(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(
-        convection, "_flow", lambda: (lambda z: np.full(5, NAN), (0.51, -0.62), 0.88)
-    )
+    monkeypatch.setattr(convection, "_flow", lambda: lambda z: np.full(5, NAN))
     with pytest.raises(ConvergenceError, match=r"^rotating disc, Pr = 3\.25"):
         rotating_disc_gradient(3.25, exponent=2.0)
 
