@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from thermogear import Gear
+from thermogear.base.arrays import Floats
 from thermogear.gears.centrifugal import (
     centrifugal_displacement,
     centrifugal_flank_growth,
@@ -15,7 +16,7 @@ from thermogear.gears.centrifugal import (
 )
 from thermogear.heat.expansion import RadialField
 from thermogear.verify import growth
-from thermogear.verify.elements import Floats, Patch, library
+from thermogear.verify.elements import Patch, library
 
 RHO, E, NU, OMEGA, R = 7850.0, 206e9, 0.3, 2618.0, 80e-3
 UNIT = RHO * OMEGA**2 * R**3 / E

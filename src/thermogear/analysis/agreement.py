@@ -17,12 +17,10 @@ from dataclasses import KW_ONLY, MISSING, dataclass, fields, replace
 from typing import Generic, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermogear.analysis.orbits import Orbit
+from thermogear.base.arrays import Floats
 from thermogear.base.vocabulary import label_words
-
-Floats = NDArray[np.float64]
 
 APART = 1e-13
 """Starts that differ by rounding: in units of the map (of one mass half backlashes), or of the

@@ -15,16 +15,15 @@ from functools import partial
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermogear.analysis.agreement import PATIENCE, End, agreed, beside, judged, most
 from thermogear.analysis.torus import Torus, smooth_window, torus
 from thermogear.analysis.walk import BATCH, ROUND, Motion, Search, Walk, long_orbit
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import ConvergenceError
 from thermogear.base.plan import Alive, keep_going
 from thermogear.dynamics.return_map import ReturnMap
 
-Floats = NDArray[np.float64]
 _Made = TypeVar("_Made")
 
 BATCHES = 10

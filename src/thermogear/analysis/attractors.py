@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from thermogear.analysis.settle import (
@@ -16,12 +15,10 @@ from thermogear.analysis.settle import (
     close_orbits,
     settle,
 )
+from thermogear.base.arrays import Floats, Whole
 from thermogear.base.plan import Alive, keep_going
 from thermogear.dynamics.bundle import WIDTH, Bundle, bundles
 from thermogear.dynamics.lanes import Lanes
-
-Floats = NDArray[np.float64]
-Whole = NDArray[np.int64]
 
 SAME = 1e-6
 CLOUD = 4096

@@ -25,6 +25,7 @@ from thermogear.analysis.family import ModelFamily, axis_values, taken
 from thermogear.analysis.outcome import LABEL_ATTRIBUTES
 from thermogear.analysis.section import lanes_of
 from thermogear.analysis.settle import CHAOTIC, DIVERGED, PERIODIC, UNDECIDED, Rule, settle
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.base.plan import (
     Alive,
@@ -43,8 +44,6 @@ from thermogear.dynamics.lanes import Lanes
 from thermogear.dynamics.models import ClearanceModel
 from thermogear.dynamics.plane import plane_of
 from thermogear.dynamics.return_map import return_map
-
-Floats = NDArray[np.float64]
 
 BASIN_RULE = Rule(first=256, cap=8192, settled=1e-6, chaos_periods=1000)
 CHUNK_POINTS = 8192

@@ -14,10 +14,9 @@ from scipy.optimize import root_scalar
 from thermogear.analysis.curve import Curve, Family, Point, Stretch, Tests
 from thermogear.analysis.nearby import zero_near
 from thermogear.analysis.orbits import Orbit, closed
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.dynamics.return_map import MovedMap, is_moved
-
-Floats = NDArray[np.float64]
 
 FOLD = "fold"
 FLIP = "period doubling"

@@ -23,17 +23,15 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermogear.analysis.bifurcations import FLIP, GRAZING, PITCHFORK, TORUS, Bifurcation
 from thermogear.analysis.curve import Curve, Family, Point
 from thermogear.analysis.nearby import zero_near
 from thermogear.analysis.orbits import multipliers
+from thermogear.base.arrays import Complexes, Floats
 from thermogear.base.errors import InputError
 from thermogear.dynamics.return_map import is_moved, return_map
 
-Floats = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
 Sheet = Callable[[float, float], object]
 """(p, q) -> model."""
 

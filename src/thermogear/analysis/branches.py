@@ -24,6 +24,7 @@ from thermogear.analysis.family import Family, dimension_of, model_at
 from thermogear.analysis.orbits import Orbit, shoot
 from thermogear.analysis.section import lanes_of
 from thermogear.analysis.settle import PERIODIC, units_of
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import ConvergenceError
 from thermogear.dynamics.plane import plane_of
 from thermogear.dynamics.return_map import return_map
@@ -31,7 +32,6 @@ from thermogear.dynamics.return_map import return_map
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 
 KINDS = (FOLD, FLIP, GRAZING, BIRTH, PITCHFORK, TORUS)
 """Meaning of the codes 0, 1, ... of ``bifurcation_kind``."""

@@ -38,10 +38,9 @@ from thermogear.analysis.bifurcations import (
 from thermogear.analysis.curve import Curve, Family, Point, mirrored
 from thermogear.analysis.orbits import Orbit, closed, multipliers
 from thermogear.analysis.section import lanes_of
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import ConvergenceError, InputError, nearest
 from thermogear.dynamics.return_map import return_map
-
-Floats = NDArray[np.float64]
 
 SHRUNK = {
     BIRTH: "the orbit shrank into one of half its period",

@@ -16,16 +16,15 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from thermogear.analysis.orbits import Orbit, closed
 from thermogear.analysis.section import plain
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.dynamics.lanes import Lanes
 from thermogear.dynamics.return_map import ReturnMap, Visit, is_moved, return_map
 
-Floats = NDArray[np.float64]
 Family = Callable[[float], object]
 
 NEWTON_TOLERANCE = 1e-14

@@ -14,10 +14,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.bifurcations import FLIP, FOLD, GRAZING, PITCHFORK, TORUS, Bifurcation
 from thermogear.analysis.bordered import Bordered, Located, Sheet
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.dynamics.return_map import is_moved
-
-Floats = NDArray[np.float64]
 
 CARRIED = (FOLD, FLIP, PITCHFORK, TORUS, GRAZING)
 LONGEST, FIRST, SHORTEST = 0.05, 0.01, 1e-6

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.section import lanes_of
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, nearest
 from thermogear.base.excitation import Periodic
 from thermogear.base.plan import Arrays, Coordinate, Variable
@@ -21,8 +22,6 @@ from thermogear.dynamics.tables import Pieces
 
 if TYPE_CHECKING:
     from thermogear.analysis.settle import Settled
-
-Floats = NDArray[np.float64]
 
 
 @runtime_checkable

@@ -12,7 +12,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermogear.analysis.bifurcations import BIRTH, FLIP, FOLD, SUBCRITICAL, TORUS, Bifurcation
 from thermogear.analysis.continuation import (
@@ -25,10 +24,9 @@ from thermogear.analysis.continuation import (
 )
 from thermogear.analysis.curve import Curve, Family, Point
 from thermogear.analysis.orbits import closed, shoot
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import ConvergenceError
 from thermogear.dynamics.return_map import ReturnMap, return_map
-
-Floats = NDArray[np.float64]
 
 BEYOND = 2e-4
 """A motion that left its branch settles this share of the parameter behind the fold."""

@@ -30,14 +30,13 @@ from thermogear.analysis.lyapunov import Lyapunov, lyapunov_exponents
 from thermogear.analysis.proof import NEAR_BORDER, Label, closing, periodic, proves_chaos, returned
 from thermogear.analysis.section import lanes_of, starts_of, units_of
 from thermogear.analysis.walk import Search
+from thermogear.base.arrays import Floats
 from thermogear.base.bounds import whole
 from thermogear.base.errors import InputError
 from thermogear.dynamics.blocks import Progress
 from thermogear.dynamics.lanes import Lanes
 from thermogear.dynamics.models import ClearanceModel
 from thermogear.dynamics.return_map import ReturnMap, return_map
-
-Floats = NDArray[np.float64]
 
 
 def label(

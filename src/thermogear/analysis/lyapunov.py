@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.section import lanes_of, starts_of
+from thermogear.base.arrays import Floats
 from thermogear.base.bounds import whole
 from thermogear.base.errors import InputError
 from thermogear.dynamics.blocks import Pace, Progress, run_blocks
@@ -26,8 +27,6 @@ from thermogear.dynamics.bundle import Bundle, bundles
 from thermogear.dynamics.lanes import Lanes
 from thermogear.dynamics.models import ClearanceModel
 from thermogear.dynamics.return_map import ReturnMap, return_map
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)

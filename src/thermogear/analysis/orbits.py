@@ -14,15 +14,13 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from thermogear.base.arrays import Complexes, Floats
 from thermogear.base.bounds import whole
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.dynamics.lanes import Lanes
 from thermogear.dynamics.return_map import ReturnMap, return_map
-
-Floats = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, kw_only=True)

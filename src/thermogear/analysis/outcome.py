@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.family import taken
 from thermogear.analysis.settle import LABELS, Rule, Settled, settle
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.base.plan import Alive, Arrays, Variable, keep_going
 from thermogear.base.vocabulary import (
@@ -23,7 +24,6 @@ from thermogear.base.vocabulary import (
 from thermogear.dynamics.lanes import Lanes
 from thermogear.dynamics.plane import plane_of
 
-Floats = NDArray[np.float64]
 Models = Lanes | Sequence[object] | None
 
 LABEL_ATTRIBUTES = {

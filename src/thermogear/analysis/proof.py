@@ -11,10 +11,9 @@ from thermogear.analysis.agreement import Told
 from thermogear.analysis.lyapunov import Lyapunov
 from thermogear.analysis.orbits import Orbit, shoot
 from thermogear.analysis.section import units_of
+from thermogear.base.arrays import Floats
 from thermogear.dynamics.lanes import Lanes
 from thermogear.dynamics.return_map import return_map
-
-Floats = NDArray[np.float64]
 
 NEAR_BORDER = 0.998
 SETTLED = 1e-7

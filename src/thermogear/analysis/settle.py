@@ -19,16 +19,13 @@ from numpy.typing import NDArray
 
 from thermogear.analysis.orbits import multipliers
 from thermogear.analysis.section import units_of as units_of
+from thermogear.base.arrays import Flags, Floats, Whole
 from thermogear.base.bounds import require_share, whole
 from thermogear.base.errors import InputError
 from thermogear.base.plan import Alive, keep_going
 from thermogear.base.vocabulary import STILL
 from thermogear.dynamics.bundle import Bundle, Visits, bundles
 from thermogear.dynamics.lanes import Lanes
-
-Floats = NDArray[np.float64]
-Whole = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 LABELS = ("undecided", "periodic", "chaotic", "diverged", *STILL)
 """Meaning of the label codes 0, 1, 2, ...; the last ones have no motion."""

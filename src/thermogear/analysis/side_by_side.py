@@ -12,10 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.settle import PERIODIC, Rule, Settled, settle
+from thermogear.base.arrays import Floats, Whole
 from thermogear.dynamics.lanes import Lanes
-
-Floats = NDArray[np.float64]
-Whole = NDArray[np.int64]
 
 RULE = Rule(first=32, cap=1024, chaos_periods=200)
 APART = 1e-2

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from thermogear.base.arrays import Floats
 
 HARMONICS = 96
 """Harmonics of the second base frequency of which a section is made, at most."""

@@ -13,10 +13,9 @@ from numpy.typing import NDArray
 from thermogear.analysis.agreement import APART, FOLLOW, PARTED, SAME, STARTS, Told, beside
 from thermogear.analysis.orbits import Orbit, shoot
 from thermogear.analysis.torus import LONGEST, Torus
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import ConvergenceError
 from thermogear.dynamics.return_map import ReturnMap
-
-Floats = NDArray[np.float64]
 
 CLOSE = 0.05
 """Distance of a return, in units of the map, from which an orbit is looked for."""

@@ -10,11 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.base.pieces import Pieces
 from thermogear.base.vocabulary import moves
-
-Floats = NDArray[np.float64]
 
 _FAR = 1e9
 """Periods: phases beyond, inf and nan too, go the way of arrays."""

@@ -9,9 +9,10 @@ from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from thermogear.base import bounds
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, nearest
 from thermogear.base.units import ZERO_CELSIUS
 
@@ -119,9 +120,6 @@ ALSO = {
     **dict.fromkeys(("magnesium", "az91"), "AZ91D"),
 }
 """Further names of a set, in small letters and figures alone, without a standard's EN or EN AC."""
-
-
-Floats = NDArray[np.float64]
 
 
 NEVER = 1e9

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.case.allowed import (
     dimensionless_reader,
@@ -17,8 +17,6 @@ from thermogear.case.allowed import (
 )
 from thermogear.case.base import Case
 from thermogear.case.case import GearCase
-
-Floats = NDArray[np.float64]
 
 
 def parse_axis(case: Case, text: str, option: str = "over") -> tuple[str, Floats]:

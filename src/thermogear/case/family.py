@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.family import ModelFamily
+from thermogear.base.arrays import Floats, Whole
 from thermogear.base.errors import InputError, ThermogearError, nearest
 from thermogear.base.excitation import Excitations, Periodic
 from thermogear.base.parameters import NUMBERS
@@ -52,9 +53,6 @@ from thermogear.dynamics.lanes import Lanes
 from thermogear.dynamics.models import TorsionalModel
 from thermogear.mesh.excite import EXCITES, NO_ERROR
 from thermogear.mesh.model import MeshModel
-
-Floats = NDArray[np.float64]
-Whole = NDArray[np.int64]
 
 KEPT = 8
 """Mesh cycles a family remembers."""

@@ -13,15 +13,13 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermogear.base import bounds
+from thermogear.base.arrays import Floats
 from thermogear.base.cells import MISSING, NUMBER, cells_of
 from thermogear.base.errors import InputError, nearest, short
 from thermogear.base.units import half_digit
 from thermogear.case.units import read_quantity
-
-Floats = NDArray[np.float64]
 
 LARGEST = 400_000
 """Characters of a chart's file, at most: more than any chart has points."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats, Whole
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import Excitations, Periodic
 from thermogear.base.vocabulary import moves
@@ -20,9 +21,6 @@ from thermogear.mesh.excite import excitations as mesh_excitations
 
 if TYPE_CHECKING:
     import xarray as xr
-
-Floats = NDArray[np.float64]
-Whole = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)

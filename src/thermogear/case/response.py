@@ -9,13 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.analysis.settle import Rule
+from thermogear.base.arrays import Floats
 from thermogear.base.plan import Alive, Arrays, Variable, keep_going
 from thermogear.base.vocabulary import moves
 from thermogear.case.points import Points
 from thermogear.dynamics import exact
 from thermogear.signals.spectra import order_amplitudes
-
-Floats = NDArray[np.float64]
 
 VALUES: dict[str, tuple[str, str]] = {
     "dte_mean": ("m", "dynamic transmission error, mean"),

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import ThermogearError
 from thermogear.base.excitation import Excitations, Periodic, padded
 from thermogear.base.materials import Lubricant
@@ -36,7 +37,6 @@ from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating, Varied
 from thermogear.mesh.thermal import HotPair
 
-Floats = NDArray[np.float64]
 Columns = Mapping[str, Floats]
 
 BATCH = 256

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.materials import MATERIALS
 from thermogear.base.notice import Notice
 from thermogear.gears.pair import GearPair
@@ -40,7 +40,6 @@ if TYPE_CHECKING:
     from thermogear.mesh.balance import HeatBalance
     from thermogear.mesh.operating import Operating
 
-Floats = NDArray[np.float64]
 _Made = TypeVar("_Made")
 GRAVITY = 9.80665
 LOSS_TIME = 3e-6

@@ -8,12 +8,11 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import ConvergenceError
 from thermogear.dynamics.lanes import Lanes
 
-Floats = NDArray[np.float64]
 Rate = Callable[[float, Floats, int], Floats]
 Component = Callable[[float, Floats], float]
 

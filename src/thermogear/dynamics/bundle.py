@@ -12,13 +12,10 @@ from functools import partial
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats, Whole
 from thermogear.base.errors import ConvergenceError
 from thermogear.dynamics.return_map import ReturnMap, return_map
-
-Floats = NDArray[np.float64]
-Whole = NDArray[np.int64]
 
 WIDTH = 128
 """Lanes of a block that run best together."""

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats, Whole
 from thermogear.base.errors import InputError
 from thermogear.dynamics.kernels.affine import BEHIND, add_harmonics, prepare
 from thermogear.dynamics.kernels.batch import CARRIED, QUEUE
@@ -19,8 +20,6 @@ from thermogear.dynamics.kernels.exact import advance_exact
 from thermogear.dynamics.kernels.sensitivity import prepare_moved, sensitivity
 from thermogear.dynamics.tables import LaneTables, Pieces
 
-Floats = NDArray[np.float64]
-Whole = NDArray[np.int64]
 Bytes = NDArray[np.uint8]
 
 ORDER = 12

@@ -8,15 +8,13 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats, Whole
 from thermogear.base.errors import InputError
 from thermogear.dynamics import exact
 from thermogear.dynamics.blocks import Pace, run_blocks
 from thermogear.dynamics.bundle import Prepared, Visits
 from thermogear.dynamics.return_map import Stretch, Visit, stretched
 from thermogear.dynamics.tables import LaneTables
-
-Floats = NDArray[np.float64]
-Whole = NDArray[np.int64]
 
 
 def exact_bundles(lanes: LaneTables, refine: int = 1) -> Iterator[Prepared]:

@@ -11,13 +11,13 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import Periodic
 from thermogear.dynamics.tables import Pieces
 
-Floats = NDArray[np.float64]
 Function = Periodic | Pieces
 
 

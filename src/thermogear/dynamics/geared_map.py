@@ -7,14 +7,13 @@ from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.dynamics.geared_equation import GearedEquation
 from thermogear.dynamics.ladder import Engine, Steps
 from thermogear.dynamics.plane import Plane
 from thermogear.dynamics.return_map import Stretch, Visit
 
-Floats = NDArray[np.float64]
 MICROMETRE = 1e-6
 WATCHED = 128
 """Samples a mesh period in which extremes of a gap are looked for."""

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear import __version__
+from thermogear.base.arrays import Floats
 from thermogear.base.bounds import whole
 from thermogear.base.errors import InputError, nearest
 from thermogear.dynamics import adaptive, exact
@@ -25,7 +26,6 @@ from thermogear.dynamics.pair import four_of, simulate_pair, with_angles
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 
 METHODS = {
     "exact": "event-exact affine maps",

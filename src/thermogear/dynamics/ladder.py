@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.base.excitation import Periodic
 from thermogear.dynamics.geared_equation import Function, GearedEquation
@@ -18,8 +19,6 @@ from thermogear.dynamics.kernels import drive as k
 from thermogear.dynamics.kernels import ladder as steps
 from thermogear.dynamics.kernels.drive_run import advance
 from thermogear.dynamics.tables import Pieces
-
-Floats = NDArray[np.float64]
 
 DEGREE = 7
 """Of the polynomials that stand for the periodic functions on a panel."""

@@ -5,15 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.dynamics.bundle import Prepared
 from thermogear.dynamics.exact_map import Ensemble, ExactMap, exact_bundles
 from thermogear.dynamics.tables import LaneTables
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import Excitation, Periodic
 from thermogear.base.pair_springs import PairSprings
@@ -17,7 +18,6 @@ from thermogear.dynamics.outcome import Result, dataset
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 NO_ERROR = Periodic(0.0)
 
 

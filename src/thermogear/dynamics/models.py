@@ -8,14 +8,13 @@ from functools import cached_property
 from typing import Protocol, runtime_checkable
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import Excitation, Periodic
 from thermogear.dynamics.lanes import Lanes
 from thermogear.dynamics.tables import Pieces, Table, stack
-
-Floats = NDArray[np.float64]
 
 
 def dead_zone(x: ArrayLike, *, half_backlash: ArrayLike = 1.0) -> Floats:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.dynamics import adaptive
 from thermogear.dynamics.kernels.rk4 import advance_pair
@@ -15,8 +15,6 @@ from thermogear.dynamics.outcome import Result, dataset
 
 if TYPE_CHECKING:
     import xarray as xr
-
-Floats = NDArray[np.float64]
 
 
 def four_of(start: Floats, model: PairModel) -> Floats:

@@ -6,14 +6,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
+from thermogear.base.arrays import Floats
 from thermogear.base.bounds import whole
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.dynamics.return_map import Stretch, Visit
 
-Floats = NDArray[np.float64]
 LEAST = 2.5e-14
 """Smallest relative tolerance of the integration; below it rounding decides."""
 

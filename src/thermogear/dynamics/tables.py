@@ -11,14 +11,11 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from thermogear.base.arrays import Complexes, Floats
 from thermogear.base.excitation import Periodic
 from thermogear.base.pieces import Pieces as Pieces
-
-Floats = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
-
 
 Table = Periodic | Pieces
 

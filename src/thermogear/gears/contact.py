@@ -8,11 +8,10 @@ too (the line of action goes on); any shapes broadcast.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from thermogear.base.arrays import Floats
 from thermogear.gears.pair import GearPair
-
-Floats = NDArray[np.float64]
 
 
 def path_of_contact(pair: GearPair, count: int = 201) -> Floats:

@@ -21,9 +21,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.gears.pair import GearPair
-
-Floats = NDArray[np.float64]
 
 
 class ContactPoint(NamedTuple):

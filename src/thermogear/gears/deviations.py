@@ -17,11 +17,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base import bounds
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import GeometryError, InputError, nearest
 from thermogear.gears.geometry import Gear
 from thermogear.gears.pair import GearPair
-
-Floats = NDArray[np.float64]
 
 GEARS = ("pinion", "wheel")
 FLANKS = ("drive", "back", "both")

@@ -12,13 +12,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, nearest
 from thermogear.gears.accuracy import flank_tolerances
 from thermogear.gears.geometry import Gear
 from thermogear.gears.iso6336 import iso6336_stiffness, pinion_first
 from thermogear.gears.pair import GearPair
-
-Floats = NDArray[np.float64]
 
 SURFACES = ("case-hardened", "through-hardened")
 _LOW_LOAD = 100e3  # N/m

@@ -12,14 +12,13 @@ from dataclasses import KW_ONLY, dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from thermogear.base import bounds
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import ConvergenceError, GeometryError, InputError
 from thermogear.base.materials import MATERIALS, Material
 from thermogear.base.units import ROUNDED, half_digit
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -13,15 +13,14 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from thermogear.base import bounds
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.gears.accuracy import flank_tolerances
 from thermogear.gears.deviations import FLANKS, GEARS, FlankShape, active_profile, require_choice
 from thermogear.gears.pair import GearPair
-
-Floats = NDArray[np.float64]
 
 USED = (0.8, 1.0)
 """Share of its tolerance that a seeded deviation takes: evenly drawn, 0.9 within 10 %."""

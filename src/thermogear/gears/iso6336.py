@@ -11,13 +11,12 @@ import warnings
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import ValidityWarning
 from thermogear.gears.geometry import Gear
 from thermogear.gears.pair import GearPair
-
-Floats = NDArray[np.float64]
 
 MEASURED_TO_THEORY = 0.8  # C_M
 _STEEL = 206e9

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.base.vocabulary import STATUS, edge_attributes, label, status_attributes
 from thermogear.gears.candidates import MeshPoints
@@ -35,7 +36,6 @@ __all__ = [
     "solve_mesh",
 ]
 
-Floats = NDArray[np.float64]
 
 LEAST_LINE_LOAD = 1e3
 """Line load [N/m] below which stiffness and shares are those at this load (1 N/mm)."""

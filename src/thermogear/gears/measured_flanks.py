@@ -12,16 +12,15 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.gears.accuracy import flank_class
 from thermogear.gears.deviations import FlankTable, active_profile
 from thermogear.gears.geometry import Gear
 from thermogear.gears.graded_flanks import ProfileFigures, profile_figures
 from thermogear.gears.pair import GearPair
-
-Floats = NDArray[np.float64]
 
 LEAST_POINTS = 10
 """Points of a trace within the evaluated range, at least."""

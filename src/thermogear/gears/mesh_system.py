@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, nearest
 from thermogear.gears.candidates import MeshPoints, mesh_points
 from thermogear.gears.contact import reduced_modulus
@@ -32,8 +33,6 @@ from thermogear.gears.stiffness import (
 )
 from thermogear.gears.tooth import STARTS, flank_point, unit_compliance
 from thermogear.gears.touch import first_touch
-
-Floats = NDArray[np.float64]
 
 BODIES = {
     "bore_clamped": "ring held at the bore: statics",

@@ -14,11 +14,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.gears.deviations import Deviation, FlankShape
 from thermogear.gears.geometry import Gear
 from thermogear.gears.pair import GearPair
-
-Floats = NDArray[np.float64]
 
 FLANK, FILLET, LAND = 20, 10, 2
 """Steps of one side's flank and fillet, and of half a land."""

@@ -6,15 +6,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.gears.deviations import Deviation, Relief
 from thermogear.gears.loaded import LoadedModel, solve_mesh
 from thermogear.gears.pair import GearPair
 from thermogear.gears.stiffness import Moduli
-
-Floats = NDArray[np.float64]
 
 _SHORTEST = 0.05  # base pitches
 STARTS = ((0.2, 0.15), (0.3, 0.3), (0.4, 0.45), (0.5, 0.3))

@@ -12,11 +12,10 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from thermogear.base.arrays import Floats
 from thermogear.gears.geometry import Gear
-
-Floats = NDArray[np.float64]
 
 HARMONICS = 1500
 _MATES = 6  # farthest coupled teeth, in pitches

@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.gears.pair import GearPair
 from thermogear.gears.stiffness import Moduli, pair_stiffness
-
-Floats = NDArray[np.float64]
 
 
 def _mates(pair: GearPair, s: ArrayLike) -> tuple[Floats, NDArray[np.bool_]]:

@@ -19,9 +19,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.kernel_cache import compiled
-
-Floats = NDArray[np.float64]
 
 MOST_STEPS = 200
 _TOLERANCE = 1e-12

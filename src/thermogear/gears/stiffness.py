@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.bounds import YOUNGS_MODULUS
 from thermogear.base.errors import ValidityWarning
 from thermogear.base.gauss import gauss
@@ -22,8 +23,6 @@ from thermogear.gears.contact import curvature_radii, pair_positions, reduced_mo
 from thermogear.gears.geometry import Gear
 from thermogear.gears.pair import GearPair
 from thermogear.gears.tooth import ToothCompliances, tooth_compliances
-
-Floats = NDArray[np.float64]
 
 CONTACT_LAWS = {
     "weber-banaschek": "logarithmic, depth to each tooth's axis",

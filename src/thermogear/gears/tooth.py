@@ -12,12 +12,11 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, nearest
 from thermogear.gears.geometry import Gear
-
-Floats = NDArray[np.float64]
 
 STARTS = {
     "root-circle": "from the bottom of the fillet, as most published curves",

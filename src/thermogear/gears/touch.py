@@ -20,13 +20,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.gears.candidates import MeshPoints
 from thermogear.gears.corner import contact_point, flank_ends, off_path
 from thermogear.gears.deviations import GEARS, Deviation, FlankShape
 from thermogear.gears.pair import GearPair
-
-Floats = NDArray[np.float64]
 
 _REACH = 0.05
 """Modules: candidates farther from touching than this and the shapes' span keep their corner."""

@@ -17,9 +17,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.kernel_cache import compiled
-
-Floats = NDArray[np.float64]
 
 _MOST_TURNS = 60
 _PLACE = 1e-12

@@ -5,11 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
-
-Floats = NDArray[np.float64]
 
 FILMS = ("film_parameter", "central_film_parameter")
 """What is infinite where a pair carries nothing."""

@@ -10,12 +10,11 @@ from functools import cache
 
 import numpy as np
 from numpy.polynomial import Chebyshev
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.base.gauss import gauss
-
-Floats = NDArray[np.float64]
 
 TRANSITION = (1.8e5, 3.0e5)
 """Local Reynolds numbers omega r^2/nu between which the layer on a rotating face turns turbulent.

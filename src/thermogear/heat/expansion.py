@@ -18,13 +18,12 @@ from itertools import pairwise
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, nearest
 from thermogear.base.materials import Material
 from thermogear.heat.temperature import radial_temperature
-
-Floats = NDArray[np.float64]
 
 BORES: dict[str, str] = {
     "free": "free bore",

@@ -16,6 +16,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, nearest
 from thermogear.base.materials import Lubricant
 from thermogear.base.units import ZERO_CELSIUS
@@ -38,8 +39,6 @@ def rms_roughness(roughness: ArrayLike) -> NDArray[np.float64]:
     """
     return np.asarray(RMS_OF_MEAN_ROUGHNESS * np.asarray(roughness, dtype=float))
 
-
-Floats = NDArray[np.float64]
 
 FILM_UNCERTAINTY = 0.15
 """Relative uncertainty of a film thickness from its pressure-viscosity coefficient."""

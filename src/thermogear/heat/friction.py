@@ -14,6 +14,7 @@ from typing import ClassVar, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, nearest
 from thermogear.heat.contact_state import ContactState, PitchPoint
 from thermogear.heat.film import RMS_OF_MEAN_ROUGHNESS, rms_roughness
@@ -37,8 +38,6 @@ from thermogear.heat.laws import (
     schlenk,
     xu_kahraman,
 )
-
-Floats = NDArray[np.float64]
 
 ROUGHNESS_LIMIT = 1.13e-6
 """Roughness [m] at which Benedict and Kelley's factor 1.13/(1.13 - S) diverges."""

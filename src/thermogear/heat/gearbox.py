@@ -17,6 +17,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.bounds import BODY
 from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.base.materials import Lubricant, Material
@@ -26,8 +27,6 @@ from thermogear.heat.lubrication import density, kinematic_viscosity
 from thermogear.heat.network import Link, ThermalNetwork
 from thermogear.heat.shaft_heat import BearingLoss, ShaftHeat
 from thermogear.heat.still_air import still_air_coefficient
-
-Floats = NDArray[np.float64]
 
 ROOM = 293.15
 """The room [K] in which the customary coefficient of a housing is meant."""

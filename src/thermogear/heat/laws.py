@@ -8,11 +8,10 @@ appear as factors in the code. All return |mu| [-] and stay finite: at rest the 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, nearest
-
-Floats = NDArray[np.float64]
 
 CEILING = 0.5
 """Greatest value any law returns: the upper end of dry friction, met only near rest."""

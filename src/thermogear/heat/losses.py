@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from thermogear.base.arrays import Floats
 from thermogear.heat.convection import disc_torque
-
-Floats = NDArray[np.float64]
 
 
 def gear_loss_factor(

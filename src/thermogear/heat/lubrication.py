@@ -11,13 +11,12 @@ import warnings
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.base.materials import LUBRICANTS, PUBLIC_MINERAL, Lubricant
 from thermogear.base.units import ZERO_CELSIUS
-
-Floats = NDArray[np.float64]
 
 THINNEST = 2e-6
 """Kinematic viscosity [m^2/s] below which ASTM D341 adds correction terms to the shift 0.7."""

@@ -10,13 +10,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from thermogear.base.arrays import Floats
 from thermogear.base.bounds import BODY, CONDUCTIVITY, DEPTH, require_share
 from thermogear.base.errors import InputError
 from thermogear.base.gauss import gauss
-
-Floats = NDArray[np.float64]
 
 Band = tuple[float, float] | None
 _C2 = 6.62607015e-34 * 299792458.0 / 1.380649e-23

@@ -16,8 +16,9 @@ from functools import cache
 
 import numpy as np
 from numpy.polynomial.polynomial import polyval
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.base.materials import Material
 from thermogear.heat.temperature import (
@@ -25,8 +26,6 @@ from thermogear.heat.temperature import (
     flash_factor,
     frictional_heat,
 )
-
-Floats = NDArray[np.float64]
 
 METHODS: dict[str, str] = {
     "blok": "high-speed limit, share of heat by B sqrt(v)",

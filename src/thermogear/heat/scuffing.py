@@ -7,12 +7,11 @@ factors. Margins are given in kelvin as well as ratios: 50 K is the customary ad
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, nearest
 from thermogear.base.units import ZERO_CELSIUS
-
-Floats = NDArray[np.float64]
 
 # fmt: off
 FZG_STAGES = (

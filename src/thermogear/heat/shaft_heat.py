@@ -12,15 +12,14 @@ from dataclasses import dataclass, fields
 from typing import NamedTuple, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.base.materials import MATERIALS, Lubricant, Material
 from thermogear.heat.lubrication import kinematic_viscosity
 from thermogear.heat.network import Link
 from thermogear.shafts.train import SHAFTS, Shaft
-
-Floats = NDArray[np.float64]
 
 RACE = 0.7
 """A ring's edge lies at d_m -+ this share of D_w, as far as its mass goes (ours)."""

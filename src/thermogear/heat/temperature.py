@@ -6,11 +6,10 @@ Formulas on plain arrays of any shape; temperatures in kelvin, temperature rises
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, nearest
-
-Floats = NDArray[np.float64]
 
 FLASH_FACTORS: dict[str, float] = {
     "ellipse": 0.785983396,

@@ -7,12 +7,11 @@ evaluates the print literally in SI, for the errata and one picture, and feeds n
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from thermogear.base.arrays import Floats
 from thermogear.heat.expansion import GearLike, RadialField, base_circle_growth
 from thermogear.heat.expansion import radial_displacement as _radial_displacement
-
-Floats = NDArray[np.float64]
 
 
 def _stretch(gear: GearLike, field: RadialField, radius: Floats) -> Floats:

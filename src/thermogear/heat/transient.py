@@ -8,12 +8,12 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.bounds import BODY
 from thermogear.base.errors import ConvergenceError, InputError, ThermogearError
 from thermogear.base.progress import Progress, silent
 from thermogear.heat.network import ThermalNetwork
 
-Floats = NDArray[np.float64]
 State = Mapping[str, Floats]
 """Temperatures [K] of the free nodes by name, arrays of one shape."""
 

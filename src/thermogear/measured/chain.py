@@ -5,16 +5,14 @@ from __future__ import annotations
 from dataclasses import KW_ONLY, dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, nearest
 from thermogear.signals.filters import BandPass, taps_for, without_trend
 from thermogear.signals.integration import integrate_twice, integrate_twice_trapezoid
 from thermogear.signals.lines import Line, LineSpectrum, line_in, line_spectrum
 from thermogear.signals.orders import resample_by_angle
 from thermogear.signals.windows import Window
-
-Floats = NDArray[np.float64]
 
 METHODS = {
     "frequency": "FIR band pass, then division by omega^2 in the frequency domain",

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import signal
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.measured.chain import Turning
 from thermogear.measured.evidence import Evidence
@@ -27,8 +27,6 @@ from thermogear.signals.orders import resample_by_angle
 from thermogear.signals.slices import order_slices
 from thermogear.signals.strong import strong_lines
 from thermogear.signals.tracking import samples_per_turn
-
-Floats = NDArray[np.float64]
 
 _TURNS = 12  # of one row's window
 _ROWS, _COLUMNS = 160, 480

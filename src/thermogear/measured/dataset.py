@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.vocabulary import label
 from thermogear.measured.changing import OrderSlices
 from thermogear.measured.figures import evidence, figures
@@ -77,8 +77,6 @@ def slice_groups(found: OrderSlices) -> dict[str, xr.Dataset]:
         )
     return groups
 
-
-Floats = NDArray[np.float64]
 
 _DRAWN = 4096  # points of a curve kept for pictures
 _LONGEST = 1 << 20

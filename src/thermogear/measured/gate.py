@@ -13,13 +13,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.measured.record import Channel, Notice, Record
 from thermogear.signals.events import short_event
 from thermogear.signals.filters import without_trend
 from thermogear.signals.quality import Damage, damages, filled
-
-Floats = NDArray[np.float64]
 
 FILLED = 0.05
 """Largest share of a channel's samples that is filled in; above it the longest whole stretch is

@@ -12,6 +12,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.measured.evidence import Evidence, weigh
 from thermogear.measured.meshes import Stated
@@ -196,8 +197,6 @@ def _explained(order: float, first: int, second: int) -> bool:
     away = (order - round(order)) * second
     return abs(away) < 3.5 and abs(away - round(away)) < 1e-6
 
-
-Floats = NDArray[np.float64]
 
 LONGEST = 1 << 19
 """Samples that the search looks at, from the start of the record."""

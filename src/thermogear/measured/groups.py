@@ -17,10 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import special
 
+from thermogear.base.arrays import Flags, Floats
 from thermogear.measured.peaks import Peaks
-
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 _LEVELS = np.arange(-3.0, 10.01, 0.5)  # over the threshold [nepers]
 _SHARES = np.array([0.02, 0.1, 0.3, 0.6, 0.9])  # of groups that are there at all

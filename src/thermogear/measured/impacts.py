@@ -9,12 +9,11 @@ from dataclasses import KW_ONLY, dataclass
 from fractions import Fraction
 
 import numpy as np
-from numpy.typing import NDArray
 
+from thermogear.base.arrays import Flags, Floats
 from thermogear.measured.groups import (
     HIGHEST,
     ONE_MORE,
-    Flags,
     Seen,
     comb,
     comb_of,
@@ -25,8 +24,6 @@ from thermogear.measured.groups import (
     taken_by,
 )
 from thermogear.measured.peaks import Peaks
-
-Floats = NDArray[np.float64]
 
 TIMES = 6
 """Multiples of the mains that are looked for: those of poles, rectifiers, inverters."""

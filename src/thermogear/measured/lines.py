@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from thermogear.base.arrays import Floats
 from thermogear.base.units import STANDARD_GRAVITY
 from thermogear.measured.chain import Chain, reduced
 from thermogear.measured.gate import turned_by
@@ -19,8 +20,6 @@ from thermogear.signals.interval import APART, REACH, Reading, read_line
 from thermogear.signals.lines import LineSpectrum
 from thermogear.signals.spectra import amplitude_spectrum
 from thermogear.signals.strong import Strong, strong_lines
-
-Floats = NDArray[np.float64]
 
 _NORMAL = 1.959964  # standard deviations of a normal law that hold 95 %
 _OTHERS = 3  # prominent lines that no gear explains, of a channel

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import special
 
+from thermogear.base.arrays import Flags, Floats
 from thermogear.measured.groups import (
     HIGHEST,
     ONE_MORE,
-    Flags,
     Seen,
     falling,
     log_sum,
@@ -24,8 +24,6 @@ from thermogear.measured.groups import (
     taken_by,
 )
 from thermogear.measured.peaks import Peaks
-
-Floats = NDArray[np.float64]
 
 TEETH = (12, 250)
 """Tooth numbers looked for: fewer are not made as power gears."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.measured.contradictions import of_pulses, of_speed, of_tacho_speed, of_teeth
 from thermogear.measured.gearing import Gearing, find_gearing
@@ -16,8 +16,6 @@ from thermogear.measured.record import Notice
 from thermogear.measured.shaft import VARIES, Shaft
 from thermogear.signals.orders import resample_by_angle
 from thermogear.signals.tracking import samples_per_turn
-
-Floats = NDArray[np.float64]
 
 MESHES = 16.0
 """Mesh cycles that stand for a turn where no shaft is known."""

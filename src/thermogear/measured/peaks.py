@@ -13,10 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import fft, ndimage, stats
 
+from thermogear.base.arrays import Floats
 from thermogear.measured.prominence import running_median
 from thermogear.signals.windows import Window
-
-Floats = NDArray[np.float64]
 
 MOST = 600
 """Lines kept, the highest."""

@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.signals.lines import hann_offset
 from thermogear.signals.spectra import amplitude_spectrum
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)

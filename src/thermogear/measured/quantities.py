@@ -5,13 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.measured.lines import MeasuredLine
 from thermogear.measured.record import Channel
 from thermogear.measured.units import kind_of
-
-Floats = NDArray[np.float64]
 
 
 def quantities(amplitude: Floats, *, omega: Floats, kind: str) -> tuple[Floats, Floats]:

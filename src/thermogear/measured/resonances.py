@@ -6,9 +6,8 @@ from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from thermogear.base.arrays import Floats
 
 _ABOVE = 1.4  # times the valleys beside it a peak must be
 _SAME = 0.03  # peaks nearer than this, relative, are of one frequency, or of one speed

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, nearest
 from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import label
@@ -19,8 +20,6 @@ from thermogear.measured.at_once import Row, rows_of
 from thermogear.measured.reduction import Measurement
 from thermogear.measured.same_line import ALIKE, Turns, compare
 from thermogear.results.result import Notice, Result, now
-
-Floats = NDArray[np.float64]
 
 MOST = 10_000
 _HALF = 1.959964

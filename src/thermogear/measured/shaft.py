@@ -6,8 +6,8 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.traps import is_tacho_name
@@ -25,8 +25,6 @@ from thermogear.signals.tracking import (
     sharpness,
     track,
 )
-
-Floats = NDArray[np.float64]
 
 VARIES = 1.03
 """Highest over lowest speed from which a record is read slice by slice."""

@@ -12,7 +12,7 @@ from typing import IO, Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-Floats = NDArray[np.float64]
+from thermogear.base.arrays import Floats
 
 IN_MEMORY = 128 << 20
 """Bytes of a text's columns that are held; more of them go to disk."""

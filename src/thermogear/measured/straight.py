@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import fft, interpolate
 
+from thermogear.base.arrays import Floats
 from thermogear.measured.peaks import Peaks, floor_of, least_seen, peaks_of, resolution_of
-
-Floats = NDArray[np.float64]
 
 _REFERENCES = 4
 _WIDTHS = ((0.004, 0.015, 0.045, 0.12), (0.001, 0.004))

@@ -12,6 +12,7 @@ from typing import IO
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.cells import MISSING, NUMBER, cells_of
 from thermogear.measured.choosing import is_time_column, time_column
 from thermogear.measured.clock import has_clocks, is_stamp_name, without_clocks
@@ -37,8 +38,6 @@ from thermogear.measured.traps import (
     without_doubles,
 )
 from thermogear.measured.units import counts_turns
-
-Floats = NDArray[np.float64]
 
 _HEAD = 1 << 16
 _LINES = 1 << 15  # rows parsed at once

@@ -8,13 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.bounds import RATE
 from thermogear.base.errors import InputError
 from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.units import factor_of, kind_of, says_seconds, unit, unknown
 from thermogear.signals.stamps import Pace, grain_of, jumps_of, pace_of, usual_rate
-
-Floats = NDArray[np.float64]
 
 _TIME = re.compile(r"^(x[_ ]?value|time|zeit|temps|tijd|时间|t)(?:[ _]?(?:stamp|axis))?$", re.I)
 _OF_TIME = re.compile(r"time|zeit|temps|tijd|时间", re.I)

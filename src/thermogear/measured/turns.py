@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import signal
 
+from thermogear.base.arrays import Floats
 from thermogear.measured.chain import Turning
 from thermogear.measured.gearing import SLOW, Gearing, known_teeth, sides_of
 from thermogear.measured.record import Notice
@@ -23,8 +23,6 @@ from thermogear.signals.interval import APART, LEAK, Reading, read_line
 from thermogear.signals.lines import LineSpectrum, line_in, line_spectrum
 from thermogear.signals.orders import samples_per_cycle
 from thermogear.signals.strong import Strong, strong_lines, twins
-
-Floats = NDArray[np.float64]
 
 _STEADY = 0.02  # cycles of wander at the highest line: 0.8 % of its amplitude
 _KEPT = 0.8  # of the power near the mesh line that a steady line must explain

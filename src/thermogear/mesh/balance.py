@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.arrays import Flags, Floats
 from thermogear.base.bounds import BODY
 from thermogear.base.errors import InputError, ThermogearError, ValidityWarning
 from thermogear.base.materials import MATERIALS, Lubricant, Material
@@ -31,9 +32,7 @@ from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import ALIKE, Operating, Temperatures, Varied
 from thermogear.mesh.thermal import HotPair
 
-Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 HOTTEST = 700.0
 """Iterates [K] are held below it; a point that ends there has no steady state worth a name."""

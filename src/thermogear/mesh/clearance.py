@@ -15,13 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base import bounds
+from thermogear.base.arrays import Floats
 from thermogear.gears.candidates import MeshPoints, mesh_points
 from thermogear.gears.deviations import Deviation
 from thermogear.gears.touch import first_touch
 from thermogear.mesh.thermal import HotPair, ThermalDeviation
-
-Floats = NDArray[np.float64]
-
 
 Gaps = tuple[Floats, ...]
 """Gaps [m] of one side's flanks by deviations, by the centrifugal pull and by heat, each

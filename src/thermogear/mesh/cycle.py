@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, ValidityWarning, nearest
 from thermogear.base.vocabulary import NO_OIL_BATH, STATUS, label
 from thermogear.gears.contact import (
@@ -38,7 +39,6 @@ from thermogear.mesh.thermal import HotPair, thesis_thermal_stiffness
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 
 PATH = ("operating", "path_position")
 PHASE = ("operating", "mesh_phase")

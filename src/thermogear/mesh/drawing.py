@@ -25,6 +25,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.vocabulary import label
 from thermogear.gears.candidates import mesh_points
 from thermogear.gears.deviations import Deviation, FlankShape
@@ -40,7 +41,6 @@ from thermogear.mesh.thermal import HotPair
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 
 PHASES = tuple(k / 48 for k in range(48))
 """Mesh phases of a drawing: a slider's steps over one mesh period."""

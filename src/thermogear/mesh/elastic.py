@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.gears.contact import curvature_radii, hertz_half_width, reduced_radius
 from thermogear.gears.contact import reduced_modulus as _reduced_modulus
 from thermogear.gears.deviations import Deviation
@@ -21,8 +22,6 @@ from thermogear.gears.sharing import equal_share, stiffness_share
 from thermogear.gears.stiffness import Moduli, mesh_stiffness, pair_compliances, weber_approach
 from thermogear.gears.tooth import ToothCompliances, flank_point, tooth_compliances
 from thermogear.mesh.thermal import HotPair, ThermalDeviation
-
-Floats = NDArray[np.float64]
 
 STARTS = {
     "textbook-root-circle": "root-circle",

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import ConvergenceError, ValidityWarning
 from thermogear.base.materials import Lubricant
 from thermogear.base.units import ZERO_CELSIUS
@@ -49,8 +50,6 @@ from thermogear.heat.moving_source import flash_temperature
 from thermogear.heat.temperature import flank_exchange, frictional_heat, heat_partition
 from thermogear.mesh.elastic import ElasticPair, PathShare
 from thermogear.mesh.thermal import HotPair
-
-Floats = NDArray[np.float64]
 
 
 class InletOil(NamedTuple):

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.base.pair_springs import PairSprings
 from thermogear.gears.candidates import mesh_points
@@ -19,8 +19,6 @@ from thermogear.gears.stiffness import Moduli
 from thermogear.gears.touch import first_touch
 from thermogear.mesh.elastic import LoadedPair
 from thermogear.mesh.thermal import HotPair, ThermalDeviation
-
-Floats = NDArray[np.float64]
 
 RELATIVE_STEP = 0.01
 """Loads around the mean load between which a pair's stiffness is read."""

@@ -7,13 +7,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.gauss import gauss
 from thermogear.gears.candidates import mesh_points
 from thermogear.gears.pair import GearPair
 from thermogear.mesh.elastic import ElasticPair, PathShare, loaded_pair
 from thermogear.mesh.friction_path import FrictionPath
-
-Floats = NDArray[np.float64]
 
 PHASES = 48
 """Phases of the mesh period at which the loaded contact is asked."""

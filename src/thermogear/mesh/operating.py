@@ -10,10 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base import bounds
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.base.materials import MATERIALS, Lubricant, Material
-
-Floats = NDArray[np.float64]
 
 LEADERS = {
     "pinion_bore": "the pinion's addendum",

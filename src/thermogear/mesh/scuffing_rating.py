@@ -10,8 +10,9 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.base.materials import Lubricant
 from thermogear.base.units import ZERO_CELSIUS
@@ -44,8 +45,6 @@ from thermogear.heat.scuffing import (
     structure_factor,
     thermo_elastic_factor,
 )
-
-Floats = NDArray[np.float64]
 
 LUBRICATIONS = {"dip": 1.0, "spray": 1.2, "submerged": 0.2}
 """X_S of the way the oil comes to the mesh."""

@@ -12,8 +12,9 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from thermogear.base.arrays import Floats
 from thermogear.gears.centrifugal import centrifugal_displacement, centrifugal_flank_growth
 from thermogear.gears.contact import flank_radii, pair_positions
 from thermogear.gears.deviations import Contacts
@@ -24,8 +25,6 @@ from thermogear.heat.gearbox import body_places
 from thermogear.heat.thesis_profile import deformed_points, thesis_flank_growth
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating, Temperatures
-
-Floats = NDArray[np.float64]
 
 
 def _column(values: ArrayLike, count: int) -> Floats:

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import FrictionSplit
 from thermogear.base.pieces import Pieces
@@ -19,8 +20,6 @@ from thermogear.mesh.friction_path import FrictionPath
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair
-
-Floats = NDArray[np.float64]
 
 DEGREE = 8
 """Degree of the polynomial of every piece."""

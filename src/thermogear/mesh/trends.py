@@ -11,15 +11,14 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.stats import spearmanr
 
+from thermogear.base.arrays import Floats
 from thermogear.base.vocabulary import label
 
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 
 QUANTITIES = {
     "friction": "mean_friction",

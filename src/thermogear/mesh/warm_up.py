@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base import bounds
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import ConvergenceError, InputError, ValidityWarning, nearest
 from thermogear.base.materials import MATERIALS, Lubricant, Material
 from thermogear.base.progress import Progress, silent
@@ -29,8 +30,6 @@ from thermogear.mesh.elastic import elastic_pair
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair
-
-Floats = NDArray[np.float64]
 
 FACTORS = {
     "housing": "housing to ambient",

@@ -6,15 +6,14 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import least_squares
 from scipy.stats import t as student
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, nearest
 from thermogear.base.progress import Progress, silent
 from thermogear.mesh.warm_up import FACTORS, Duty
 
-Floats = NDArray[np.float64]
 Residuals = Callable[[Mapping[str, float]], Floats]
 """Computed less measured [K] under factors: (rows, columns), nan where nothing was measured."""
 

@@ -12,8 +12,9 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.shafts.beam import NODE, BeamElements
 from thermogear.shafts.mesh_lines import MeshFrame
@@ -30,7 +31,6 @@ from thermogear.shafts.train import (
     Shaft,
 )
 
-Floats = NDArray[np.float64]
 SNAP = 1e-9
 """Places on a shaft [m] that are one place."""
 CROSS = ("x", "y")

@@ -14,9 +14,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Floats = NDArray[np.float64]
+from thermogear.base.arrays import Floats
+
 SIGNS = np.array([1.0, -1.0, 1.0, -1.0])
 """S: the plane (x, ty) turned into (y, tx)."""
 NODE = ("x", "y", "tx", "ty", "tz")

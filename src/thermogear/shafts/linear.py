@@ -14,12 +14,11 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.arrays import Complexes, Floats
 from thermogear.base.errors import InputError
 from thermogear.shafts.assembly import Assembly, linear_stiffness
 from thermogear.shafts.train import SHAFTS
 
-Floats = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
 FREE = 1e-9
 """A frequency below this share of the middle one is a free motion."""
 

@@ -13,14 +13,14 @@ from functools import cached_property
 
 import numpy as np
 import scipy.linalg
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.shafts.assembly import Assembly
 from thermogear.shafts.linear import LinearTrain
 from thermogear.shafts.train import SHAFTS
 
-Floats = NDArray[np.float64]
 DROPPED = 1e-12
 """Share of the length of a vector below which it is none."""
 

@@ -10,15 +10,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.shafts.assembly import Assembly
 from thermogear.shafts.bearings.laws import BearingLaw
 from thermogear.shafts.linear import LinearTrain
 from thermogear.shafts.train import SHAFTS
 
-Floats = NDArray[np.float64]
 TOLERANCE = 1e-12
 """Of the residual over the load."""
 MOST_STEPS = 400

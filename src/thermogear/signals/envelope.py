@@ -12,9 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import fft, special
 
+from thermogear.base.arrays import Floats
 from thermogear.signals.spectra import finite_record
-
-Floats = NDArray[np.float64]
 
 HARMONICS = 3
 """Harmonics of a rate whose powers are added."""

@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from thermogear.base.arrays import Floats
+
 Mask = NDArray[np.bool_]
 
 _PIECES, _SHORTEST = 200, 32  # of the record, and samples of one

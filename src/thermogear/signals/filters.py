@@ -5,13 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy import signal
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.signals.spectra import finite_record, positive_rate
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

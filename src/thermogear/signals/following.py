@@ -11,14 +11,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import interpolate, signal
 
+from thermogear.base.arrays import Complexes, Floats
 from thermogear.base.errors import InputError
 from thermogear.signals.interval import student
 from thermogear.signals.lines import LineSpectrum
 from thermogear.signals.spectra import finite_record, positive_rate
 from thermogear.signals.strong import hann_at
-
-Floats = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
 
 WIDTHS = (0.006, 0.012, 0.025, 0.05, 0.1)
 """Half widths of the filter over a line, relative to its frequency, the narrowest first."""

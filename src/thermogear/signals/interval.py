@@ -22,10 +22,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
+from thermogear.base.arrays import Complexes, Floats
 from thermogear.signals.lines import LineSpectrum
 from thermogear.signals.strong import Strong, dirichlet, shown, twins
-
-Floats = NDArray[np.float64]
 
 NEAR = 6
 """Bins on each side in which a neighbour is looked for."""
@@ -210,8 +209,6 @@ def _outer(powers: Floats) -> tuple[float, float]:
 def _median(powers: Floats) -> float:
     return float(max(np.median(powers) / np.log(2.0), 1e-300)) if powers.size else 1e-300
 
-
-Complexes = NDArray[np.complex128]
 
 REACH = 40
 """Bins on each side of a line from which its noise is judged."""

@@ -16,12 +16,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.signals import windows
 from thermogear.signals.spectra import finite_record, positive_rate
 from thermogear.signals.windows import Window
-
-Floats = NDArray[np.float64]
 
 _RAYLEIGH_MEDIAN = float(np.sqrt(2.0 * np.log(2.0)))  # median of |noise line| over one component
 

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy import fft, ndimage, signal
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.signals.spectra import finite_record, positive_rate
-
-Floats = NDArray[np.float64]
 
 
 def rising_edges(pulses: ArrayLike, *, rate: float, level: float | None = None) -> Floats:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.signals.events import quiet
 from thermogear.signals.lines import line_spectrum
 from thermogear.signals.strong import Strong, strong_lines
@@ -69,7 +70,6 @@ def coarse(x: NDArray[np.float64], free: NDArray[np.bool_]) -> float:
     return _FOLDED * float(height**-1.5 * np.exp(-2.0 * np.pi**2 * noise))
 
 
-Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 SENTINELS = (-9999.0, 9999.0, -999.0, 999.0, -99999.0, 99999.0, -999.25, -32768.0, 32767.0)

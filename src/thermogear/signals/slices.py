@@ -9,12 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import fft, signal, stats
 
+from thermogear.base.arrays import Complexes, Floats
 from thermogear.base.errors import InputError
 from thermogear.signals.interval import student
 from thermogear.signals.spectra import finite_record
-
-Floats = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
 
 BLOCKS = (3, 5, 8, 13, 21, 34, 55)
 """Turns of the blocks that are tried, shortest first."""

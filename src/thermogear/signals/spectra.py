@@ -8,11 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.signals import windows
 from thermogear.signals.windows import Window
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -14,9 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
-
-Floats = NDArray[np.float64]
 
 _LOOKED_AT = 1 << 14  # stamps whose digits are counted
 _MOST_DIGITS = 1e14  # beyond, a float holds no decimal

@@ -6,12 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from thermogear.base.arrays import Complexes, Floats
 from thermogear.signals.lines import LineSpectrum, floor_around, hann_offset
-
-Floats = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
 
 MOST = 60
 """Strong lines of a spectrum whose leakage is taken away."""

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import interpolate, ndimage
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.signals.spectra import finite_record
 
-Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 _BACK = 4  # pulses among which the one before is looked for

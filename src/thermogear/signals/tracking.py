@@ -8,13 +8,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import interpolate, signal
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.signals.following import follow_line
 from thermogear.signals.lines import line_spectrum
 from thermogear.signals.orders import resample_by_angle
 from thermogear.signals.spectra import finite_record
-
-Floats = NDArray[np.float64]
 
 HARMONICS = (1.0, 0.5, 1.0 / 3.0)
 """Weights of a line and its harmonics in a path's height."""

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError, nearest
 from thermogear.case.base import Case
@@ -31,7 +30,6 @@ from thermogear.study.case_runs import CaseRuns
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 Simulated: TypeAlias = str | Path | Case | Result | Mapping[str, LineTable]
 Measured: TypeAlias = str | Path | LineTable | Printed | Measurement | Record
 

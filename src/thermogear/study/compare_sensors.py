@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.base.units import RPM, STANDARD_GRAVITY
 from thermogear.case.base import Case
@@ -27,7 +27,6 @@ from thermogear.study.shafts.record import SAMPLES, lines
 from thermogear.study.shafts.sensed import Accelerometer, accelerometer, sensed
 from thermogear.study.shafts.state import STATES, plan_of, settled
 
-Floats = NDArray[np.float64]
 NEAR = 0.05
 """How far the record's speed may be off an operating point of the case, relative."""
 AGREES = 2.0

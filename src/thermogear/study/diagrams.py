@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermogear.analysis.basins import BASIN_RULE, BasinPlan, basin_plan
 from thermogear.analysis.branches import with_branches_of_states
@@ -20,6 +19,7 @@ from thermogear.analysis.maps import MAP_RULE, MapPlan, map_plan
 from thermogear.analysis.matched import MOST_FOLLOWED, matches
 from thermogear.analysis.settle import Rule
 from thermogear.analysis.stacked import StackedPlan
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.base.progress import Progress, silent
 from thermogear.base.stores import read_manifests
@@ -37,7 +37,6 @@ from thermogear.study.shafts.state import STATES
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 AnyMap: TypeAlias = MapPlan | StackedPlan
 WHOLE = 120.0
 """Seconds of estimated time below which every point of a map is computed."""

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from thermogear.analysis.labels import labels
 from thermogear.analysis.proof import Label
+from thermogear.base.arrays import Floats
 from thermogear.base.vocabulary import STATUS, STILL
 from thermogear.case.base import Simulation
 from thermogear.case.points import Points
@@ -19,7 +20,6 @@ from thermogear.dynamics.integrate import simulate
 from thermogear.dynamics.models import ClearanceModel
 from thermogear.signals.spectra import amplitude_spectrum, order_amplitudes
 
-Floats = NDArray[np.float64]
 Advance = Callable[[int, int], None]
 
 HIGHEST_ORDER = 20.0

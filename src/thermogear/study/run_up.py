@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from thermogear.analysis.bifurcations import FLIP, FOLD
 from thermogear.analysis.branches import with_branches, with_branches_of_states
@@ -19,6 +19,7 @@ from thermogear.analysis.follow import Leap, follow
 from thermogear.analysis.outcome import outcome_arrays, outcome_variables, settle_with_status
 from thermogear.analysis.section import units_of
 from thermogear.analysis.settle import PERIODIC, Rule, Settled
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.base.notice import Notice, stored_notices
 from thermogear.base.plan import (
@@ -42,8 +43,6 @@ from thermogear.dynamics.return_map import ReturnMap
 from thermogear.results.result import Result
 from thermogear.results.work import Report, carry_out
 from thermogear.study.notices import difference_notices, finished, range_notices
-
-Floats = NDArray[np.float64]
 
 DIRECTIONS = (1, -1)
 BLOCK = 32

@@ -17,6 +17,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, ValidityWarning, nearest, of_extra
 from thermogear.base.progress import Progress, silent
 from thermogear.base.units import RPM
@@ -43,7 +44,6 @@ from thermogear.study.watched import (
     state_of,
 )
 
-Floats = NDArray[np.float64]
 PATH, PHASES, HARMONICS = 41, 64, 16
 DISCARD, PERIODS, SAMPLES = 300, 8, 64
 LANES = 1024

@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.settle import UNDECIDED
 from thermogear.analysis.side_by_side import Motions, motions_along
+from thermogear.base.arrays import Floats
 from thermogear.base.excitation import Excitations
 from thermogear.base.units import RPM
 from thermogear.base.vocabulary import NO_COUNT, label
@@ -26,7 +27,6 @@ from thermogear.case.response import Recording, respond
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 
 LOWEST, HIGHEST, STEP = 0.05, 1.8, 0.025
 """Mesh over natural frequency, and the step of it. At the lowest the twentieth harmonic of the

@@ -19,6 +19,7 @@ from thermogear.analysis.outcome import (
     settle_with_status,
 )
 from thermogear.analysis.settle import Rule
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.base.notice import stored_notices
 from thermogear.base.plan import (
@@ -44,7 +45,6 @@ from thermogear.study.notices import finished, range_notices
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 
 CHUNK_POINTS = 128
 

@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import ValidityWarning
 from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import (
@@ -40,7 +40,6 @@ from thermogear.study.declared import Temperature, declared
 from thermogear.study.notices import heat_notices, jam_notices
 from thermogear.study.scuffing import load_stage, not_steel
 
-Floats = NDArray[np.float64]
 LUBRICATIONS = ("mixed", "dry")
 
 PATH_POSITIONS = 81

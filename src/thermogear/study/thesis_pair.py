@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.base.parameters import PARAMETERS
 from thermogear.base.plan import gather
@@ -38,7 +38,6 @@ from thermogear.study.run import run
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 
 TEMPERATURES = tuple(ZERO_CELSIUS + t for t in (100.0, 120.0, 140.0, 160.0))
 """Gear temperatures [K] of section 4.1 of the thesis."""

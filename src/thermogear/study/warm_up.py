@@ -9,8 +9,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.base.progress import Progress, silent
 from thermogear.base.units import RPM
@@ -31,7 +31,6 @@ from thermogear.study.declared import WarmUpSurvey, declared
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 LEAST_LOSS = 5e-9
 """A steady loss of backlash [m] below which another one is no share of it."""
 MOMENTS = 400

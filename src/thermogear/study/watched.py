@@ -9,6 +9,7 @@ from dataclasses import KW_ONLY, dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.parameters import PARAMETERS, Parameter
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.case.case import GearCase
@@ -16,8 +17,6 @@ from thermogear.case.thermal_state import HOT
 from thermogear.case.thesis_cases import of_the_thesis
 from thermogear.heat.lubrication import kinematic_viscosity
 from thermogear.mesh.operating import Operating
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

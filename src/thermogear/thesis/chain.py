@@ -7,8 +7,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.display import SPEED
 from thermogear.base.vocabulary import label
 from thermogear.case.case import GearCase
@@ -26,7 +26,6 @@ from thermogear.mesh.operating import Temperatures
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 
 PRINTED_MIDDLE, PRINTED_SWING = 4.875e8, 2.75e8
 """The two stiffness figures [N/m] that the document prints in section 3.2."""

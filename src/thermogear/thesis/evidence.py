@@ -13,9 +13,6 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
-
 from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.base.progress import Progress, silent
 from thermogear.case.case import DimensionlessCase, GearCase, gear_case, load_example
@@ -31,7 +28,6 @@ from thermogear.thesis.errata import with_errata
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 
 STAGES = (
     "the rig, from friction to motion",

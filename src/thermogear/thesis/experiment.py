@@ -15,10 +15,10 @@ from dataclasses import dataclass
 from importlib.resources import files
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermogear.analysis.any_motion import settle
 from thermogear.analysis.walk import Search
+from thermogear.base.arrays import Floats
 from thermogear.base.display import MICROMETRE, SPEED
 from thermogear.base.errors import ThermogearError, ValidityWarning
 from thermogear.base.vocabulary import STATUS
@@ -32,7 +32,6 @@ from thermogear.study.shafts.record import SAMPLES, lines
 from thermogear.study.shafts.state import TrainState, settled
 from thermogear.thesis.rig_trains import ASSUMED, DIGITS, SPEEDS, case_text, drawn
 
-Floats = NDArray[np.float64]
 TABLE = "experiment.csv"
 SAMPLES_STORED, SEED = 256, 22
 HELD_MODES = 8

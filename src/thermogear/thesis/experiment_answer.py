@@ -12,8 +12,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.display import MICROMETRE, PERCENT, SPEED
 from thermogear.base.vocabulary import label
 from thermogear.thesis.experiment import PRINTED, SEEN, WORDS, Shown
@@ -22,7 +22,6 @@ from thermogear.thesis.rig_trains import ASSUMED, FIXED, SPEEDS
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 NEAR = 1.5
 """Peak or rms (1.41) and an unstated processing together."""
 LIMITS = (1.25, NEAR, 2.0, 3.0)

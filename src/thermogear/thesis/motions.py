@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermogear.analysis.bifurcations import FLIP
 from thermogear.analysis.continuation import cascade, continuation
@@ -16,6 +15,7 @@ from thermogear.analysis.labels import labels
 from thermogear.analysis.orbits import periodic_orbit
 from thermogear.analysis.proof import Label
 from thermogear.analysis.settle import PERIODIC
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.base.parameters import long_name
 from thermogear.base.vocabulary import label
@@ -26,7 +26,6 @@ from thermogear.dynamics.models import TorsionalModel
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 
 SWEPT = {row: long_name(row) for row in ("zeta", "omega", "epsilon")}
 """Row of the table -> the parameter it sweeps."""

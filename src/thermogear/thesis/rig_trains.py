@@ -10,12 +10,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermogear.base.display import MILLIMETRE
 from thermogear.shafts.bearings.catalogue import catalogue_bearing
 
-Floats = NDArray[np.float64]
 SPEEDS = (1000.0, 2000.0, 3000.0)
 """Speeds of the pinion [rpm] in the document."""
 DIGITS = 5

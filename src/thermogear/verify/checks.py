@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.gears.geometry import Gear
 from thermogear.gears.loaded import LoadedModel, loaded_contact
 from thermogear.gears.pair import GearPair
 from thermogear.heat.expansion import RadialField, flank_growth
-from thermogear.verify.elements import Floats
 from thermogear.verify.growth import finite_flank_growth, flank_radii
 from thermogear.verify.stiffness import pair_stiffness
 from thermogear.verify.tooth_mesh import Density

@@ -11,10 +11,11 @@ from typing import Any
 import numpy as np
 from scipy.sparse.linalg import splu
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, nearest
 from thermogear.gears.geometry import Gear
 from thermogear.gears.tooth import flank_point
-from thermogear.verify.elements import Floats, Integers, Patch
+from thermogear.verify.elements import Integers, Patch
 from thermogear.verify.tooth_mesh import (
     Density,
     Foot,

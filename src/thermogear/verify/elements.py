@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import of_extra
 
-Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 _EDGE_RULE = np.polynomial.legendre.leggauss(24)

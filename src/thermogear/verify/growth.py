@@ -13,10 +13,11 @@ from numpy.typing import ArrayLike
 from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import splu
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, nearest
 from thermogear.gears.geometry import Gear
 from thermogear.heat.expansion import BORES, RadialField
-from thermogear.verify.elements import Floats, Integers, Patch
+from thermogear.verify.elements import Integers, Patch
 from thermogear.verify.tooth_mesh import (
     Density,
     Foot,

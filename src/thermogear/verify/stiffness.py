@@ -19,12 +19,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.gears.contact import hertz_half_width
 from thermogear.gears.geometry import Gear
 from thermogear.gears.pair import GearPair
 from thermogear.verify.compliance import ElasticGear, LoadedTooth
-from thermogear.verify.elements import Floats
 from thermogear.verify.tooth_mesh import Density
 
 _ROUNDS = 30

@@ -13,9 +13,10 @@ from functools import cached_property
 
 import numpy as np
 
+from thermogear.base.arrays import Floats
 from thermogear.gears.geometry import Gear
 from thermogear.gears.tooth import start_angle
-from thermogear.verify.elements import Floats, Integers, Patch
+from thermogear.verify.elements import Integers, Patch
 
 _FINE_SAMPLES = 2001
 

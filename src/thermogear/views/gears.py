@@ -17,12 +17,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.display import MILLIMETRE, SPEED, exactly
 
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 Points = NDArray[np.complex128]
 
 NEEDS = ("outline_radius", "outline_angle", "tight_radius", "lag", "load_share", "back_gap")

@@ -16,11 +16,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Whole
 from thermogear.dynamics.kernels.compiled import kernel
 from thermogear.dynamics.kernels.vector import EIGHT, load, pick, store, turn
 
 Real = NDArray[np.float64]
-Whole = NDArray[np.int64]
 
 PHI, PSI, NU, FREE_PSI, FREE_NU = 0, 1, 2, 3, 4
 # behind the polynomials of a lane's sub-step: their values and rates at u = 1, the half width, the

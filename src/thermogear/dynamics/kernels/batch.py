@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Whole
 from thermogear.dynamics.kernels.affine import (
     FREE_NU,
     FREE_PSI,
@@ -22,7 +23,6 @@ from thermogear.dynamics.kernels.compiled import part
 from thermogear.dynamics.kernels.vector import EIGHT, bits, choose, drop, load, pick, store, turn
 
 Real = NDArray[np.float64]
-Whole = NDArray[np.int64]
 
 # rows of what a lane carries along: state, origin and edges of its region, twice its reach, half
 # backlash, period, time spent in back, free and drive contact, losses and impacts, tangent

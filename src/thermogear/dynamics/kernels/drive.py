@@ -14,13 +14,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Whole
 from thermogear.dynamics.kernels.calculus import gather
 from thermogear.dynamics.kernels.compiled import part, small
 from thermogear.dynamics.kernels.vector import EIGHT, load, store
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-Whole = NDArray[np.int64]
 
 MODES, NODES, OUTPUTS, INPUTS, FRICTION, BEARINGS, RUNGS, SPAN, WIDE, FELT, ORDERS, ROUGH = range(
     12

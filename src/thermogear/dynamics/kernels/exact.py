@@ -12,6 +12,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Whole
 from thermogear.dynamics.kernels.affine import HALF, SINCE
 from thermogear.dynamics.kernels.batch import (
     CARRIED,
@@ -34,7 +35,6 @@ from thermogear.dynamics.kernels.crossing import step_through
 from thermogear.dynamics.kernels.vector import EIGHT, bits, choose, load, store
 
 Real = NDArray[np.float64]
-Whole = NDArray[np.int64]
 
 
 @kernel

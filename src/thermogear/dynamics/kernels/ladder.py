@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Whole
 from thermogear.dynamics.kernels.calculus import flows, gather
 from thermogear.dynamics.kernels.compiled import kernel, part
 from thermogear.dynamics.kernels.drive import (
@@ -52,7 +53,6 @@ from thermogear.dynamics.kernels.vector import EIGHT
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-Whole = NDArray[np.int64]
 
 STEPS, REJECTED, EVENTS, SWEEPS, LOSSES, IMPACTS, LIFTS, FORCED = range(8)
 """Places in ``Work.counts``: LOSSES of the drive flank, IMPACTS closings of the back flank, LIFTS

@@ -14,9 +14,9 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 
-Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.shafts.bearings.geometry import RollingBearing
-
-Floats = NDArray[np.float64]
 
 
 def rating_life(bearing: RollingBearing, load: ArrayLike) -> Floats:

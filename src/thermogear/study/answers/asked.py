@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.analysis.side_by_side import RULE, motions_along
+from thermogear.base.arrays import Floats
 from thermogear.base.display import worded
 from thermogear.base.limits import LIMITS, NO_LIMIT
 from thermogear.base.progress import Progress
@@ -30,7 +31,6 @@ from thermogear.mesh.warm_up import WarmUp, warm_up
 from thermogear.results.answer import Answer
 from thermogear.study.speeds import Speeds, figures_of, look, starts_of
 
-Floats = NDArray[np.float64]
 Cycle = Mapping[str, NDArray[Any]]
 MOVES = (*EXCITES, "status", "pinion_speed", "pinion_torque")
 OF_COLD = ("transmission_error",)

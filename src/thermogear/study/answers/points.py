@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, ThermogearError
 from thermogear.base.plan import Variable
 from thermogear.base.vocabulary import STATUS
@@ -14,9 +15,6 @@ from thermogear.case.family import BESIDE, GearFamily
 from thermogear.mesh.scuffing_rating import Scuffing, flash_rating, integral_rating
 from thermogear.study.answers.steady import borne_by
 from thermogear.study.scuffing import load_stage, not_steel
-
-Floats = NDArray[np.float64]
-
 
 NUMBERS: dict[str, tuple[str, str]] = {
     "oil_temperature": ("K", "oil temperature"),

@@ -6,13 +6,13 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermogear.analysis.any_motion import settle
 from thermogear.analysis.continuation import Branch
 from thermogear.analysis.event_curve import EventCurve
 from thermogear.analysis.orbits import Orbit, periodic_orbit, shoot
 from thermogear.analysis.walk import Motion, Search
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.base.notice import Notice
 from thermogear.base.parameters import Parameter
@@ -42,7 +42,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-Floats = NDArray[np.float64]
 BEYOND = 0.5
 """Cells of the grid by which a walk's steps may reach beyond its ends."""
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
+from thermogear.base.arrays import Complexes, Floats
 from thermogear.base.errors import InputError
 from thermogear.base.progress import Progress, silent
 from thermogear.base.units import RPM
@@ -42,8 +43,6 @@ from thermogear.study.shafts.statics import notices
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
 SPEEDS = 9
 """Speeds at which the natural frequencies are computed; they change little in between."""
 FINE = 240

@@ -10,10 +10,11 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from thermogear.analysis.family import Models
 from thermogear.analysis.settle import CHAOTIC, PERIODIC, UNDECIDED, Settled
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, ThermogearError, nearest
 from thermogear.base.plan import Arrays, Coordinate, Variable
 from thermogear.base.vocabulary import STATUS, moves, still
@@ -31,7 +32,6 @@ from thermogear.study.shafts.moving import HELD_MODES, MovingTrain, moving, rubb
 from thermogear.study.shafts.record import SAMPLES, shown
 from thermogear.study.shafts.state import TrainState, plan_of, settled
 
-Floats = NDArray[np.float64]
 KEPT = 80
 """Cases, trains at rest and trains in motion that a family remembers, of each, for every thread:
 more than a chunk of a map has."""

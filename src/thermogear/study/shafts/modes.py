@@ -23,7 +23,6 @@ from thermogear.study.shafts.statics import notices
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 MODE = ("state", "mode")
 
 

@@ -8,11 +8,11 @@ from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermogear.analysis.any_motion import settle
 from thermogear.analysis.torus import Torus
 from thermogear.analysis.walk import Motion, Search
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import ConvergenceError
 from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import STATUS, STILL, label, moves
@@ -35,7 +35,6 @@ from thermogear.study.shafts.state import TrainState, places_of, plan_of, settle
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 POINT = ("state", "operating")
 SECTIONS = 64
 TORUS_SECTIONS = 512

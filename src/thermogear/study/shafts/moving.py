@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from math import lcm
 
 import numpy as np
-from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import FrictionSplit, Periodic
 from thermogear.case.case import GearCase
@@ -21,7 +21,6 @@ from thermogear.shafts.response import run_out_errors, unbalance_pull
 from thermogear.shafts.train import SHAFTS
 from thermogear.study.shafts.state import TrainState, plan_of
 
-Floats = NDArray[np.float64]
 HELD_MODES = 16
 """Modes kept with the interface held, where the number of coordinates is left out."""
 FRICTION = 1e-3

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.dynamics.ladder import Engine, Run
 from thermogear.study.shafts.moving import MovingTrain
 
-Floats = NDArray[np.float64]
 SAMPLES = 64
 """Samples a mesh period."""
 PERIODS = 16

@@ -13,8 +13,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, nearest
 from thermogear.dynamics.ladder import Engine, Steps
 from thermogear.shafts.assembly import Assembly
@@ -22,7 +22,6 @@ from thermogear.shafts.train import SHAFTS
 from thermogear.study.shafts.moving import MovingTrain
 from thermogear.study.shafts.record import PERIODS, SAMPLES
 
-Floats = NDArray[np.float64]
 KINDS = ("bearing", "housing", "journal", "gear")
 FORM = (
     "CHANNEL=PLACE:DIRECTION, as a1=bearing:pinion left:x, a2=housing:y, a3=bearing:pinion left:30"

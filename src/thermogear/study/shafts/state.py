@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from thermogear.base.arrays import Complexes, Floats
 from thermogear.base.errors import GeometryError, InputError, ValidityWarning
 from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import HEAT_NOT_SETTLED, STATUS, moves, still
@@ -30,8 +30,6 @@ from thermogear.shafts.linear import LinearTrain
 from thermogear.shafts.response import loaded_error
 from thermogear.shafts.statics import Equilibrium, equilibrium
 
-Floats = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
 STATES = (UNDEFORMED, HOT)
 """What every study of shafts shows side by side."""
 MOST_POINTS = 6

@@ -8,8 +8,9 @@ from itertools import chain
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from thermogear.base.arrays import Floats
 from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import STATUS, label
 from thermogear.case.case import GearCase
@@ -22,7 +23,6 @@ from thermogear.study.shafts.state import JAMMED, TrainState, places_of, plan_of
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 TILT_SHARE = 0.5
 """Misalignment across the face over the mesh deflection from which a plane mesh is doubtful."""
 POINT, RING = ("state", "operating"), ("state", "operating", "bearing")

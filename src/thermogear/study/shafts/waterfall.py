@@ -18,9 +18,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from thermogear.analysis.family import axis_values
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.base.notice import Notice, stored_notices
 from thermogear.base.plan import (
@@ -50,7 +51,6 @@ from thermogear.study.shafts.state import plan_of, settled
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 KIND = "waterfall"
 DIRECTIONS = (1, -1)
 BLOCK = 8

@@ -7,8 +7,8 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.display import CELSIUS, KELVIN, MICROMETRE, PERCENT, SPEED, exactly, number
 from thermogear.base.vocabulary import STATUS, is_known
 from thermogear.results.result import Result
@@ -185,8 +185,6 @@ def _estimate_table(data: xr.Dataset) -> Table:
 
 # --- pictures -----------------------------------------------------------------------------------
 
-
-Floats = NDArray[np.float64]
 
 AXES = ("pinion speed [rpm]", "pinion torque [N m]")
 SAFE = 50.0

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.display import MICROMETRE, MILLIMETRE_PER_SECOND, NEWTON, PERCENT, number
 from thermogear.results.result import Result
 from thermogear.views.columns import OF_STATE, Column, declared, rows_along
@@ -273,7 +274,6 @@ def sound(data: xr.Dataset, operating: int) -> Picture:
 # --- pictures -----------------------------------------------------------------------------------
 
 
-Floats = NDArray[np.float64]
 HIGHEST_FORCE_ORDER = 12.0
 ACROSS = 4
 """Bearings side by side in the picture of their orbits."""

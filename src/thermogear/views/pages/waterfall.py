@@ -8,8 +8,8 @@ from operator import itemgetter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.display import HERTZ, NEWTON, SPEED, number
 from thermogear.base.vocabulary import STATUS, STILL
 from thermogear.results.result import Result
@@ -148,7 +148,6 @@ def numbers(data: xr.Dataset) -> dict[str, Any]:
 # --- pictures -----------------------------------------------------------------------------------
 
 
-Floats = NDArray[np.float64]
 LEAST = 1e-4
 """Of the greatest line, below which nothing is told apart."""
 LEAST_FORCE = 0.1

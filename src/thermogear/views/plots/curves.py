@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.display import MILLIMETRE
 from thermogear.views.picture import Axis, Panel
 from thermogear.views.style import (
@@ -24,8 +24,6 @@ from thermogear.views.typesetting import axis_label, operating_names, plain, sho
 
 if TYPE_CHECKING:
     import xarray as xr
-
-Floats = NDArray[np.float64]
 
 
 def axis_of(

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.display import CELSIUS, MICROMETRE, SPEED, STIFFNESS, number
 from thermogear.base.vocabulary import STATUS, STILL, is_known
 from thermogear.views.picture import Axis, Panel, Picture
@@ -24,7 +25,6 @@ from thermogear.views.typesetting import FAR, axis_label, plain, shown
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 
 DASHED = (3, 2)
 STARTS = {"the case's start": INK, "running up": OKABE_ITO[2], "running down": OKABE_ITO[3]}

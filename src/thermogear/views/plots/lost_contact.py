@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Flags
 from thermogear.base.display import PERCENT
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.parameters import axis_words, each_state, named, shown
@@ -17,7 +18,6 @@ from thermogear.views.style import FAINT, INK, OKABE_ITO, QUIET, WIDE
 if TYPE_CHECKING:
     import xarray as xr
 
-Flags = NDArray[np.bool_]
 
 DRIVE, BACK, FIRST = 1, 2, 4
 """Flags of what loses contact: the drive flank, the back flank (hit), the first bearing."""

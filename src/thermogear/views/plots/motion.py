@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.display import display, number
 from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.views.picture import Axis, Panel, Picture, Top
@@ -19,7 +19,6 @@ from thermogear.views.typesetting import axis_label, label_text, plain
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 
 HIGHEST_ORDER = 8.0
 """Spectra are drawn up to this order of the mesh frequency."""

@@ -7,8 +7,8 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.display import MICROMETRE, MILLIMETRE_PER_SECOND, SPEED, STIFFNESS, Display
 from thermogear.views.picture import Axis, Panel, Picture, Top
 from thermogear.views.plots.motion import refined
@@ -20,7 +20,6 @@ from thermogear.views.typesetting import plain
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 
 HIGHEST_ORDER = 8.0
 DASHED = (4, 2)

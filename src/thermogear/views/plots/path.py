@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thermogear.base.arrays import Floats
 from thermogear.base.display import display
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.curves import (
-    Floats,
     along_path,
     axis_of,
     distinct,

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.views.picture import Axis, Panel
 from thermogear.views.style import FAINT, QUIET
-
-Floats = NDArray[np.float64]
 
 FEW_LINES = 80
 """Up to so many lines above the floor are drawn as stems; more are a continuum."""

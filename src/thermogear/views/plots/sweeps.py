@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.display import CELSIUS, KILONEWTON, MICROMETRE, PERCENT, Display
 from thermogear.base.vocabulary import ASSUMED, STATUS, UNDEFORMED
 from thermogear.views.picture import Axis, Panel, Picture
@@ -17,7 +18,6 @@ from thermogear.views.style import COLD, FAINT, HOT, INK, MIXED, OKABE_ITO, QUIE
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 Rows = Sequence[Mapping[str, Any]]
 DIVERGED = STATUS.index("diverged")
 
