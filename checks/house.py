@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import ast
 import inspect
 import re
 import sys
@@ -30,16 +31,40 @@ CHANGING = {
 """Public names whose arguments and stored names may change with any release."""
 
 
-def sizes() -> dict[str, tuple[int, int, int]]:
-    """Floor -> modules, their lines, and the lines of the longest."""
+MOST_STATEMENTS = 40
+"""Most statements of a function; above it, it does two things."""
+
+
+def statements(tree: ast.AST) -> int:
+    """Statements in ``tree``, without docstrings and the tree itself."""
+    return sum(
+        isinstance(node, ast.stmt)
+        and node is not tree
+        and not (
+            isinstance(node, ast.Expr)
+            and isinstance(node.value, ast.Constant)
+            and isinstance(node.value.value, str)
+        )
+        for node in ast.walk(tree)
+    )
+
+
+def sizes() -> dict[str, dict[str, int]]:
+    """Floor -> modules, lines, statements, nodes of the syntax tree, functions above the limit."""
     found = {}
-    for floor in FLOORS:
-        lines = [
-            len(path.read_text(encoding="utf-8").splitlines())
-            for path in (SOURCE / floor).rglob("*.py")
-            if path.name != "__init__.py"
-        ]
-        found[floor] = (len(lines), sum(lines), max(lines))
+    for floor in (*FLOORS, "."):
+        paths = (SOURCE / floor).glob("*.py" if floor == "." else "**/*.py")
+        texts = [path.read_text(encoding="utf-8") for path in paths]
+        trees = [ast.parse(text) for text in texts]
+        nodes = [node for tree in trees for node in ast.walk(tree)]
+        functions = [n for n in nodes if isinstance(n, ast.FunctionDef | ast.AsyncFunctionDef)]
+        found[floor] = {
+            "modules": len(texts),
+            "lines": sum(len(text.splitlines()) for text in texts),
+            "statements": sum(map(statements, trees)),
+            "nodes": len(nodes),
+            "long functions": sum(statements(n) > MOST_STATEMENTS for n in functions),
+        }
     return found
 
 
@@ -76,11 +101,15 @@ def page() -> str:
         "Made by `make house`; a test holds it true. What the floors are for is in",
         "[the architecture](architecture.md). Imports only point down, without cycles;",
         "functions are short; every public name is loaded when first used.", "",
-        "| floor | modules | lines | longest | imports |", "|---|---:|---:|---:|---|",
+        f"Long functions have more than {MOST_STATEMENTS} statements.", "",
+        "| floor | modules | lines | statements | nodes | long functions | imports |",
+        "|---|---:|---:|---:|---:|---:|---|",
     ]  # fmt: skip
-    below = imports()
-    for floor, (count, total, most) in sizes().items():
-        lines.append(f"| `{floor}` | {count} | {total} | {most} | {', '.join(below[floor])} |")
+    below, counts = imports(), sizes()
+    counts["all"] = {name: sum(c[name] for c in counts.values()) for name in counts["base"]}
+    for floor, count in counts.items():
+        figures = " | ".join(map(str, count.values()))
+        lines.append(f"| `{floor}` | {figures} | {', '.join(below.get(floor, ()))} |")
     lines += [
         "", "## Public names", "",
         "What is not listed here is not public. A stable name keeps its arguments, units and",

@@ -133,15 +133,15 @@ def test_every_public_name_is_loaded_when_first_used() -> None:
 
 
 def test_the_house_in_figures_is_true() -> None:
-    """docs/house.md: names and imports to the letter, counts of modules and lines within 10 %."""
+    """docs/house.md: names and imports to the letter, counts within 10 % and 2."""
     written = (ROOT / "docs" / "house.md").read_text(encoding="utf-8").splitlines()
     now = house.page().splitlines()
-    counted = re.compile(r"\| (\d+) \| (\d+) \| (\d+) \|")
+    counted = re.compile(r"\| " + r"(\d+) \| " * 5)
     assert [counted.sub("|", line) for line in written] == [counted.sub("|", line) for line in now]
     for old, new in zip(written, now, strict=True):
         if found := counted.search(old):
             said, is_ = (np.array(m.groups(), float) for m in (found, counted.search(new)) if m)
-            np.testing.assert_allclose(said, is_, rtol=0.1, err_msg="run make house")
+            np.testing.assert_allclose(said, is_, rtol=0.1, atol=2.0, err_msg="run make house")
 
 
 def test_an_unknown_public_name_is_an_attribute_error() -> None:
@@ -158,8 +158,6 @@ def test_every_module_says_what_it_holds() -> None:
     assert silent == []
 
 
-MOST_STATEMENTS = 40
-"""Most statements of a function; above it, it does two things."""
 LONG_FUNCTIONS = {
     "analysis.attractors.trapped": 42,
     "analysis.continuation._walk": 41,
@@ -190,14 +188,8 @@ def test_functions_are_short() -> None:
             continue  # compiled code: what numba makes one loop of stays one function
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
-                count = sum(isinstance(part, ast.stmt) for part in ast.walk(node)) - 1
-                count -= sum(
-                    isinstance(part, ast.Expr)
-                    and isinstance(part.value, ast.Constant)
-                    and isinstance(part.value.value, str)
-                    for part in ast.walk(node)
-                )
-                if count > LONG_FUNCTIONS.get(f"{name}.{node.name}", MOST_STATEMENTS):
+                count = house.statements(node)
+                if count > LONG_FUNCTIONS.get(f"{name}.{node.name}", house.MOST_STATEMENTS):
                     long[f"{name}.{node.name}"] = count
     assert long == {}
 
