@@ -261,8 +261,8 @@ def test_what_a_record_cannot_tell_is_said() -> None:
     for names in ([], ["housing", "shafts", "wetted"], ["housing", "housing"]):
         with pytest.raises(InputError, match=r"^fit: got .*; allowed one or two different factors"):
             require_factors(names, "fit")
-    line = r"^fit: got housing; there is no record to fit to; give measured too$"
-    with pytest.raises(InputError, match=line):
+    message = r"^fit: got housing; there is no record to fit to; give measured too$"
+    with pytest.raises(InputError, match=message):
         warm_up_survey(rig(), WORK, fit=["housing"])
 
 

@@ -109,7 +109,9 @@ def respond(
         maps = exact.prepare_maps(lanes, borders, marks)
         run = exact.State.start(x=state[index, 0], y=state[index, 1], backlash=lanes.half_backlash)
         _, _, samples = exact.advance(maps, run, record.periods, sampled=True)
-        each = _figures(points.take(index), samples[:, 0].T, phase, record, lines)
+        each = _figures(
+            points.take(index), np.ascontiguousarray(samples[:, 0].T), phase, record, lines
+        )
         for name, values in each.items():
             found[name][index] = values
         drive = run.spent[2] / (record.periods * lanes.period)
