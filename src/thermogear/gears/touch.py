@@ -76,10 +76,10 @@ def first_touch(points: MeshPoints, deviations: Sequence[Deviation] = ()) -> Tou
     gap, edge = points.point.gap, _corner_of(contacts.pair, contacts.s)
     if shapes:
         extended = bool(np.any((edge > 0) & np.isfinite(gap)))
-        s = np.ascontiguousarray(contacts.s)
         known = all(isinstance(d, Hashable) for d in shapes)
         solve = _shaped if known else _shaped.__wrapped__
-        gap, edge = solve(contacts.pair, tuple(shapes), s.shape, s.tobytes(), extended)
+        size, places = contacts.s.shape, contacts.s.tobytes()
+        gap, edge = solve(contacts.pair, tuple(shapes), size, places, extended)
     whole = np.asarray(sum(rest, start=gap))
     return Touch(whole, np.broadcast_to(edge, whole.shape))
 
