@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -15,16 +16,14 @@ from thermogear.gears.pair import GearPair
 from thermogear.gears.stiffness import Moduli
 
 _SHORTEST = 0.05  # base pitches
-STARTS = 4
-"""Places from which the simplex begins: the best of the screening."""
+PLACES = 10
+"""Places of the screening that are refined."""
+STARTS = 2
+"""Of these, the best from which the simplex goes on with the first touch."""
 MOST_EVALUATIONS = 120
-"""Evaluations of the mesh period from one start, at most."""
-_MEMBERS, _GENERATIONS = 64, 25
-"""Size of the screening: members for every unknown, and how often they are bred."""
+"""Evaluations of the mesh period from one of them, at most."""
 _EDGE = 0.05
 """Edge of the first simplex, part of the bounds; places nearer to each other count as one."""
-_TRIED = 10
-"""Places of the screening that are solved with their first touch."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,18 +75,20 @@ def optimise_tip_relief(
     """Amount and length of the tip relief of both gears with the least peak-to-peak error.
 
     Minimises max - min of the static transmission error over one mesh period, which has many
-    minima: differential evolution with reliefs that count at the nominal point of contact screens
-    the whole range, always with the same random numbers; from the best places Nelder and Mead's
-    simplex (the peak is not smooth) goes on with their first touch. The best of them and of no
-    relief at all is returned, so that it is never worse than the unrelieved pair.
+    minima. Differential evolution, always with the same random numbers, screens the whole range
+    with reliefs that count at the nominal point of contact. Nelder and Mead's simplex (the peak
+    is not smooth) refines its best places, each with the difference of the curves that the first
+    touch makes there, and the best of these with the first touch itself. The least minimum seen
+    is returned, or no relief at all where that is better; a proof that none is less there is not.
     Source of the screening: Storn & Price 1997.
 
     normal_force: F_n [N] > 0; moduli and deviations (for example the hot pair's base-pitch
     difference) as :func:`loaded_contact`, without leading axes; shape: "linear" or "parabolic";
     largest: greatest amount [m], default three times the unrelieved error's mean height over its
     least value plus its peak-to-peak value; positions: of the mesh period; symmetric: both gears
-    with one amount and one length; evaluations: at most so many from every start; progress: called
-    with those so far. Lengths are between 0.05 base pitches and the active profile.
+    with one amount and one length; evaluations: of one simplex, at most; progress: called
+    with the curves of first touch so far. Lengths are between 0.05 base pitches and the active
+    profile.
 
     >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
     >>> design = optimise_tip_relief(pair, 4e3, positions=16, symmetric=True, evaluations=20)
@@ -130,36 +131,23 @@ def optimise_tip_relief(
 
     done = 1
 
-    def peak(x: Floats) -> float:
+    def curve(x: Floats) -> Floats:
         nonlocal done
         done += 1
         if progress is not None:
             progress(done)
-        return float(np.ptp(error(phase, *reliefs(x))))
+        return error(phase, *reliefs(x))
+
+    def rough(x: Floats, step: int = 1) -> Floats:
+        return error(phase[::step], _AtNominal(*sizes(np.atleast_2d(x)), shape))
 
     from scipy.optimize import differential_evolution, minimize
 
     bounds = [(0.0, 1.0)] * (2 if symmetric else 4)
-    screened = differential_evolution(
-        lambda x: np.ptp(error(phase[::2], _AtNominal(*sizes(x.T), shape)), axis=-1),
-        bounds,
-        strategy="rand1bin",
-        mutation=0.5,
-        popsize=_MEMBERS,
-        maxiter=_GENERATIONS,
-        init="sobol",
-        rng=1,
-        polish=False,
-        updating="deferred",
-        vectorized=True,
-    )
-    places: list[Floats] = []
-    for x in screened.population[np.argsort(screened.population_energies)]:
-        if len(places) < _TRIED and all(np.abs(x - other).max() > _EDGE for other in places):
-            places.append(x)
-    minima = [
-        minimize(
-            peak,
+
+    def refined(start: Floats, model: Callable[[Floats], Floats], shift: Floats | float) -> Any:
+        return minimize(
+            lambda x: np.ptp(model(x) + shift),
             start,
             method="Nelder-Mead",
             bounds=bounds,
@@ -171,9 +159,27 @@ def optimise_tip_relief(
                 + np.vstack([0.0 * start, np.diag(np.where(start < 0.5, _EDGE, -_EDGE))]),
             },
         )
-        for start in sorted(places, key=peak)[:STARTS]
-    ]
-    least = min(minima, key=lambda minimum: float(minimum.fun))
+
+    screened = differential_evolution(
+        lambda x: np.ptp(rough(x.T, 2), axis=-1),
+        bounds,
+        strategy="rand1bin",
+        mutation=0.5,
+        popsize=64,
+        maxiter=25,
+        init="sobol",
+        rng=1,
+        polish=False,
+        updating="deferred",
+        vectorized=True,
+    )
+    places: list[Floats] = []
+    for x in screened.population[np.argsort(screened.population_energies)]:
+        if len(places) < PLACES and all(np.abs(x - other).max() > _EDGE for other in places):
+            places.append(x)
+    near = [refined(x, rough, curve(x) - rough(x)).x for x in places]
+    starts = sorted(near, key=lambda x: float(np.ptp(curve(x))))[:STARTS]
+    least = min((refined(x, curve, 0.0) for x in starts), key=lambda r: float(r.fun))
     one, two = reliefs(least.x if least.fun < unrelieved else 0.0 * least.x)
     return ReliefDesign(
         pinion=one,

@@ -17,7 +17,7 @@ from thermogear.case.flanks import relief_text
 from thermogear.case.thermal_state import HOT, ThermalState
 from thermogear.gears.deviations import Contacts, Relief
 from thermogear.gears.loaded import LoadedMesh, solve_mesh
-from thermogear.gears.relief import MOST_EVALUATIONS, STARTS, optimise_tip_relief
+from thermogear.gears.relief import MOST_EVALUATIONS, PLACES, STARTS, optimise_tip_relief
 from thermogear.gears.stiffness import Moduli
 from thermogear.mesh.elastic import LoadedPair
 from thermogear.mesh.operating import Operating
@@ -61,16 +61,16 @@ def relief_survey(
     model = case.models[0].override(stiffness="loaded")
     state = HOT if gear_temperature is None else ThermalState.of(gear_temperature)
     state.require_settled(case, case.models[0])
-    point = one_point(state.operating(case, case.models[0]), moment)
-    hot = HotPair(case.pair, point, model)
-    elastic = LoadedPair(hot)
-    moduli = [Moduli(tooth=np.ravel(m.tooth)[0], body=np.ravel(m.body)[0]) for m in elastic.moduli]
+    hot = HotPair(case.pair, one_point(state.operating(case, case.models[0]), moment), model)
+    moduli = [
+        Moduli(tooth=np.ravel(m.tooth)[0], body=np.ravel(m.body)[0]) for m in LoadedPair(hot).moduli
+    ]
     deviations = [
         *(d for d in case.deviations if not (isinstance(d, Relief) and d.end == "tip")),
         Seen(ThermalDeviation(hot), 0),
     ]
     force = moment / case.pair.pinion.base_radius
-    most = STARTS * MOST_EVALUATIONS
+    most = 2 * PLACES + STARTS * MOST_EVALUATIONS
     design = optimise_tip_relief(
         case.pair,
         force,
@@ -99,8 +99,10 @@ def relief_survey(
 
     pairs = {"unrelieved": (), "relieved": (design.pinion, design.wheel)}
     loads = force * np.asarray(LOADS)
-    curves = [mesh(reliefs, np.array([force])) for reliefs in pairs.values()]
-    laddered = [mesh(reliefs, loads) for reliefs in pairs.values()]
+    curves, laddered = (
+        [mesh(reliefs, forces) for reliefs in pairs.values()]
+        for forces in (np.array([force]), loads)
+    )
     by = ("pair_kind", "mesh_phase")
     return Result.of(
         ReliefSurvey.kind,
