@@ -293,14 +293,13 @@ def loaded_contact(
         flank=flank,
     )
     lead = mesh.deflection.shape[:-1]
-    if dimensions is None:
-        names = (
-            DIMENSIONS[len(lead)]
-            if len(lead) < len(DIMENSIONS)
-            else tuple(f"axis_{i}" for i in range(len(lead)))
-        )
-    else:
-        names = tuple(dimensions)
+    names = tuple(
+        dimensions
+        if dimensions is not None
+        else DIMENSIONS[len(lead)]
+        if len(lead) < len(DIMENSIONS)
+        else (f"axis_{i}" for i in range(len(lead)))
+    )
     if len(names) != len(lead):
         raise InputError("dimensions", names, allowed=f"{len(lead)} names, one for each axis")
     loaded, settled = (mesh.share > 0.0).sum(axis=-1), mesh.settled.all(axis=-1)

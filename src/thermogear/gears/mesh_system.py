@@ -77,13 +77,11 @@ def _body_unit(gear: Gear, t: Floats, direction: int, model: LoadedModel) -> Flo
     """
     table, centre = body_matrices(gear, windup=model.body == "bore_clamped")
     load = foot_load(gear, t)
-    count = t.shape[1]
-    out = np.zeros((*t.shape, count))
-    for j in range(count):
-        for k in range(count):
-            if j == k or model.coupled:
-                by = load[:, k] @ table[centre + direction * (j - k)].T
-                out[:, j, k] = np.einsum("pa,pa->p", load[:, j], by)
+    out = np.zeros((*t.shape, t.shape[1]))
+    for j, k in np.ndindex(out.shape[1:]):
+        if j == k or model.coupled:
+            by = load[:, k] @ table[centre + direction * (j - k)].T
+            out[:, j, k] = np.einsum("pa,pa->p", load[:, j], by)
     return out
 
 
@@ -106,10 +104,8 @@ def as_drawn(pair: GearPair, phases: bytes, flank: str, model: LoadedModel) -> D
     radius = np.maximum(
         strings[0] * strings[1] / (strings[0] + strings[1]), 1e-3 * pair.pinion.module
     )
-    depth = np.empty((2, *points.s.shape))
-    for i, (gear, t) in enumerate(zip(gears, parameters, strict=True)):
-        at = flank_point(gear, t)
-        depth[i] = (at.x / np.cos(at.beta)) ** 2 / (4.0 * radius)
+    places = [flank_point(gear, t) for gear, t in zip(gears, parameters, strict=True)]
+    depth = np.stack([(at.x / np.cos(at.beta)) ** 2 for at in places]) / (4.0 * radius)
     tooth = np.stack(
         [unit_compliance(g, t, model.start) for g, t in zip(gears, parameters, strict=True)]
     )
@@ -209,8 +205,7 @@ class MeshSystem:
         nu = [g.material.poisson_ratio for g in (self.pair.pinion, self.pair.wheel)]
         cases, (positions, count) = asked.size, self.points.s.shape
         force = np.empty((cases, positions, count))
-        delta = np.empty((cases, positions))
-        stiffness = np.empty((cases, positions))
+        delta, stiffness = np.empty((2, cases, positions))
         settled = np.empty((cases, positions), dtype=np.bool_)
         share_many(
             asked,

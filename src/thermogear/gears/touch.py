@@ -75,11 +75,11 @@ def first_touch(points: MeshPoints, deviations: Sequence[Deviation] = ()) -> Tou
     ]
     gap, edge = points.point.gap, _corner_of(contacts.pair, contacts.s)
     if shapes:
+        solve = _shaped if all(isinstance(d, Hashable) for d in shapes) else _shaped.__wrapped__
         extended = bool(np.any((edge > 0) & np.isfinite(gap)))
-        s = np.ascontiguousarray(contacts.s)
-        known = all(isinstance(d, Hashable) for d in shapes)
-        solve = _shaped if known else _shaped.__wrapped__
-        gap, edge = solve(contacts.pair, tuple(shapes), s.shape, s.tobytes(), extended)
+        gap, edge = solve(
+            contacts.pair, tuple(shapes), contacts.s.shape, contacts.s.tobytes(), extended
+        )
     whole = np.asarray(sum(rest, start=gap))
     return Touch(whole, np.broadcast_to(edge, whole.shape))
 

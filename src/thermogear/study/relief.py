@@ -17,7 +17,7 @@ from thermogear.case.flanks import relief_text
 from thermogear.case.thermal_state import HOT, ThermalState
 from thermogear.gears.deviations import Contacts, Relief
 from thermogear.gears.loaded import LoadedMesh, solve_mesh
-from thermogear.gears.relief import MOST_EVALUATIONS, STARTS, optimise_tip_relief
+from thermogear.gears.relief import MOST_EVALUATIONS, PLACES, STARTS, optimise_tip_relief
 from thermogear.gears.stiffness import Moduli
 from thermogear.mesh.elastic import LoadedPair
 from thermogear.mesh.operating import Operating
@@ -61,14 +61,16 @@ def relief_survey(
     model = case.models[0].override(stiffness="loaded")
     state = HOT if gear_temperature is None else ThermalState.of(gear_temperature)
     state.require_settled(case, case.models[0])
-    found = state.operating(case, case.models[0])
-    hot = HotPair(case.pair, one_point(found, moment), model)
-    elastic = LoadedPair(hot)
-    moduli = [Moduli(tooth=np.ravel(m.tooth)[0], body=np.ravel(m.body)[0]) for m in elastic.moduli]
-    kept = [d for d in case.deviations if not (isinstance(d, Relief) and d.end == "tip")]
-    deviations = [*kept, Seen(ThermalDeviation(hot), 0)]
+    hot = HotPair(case.pair, one_point(state.operating(case, case.models[0]), moment), model)
+    moduli = [
+        Moduli(tooth=np.ravel(m.tooth)[0], body=np.ravel(m.body)[0]) for m in LoadedPair(hot).moduli
+    ]
+    deviations = [
+        *(d for d in case.deviations if not (isinstance(d, Relief) and d.end == "tip")),
+        Seen(ThermalDeviation(hot), 0),
+    ]
     force = moment / case.pair.pinion.base_radius
-    most = len(STARTS) * MOST_EVALUATIONS
+    most = 2 * PLACES + STARTS * MOST_EVALUATIONS
     design = optimise_tip_relief(
         case.pair,
         force,
@@ -97,71 +99,77 @@ def relief_survey(
 
     pairs = {"unrelieved": (), "relieved": (design.pinion, design.wheel)}
     loads = force * np.asarray(LOADS)
-    curves = [mesh(reliefs, np.array([force])) for reliefs in pairs.values()]
-    laddered = [mesh(reliefs, loads) for reliefs in pairs.values()]
+    curves, laddered = (
+        [mesh(reliefs, forces) for reliefs in pairs.values()]
+        for forces in (np.array([force]), loads)
+    )
     by = ("pair_kind", "mesh_phase")
-    error = label(
-        {
-            "transmission_error": (
-                by,
-                np.stack([c.deflection[0] for c in curves]),
-                "m",
-                "static transmission error under load",
-            ),
-            "tangent_stiffness": (
-                by,
-                np.stack([c.tangent[0] for c in curves]),
-                "N/m",
-                "tangent mesh stiffness",
-            ),
-            "greatest_pressure": (
-                by,
-                np.stack([c.pressure[0].max(axis=-1) for c in curves]),
-                "Pa",
-                "greatest Hertzian pressure of any pair; not valid (nan) in edge contact",
-            ),
-            "edge_contact": (
-                by,
-                np.stack([np.bitwise_or.reduce(c.edge[0], axis=-1) for c in curves]),
-            ),
-            "edge_contact_share": (
-                ("pair_kind",),
-                [float(c.edge_share[0]) for c in curves],
-                "1",
-                EDGE_SHARE,
-            ),
-        },
-        {
-            "pair_kind": list(pairs),
-            "mesh_phase": (("mesh_phase",), phase, "1", "mesh phase"),
-        },
-    )
-    over = label(
-        {
-            "peak_to_peak_error": (
-                ("pair_kind", "load"),
-                np.stack([np.ptp(c.deflection, axis=-1) for c in laddered]),
-                "m",
-                "transmission error, peak to peak",
-            ),
-            "edge_contact_share": (
-                ("pair_kind", "load"),
-                np.stack([c.edge_share for c in laddered]),
-                "1",
-                EDGE_SHARE,
-            ),
-        },
-        {
-            "pair_kind": list(pairs),
-            "load": (("load",), loads * case.pair.pinion.base_radius, "N m", "pinion torque"),
-        },
-    )
-    lines = "\n\n".join(relief_text(r.gear, r) for r in (design.pinion, design.wheel))
-    swings = {name: float(np.ptp(c.deflection)) for name, c in zip(pairs, curves, strict=True)}
     return Result.of(
         ReliefSurvey.kind,
         f"Tip relief: {case.title}",
-        {"error": error, "loads": over},
+        {
+            "error": label(
+                {
+                    "transmission_error": (
+                        by,
+                        np.stack([c.deflection[0] for c in curves]),
+                        "m",
+                        "static transmission error under load",
+                    ),
+                    "tangent_stiffness": (
+                        by,
+                        np.stack([c.tangent[0] for c in curves]),
+                        "N/m",
+                        "tangent mesh stiffness",
+                    ),
+                    "greatest_pressure": (
+                        by,
+                        np.stack([c.pressure[0].max(axis=-1) for c in curves]),
+                        "Pa",
+                        "greatest Hertzian pressure of any pair; not valid (nan) in edge contact",
+                    ),
+                    "edge_contact": (
+                        by,
+                        np.stack([np.bitwise_or.reduce(c.edge[0], axis=-1) for c in curves]),
+                    ),
+                    "edge_contact_share": (
+                        ("pair_kind",),
+                        [float(c.edge_share[0]) for c in curves],
+                        "1",
+                        EDGE_SHARE,
+                    ),
+                },
+                {
+                    "pair_kind": list(pairs),
+                    "mesh_phase": (("mesh_phase",), phase, "1", "mesh phase"),
+                },
+            ),
+            "loads": label(
+                {
+                    "peak_to_peak_error": (
+                        ("pair_kind", "load"),
+                        np.stack([np.ptp(c.deflection, axis=-1) for c in laddered]),
+                        "m",
+                        "transmission error, peak to peak",
+                    ),
+                    "edge_contact_share": (
+                        ("pair_kind", "load"),
+                        np.stack([c.edge_share for c in laddered]),
+                        "1",
+                        EDGE_SHARE,
+                    ),
+                },
+                {
+                    "pair_kind": list(pairs),
+                    "load": (
+                        ("load",),
+                        loads * case.pair.pinion.base_radius,
+                        "N m",
+                        "pinion torque",
+                    ),
+                },
+            ),
+        },
         _notices(case, [float(c.edge_share[0]) for c in curves]),
         **case.provenance,
         torque=moment,
@@ -169,13 +177,13 @@ def relief_survey(
         wheel_addendum=float(np.ravel(hot.temperatures.wheel_addendum)[0]),
         shape=shape,
         symmetric=symmetric,
-        **swings,
+        **{name: float(np.ptp(c.deflection)) for name, c in zip(pairs, curves, strict=True)},
         evaluations=design.evaluations,
         reliefs={
             r.gear: {"amount_m": r.amount, "length_m": r.length, "shape": r.shape}
             for r in (design.pinion, design.wheel)
         },
-        paste=lines,
+        paste="\n\n".join(relief_text(r.gear, r) for r in (design.pinion, design.wheel)),
     )
 
 
