@@ -67,11 +67,11 @@ def _hidden(context: click.Context, _: click.Parameter, given: tuple[str, ...]) 
     """Keep the codes of ``--hide`` for the end; refuse one that no notice has."""
     from thermogear.base.notice import catalogue
 
-    codes = [code for text in given for code in text.split(",")]
+    codes = [code.strip() for text in given for code in text.split(",")]
     for code in codes:
         if code not in catalogue():
-            why, fix = "no notice has this code", meant(code, catalogue(), cutoff=0.0)
-            raise InputError("--hide", repr(code), why=why, fix=fix)
+            near = meant(code, catalogue(), cutoff=0.6) or "--json shows the code of every notice"
+            raise InputError("--hide", repr(code), why="no notice has this code", fix=near)
     context.meta[HIDDEN] = codes
 
 

@@ -151,13 +151,14 @@ def _positive(flag: str, value: float, scale: float = 1.0) -> float:
 
 def _axis(flag: str, text: str, scale: float = 1.0) -> tuple[float, ...]:
     """Rising SI values of an axis: numbers with commas, or FROM:TO:COUNT."""
-    values = numbers(flag, text.replace(":", ","))
-    if ":" in text:
-        low, high, number = (values + [math.nan] * 3)[:3]
-        if len(values) != 3 or not (number == int(number or 0) and 2 <= number <= 100_000):
-            allowed = "FROM:TO:COUNT, COUNT 2..100000"
-            raise InputError(flag, repr(text), allowed=allowed, fix="write 500:6000:12")
-        values = [low + (high - low) * k / (number - 1) for k in range(int(number))]
+    if ":" not in text:
+        values = numbers(flag, text)
+    else:
+        allowed, fix = "FROM:TO:COUNT, COUNT 2..100000", "500:6000:12"
+        low, high, number = numbers(flag, text, ":", allowed, fix, 3)
+        if not (2.0 <= number <= 100_000.0 and number.is_integer()):
+            raise InputError(flag, repr(text), allowed=allowed, fix=f"write {fix}")
+        values = [low + (high - low) * k / (number - 1.0) for k in range(int(number))]
     scaled = tuple(_positive(flag, value, scale) for value in values)
     if any(b <= a for a, b in pairwise(values)):
         raise InputError(flag, repr(text), allowed="strictly rising values")
