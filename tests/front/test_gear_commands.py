@@ -111,8 +111,8 @@ def test_json_figures_of_the_map_are_those_of_its_grid(
             "--torques: got '50:100:1'; allowed FROM:TO:COUNT, COUNT 2..100000; write 500:6000:12",
         ),
         (
-            ["temperature", "--torques", "50:100:nan"],
-            "--torques: got '50:100:nan'; allowed FROM:TO:COUNT, COUNT 2..100000; write 500:6000:12",
+            ["temperature", "--torques", "5:100:nan"],
+            "--torques: got '5:100:nan'; allowed FROM:TO:COUNT, COUNT 2..100000; write 500:6000:12",
         ),
         (
             ["temperature", "--torques", "1,2:3"],
