@@ -61,6 +61,8 @@ def test_a_symmetric_relief_is_alike_on_both_gears_and_no_better(relief: xr.Data
     assert one == two
     assert relief.attrs["relieved"] <= 1.05 * both.attrs["relieved"]
     assert both.attrs["relieved"] < both.attrs["unrelieved"]
+    bodies = [n.data["body"] for n in both.notices if n.code == "loaded_contact_unchecked"]
+    assert bodies == ["rim"]  # of the model that it is computed with
 
 
 def test_a_relief_needs_a_load() -> None:

@@ -170,7 +170,7 @@ def relief_survey(
                 },
             ),
         },
-        _notices(case, [float(c.edge_share[0]) for c in curves]),
+        _notices(case, model.loaded.body, [float(c.edge_share[0]) for c in curves]),
         **case.provenance,
         torque=moment,
         pinion_addendum=float(np.ravel(hot.temperatures.pinion_addendum)[0]),
@@ -204,8 +204,8 @@ class Seen:
         return np.asarray(self.deviation.gap(at)[self.places])
 
 
-def _notices(case: GearCase, edges: Sequence[float]) -> Iterator[Notice]:
-    yield Notice.of("loaded_contact_unchecked", body="bore-clamped")
+def _notices(case: GearCase, body: str, edges: Sequence[float]) -> Iterator[Notice]:
+    yield Notice.of("loaded_contact_unchecked", body=body)
     yield Notice.of("relief_of_one_load")
     if any(edges):
         yield Notice.of("edge_contact_of_relief", without=edges[0], relieved=edges[1])
