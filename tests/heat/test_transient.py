@@ -61,6 +61,22 @@ def test_a_source_that_grows_as_the_loss_heats_evenly() -> None:
     np.testing.assert_allclose(found.temperatures["body"] - T0, Q / C * found.time, atol=1e-6)
 
 
+def test_a_law_that_jumps_by_less_than_the_tolerance_is_followed_to_its_end() -> None:
+    """The source falls by G times .8 mK where the node passes 50 K less .4 mK: it stays there."""
+
+    def network(state: State) -> ThermalNetwork:
+        heat = Q - np.where(state["body"] - T0 > Q / G - 4e-4, 8e-4 * G, 0.0)
+        return ThermalNetwork(
+            (Link("body", "ambient", G),), {"body": heat}, {"ambient": T0}, {"body": C}
+        )
+
+    found = run([(20000.0, network)])
+    exact = Q / G * -np.expm1(-RATE * found.time)
+    worst = np.abs(found.temperatures["body"] - T0 - exact).max()
+    assert worst <= found.error + 4e-4
+    assert found.error <= 1e-3
+
+
 def test_jumps_of_source_and_ambient_are_begun_anew() -> None:
     pieces = [(500.0, one_node()), (900.0, one_node(0.0)), (1500.0, one_node(50.0, T0 - 20.0))]
     found = run(pieces, tolerance=1e-5)

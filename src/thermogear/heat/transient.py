@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -73,7 +74,8 @@ class _Window:
 
     ``ends`` (steps + 1, nodes + 2) and ``first`` (steps, nodes + 2): temperatures [K] of the free
     nodes, heat in and out [J] at the ends and at the first stages; ``slopes`` (steps + 1,
-    nodes + 2) their rates at the ends; ``ahead`` (steps + 1,) how far [K] the steady state is.
+    nodes + 2) their rates at the ends; ``ahead`` (steps + 1,) how far [K] the steady state is;
+    ``left`` [K]: Newton's correction that was left.
     """
 
     time: Floats
@@ -81,6 +83,7 @@ class _Window:
     first: Floats
     slopes: Floats
     ahead: Floats
+    left: float
 
     def at(self, t: Floats) -> Floats:
         """The states at any times: cubics through both stages with the slope at the begin."""
@@ -191,11 +194,14 @@ class _Law:
         return np.asarray((1.0 - part) * self.bent[place] + part * self.bent[place + 1] - relaxing)
 
 
-def _solved(law: _Law, begin: Floats, time: Floats, guess: Floats, goal: float) -> _Window:
+def _solved(
+    law: _Law, begin: Floats, time: Floats, guess: Floats, *, goal: float, most: float
+) -> _Window:
     """The steps between ``time`` from the state ``begin`` (nodes + 2,), all at once.
 
     Unknown are the temperatures at both stages of every step, ``guess`` (2 steps, nodes). Ended
-    where Newton's next correction would be below ``goal`` [K].
+    where Newton's next correction would be below ``goal`` [K], or after all turns where the last
+    was below ``most`` [K]: a law that jumps lets it get no nearer.
     """
     count, h = law.capacity.size, np.diff(time)
     when, known = _stages(time), begin[None, :count]
@@ -208,7 +214,8 @@ def _solved(law: _Law, begin: Floats, time: Floats, guess: Floats, goal: float) 
         move = _correction(h, residual, law.slopes(when, relaxing[1:]))
         last, size = size, float(np.abs(move).max())
         y = y + np.clip(move, -_LEAP, _LEAP)
-        if min(size / last if turn else 1.0, 1.0) * size <= goal:
+        left = min(size / last if turn else 1.0, 1.0) * size
+        if left <= goal or (turn == _TURNS - 1 and size <= most):
             heat = np.vstack([begin[count:], gains[:, 1, count:]]).cumsum(axis=0)
             # a rate slower than any course: the system has a solution where nothing leads back, too
             slopes = law.slopes(time, relaxing[::2]) - 1e-15 * np.eye(count)
@@ -219,6 +226,7 @@ def _solved(law: _Law, begin: Floats, time: Floats, guess: Floats, goal: float) 
                 first=np.hstack([y[::2], heat[:-1] + gains[:, 0, count:]]),
                 slopes=rates[::2],
                 ahead=np.abs(ahead).max(axis=(1, 2)),
+                left=left if left <= goal else size,
             )
         if (turn == 0 and not law.places.size) or (turn - probed > 1 and size > _SLOW * last):
             probed = turn
@@ -258,19 +266,20 @@ def _window(law: _Law, begin: Floats, time: Floats, tolerance: float) -> tuple[_
     """The steps from ``begin`` on a mesh that keeps the ``tolerance`` [K], and the error [K].
 
     Every mesh is halved: for a method of order 3 the finer solution errs by a seventh of the
-    difference at the ends of its steps. A third is taken: between them the cubic errs more. Where
+    difference at the ends of its steps. A third is taken, as between them the cubic errs more, and
+    what Newton left is added. Where
     that is too much a mesh is drawn anew, on which all steps have the same cubic part.
     """
-    goal, error, steps = _SOLVED * tolerance, np.inf, time.size - 1
-    count = law.capacity.size
+    error, steps, count = np.inf, time.size - 1, law.capacity.size
+    solved = partial(_solved, law, begin, goal=_SOLVED * tolerance, most=tolerance)
     guess = np.broadcast_to(begin[:count], (2 * steps, count))
-    found = _solved(law, begin, time, guess, max(_ROUGH, goal))
+    found = solved(time, guess, goal=max(_ROUGH, _SOLVED * tolerance))
     for _ in range(_ROUNDS):
         coarse_time = _drawn(found.time, found.bend(), steps)
         time = np.sort(np.append(coarse_time, 0.5 * (coarse_time[1:] + coarse_time[:-1])))
-        coarse = _solved(law, begin, coarse_time, found.at(_stages(coarse_time))[:, :count], goal)
-        found = _solved(law, begin, time, coarse.at(_stages(time))[:, :count], goal)
-        error = float(np.abs(coarse.at(time) - found.ends)[:, :count].max()) / 3.0
+        coarse = solved(coarse_time, found.at(_stages(coarse_time))[:, :count])
+        found = solved(time, coarse.at(_stages(time))[:, :count])
+        error = float(np.abs(coarse.at(time) - found.ends)[:, :count].max()) / 3.0 + found.left
         if error <= tolerance and found.bend().max() <= _BEND:
             return found, error
         steps = int(np.ceil(steps * np.clip(1.2 * np.cbrt(error / tolerance), 1.3, 4.0)))
