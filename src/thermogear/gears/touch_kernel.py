@@ -25,8 +25,8 @@ _PLACE = 1e-12
 """String [m] to which borders of the wheel are found on the pinion."""
 _LEVEL = 1e-8
 """dE/drho counted as 0: with d2E/drho2 > 1 /m the gap is exact to 1e-16 m."""
-_LAST = 3e-8
-"""Newton's step of the gap [m] after which the next would be below 1e-13 m."""
+_LAST = 1e-9
+"""Newton's step of the gap [m] after which the next would be below its rounding, 1e-16 m."""
 
 
 @compiled
