@@ -141,7 +141,7 @@ def test_the_house_in_figures_is_true() -> None:
     for old, new in zip(written, now, strict=True):
         if found := counted.search(old):
             said, is_ = (np.array(m.groups(), float) for m in (found, counted.search(new)) if m)
-            np.testing.assert_allclose(said, is_, rtol=0.1, atol=2.0, err_msg="run make house")
+            np.testing.assert_allclose(said, is_, rtol=0.1, err_msg="run make house")
 
 
 def test_an_unknown_public_name_is_an_attribute_error() -> None:
