@@ -14,9 +14,9 @@ from functools import cached_property
 import numpy as np
 
 from thermogear.base.arrays import Floats
+from thermogear.gears.elements import Integers, Patch
 from thermogear.gears.geometry import Gear
 from thermogear.gears.tooth import start_angle
-from thermogear.verify.elements import Integers, Patch
 
 _FINE_SAMPLES = 2001
 
