@@ -175,7 +175,7 @@ def span_over_teeth(gear: Gear, set_back: float = 0.0, teeth: int | None = None)
     """
     thick = 2.0 * (gear.base_radius * gear.base_half_angle - set_back)
     if teeth is None:
-        low, high = gear.form_radius, gear.tip_radius
+        low, high = gear.form_radius, gear.tip_form_radius
         middle = 2.0 * float(gear.curvature_radius(0.5 * (low + high)))
         teeth = max(1, round(1.0 + (middle - thick) / gear.base_pitch))
     length = (teeth - 1) * gear.base_pitch + thick
