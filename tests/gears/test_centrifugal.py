@@ -16,7 +16,7 @@ from thermogear.gears.centrifugal import (
 )
 from thermogear.heat.expansion import RadialField
 from thermogear.verify import growth
-from thermogear.verify.elements import Patch, library
+from thermogear.verify.elements import ReferencePatch, library
 
 RHO, E, NU, OMEGA, R = 7850.0, 206e9, 0.3, 2618.0, 80e-3
 UNIT = RHO * OMEGA**2 * R**3 / E
@@ -70,11 +70,11 @@ def test_a_toothed_sector_of_finite_elements_grows_alike(
 ) -> None:
     """Body and teeth in one piece under rho w^2 r, pitch point and tip, 20 to 80 teeth."""
 
-    def pulled(patch: Patch, strain: object) -> Floats:
+    def pulled(patch: ReferencePatch, strain: object) -> Floats:
         form = library().LinearForm(lambda v, w: w.x[0] * v[0] + w.x[1] * v[1])
         return patch._ours(form.assemble(patch._basis))
 
-    monkeypatch.setattr(Patch, "thermal_load", pulled)
+    monkeypatch.setattr(ReferencePatch, "thermal_load", pulled)
     for teeth in (20, 40, 80):
         gear = Gear(teeth, 4e-3)
         field = RadialField.uniform(

@@ -17,19 +17,21 @@ from thermogear.mesh.operating import Temperatures
 from thermogear.mesh.thermal import HotPair, ThermalDeviation
 
 
-def test_springs_of_the_loaded_pair(rig: GearPair, hot_rig: Operating) -> None:
-    """Tooth springs are the textbook's; all in series are the secant stiffness of one pair."""
+@pytest.mark.parametrize("tooth", ["solved", "beam"])
+def test_springs_of_the_loaded_pair(tooth: str, rig: GearPair, hot_rig: Operating) -> None:
+    """A beam's springs are the textbook's; all in series are the secant stiffness of one pair."""
     cold = replace(hot_rig, temperatures=hot_rig.temperatures.cold())
-    model = MeshModel.consistent()
+    model = MeshModel.consistent().override(tooth=tooth)
     loaded = elastic_pair(HotPair(rig, cold, model))
     assert isinstance(loaded, LoadedPair)
     s = path_of_contact(rig, 41)
     parts = loaded.parts(s)
-    tooth = TextbookPair(loaded.hot).parts(s)
+    textbook = TextbookPair(loaded.hot).parts(s)
+    assert len(parts) == (3 if tooth == "solved" else 9)
     for name, k in parts.items():
         assert np.all(np.isfinite(k) & (k > 0.0))
-        if not name.endswith(("body_stiffness", "hertz_stiffness")):
-            assert k == pytest.approx(tooth[name], rel=1e-12)
+        if not name.endswith(("body_stiffness", "hertz_stiffness", "gear_stiffness")):
+            assert k == pytest.approx(textbook[name], rel=1e-12)
     series = loaded.pair_stiffness(s)
     assert series == pytest.approx(1.0 / sum(1.0 / k for k in parts.values()), rel=1e-12)
     # corner contact lets neighbours help a little outside the single contact's ends

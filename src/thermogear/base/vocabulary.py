@@ -190,6 +190,8 @@ QUANTITIES: dict[str, Quantity] = {
     "wheel_axial_stiffness": Quantity("N/m", "axial stiffness, wheel tooth", "k_a2"),
     "pinion_body_stiffness": Quantity("N/m", "body stiffness, pinion", "k_f1"),
     "wheel_body_stiffness": Quantity("N/m", "body stiffness, wheel", "k_f2"),
+    "pinion_gear_stiffness": Quantity("N/m", "stiffness of tooth and body, pinion", "k_g1"),
+    "wheel_gear_stiffness": Quantity("N/m", "stiffness of tooth and body, wheel", "k_g2"),
     "mean_stiffness": Quantity("N/m", "mesh stiffness, time mean", "k_m"),
     "rim_stiffness": Quantity(
         "N/m", "mean stiffness of the loaded contact, body without wind-up (rim)", "k_rim"

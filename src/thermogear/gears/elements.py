@@ -9,12 +9,15 @@ the constant strain of the patch test, and scikit-fem's matrix of the same mesh.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_matrix, csc_matrix
 
 from thermogear.base.arrays import Floats
+
+if TYPE_CHECKING:
+    from scipy.sparse import csc_matrix
 
 Integers = NDArray[np.int64]
 
@@ -86,6 +89,8 @@ class Patch:
         sum over elements of the integral of B^T D B, with D = 1/(1 - nu^2) [[1, nu, 0],
         [nu, 1, 0], [0, 0, (1 - nu)/2]].
         """
+        from scipy.sparse import coo_matrix
+
         nu = self.poisson
         law = np.array([[1.0, nu, 0.0], [nu, 1.0, 0.0], [0.0, 0.0, 0.5 * (1.0 - nu)]])
         strain, area = self.strains()
@@ -96,7 +101,6 @@ class Patch:
         )
         places = (2 * self.cells.reshape(-1, 9, 1) + np.arange(2)).reshape(-1, 18)
         rows, columns = np.broadcast_arrays(places[:, :, None], places[:, None, :])
-        whole = coo_matrix(
+        return coo_matrix(
             (parts.ravel(), (rows.ravel(), columns.ravel())), shape=(self.unknowns,) * 2
-        )
-        return csc_matrix(whole)
+        ).tocsc()

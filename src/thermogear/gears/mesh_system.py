@@ -54,7 +54,7 @@ class LoadedModel:
     'rim'
     """
 
-    tooth: str = "beam"
+    tooth: str = "solved"
     plane: str = "stress"
     body: str = "rim"
     contact: str = "weber-banaschek"
@@ -114,7 +114,7 @@ def _solved(gear: Gear, t: Floats, direction: int, model: LoadedModel) -> tuple[
             out[:, j, j] = body[:, j]
         elif model.coupled:
             # the load points away from the side that the loaded flank faces
-            out[:, j, k] = table.coupled(t[:, j], t[:, k], -direction * (j - k))
+            out[:, j, k] = table.coupled(t[:, j], loaded=t[:, k], lag=-direction * (j - k))
     if model.body == "rim":
         out -= table.windup
     return tooth, out

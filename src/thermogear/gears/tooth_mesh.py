@@ -51,6 +51,9 @@ def graded(
 
     Away from the core the steps grow by ``rate`` up to ``coarse``; each stretch is scaled to
     end where it must.
+
+    >>> graded(low=0.0, high=1.0, centre=1.0, core=0.1, fine=0.05, rate=2.0, coarse=0.4).round(2)
+    array([0.  , 0.51, 0.77, 0.9 , 0.95, 1.  ])
     """
 
     def outward(start: float, end: float, first: float) -> Floats:
@@ -77,7 +80,11 @@ def graded(
 
 
 def halved(nodes: Floats) -> Floats:
-    """The nodes with the middles of all steps between them."""
+    """The nodes with the middles of all steps between them.
+
+    >>> halved(np.array([0.0, 1.0, 3.0]))
+    array([0. , 0.5, 1. , 2. , 3. ])
+    """
     out = np.empty(2 * nodes.size - 1)
     out[::2] = nodes
     out[1::2] = 0.5 * (nodes[1:] + nodes[:-1])
@@ -85,7 +92,11 @@ def halved(nodes: Floats) -> Floats:
 
 
 def cells_of(*, rows: int, columns: int) -> Integers:
-    """Nine-node elements of a structured grid of (2 rows + 1, 2 columns + 1) nodes."""
+    """Nine-node elements of a structured grid of (2 rows + 1, 2 columns + 1) nodes.
+
+    >>> cells_of(rows=1, columns=2)[1].tolist()
+    [[2, 3, 4], [7, 8, 9], [12, 13, 14]]
+    """
     number = np.arange((2 * rows + 1) * (2 * columns + 1)).reshape(2 * rows + 1, -1)
     blocks = [
         number[2 * i : 2 * i + 3, 2 * j : 2 * j + 3] for i in range(rows) for j in range(columns)
@@ -180,7 +191,11 @@ def _body_radii(*, low: float, high: float, size: float, rate: float, part: floa
 
 
 def foot_mesh(gear: Gear, across: Floats, density: Density) -> Foot:
-    """The foot of a tooth whose joint has corners at ``across`` in -1 .. 1 of its half angle."""
+    """The foot of a tooth whose joint has corners at ``across`` in -1 .. 1 of its half angle.
+
+    >>> foot_mesh(Gear(20, 4e-3), plain_across(Density()), Density()).joint.size
+    9
+    """
     profile = Profile(gear)
     m, half = gear.module, np.pi / gear.teeth
     r_joint, phi_joint = profile.meeting
@@ -246,6 +261,11 @@ def tooth_mesh(gear: Gear, *, across: Floats, arcs: Floats, density: Density) ->
     """A tooth with corners at ``across`` (joint) and at the involute lengths ``arcs``.
 
     ``arcs`` ascend from the form circle to the tip.
+
+    >>> gear, density = Gear(20, 4e-3), Density()
+    >>> across, arcs = plain_across(density), plain_arcs(gear, density)
+    >>> tooth_mesh(gear, across=across, arcs=arcs, density=density).patch.cells.shape
+    (28, 3, 3)
     """
     profile = Profile(gear)
     r, phi = profile.involute(halved(arcs))
@@ -262,13 +282,22 @@ def tooth_mesh(gear: Gear, *, across: Floats, arcs: Floats, density: Density) ->
 
 
 def plain_arcs(gear: Gear, density: Density) -> Floats:
-    """Involute lengths of a tooth that nothing touches."""
+    """Involute lengths of a tooth that nothing touches.
+
+    >>> [f"{1e3 * arc:.2f} mm" for arc in plain_arcs(Gear(20, 4e-3), Density())[[0, -1]]]
+    ['0.05 mm', '6.96 mm']
+    """
     low, high = Profile(gear).ends
     return np.linspace(low, high, density.count(4) + 1)
 
 
 def contact_arcs(gear: Gear, t: float, half_width: float, density: Density) -> Floats:
-    """Involute lengths graded towards a contact of ``half_width`` [m] at t = tan(alpha_k)."""
+    """Involute lengths graded towards a contact of ``half_width`` [m] at t = tan(alpha_k).
+
+    >>> arcs = contact_arcs(Gear(20, 4e-3), 0.36, 0.1e-3, Density())
+    >>> f"{1e3 * np.diff(arcs).min():.3f} mm"
+    '0.031 mm'
+    """
     profile = Profile(gear)
     low, high = profile.ends
     fine = half_width / (density.per_half_width * density.refinement)
@@ -284,7 +313,12 @@ def contact_arcs(gear: Gear, t: float, half_width: float, density: Density) -> F
 
 
 def contact_across(gear: Gear, half_width: float, density: Density) -> Floats:
-    """The joint's corners in -1 .. 1, graded towards the loaded flank at 1."""
+    """The joint's corners in -1 .. 1, graded towards the loaded flank at 1.
+
+    >>> corners = contact_across(Gear(20, 4e-3), 0.1e-3, Density())
+    >>> bool(np.diff(corners)[-1] < 0.2 * np.diff(corners)[0])
+    True
+    """
     thickness = gear.module * 0.5 * np.pi
     fine = 2.0 * half_width / thickness / (density.per_half_width * density.refinement)
     coarse = 2.0 * density.coarsest * gear.module / thickness / density.refinement
@@ -294,5 +328,9 @@ def contact_across(gear: Gear, half_width: float, density: Density) -> Floats:
 
 
 def plain_across(density: Density) -> Floats:
-    """The joint's corners under a tooth that nothing touches."""
+    """The joint's corners under a tooth that nothing touches.
+
+    >>> plain_across(Density())
+    array([-1. , -0.5,  0. ,  0.5,  1. ])
+    """
     return np.linspace(-1.0, 1.0, density.count(4) + 1)

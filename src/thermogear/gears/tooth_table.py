@@ -19,8 +19,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
-from scipy.sparse import csc_matrix
-from scipy.sparse.linalg import splu
 
 from thermogear.base.arrays import Floats
 from thermogear.gears.elements import Integers, Patch, quadratic
@@ -46,14 +44,14 @@ ROWS, FILLET_ROWS, COLUMNS = 22, 5, 8
 """Elements along the flank, along the fillet above the tooth's foot, and across the tooth."""
 
 
-def indentation(depth_ratio: ArrayLike, poisson: float) -> Floats:
+def indentation(depth_ratio: ArrayLike, *, poisson: float) -> Floats:
     """W: approach under a Hertzian pressure of half width a against a depth h, times E b/F.
 
     W(eta) = (2/pi) [arsinh(eta) - nu eta (sqrt(1 + eta^2) - eta)], eta = h/a, plane stress; the
     place where the force acts is measured at the mean over the pressure, 1/(2 pi) less.
     Source: Weber and Banaschek 1953, with the plane stress moduli.
 
-    >>> f"{indentation(10.0, 0.3):.3f}"
+    >>> f"{indentation(10.0, poisson=0.3):.3f}"
     '1.813'
     """
     eta = np.asarray(depth_ratio, dtype=float)
@@ -77,7 +75,7 @@ class TipCompliance(NamedTuple):
         return np.asarray(c * c * self.normal + 2.0 * c * s * self.mixed + s * s * self.tangential)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class ToothTable:
     """Compliances of a gear's loaded flanks, times E b, by place and by distance in pitches.
 
@@ -115,7 +113,7 @@ class ToothTable:
         place = self._place(t)
         return _cubic(place, self.stations, self.tooth), _cubic(place, self.stations, self.body)
 
-    def coupled(self, t: Floats, loaded: Floats, lag: int) -> Floats:
+    def coupled(self, t: Floats, *, loaded: Floats, lag: int) -> Floats:
         """Deflection at ``t`` of the tooth ``lag`` pitches ahead of one loaded at ``loaded``."""
         if abs(lag) > MATES:
             return np.zeros(np.broadcast_shapes(t.shape, loaded.shape))
@@ -238,6 +236,8 @@ class Sector:
 
         ``softness``: what the compliances are multiplied by, 1 - nu^2 in plane strain.
         """
+        from scipy.sparse.linalg import splu
+
         gear, patch, foot = self.gear, self.patch, self.foot
         loads, arcs, widths = self._loads()
         whole = patch.stiffness()
@@ -247,7 +247,7 @@ class Sector:
         )
         columns = whole[:, sides]
         factor = splu(
-            csc_matrix(whole[inner][:, inner]),
+            whole[inner][:, inner].tocsc(),
             permc_spec="MMD_AT_PLUS_A",
             diag_pivot_thresh=0.0,
             options={"SymmetricMode": True},
@@ -270,7 +270,7 @@ class Sector:
         tooth = above.T @ (self.mesh.patch.stiffness() @ above)
         at = flank_point(gear, np.sqrt(2.0 * arcs / gear.base_radius))
         nu = patch.poisson
-        local = indentation(at.x / np.cos(at.beta) / widths, nu) - 0.5 / np.pi
+        local = indentation(at.x / np.cos(at.beta) / widths, poisson=nu) - 0.5 / np.pi
         body = softness * (lags[MATES] - tooth)
         tooth[np.diag_indices(count)] -= np.append(local, local[-1])
         tooth *= softness

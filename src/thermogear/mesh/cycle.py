@@ -154,8 +154,17 @@ def quantities(
     """
     names = _asked(want)
     computed = _Cycle(hot, tuple(deviations), s, phase)
-    found = {name: of(computed) for name, (_, of) in TABLE.items() if name in names}
-    return found | {"status": computed.status(names)}
+    springs = computed.parts if any(name in SPRINGS for name in names) else {}
+    for name in want:
+        if name in SPRINGS and name not in springs:
+            why = f"model.tooth = {hot.model.tooth} has other springs"
+            raise InputError("want", repr(name), allowed=" | ".join(springs), why=why)
+    values = {
+        name: of(computed)
+        for name, (_, of) in TABLE.items()
+        if name in names and (name in springs or name not in SPRINGS)
+    }
+    return values | {"status": computed.status(names)}
 
 
 def _asked(want: Collection[str]) -> Collection[str]:
@@ -330,10 +339,10 @@ SPRINGS = (
     *(
         f"{gear}_{part}_stiffness"
         for gear in ("pinion", "wheel")
-        for part in ("bending", "shear", "axial", "body")
+        for part in ("bending", "shear", "axial", "body", "gear")
     ),
 )
-"""The springs of one tooth pair, in the order of storage."""
+"""The springs of one tooth pair, in the order of storage; each model of the teeth has some."""
 
 
 def _one_of(of: Callable[[_Cycle], dict[str, Floats]], name: str, c: _Cycle) -> Floats:

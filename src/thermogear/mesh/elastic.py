@@ -15,12 +15,14 @@ from thermogear.base.arrays import Floats
 from thermogear.gears.contact import curvature_radii, hertz_half_width, reduced_radius
 from thermogear.gears.contact import reduced_modulus as _reduced_modulus
 from thermogear.gears.deviations import Deviation
+from thermogear.gears.geometry import Gear
 from thermogear.gears.loaded import LEAST_LINE_LOAD, LoadedMesh, solve_mesh
 from thermogear.gears.pair import GearPair
 from thermogear.gears.ring import ring_compliance
 from thermogear.gears.sharing import equal_share, stiffness_share
 from thermogear.gears.stiffness import Moduli, mesh_stiffness, pair_compliances, weber_approach
 from thermogear.gears.tooth import ToothCompliances, flank_point, tooth_compliances
+from thermogear.gears.tooth_table import tooth_table
 from thermogear.mesh.thermal import HotPair, ThermalDeviation
 
 STARTS = {
@@ -189,7 +191,6 @@ class LoadedPair(ElasticPair):
         load = np.maximum(carried, LEAST_LINE_LOAD * width)
         half_width = hertz_half_width(load / width, reduced_radius(pair, s), self.contact_modulus)
         approach = np.zeros_like(load)
-        windup = self.hot.model.body == "bore-clamped"
         for name, gear, rho, moduli in zip(
             ("pinion", "wheel"),
             (pair.pinion, pair.wheel),
@@ -207,12 +208,24 @@ class LoadedPair(ElasticPair):
                 poisson=gear.material.poisson_ratio,
                 face_width=width,
             )
-            compliances |= _named(
-                name,
-                tooth_compliances(gear, t, self.start, moduli.tooth, width),
-                ring_compliance(gear, t, modulus=moduli.body, face_width=width, windup=windup),
-            )
+            compliances |= self._gear_parts(name, gear, t, moduli)
         return self._stiffnesses(compliances | {"hertz_stiffness": approach / load}, s)
+
+    def _gear_parts(self, name: str, gear: Gear, t: Floats, moduli: Moduli) -> dict[str, Floats]:
+        """Compliances of one gear without its contact: one where finite elements solve it."""
+        model, width = self.hot.model, self.hot.face_width
+        windup = model.body == "bore-clamped"
+        if model.tooth == "solved":
+            table = tooth_table(gear, model.plane)
+            tooth, body = table.self_compliance(t)
+            held = 0.0 if windup else table.windup
+            parts = tooth / np.asarray(moduli.tooth) + (body - held) / np.asarray(moduli.body)
+            return {f"{name}_gear_stiffness": np.asarray(parts / width)}
+        return _named(
+            name,
+            tooth_compliances(gear, t, self.start, moduli.tooth, width),
+            ring_compliance(gear, t, modulus=moduli.body, face_width=width, windup=windup),
+        )
 
     def over(self, phase: Floats) -> MeshCurves:
         solved = self.solve(phase)

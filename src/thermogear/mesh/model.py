@@ -54,9 +54,17 @@ CHOICES: dict[str, dict[str, str]] = {
         "constant": "E at 20 C",
     },
     "stiffness": {
-        "loaded": "loaded contact: coupled ring bodies, Weber contact, corner contact",
+        "loaded": "loaded contact: coupled teeth, Weber contact, corner contact",
         "textbook-root-circle": "potential-energy sum from the root circle, Sainsot, no coupling",
         "textbook-30-degree": "the same sum from the 30-degree section",
+    },
+    "tooth": {
+        "solved": "loaded contact: finite elements of one sector, tooth, fillets and body",
+        "beam": "loaded contact: beam of the true profile on a ring",
+    },
+    "plane": {
+        "stress": "solved teeth in plane stress, their contact in plane strain",
+        "strain": "solved teeth in plane strain: wide gears",
     },
     "spring": {
         "tangent": "tangent stiffness with its error delta - F_n/k at the mean load",
@@ -100,6 +108,8 @@ class MeshModel:
     housing: str = "expands"
     modulus: str = "of-temperature"
     stiffness: str = "loaded"
+    tooth: str = "solved"
+    plane: str = "stress"
     body: str = "rim"
     spring: str = "tangent"
     thermal_stiffness: str = "none"
@@ -137,8 +147,8 @@ class MeshModel:
 
     @property
     def loaded(self) -> LoadedModel:
-        """The loaded contact with the body of this model."""
-        return LoadedModel(body=self.body.replace("-", "_"))
+        """The loaded contact with the tooth and the body of this model."""
+        return LoadedModel(tooth=self.tooth, plane=self.plane, body=self.body.replace("-", "_"))
 
     @classmethod
     def consistent(cls) -> MeshModel:
@@ -158,6 +168,7 @@ class MeshModel:
             housing="rigid",
             modulus="constant",
             stiffness="textbook-root-circle",
+            tooth="beam",
             thermal_stiffness="thesis",
             sharing="equal",
         )

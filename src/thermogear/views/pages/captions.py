@@ -350,7 +350,12 @@ def bars(mesh: xr.Dataset) -> str:
         if "thermal_stiffness" in here and bool((hot["thermal_stiffness"] > 0.0).any()):
             springs.append(name)
         # the teeth's own bending tells the modulus from all that deforms with it
-        teeth = [n for n in ("pinion_bending_stiffness", "wheel_bending_stiffness") if n in here]
+        teeth = [
+            f"{gear}_{part}_stiffness"
+            for gear in ("pinion", "wheel")
+            for part in ("bending", "gear")
+            if f"{gear}_{part}_stiffness" in here
+        ]
         fallen = any(bool((hot[n] < cold[n]).all()) for n in teeth)
         if fallen and float(hot["mean_stiffness"]) < float(cold["mean_stiffness"]):
             softer.append(name)

@@ -246,7 +246,7 @@ def springs(results: Result, pictures: Pictures) -> Section | None:
             "stiffness-pair", "Stiffness of one tooth pair", captions.one_pair(mesh),
             first, ("pair_stiffness",), lambda: stiffness.pair(first),
         )  # fmt: skip
-    needs = ("pair_stiffness", "hertz_stiffness", "pinion_bending_stiffness")
+    needs = ("pair_stiffness", "hertz_stiffness")
     for place, name in enumerate(names_of(mesh, "bundle")):
         pictures.add(
             f"stiffness-parts-{place}", f"The springs that make a pair, {name}",

@@ -20,6 +20,7 @@ PARTS = {
     "shear": ("shear", OKABE_ITO[5]),
     "axial": ("axial", OKABE_ITO[3]),
     "body": ("body", OKABE_ITO[2]),
+    "gear": ("tooth and body", OKABE_ITO[0]),
 }
 
 
