@@ -117,26 +117,6 @@ def pressure_viscosity(lubricant: Lubricant, temperature: ArrayLike) -> Floats:
     return pressure_viscosity_gold(kinematic_viscosity(lubricant, temperature), lubricant.kind)
 
 
-def roelands(viscosity: ArrayLike, pressure: ArrayLike, coefficient: ArrayLike) -> Floats:
-    """Viscosity under pressure by Roelands, isothermal [Pa s].
-
-    eta = eta_0 exp{ (ln eta_0 + 9.67) [ (1 + 5.1e-9 p)^Z - 1 ] },
-    Z = alpha/[5.1e-9 (ln eta_0 + 9.67)].
-
-    ``viscosity`` eta_0 [Pa s], ``pressure`` p [Pa], ``coefficient`` alpha [1/Pa]. Meets Barus,
-    eta_0 exp(alpha p), at low pressure, where its slope is alpha eta_0. Source: form of Stachowiak
-    and Batchelor, Engineering Tribology.
-
-    >>> f"{roelands(0.1, 100e6, 20e-9):.3f} Pa s"
-    '0.609 Pa s'
-    """
-    eta = np.asarray(viscosity, dtype=float)
-    reach = np.log(eta) + 9.67
-    z = np.asarray(coefficient) / (5.1e-9 * reach)
-    raised = np.expm1(z * np.log1p(5.1e-9 * np.asarray(pressure, dtype=float)))
-    return np.asarray(eta * np.exp(reach * raised))
-
-
 def _groups(
     line_load: ArrayLike,
     entrainment: ArrayLike,

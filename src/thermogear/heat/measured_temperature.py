@@ -92,46 +92,6 @@ def _invert(radiance: float, band: Band) -> float:
     )
 
 
-def infrared_temperature(
-    indicated: ArrayLike,
-    *,
-    emissivity: float,
-    transmission: float,
-    surroundings: float,
-    path: float,
-    band: Band = None,
-    indicated_emissivity: float = 1.0,
-) -> Floats:
-    """True surface temperature behind an infrared reading [K].
-
-    Solves :func:`infrared_signal` (T; eps, tau) = signal that made the instrument, set to
-    ``indicated_emissivity`` and no window, say ``indicated`` [K].
-
-    ``emissivity`` eps in (0, 1], ``transmission`` tau in (0, 1], ``surroundings``, ``path`` [K].
-    Any shape. Raises when the reading is darker than its own reflections.
-
-    >>> t = infrared_temperature(
-    ...     373.15, emissivity=0.9, transmission=1.0, surroundings=293.15, path=293.15
-    ... )
-    >>> f"{t - 273.15:.2f} C"
-    '106.26 C'
-    """
-    for name, value in (
-        ("emissivity", emissivity),
-        ("transmission", transmission),
-        ("indicated emissivity", indicated_emissivity),
-    ):
-        require_share(name, value)
-    reading = np.asarray(indicated, dtype=float)
-    flat = [
-        _corrected(
-            float(value), emissivity, transmission, surroundings, path, band, indicated_emissivity
-        )
-        for value in np.ravel(reading)
-    ]
-    return np.asarray(flat).reshape(reading.shape)
-
-
 def infrared_indication(
     temperature: ArrayLike,
     *,
@@ -144,7 +104,7 @@ def infrared_indication(
 ) -> Floats:
     """What an infrared instrument says of a surface at ``temperature`` [K].
 
-    Inverse of :func:`infrared_temperature`: T_i with eps_i L(T_i) + (1 - eps_i) L(T_env) = S, S of
+    T_i with eps_i L(T_i) + (1 - eps_i) L(T_env) = S, S of
     :func:`infrared_signal`, the instrument set to ``indicated_emissivity`` eps_i and no window.
 
     ``emissivity``, ``transmission`` in (0, 1]; ``surroundings``, ``path`` [K], any shapes that
@@ -182,16 +142,8 @@ def _corrected(
     surroundings: float,
     path: float,
     band: Band,
-    set_to: float = 1.0,
 ) -> float:
-    signal = infrared_signal(
-        indicated,
-        emissivity=set_to,
-        transmission=1.0,
-        surroundings=surroundings,
-        path=path,
-        band=band,
-    )
+    signal = band_radiance(indicated, band)
     mirrored = (1.0 - emissivity) * transmission * band_radiance(surroundings, band)
     window = (1.0 - transmission) * band_radiance(path, band)
     return _invert(float((signal - mirrored - window) / (emissivity * transmission)), band)
