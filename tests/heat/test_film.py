@@ -170,8 +170,6 @@ def test_film_parameter_and_regime() -> None:
     assert regime([1.0, 3.0, 1e9, np.inf]).tolist() == [1, 2, 2, 3]
     with pytest.raises(InputError, match=r"^roughness: got 0.0; allowed > 0 m"):
         film_parameter(1e-6, roughness_1=0.0, roughness_2=0.0)
-    with pytest.raises(InputError, match=r"^regime limits: got 3.0 and 1.0"):
-        regime(1.0, boundary_below=3.0, full_film_above=1.0)
 
 
 def test_shares_of_the_path() -> None:
