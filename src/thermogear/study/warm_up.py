@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from thermogear.base.arrays import Floats
+from thermogear.base.bounds import whole
 from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.base.progress import Progress, silent
 from thermogear.base.units import RPM
@@ -69,6 +70,12 @@ def warm_up_survey(
     has the moment of the least half backlash [m], its margin [K] and the steady one beside it.
     """
     began = time.perf_counter()
+    for name, value, kind, fix in (
+        ("duty", duty, Duty, "read_duty(FILE, case)"),
+        ("measured", measured, Measured, "read_measured(FILE)"),
+    ):
+        if not isinstance(value, kind | None):
+            raise InputError(name, repr(value), allowed=f"a {kind.__name__}", fix=f"pass {fix}")
     names = require_factors(fit, "fit") if fit else ()
     if names and measured is None:
         raise InputError(
@@ -77,7 +84,7 @@ def warm_up_survey(
     work = point_duty(case, *chosen_point(case)) if duty is None else duty
     if work.pieces > MOST_PIECES:
         raise InputError("duty", f"{work.pieces} rows", allowed=f"at most {MOST_PIECES}")
-    of_each = max(12, min(MOST_OF_ONE, moments // work.pieces))
+    of_each = max(12, min(MOST_OF_ONE, whole("moments", moments, least=1) // work.pieces))
     found: Fit | None = None
     with warnings.catch_warnings():
         # told in the notices, with how long
