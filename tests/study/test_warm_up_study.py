@@ -16,7 +16,7 @@ from thermogear.base.errors import InputError
 from thermogear.case.case import GearCase, load_case, load_example
 from thermogear.case.duty import Measured, chosen_point
 from thermogear.case.sensors import flank_area, shaft_share
-from thermogear.heat.measured_temperature import infrared_temperature, surface_temperature
+from thermogear.heat.measured_temperature import InfraredReading, surface_temperature
 from thermogear.mesh.warm_up import Duty
 from thermogear.mesh.warm_up_fit import Fit, fit_factors, require_factors, until
 from thermogear.study.warm_up import warm_up_survey
@@ -97,15 +97,15 @@ def test_sensors_follow_their_rules_backwards(tree: xr.DataTree) -> None:
     # the camera: what the correction makes of its reading is the flank
     for place in (0, 40, -1):
         here = data.isel(moment=place)
-        corrected = infrared_temperature(
-            float(here["sensor_temperature"].sel(sensor="infrared")),
+        reading = InfraredReading(
+            indicated=float(here["sensor_temperature"].sel(sensor="infrared")),
             emissivity=0.9,
             transmission=0.93,
             surroundings=float(here["node_temperature"].sel(node="housing")),
             path=float(here["node_temperature"].sel(node="ambient")),
             band=(8e-6, 14e-6),
         )
-        assert float(corrected) == pytest.approx(
+        assert reading.temperature() == pytest.approx(
             float(here["node_temperature"].sel(node="pinion_tooth")), abs=1e-6
         )
     # the ring lies between shaft and housing
