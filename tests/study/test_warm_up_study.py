@@ -287,17 +287,21 @@ def test_rows_after_the_end_are_left_out_with_a_word() -> None:
 
 
 def test_a_course_says_from_when_on_it_has_no_oil_bath() -> None:
-    """Its first moment with an oil hotter than any bath stands in the notice, and no other."""
+    """The crossing between two stored moments stands in the notice, however many are stored."""
     case = load_case(OWN_PAIR, [*QUICK[1:2], "oil.flash_point=40 degC"])
     assert isinstance(case, GearCase)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        found = warm_up_survey(case, moments=30)
-    course = found.groups["course"]
-    oil = course["node_temperature"].sel(node="oil").values
-    hot = oil > case.stated.lubricant.hottest_bath
-    (told,) = coded(found.notices)["no_bath_from"]
-    assert told == {"time": course["time"].values[hot][0], "hottest": pytest.approx(313.15)}
+        some, more = (warm_up_survey(case, moments=n) for n in (30, 75))
+    told, again = (coded(found.notices)["no_bath_from"][0] for found in (some, more))
+    assert told["hottest"] == pytest.approx(313.15)
+    course = some.groups["course"]
+    time, oil = course["time"].values, course["node_temperature"].sel(node="oil").values
+    place = int(np.argmax(oil > 313.15))
+    assert time[place - 1] < told["time"] < time[place]
+    straight = np.interp(313.15, oil[place - 1 : place + 1], time[place - 1 : place + 1])
+    assert told["time"] == pytest.approx(straight, abs=0.05 * (time[place] - time[place - 1]))
+    assert told["time"] == pytest.approx(again["time"], rel=1e-3)
 
 
 # --- in words, and another pair --------------------------------------------------------------

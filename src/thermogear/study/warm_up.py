@@ -31,6 +31,7 @@ from thermogear.study.declared import WarmUpSurvey, declared
 
 if TYPE_CHECKING:
     import xarray as xr
+from scipy.optimize import brentq
 
 LEAST_LOSS = 5e-9
 """A steady loss of backlash [m] below which another one is no share of it."""
@@ -403,6 +404,18 @@ def _fit_words(found: Fit | None) -> dict[str, Any]:
 # --- in words -----------------------------------------------------------------------------------
 
 
+def no_bath_from(course: WarmUp) -> float:
+    """When [s] the oil of a course first gets hotter than any bath of it, between the moments too.
+
+    0 where it is so from the start. Only for a course that has such a moment.
+    """
+    place = int(np.argmax(course.operating.no_bath))
+    if place == 0:
+        return 0.0
+    hottest, between = course.operating.lubricant.hottest_bath, course.time[place - 1 : place + 1]
+    return float(brentq(lambda time: course.course.at(time)["oil"] - hottest, *between))
+
+
 def _notices(
     case: GearCase,
     course: WarmUp,
@@ -417,8 +430,8 @@ def _notices(
     if course.course.too_hot:
         yield Notice.of("node_too_hot", time=course.time[-1], limit=HOTTEST)
     lubricant = case.stated.lubricant
-    if (hot := course.operating.no_bath).any():
-        yield Notice.of("no_bath_from", time=course.time[hot][0], hottest=lubricant.hottest_bath)
+    if course.operating.no_bath.any():
+        yield Notice.of("no_bath_from", time=no_bath_from(course), hottest=lubricant.hottest_bath)
     low, high = lubricant.temperature_range
     oil = np.asarray(course.operating.oil_temperature)
     outside = (oil < low) | (oil > high)
