@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -284,6 +285,16 @@ def test_rows_after_the_end_are_left_out_with_a_word() -> None:
     late = Measured(time=np.array([1e4]), names=("oil",), values=np.full((1, 1), 300.0))
     with pytest.raises(InputError, match=r"^measured: got no row within the course"):
         warm_up_survey(rig(), short, measured=late)
+
+
+def test_a_pair_without_backlash_jams_from_the_start() -> None:
+    """Text, data and JSON tell one moment, 0."""
+    duty = replace(WORK, time=np.array([0.0, 30.0, 60.0, 90.0]))
+    found = warm_up_survey(rig('backlash.value="0.01 um"'), duty, moments=12)
+    assert float(found.groups["course"]["half_backlash"][0]) <= 0.0
+    assert found.values("jams")[0] == 0.0
+    assert coded(found.notices)["pair_jams"] == [{"time": 0.0}]
+    assert page(found).figures["jams_s"][0] == 0.0
 
 
 def test_a_course_says_from_when_on_it_has_no_oil_bath() -> None:

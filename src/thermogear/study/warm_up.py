@@ -116,14 +116,14 @@ def warm_up_survey(
         WarmUpSurvey.kind,
         f"Warm-up: {case.title}",
         groups,
-        _notices(case, course, steady, measured, found, worst, seconds),
+        _notices(case, course, steady, measured, found, seconds),
         **case.provenance,
         bundle=case.models[0].name,
         choices=case.models[0].choices(),
         held=dict(course.held),
         duty="one point until steady" if duty is None else "table",
         worst=worst,
-        jams=[float(t) for t in course.jams],
+        jams=jams_of(course),
         sensors={one.name: one.words for one in shown},
         fit=_fit_words(found),
         evaluations=course.course.evaluations,
@@ -404,6 +404,12 @@ def _fit_words(found: Fit | None) -> dict[str, Any]:
 # --- in words -----------------------------------------------------------------------------------
 
 
+def jams_of(course: WarmUp) -> list[float]:
+    """When [s] the backlash is used up, 0 among them where none is there from the start."""
+    jams: list[float] = [0.0] * bool(course.half_backlash[0] <= 0.0) + course.jams.tolist()
+    return jams or [course.worst.time] * bool(course.worst.half_backlash <= 0.0)
+
+
 def no_bath_from(course: WarmUp) -> float:
     """When [s] the oil of a course first gets hotter than any bath of it, between the moments too.
 
@@ -422,11 +428,10 @@ def _notices(
     steady: xr.Dataset,
     measured: Measured | None,
     found: Fit | None,
-    worst: Mapping[str, Any],
     seconds: float,
 ) -> Iterator[Notice]:
-    if worst["half_backlash_m"] <= 0.0:
-        yield Notice.of("pair_jams", time=course.jams[0] if course.jams.size else course.time[0])
+    if jams := jams_of(course):
+        yield Notice.of("pair_jams", time=jams[0])
     if course.course.too_hot:
         yield Notice.of("node_too_hot", time=course.time[-1], limit=HOTTEST)
     lubricant = case.stated.lubricant
