@@ -154,7 +154,7 @@ def test_starts_of_a_length_that_no_state_has_are_refused() -> None:
 
 
 def test_a_parameter_that_the_result_has_already_is_refused() -> None:
-    from thermogear.dynamics.smooth_map import SmoothModel
+    from smooth_model import SmoothModel
 
     model = SmoothModel(
         derivative=lambda t, y: -y, jacobian=lambda t, y: -np.eye(2), period=1.0, unit=np.ones(2)

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
+from smooth_model import SmoothModel
 from thermogear.analysis.any_motion import settle
 from thermogear.analysis.orbits import periodic_orbit
 from thermogear.analysis.walk import Search
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.dynamics.return_map import ReturnMap, return_map
-from thermogear.dynamics.smooth_map import SmoothModel
 
 
 def linear(matrix, force, omega):

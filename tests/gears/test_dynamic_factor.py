@@ -17,7 +17,6 @@ from thermogear.gears.dynamic_factor import (
     BRANCHES,
     branch_factors,
     dynamic_factor,
-    dynamic_factor_c,
     factor_of_resonance,
     reduced_mass,
     resonance_edge,
@@ -101,9 +100,6 @@ def test_fzg_c() -> None:
     assert float(plain.factor) == pytest.approx(1.025, abs=6e-4)
     eased = dynamic_factor(fzg_c(), 200.0, 1500.0 * RPM, grade=5)
     assert 0.0 < float(plain.factor - eased.factor) < 2e-3
-    assert float(dynamic_factor_c(fzg_c(), 200.0, 1500.0 * RPM, grade=5)) == pytest.approx(
-        1.052, abs=6e-4
-    )
 
 
 def test_fzg_c_of_a_public_code() -> None:
@@ -195,18 +191,6 @@ def test_exchange_scale_and_grade() -> None:
         assert np.array_equal(many.factor[:, 1], [1.0, 1.0])
 
 
-def test_method_c_lies_above_b(compared: Compared) -> None:
-    found = float(dynamic_factor_c(PAIR, 200.0, 3000.0 * RPM, grade=6))
-    compared("K_v by method C", "computed apart", found - 1.309, 6e-4)
-    slow = np.linspace(10.0, 3000.0, 30) * RPM
-    for grade in (5, 6, 7, 8):
-        c = dynamic_factor_c(PAIR, 200.0, slow, grade=grade)
-        assert np.all(c >= dynamic_factor(PAIR, 200.0, slow, grade=grade).factor)
-        assert np.all(np.diff(c) > 0.0)
-    light = dynamic_factor_c(PAIR, np.array([1.0, 112.5]), 100.0, grade=6)
-    assert light[0] == light[1]
-
-
 def test_running_in_and_blanks() -> None:
     kept = {"endurance": 1500e6, "surface": "case-hardened"}
     assert float(running_in(8.538e-6, pitch_speed=12.0, **kept)) == pytest.approx(
@@ -244,19 +228,6 @@ def test_running_in_and_blanks() -> None:
             lambda: dynamic_factor(PAIR, 10.0, 100.0, grade=6, surface="nitrided"),
             "surface: got 'nitrided'; allowed case-hardened | through-hardened; "
             "known: case-hardened, through-hardened",
-        ),
-        (
-            lambda: dynamic_factor_c(PAIR, 10.0, 100.0, grade=9),
-            "accuracy.grade: got 9; allowed 3..8; the range of method C",
-        ),
-        (
-            lambda: dynamic_factor_c(PAIR, 200.0, 9000.0 * RPM, grade=6),
-            "v z1/100 sqrt(u^2/(1 + u^2)): got 8.382 m/s; allowed 0..3 m/s; "
-            "the range of method C; use method B",
-        ),
-        (
-            lambda: dynamic_factor_c(GearPair(Gear(50, 3e-3), Gear(60, 3e-3)), 9.0, 9.0, grade=6),
-            "teeth: got 50; allowed < 50; the range of method C",
         ),
         (lambda: branch_factors(0.9), "contact ratio: got 0.9; allowed >= 1"),
     ],

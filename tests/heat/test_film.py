@@ -18,7 +18,6 @@ from thermogear.heat.film import (
     pressure_viscosity_iso,
     regime,
     regime_shares,
-    roelands,
     thermal_reduction,
 )
 
@@ -164,20 +163,6 @@ def test_pressure_viscosity_in_the_units_of_its_sources() -> None:
     assert pressure_viscosity_iso(0.08, 800.0) == 0.0
 
 
-def test_roelands_by_hand() -> None:
-    z = 2e-8 / (5.1e-9 * (np.log(0.03) + 9.67))
-    expected = 0.03 * np.exp((np.log(0.03) + 9.67) * ((1.0 + 5.1e-9 * 1e9) ** z - 1.0))
-    assert roelands(0.03, 1e9, 2e-8) == pytest.approx(expected, rel=1e-12)
-
-
-def test_roelands_meets_barus_at_low_pressure_and_stays_below_it() -> None:
-    low = 1e5
-    assert roelands(0.03, low, 2e-8) == pytest.approx(0.03 * np.exp(low * 2e-8), rel=1e-6)
-    assert roelands(0.03, 0.0, 2e-8) == pytest.approx(0.03, rel=1e-15)
-    high = np.array([0.5e9, 1e9])
-    assert np.all(roelands(0.03, high, 2e-8) < 0.03 * np.exp(2e-8 * high))
-
-
 def test_film_parameter_and_regime() -> None:
     values = film_parameter([0.2e-6, 1e-6, 3e-6], roughness_1=0.3e-6, roughness_2=0.4e-6)
     assert values == pytest.approx([0.4, 2.0, 6.0])
@@ -185,8 +170,6 @@ def test_film_parameter_and_regime() -> None:
     assert regime([1.0, 3.0, 1e9, np.inf]).tolist() == [1, 2, 2, 3]
     with pytest.raises(InputError, match=r"^roughness: got 0.0; allowed > 0 m"):
         film_parameter(1e-6, roughness_1=0.0, roughness_2=0.0)
-    with pytest.raises(InputError, match=r"^regime limits: got 3.0 and 1.0"):
-        regime(1.0, boundary_below=3.0, full_film_above=1.0)
 
 
 def test_shares_of_the_path() -> None:

@@ -178,5 +178,3 @@ def test_contact_state_refuses_the_impossible() -> None:
 def test_contact_state_speeds() -> None:
     one = state()
     assert np.array_equal(one.entrainment * 2.0, one.sum_speed)
-    assert one.slide_roll_ratio == pytest.approx(np.abs(one.sliding) / one.entrainment)
-    assert state(speed_1=0.0, speed_2=0.0).slide_roll_ratio == 0.0

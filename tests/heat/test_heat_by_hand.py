@@ -16,8 +16,8 @@ from thermogear.heat.gearbox import Losses, thermal_network
 from thermogear.heat.laws import iso_13989_1, iso_13989_2, schlenk
 from thermogear.heat.measured_temperature import (
     ThermocoupleReading,
+    infrared_indication,
     infrared_signal,
-    infrared_temperature,
 )
 from thermogear.heat.scuffing import flash_at_tip_13989_2
 
@@ -89,7 +89,7 @@ def test_half_the_ring_between_root_and_tip_is_tooth() -> None:
 @pytest.mark.parametrize("true", [150.4, 2999.0])
 def test_the_infrared_inversion_reaches_its_ends(true: float) -> None:
     """Surroundings as hot as the surface: the signal is the black one, at any emissivity."""
-    assert infrared_temperature(
+    assert infrared_indication(
         true, emissivity=0.5, transmission=0.8, surroundings=true, path=true
     ) == pytest.approx(true, abs=1e-6)
     assert float(
@@ -100,7 +100,7 @@ def test_the_infrared_inversion_reaches_its_ends(true: float) -> None:
         ),
         rel=1e-12,
     )
-    assert infrared_temperature(
+    assert infrared_indication(
         true, emissivity=1.0, transmission=1.0, surroundings=300.0, path=300.0
     ) == pytest.approx(true, abs=1e-6)
 

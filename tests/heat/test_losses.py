@@ -13,9 +13,7 @@ from thermogear.heat.losses import (
     churning_loss,
     efficiency,
     gear_loss_factor,
-    jet_loss,
     mesh_loss,
-    seal_loss,
 )
 
 
@@ -81,18 +79,6 @@ def test_churning_is_torque_times_speed_and_grows_with_both() -> None:
     loss = churning_loss(speed, 0.1, 850.0, 4e-5, 0.4)
     assert loss[0] == 0.0
     assert loss[2] / loss[1] == pytest.approx(2.0**2.5, rel=1e-12)  # laminar
-
-
-def test_jet_is_the_momentum_theorem() -> None:
-    """Oil at rest brought to the pitch speed takes twice its kinetic energy."""
-    v, flow = 100.0 * 0.05, 1e-5
-    assert jet_loss(100.0, 0.05, 850.0, flow) == pytest.approx(850.0 * flow * v**2)
-    assert jet_loss(100.0, 0.05, 850.0, flow, -v) == 0.0
-
-
-def test_seal_in_the_units_of_its_source() -> None:
-    """7.69e-6 d^2 n with mm and 1/min."""
-    assert seal_loss(0.030, 1500.0 * np.pi / 30.0) == pytest.approx(7.69e-6 * 900.0 * 1500.0)
 
 
 def test_bearing_and_efficiency() -> None:

@@ -12,7 +12,6 @@ from thermogear.heat.measured_temperature import (
     ThermocoupleReading,
     band_radiance,
     infrared_signal,
-    infrared_temperature,
     surface_temperature,
 )
 
@@ -45,30 +44,26 @@ def test_correction_is_the_inverse_of_the_signal(
     band: tuple[float, float] | None,
 ) -> None:
     true = np.array([330.0, 380.0, 430.0])
-    signal = infrared_signal(
-        true, emissivity=0.85, transmission=0.92, surroundings=300.0, path=310.0, band=band
-    )
+    known = {"emissivity": 0.85, "transmission": 0.92, "surroundings": 300.0, "path": 310.0}
+    signal = infrared_signal(true, **known, band=band)
     # what an instrument set to emissivity 1 says to that signal
     seen = [
         float(np.interp(s, band_radiance(grid, band), grid))
         for s in signal
         for grid in [np.linspace(250.0, 500.0, 200001)]
     ]
-    corrected = infrared_temperature(
-        seen, emissivity=0.85, transmission=0.92, surroundings=300.0, path=310.0, band=band
-    )
+    corrected = [InfraredReading(indicated=t, band=band, **known).temperature() for t in seen]
     assert corrected == pytest.approx(true, abs=1e-3)
 
 
 def test_perfect_conditions_need_no_correction() -> None:
-    assert infrared_temperature(
-        400.0, emissivity=1.0, transmission=1.0, surroundings=300.0, path=300.0
-    ) == pytest.approx(400.0, abs=1e-8)
+    perfect = InfraredReading(indicated=400.0, emissivity=1.0, surroundings=300.0, path=300.0)
+    assert perfect.temperature() == pytest.approx(400.0, abs=1e-8)
     # a surface as hot as its surroundings and the window looks black whatever its emissivity
-    same = infrared_temperature(
-        400.0, emissivity=0.3, transmission=0.5, surroundings=400.0, path=400.0
+    same = InfraredReading(
+        indicated=400.0, emissivity=0.3, transmission=0.5, surroundings=400.0, path=400.0
     )
-    assert same == pytest.approx(400.0, abs=1e-8)
+    assert same.temperature() == pytest.approx(400.0, abs=1e-8)
 
 
 def test_narrow_band_tends_to_one_wavelength() -> None:
@@ -125,14 +120,14 @@ def test_infrared_uncertainty_is_the_sum_of_squares_and_short_waves_win() -> Non
             "infrared reading: got",
         ),
         (
-            lambda: infrared_temperature(
-                380.0, emissivity=0.9, transmission=0.0, surroundings=300.0, path=300.0
+            lambda: InfraredReading(
+                indicated=380.0, emissivity=0.9, transmission=0.0, surroundings=300.0
             ),
             "transmission: got 0.0",
         ),
         (
-            lambda: infrared_temperature(
-                380.0, emissivity=1.01, transmission=1.0, surroundings=300.0, path=300.0
+            lambda: InfraredReading(
+                indicated=380.0, emissivity=1.01, transmission=1.0, surroundings=300.0
             ),
             "emissivity: got 1.01",
         ),

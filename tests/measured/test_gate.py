@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
+from thermogear.base.notice import Notice
 from thermogear.measured.comparison import table_of
 from thermogear.measured.figures import figures
 from thermogear.measured.gate import turned_by
@@ -100,6 +103,31 @@ def test_much_clipping_withholds_amplitudes_and_keeps_the_frequency() -> None:
     assert told["findings"][0]["code"] == "amplitudes_withheld"
     with pytest.raises(InputError, match="its lines are withheld: clipping"):
         table_of(found)
+
+
+def test_a_small_gap_is_not_blamed_for_what_clipping_withholds() -> None:
+    """Each damage that alone is too much, or all that are so together, and no other."""
+    x = np.clip(channel(), -0.9, 0.9)
+    x[1000:1003] = np.nan
+    found = measured(x)
+    blamed = [one for one in found.findings if one.code == "amplitudes_withheld"]
+    assert [one.data["damage"] for one in blamed] == ["clipping", "clipping"]
+    assert all(one.data["share"] > 0.02 for one in blamed)
+    assert found.lines[0].withheld.startswith("clipping")
+
+
+def test_a_twin_that_is_a_copy_is_told_once() -> None:
+    x = channel()
+    channels = tuple(Channel(name, v, "m/s^2") for name, v in (("a", x), ("a (2)", -2.0 * x)))
+    record = Record(channels, "made", RATE, "made").noting(
+        Notice.of("twin_renamed", channel="a", renamed="a (2)")
+    )
+    found = measure(record, teeth=TEETH, speed=SPEED, sidebands=0, harmonics=1)
+    assert [one.code for one in found.findings] == ["copy_left_out"]
+    assert "twin_renamed" not in [one.code for one in found.notices]
+    other = replace(record, channels=(channels[0], Channel("a (2)", channel(5), "m/s^2")))
+    found = measure(other, teeth=TEETH, speed=SPEED, sidebands=0, harmonics=1)
+    assert "twin_renamed" in [one.code for one in found.notices]
 
 
 @pytest.mark.parametrize(("step", "stated"), [(0.35, 0.05), (0.5, 0.2), (1.0, np.nan)])

@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from trains import TRUTH, random_train, six
+from trains import TRUTH, lumped, random_train, six
 
 from conftest import Compared
 from thermogear.base.errors import ConvergenceError, InputError
-from thermogear.shafts.assembly import Assembly, assemble, lumped
+from thermogear.shafts.assembly import Assembly, assemble
 from thermogear.shafts.bearings.laws import ElementLaw, LinearLaw, RingLaw
 from thermogear.shafts.linear import LinearTrain, damping_ratios, lift_off, strain_shares, whirl
 from thermogear.shafts.response import (

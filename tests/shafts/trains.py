@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from types import SimpleNamespace
@@ -11,7 +12,8 @@ from typing import Any
 import numpy as np
 
 from thermogear.base.materials import material
-from thermogear.shafts.assembly import Assembly, lumped
+from thermogear.shafts import assembly
+from thermogear.shafts.assembly import Assembly, mesh_mass
 from thermogear.shafts.bearings.laws import LinearLaw, RingLaw
 from thermogear.shafts.mesh_lines import MeshFrame
 from thermogear.shafts.train import (
@@ -83,6 +85,37 @@ def rao_train(params: dict[str, Any]) -> DriveTrain:
         discs=tuple(discs),
         least_elements=1,
     )
+
+
+def lumped(
+    frame: MeshFrame,
+    *,
+    masses: tuple[float, float],
+    inertias: tuple[float, float],
+    bearings: tuple[Bearing, Bearing],
+    damping: Damping | None = None,
+) -> Assembly:
+    """Two rigid gears, each on one bearing in its plane: x, y and tz of both, six coordinates.
+
+    ``masses`` [kg], ``inertias`` [kg m^2] polar, of pinion and wheel.
+    The limit of stiff shafts with bearings on both sides of each gear, and the smallest train in
+    which gears part and bearings give.
+    """
+    names = tuple(f"{shaft}.0.{one}" for shaft in SHAFTS for one in ("x", "y", "tz"))
+    empty = Assembly(
+        frame=frame,
+        damping=damping or Damping(),
+        coordinates=names,
+        **(assembly._empty(6) | dict(zip(("drive", "back"), frame.columns, strict=True))),
+        bearings=(),
+        nodes=(np.zeros(1), np.zeros(1)),
+        gear_nodes=(0, 0),
+        mesh_mass=mesh_mass(frame, pinion=inertias[0], wheel=inertias[1]),
+    )
+    own = [value for m, inertia in zip(masses, inertias, strict=True) for value in (m, m, inertia)]
+    empty.mass[...] = np.diag(own)
+    places = tuple(assembly._put_bearing(empty, one, np.zeros((6, 2))) for one in bearings)
+    return replace(empty, bearings=places)
 
 
 def six(params: dict[str, Any]) -> Assembly:

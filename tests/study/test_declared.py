@@ -16,18 +16,27 @@ from thermogear.base.units import RPM
 from thermogear.case.case import gear_case, load_example
 from thermogear.case.one_point import of_numbers
 from thermogear.front.cli import cli
+from thermogear.study.answers.survey import answers
 from thermogear.study.declared import (
     COMMANDS,
+    Campbell,
     ClosedOrbit,
     Contact,
     Lyapunov,
+    NaturalModes,
     ReliefSurvey,
     Study,
     Temperature,
     declared,
     option,
 )
+from thermogear.study.friction import friction_survey
 from thermogear.study.orbit import orbit_results
+from thermogear.study.relief import relief_survey
+from thermogear.study.shafts.campbell import campbell
+from thermogear.study.shafts.statics import statics
+from thermogear.study.shafts.waterfall import waterfall
+from thermogear.study.warm_up import warm_up_survey
 
 NUMBERS = {
     "damping_ratio": 0.1535,
@@ -66,6 +75,16 @@ def test_what_was_asked_is_stored_from_python_and_from_the_command_line() -> Non
         (Lyapunov, {"batches": 3}, "batches: got 3; allowed 4..100000"),
         (ReliefSurvey, {"shape": "round"}, "shape: got 'round'; allowed linear | parabolic"),
         (Contact, {"body": "bore"}, "body: got 'bore'; allowed bore-clamped | rim"),
+        (NaturalModes, {"count": True}, "count: got True; allowed 1..60, a whole number"),
+        (ReliefSurvey, {"torque": "abc"}, "torque: got 'abc'; allowed a number [N m]"),
+        (ReliefSurvey, {"torque": 1e8}, "torque: got 1e+08 N m; allowed 0..1e7 N m"),
+        (Campbell, {"speeds": (100.0,)}, "speeds: got (100.0,); allowed two numbers [rad/s]"),
+        (
+            Temperature,
+            {"torques": []},
+            "torques: got []; allowed one number or more, on one axis [N m]",
+        ),
+        (Temperature, {"speeds": "abc"}, "speeds: got 'abc'; allowed numbers [rad/s]"),
     ],
 )
 def test_python_is_refused_under_the_name_of_the_field(
@@ -73,6 +92,29 @@ def test_python_is_refused_under_the_name_of_the_field(
 ) -> None:
     with pytest.raises(InputError) as error:
         study(**asked)
+    assert str(error.value) == line
+
+
+@pytest.mark.parametrize("given", ["rig", None, load_example("table-4.2")])
+@pytest.mark.parametrize(
+    "study", [answers, friction_survey, relief_survey, statics, campbell, waterfall, warm_up_survey]
+)
+def test_what_has_no_gears_is_refused_from_python(study: Any, given: Any) -> None:
+    with pytest.raises(InputError, match=r"^case: got kind = .*; allowed kind = 'gear'; there is"):
+        study(given, **({"speeds": [100.0]} if study is waterfall else {}))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        ({"duty": "x.csv"}, "duty: got 'x.csv'; allowed a Duty; pass read_duty(FILE, case)"),
+        ({"measured": 5}, "measured: got 5; allowed a Measured; pass read_measured(FILE)"),
+        ({"moments": "many"}, "moments: got many; allowed a whole number >= 1"),
+    ],
+)
+def test_a_warm_up_takes_what_was_read(arguments: dict[str, Any], line: str) -> None:
+    with pytest.raises(InputError) as error:
+        warm_up_survey(gear_case(load_example("rig")), **arguments)
     assert str(error.value) == line
 
 
@@ -98,7 +140,7 @@ def test_a_function_is_not_called_with_what_is_not_allowed() -> None:
     from dataclasses import dataclass
 
     @dataclass(frozen=True)
-    class Turns(Study, kind="turns", home=""):
+    class Turns(Study, kind="turns", home="", of="point"):
         count: int = option(2, "--count", "Turns.", allowed=range(1, 4))
 
     @declared(Turns)

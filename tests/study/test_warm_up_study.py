@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -16,7 +17,7 @@ from thermogear.base.errors import InputError
 from thermogear.case.case import GearCase, load_case, load_example
 from thermogear.case.duty import Measured, chosen_point
 from thermogear.case.sensors import flank_area, shaft_share
-from thermogear.heat.measured_temperature import infrared_temperature, surface_temperature
+from thermogear.heat.measured_temperature import InfraredReading, surface_temperature
 from thermogear.mesh.warm_up import Duty
 from thermogear.mesh.warm_up_fit import Fit, fit_factors, require_factors, until
 from thermogear.study.warm_up import warm_up_survey
@@ -97,15 +98,15 @@ def test_sensors_follow_their_rules_backwards(tree: xr.DataTree) -> None:
     # the camera: what the correction makes of its reading is the flank
     for place in (0, 40, -1):
         here = data.isel(moment=place)
-        corrected = infrared_temperature(
-            float(here["sensor_temperature"].sel(sensor="infrared")),
+        reading = InfraredReading(
+            indicated=float(here["sensor_temperature"].sel(sensor="infrared")),
             emissivity=0.9,
             transmission=0.93,
             surroundings=float(here["node_temperature"].sel(node="housing")),
             path=float(here["node_temperature"].sel(node="ambient")),
             band=(8e-6, 14e-6),
         )
-        assert float(corrected) == pytest.approx(
+        assert reading.temperature() == pytest.approx(
             float(here["node_temperature"].sel(node="pinion_tooth")), abs=1e-6
         )
     # the ring lies between shaft and housing
@@ -286,18 +287,32 @@ def test_rows_after_the_end_are_left_out_with_a_word() -> None:
         warm_up_survey(rig(), short, measured=late)
 
 
+def test_a_pair_without_backlash_jams_from_the_start() -> None:
+    """Text, data and JSON tell one moment, 0."""
+    duty = replace(WORK, time=np.array([0.0, 30.0, 60.0, 90.0]))
+    found = warm_up_survey(rig('backlash.value="0.01 um"'), duty, moments=12)
+    assert float(found.groups["course"]["half_backlash"][0]) <= 0.0
+    assert found.values("jams")[0] == 0.0
+    assert coded(found.notices)["pair_jams"] == [{"time": 0.0}]
+    assert page(found).figures["jams_s"][0] == 0.0
+
+
 def test_a_course_says_from_when_on_it_has_no_oil_bath() -> None:
-    """Its first moment with an oil hotter than any bath stands in the notice, and no other."""
+    """The crossing between two stored moments stands in the notice, however many are stored."""
     case = load_case(OWN_PAIR, [*QUICK[1:2], "oil.flash_point=40 degC"])
     assert isinstance(case, GearCase)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        found = warm_up_survey(case, moments=30)
-    course = found.groups["course"]
-    oil = course["node_temperature"].sel(node="oil").values
-    hot = oil > case.stated.lubricant.hottest_bath
-    (told,) = coded(found.notices)["no_bath_from"]
-    assert told == {"time": course["time"].values[hot][0], "hottest": pytest.approx(313.15)}
+        some, more = (warm_up_survey(case, moments=n) for n in (30, 75))
+    told, again = (coded(found.notices)["no_bath_from"][0] for found in (some, more))
+    assert told["hottest"] == pytest.approx(313.15)
+    course = some.groups["course"]
+    time, oil = course["time"].values, course["node_temperature"].sel(node="oil").values
+    place = int(np.argmax(oil > 313.15))
+    assert time[place - 1] < told["time"] < time[place]
+    straight = np.interp(313.15, oil[place - 1 : place + 1], time[place - 1 : place + 1])
+    assert told["time"] == pytest.approx(straight, abs=0.05 * (time[place] - time[place - 1]))
+    assert told["time"] == pytest.approx(again["time"], rel=1e-3)
 
 
 # --- in words, and another pair --------------------------------------------------------------

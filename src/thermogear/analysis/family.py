@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.section import lanes_of
 from thermogear.base.arrays import Floats
+from thermogear.base.bounds import floats
 from thermogear.base.errors import InputError, nearest
 from thermogear.base.excitation import Periodic
 from thermogear.base.plan import Arrays, Coordinate, Variable
@@ -213,7 +214,7 @@ def model_at(family: Family, value: float) -> object:
 
 def axis_values(name: str, values: ArrayLike) -> Floats:
     """Finite, different, one axis."""
-    found = np.atleast_1d(np.asarray(values, dtype=float))
+    found = np.atleast_1d(floats(name, values))
     if found.ndim != 1 or found.size == 0 or not np.all(np.isfinite(found)):
         raise InputError(name, f"shape {found.shape}", allowed="finite numbers on one axis")
     if np.unique(found).size < found.size:

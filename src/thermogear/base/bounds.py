@@ -10,10 +10,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.base.units import RPM, ZERO_CELSIUS
 
@@ -61,16 +63,16 @@ class Bounds:
         floor, roof = self._reach
         if type(values) is float and floor <= values <= roof:
             return
-        found = np.asarray(values, dtype=float)
+        found = floats(name, values, self.si)
         good = (found >= floor) & (found <= roof)
         if not good.all():
             value = float(found[~good].flat[0])
             allowed = f"{_plain(self.low)}..{_plain(self.high)} {self.unit}".rstrip()
             raise InputError(name, self._shown(value), allowed=allowed, fix=self._meant(value))
 
-    def require_number(self, name: str, value: object) -> None:
+    def require_number(self, name: str, value: Any) -> None:
         """Refuse a ``value`` that is not one SI number within the bounds."""
-        if not isinstance(value, int | float | np.integer | np.floating) or isinstance(value, bool):
+        if not _is_number(value):
             raise InputError(name, repr(value), allowed=f"a number [{self.si}]")
         self.require(name, value)
 
@@ -94,9 +96,26 @@ class Bounds:
         return f"did you mean {' or '.join(meant)}?" if meant else None
 
 
+def floats(name: str, values: ArrayLike, unit: str = "") -> Floats:
+    """``values`` as an array of floats; refused where texts or other things are among them."""
+    try:
+        found = np.asarray(values)
+    except ValueError:  # rows of different lengths
+        found = np.asarray(None)
+    if found.dtype.kind not in "iuf":
+        raise InputError(name, repr(values), allowed=f"numbers [{unit}]" if unit else "numbers")
+    return found.astype(float)
+
+
+def _is_number(value: object) -> bool:
+    """Whether ``value`` is one real number; a truth value is none."""
+    numeric = isinstance(value, int | float | np.integer | np.floating)
+    return numeric and not isinstance(value, bool)
+
+
 def whole(name: str, value: float, *, least: int) -> int:
     """``value`` as the whole number that it is; refused below ``least`` or where it is none."""
-    if not (least <= value < np.inf and int(value) == value):
+    if not (_is_number(value) and least <= value < np.inf and int(value) == value):
         raise InputError(name, value, allowed=f"a whole number >= {least}")
     return int(value)
 

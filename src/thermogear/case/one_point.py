@@ -260,9 +260,9 @@ def named(option: str, name: str | None, known: list[str]) -> str:
 
 def counted(option: str, number: int, *, most: int) -> int:
     """Place of the ``number``-th, counted from 1."""
-    if not 1 <= number <= most:
-        raise InputError(option, number, allowed=f"1..{most}")
-    return number - 1
+    if isinstance(number, bool) or number not in range(1, most + 1):
+        raise InputError(option, repr(number), allowed=f"1..{most}")
+    return int(number) - 1
 
 
 def parameter_name(point: OnePoint, name: str) -> str:

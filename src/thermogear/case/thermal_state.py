@@ -61,9 +61,9 @@ class ThermalState:
             return given
         if given is None:
             return UNDEFORMED
-        if not isinstance(given, str):
+        if isinstance(given, float | int | np.number) and not isinstance(given, bool):
             return cls("at", float(given))
-        if given not in BY_WORD:
+        if given not in list(BY_WORD):
             raise InputError("state", repr(given), allowed=" | ".join((*BY_WORD, "kelvins")))
         return BY_WORD[given]
 

@@ -2,8 +2,7 @@
 
 What analysis knows of a model. One mass with clearance has its event-exact map
 (:mod:`~thermogear.dynamics.exact_map`), a drive train its own
-(:mod:`~thermogear.dynamics.geared_map`), a smooth model one by integration
-(:mod:`~thermogear.dynamics.smooth_map`).
+(:mod:`~thermogear.dynamics.geared_map`); any other model brings one with these methods.
 """
 
 from __future__ import annotations

@@ -40,7 +40,7 @@ def _read(read: Callable[[str, Any], Any], _: Any, parameter: click.Parameter, v
 def _option(declared: Field[Any]) -> Callable[..., Any]:
     """The click option of a field; without a value the function's default counts."""
     about, default = dict(declared.metadata), declared.default
-    flag, read, allowed = (about.pop(name) for name in ("flag", "read", "allowed"))
+    flag, read, allowed, _ = (about.pop(name) for name in ("flag", "read", "allowed", "bounds"))
     if isinstance(default, bool):
         about["is_flag"] = True
     elif isinstance(default, int | float | str):

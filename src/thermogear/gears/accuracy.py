@@ -23,7 +23,6 @@ EDITIONS = tuple(_GRADES)
 _RANGES = {  # field: unit, its SI value, allowed in the editions in the order of EDITIONS
     "diameter": ("mm", _MM, (5.0, 15000.0), (5.0, 10000.0)),
     "module": ("mm", _MM, (0.5, 70.0), (0.5, 70.0)),
-    "face_width": ("mm", _MM, (4.0, 1200.0), (4.0, 1000.0)),
 }
 _LEAST_TEETH, _MOST_TEETH = 5, 1000
 _DIAMETERS = (5, 20, 50, 125, 280, 560, 1000, 1600, 2500, 4000, 6000, 8000, 10000)  # mm, 1995
@@ -49,23 +48,6 @@ class FlankTolerances(NamedTuple):
     def rounded(self) -> FlankTolerances:
         """As the standard prints them."""
         return FlankTolerances(*(float(round_tolerance(value)) for value in self))
-
-
-class HelixTolerances(NamedTuple):
-    """Tolerances of one gear's flank lines [m]: slope f_Hbeta, form f_fbeta, total F_beta.
-
-    >>> helix = helix_tolerances(25, 4e-3, face_width=25e-3, grade=5)
-    >>> f"{1e6 * helix.rounded().slope:.1f} um"
-    '6.5 um'
-    """
-
-    slope: float
-    form: float
-    total: float
-
-    def rounded(self) -> HelixTolerances:
-        """As the standard prints them."""
-        return HelixTolerances(*(float(round_tolerance(value)) for value in self))
 
 
 def round_tolerance(value: ArrayLike) -> NDArray[np.float64]:
@@ -147,28 +129,6 @@ def flank_class(teeth: int, module: float, *, figures: tuple[float, float, float
         if all(abs(got) <= most for got, most in zip(figures, limits, strict=True)):
             return grade
     return None
-
-
-def helix_tolerances(
-    teeth: int, module: float, *, face_width: float, grade: int
-) -> HelixTolerances:
-    """Unrounded tolerances of a spur gear's flank lines [m], edition 2013.
-
-    f_Hbeta = 0.05 sqrt(d) + 0.35 sqrt(b) + 4,  f_fbeta = 0.07 sqrt(d) + 0.45 sqrt(b) + 4,
-    F_beta = sqrt(f_Hbeta^2 + f_fbeta^2); um and mm, times sqrt(2)^(A - 5).
-
-    ``face_width`` b [m] 4..1200 mm; the rest, errors and source as :func:`flank_tolerances`.
-
-    >>> f"{1e6 * helix_tolerances(25, 4e-3, face_width=25e-3, grade=5).slope:.2f} um"
-    '6.25 um'
-    """
-    diameter = teeth * module
-    _require("2013", grade, teeth, diameter=diameter, module=module, face_width=face_width)
-    d, b = diameter / _MM, face_width / _MM
-    slope = 0.05 * math.sqrt(d) + 0.35 * math.sqrt(b) + 4.0
-    form = 0.07 * math.sqrt(d) + 0.45 * math.sqrt(b) + 4.0
-    scale = _STEP ** (grade - 5) * _UM
-    return HelixTolerances(slope * scale, form * scale, math.hypot(slope, form) * scale)
 
 
 def _require(edition: str, grade: int, teeth: int, **sizes: float) -> None:

@@ -1,8 +1,8 @@
 """Dynamic factor K_v by ISO 6336-1: what a standard says a mesh's vibration adds to its load.
 
 Method B puts the pair's first resonance against the speed, with an accuracy grade's deviations
-and the running-in they lose; method C asks for speed, teeth and grade alone and lies above. Both
-are for one stage between rigid shafts: a pair that loses contact, and a jump, they do not know.
+and the running-in they lose. It is for one stage between rigid shafts: a pair that loses contact,
+and a jump, it does not know.
 """
 
 from __future__ import annotations
@@ -22,8 +22,6 @@ from thermogear.gears.pair import GearPair
 SURFACES = ("case-hardened", "through-hardened")
 _LOW_LOAD = 100e3  # N/m
 _MAIN_END, _OVER = 1.15, 1.5  # ends of the main resonance and of the range between
-_K1 = {3: 2.1, 4: 3.9, 5: 7.5, 6: 14.9, 7: 26.8, 8: 39.1}
-_K2, _MOST_TEETH, _MOST_X = 0.0193, 50, 3.0
 BRANCHES = ("subcritical", "main resonance", "intermediate", "supercritical")
 
 
@@ -258,46 +256,3 @@ def _deviations(pair: GearPair, grade: int, edition: str) -> tuple[float, float]
     limits = [flank_tolerances(g.teeth, g.module, grade=grade, edition=edition) for g in gears]
     pitch = max(one.single_pitch for one in limits) * float(np.cos(pair.pinion.pressure_angle))
     return pitch, max(one.profile_form for one in limits)
-
-
-def dynamic_factor_c(
-    pair: GearPair,
-    torque: ArrayLike,
-    speed: ArrayLike,
-    *,
-    grade: int,
-    application: float = 1.0,
-) -> Floats:
-    """K_v of a spur pair by method C [-], at least 1.
-
-    K_v = 1 + (K_1/w + 0.0193) X K_3,  X = (v z1/100) sqrt(u^2/(1 + u^2)),  w = max(F_t K_A/b,
-    100 N/mm);  K_3 = 2 to X = 0.2, then 2.071 - 0.357 X;  m/s, N/mm.
-
-    ``torque`` [N m] and ``speed`` [rad/s] of ``pair.pinion``, any shapes; ``grade`` 3..8;
-    ``application`` K_A. Raises for other grades, 50 and more teeth of the smaller gear, and X > 3,
-    where X K_3 has begun to fall. Source: ISO 6336-1:2006, method C, as IACS UR M56 prints it.
-
-    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
-    >>> f"{dynamic_factor_c(pair, 200.0, 100.0, grade=7):.3f}"
-    '1.164'
-    """
-    if grade not in _K1:
-        raise InputError("accuracy.grade", grade, allowed="3..8", why="the range of method C")
-    first, second = pinion_first(pair)
-    if first.teeth >= _MOST_TEETH:
-        raise InputError("teeth", first.teeth, allowed="< 50", why="the range of method C")
-    radius, u = pair.pinion.pitch_radius, second.teeth / first.teeth
-    load = np.asarray(torque, dtype=float) * application / (radius * pair.face_width)
-    w = np.maximum(load * 1e-3, 100.0)
-    v = np.asarray(speed, dtype=float) * radius
-    x = v * first.teeth / 100.0 * np.sqrt(u**2 / (1.0 + u**2))
-    if not np.all((x >= 0.0) & (x <= _MOST_X)):
-        raise InputError(
-            "v z1/100 sqrt(u^2/(1 + u^2))",
-            f"{float(np.max(x)):.4g} m/s",
-            allowed="0..3 m/s",
-            why="the range of method C",
-            fix="use method B",
-        )
-    k3 = np.where(x <= 0.2, 2.0, 2.071 - 0.357 * x)
-    return np.asarray(1.0 + (_K1[grade] / w + _K2) * x * k3)

@@ -60,8 +60,8 @@ class ContactState:
     ...     line_load=200e3, speed_1=6.0, speed_2=4.0, reduced_radius=10e-3,
     ...     pressure=0.9e9, viscosity=0.02, roughness=0.4e-6,
     ... )
-    >>> f"{state.slide_roll_ratio:.1f}"
-    '0.4'
+    >>> f"{state.sum_speed:.1f} m/s"
+    '10.0 m/s'
     """
 
     line_load: ArrayLike
@@ -138,12 +138,6 @@ class ContactState:
     def entrainment(self) -> Floats:
         """(v1 + v2)/2 [m/s]."""
         return np.asarray(0.5 * self.sum_speed)
-
-    @property
-    def slide_roll_ratio(self) -> Floats:
-        """|v1 - v2| over the entrainment speed [-], 0 at rest."""
-        slide, roll = np.abs(self.sliding), self.entrainment
-        return np.asarray(np.divide(slide, roll, out=np.zeros(slide.shape), where=roll != 0.0))
 
     @property
     def shape(self) -> tuple[int, ...]:

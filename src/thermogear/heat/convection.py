@@ -1,19 +1,17 @@
 """Heat transfer from a rotating face: the von Karman flow, its energy equation, and drag.
 
 The usual gear formula 0.308 sqrt(m+2) sqrt(Pr) holds for a gas with T ~ r^2; for oils it is 60
-to 135 % high. Here the similarity equations are solved, once per Prandtl number.
+to 135 % high. Here the solution of the similarity equations is kept over the Prandtl number.
 """
 
 from __future__ import annotations
-
-from functools import cache
 
 import numpy as np
 from numpy.polynomial import Chebyshev
 from numpy.typing import ArrayLike
 
 from thermogear.base.arrays import Floats
-from thermogear.base.errors import ConvergenceError, InputError
+from thermogear.base.errors import InputError
 from thermogear.base.gauss import gauss
 
 TRANSITION = (1.8e5, 3.0e5)
@@ -31,7 +29,6 @@ SUBLAYER = 12.7
 SHEAR = 0.0267
 """Tangential wall stress of the turbulent layer over rho (omega r)^2 Re_r^-0.2 (von Karman)."""
 
-_FAR = 24.0  # thickness of the layer in sqrt(nu/omega): the flow decays as exp(-0.884 z)
 _PRANDTL = (0.05, 2e6)
 MOST_PRANDTL = 1e6
 """Greatest Prandtl number [-] that the laws below take: half of what was solved (ours)."""
@@ -45,13 +42,13 @@ _GROWING = (
     -7.218993328384761e-06, 9.351991788975056e-06, -5.5488811546587786e-06, 1.1159223806410945e-06,
     1.423740159183311e-06, -1.9123491558040676e-06, 1.181804204333061e-06,
 )  # fmt: skip
-"""What `_solved_table` gives for the exponent 2 that every gear has: solving it anew costs
-each start a fifth of a second. A test solves it."""
+"""Chebyshev coefficients of ln(-theta'(0)) over ln Pr, of :func:`disc_nusselt`. Solving for them
+anew costs each start a fifth of a second. A test solves it."""
 
+_TABLE = Chebyshev(_GROWING, domain=[np.log(_PRANDTL[0]), np.log(_PRANDTL[1])])
 
 _WALL = (0.5102326187888296, -0.6159220143475946, 0.8844740855215494)
-"""What `_flow` has at the wall and far off, of :func:`rotating_disc_flow`: kept as the numbers
-above are."""
+"""What :func:`rotating_disc_flow` has at the wall and far off: kept as the numbers above are."""
 
 
 def rotating_disc_flow() -> tuple[float, float, float]:
@@ -66,96 +63,22 @@ def rotating_disc_flow() -> tuple[float, float, float]:
     return _WALL
 
 
-@cache
-def _flow() -> object:
-    from scipy.integrate import solve_bvp  # half a second that checking a case need not spend
+def disc_nusselt(prandtl: ArrayLike) -> Floats:
+    """Nu/sqrt(Re) = -theta'(0) of a laminar rotating face [-], excess temperature ~ r^2.
 
-    def slope(z: Floats, y: Floats) -> Floats:  # F, F', G, G', H
-        f, df, g, dg, h = y
-        return np.vstack([df, f**2 - g**2 + h * df, dg, 2.0 * f * g + h * dg, -2.0 * f])
+    theta'' = Pr (2 F theta + H theta'),  theta(0) = 1, theta -> 0, in the flow F, H of
+    :func:`rotating_disc_flow`; interpolated to better than 1e-5.
 
-    def ends(near: Floats, far: Floats) -> Floats:
-        return np.array([near[0], near[2] - 1.0, near[4], far[0], far[2]])
+    ``prandtl`` Pr [-] 0.1..1e6 of any shape. Grows as Pr^(1/3) for large Pr; Pr = 1 is the
+    Reynolds analogy, -G'(0) = 0.61592.
 
-    z = np.linspace(0.0, _FAR, 241)
-    decay = np.exp(-0.9 * z)
-    guess = np.vstack([0.5 * z * decay, 0.5 * decay, decay, -0.6 * decay, -0.88 * (1 - decay)])
-    solved = solve_bvp(slope, ends, z, guess, tol=1e-9, max_nodes=50000)
-    if not solved.success:
-        raise ConvergenceError(f"flow over a rotating disc: {solved.message}")
-    return solved.sol
-
-
-@cache
-def rotating_disc_gradient(prandtl: float, *, exponent: float) -> float:
-    """-theta'(0) of the energy equation over a rotating disc [-].
-
-    theta'' = Pr (m F theta + H theta'),  theta(0) = 1, theta -> 0; the wall's excess
-    temperature goes as r^m. The logarithmic slope p = -theta'/theta obeys
-    p' = p^2 + Pr H p - Pr m F and is integrated from the far field, where p = Pr |H|, to the
-    wall: stable for every Pr. Then h = k sqrt(omega/nu) p(0).
-
-    ``prandtl`` 0.05..2e6, ``exponent`` m >= 0. Raises outside.
-
-    >>> f"{rotating_disc_gradient(1.0, exponent=2.0):.4f}"
-    '0.6159'
-    """
-    if not _PRANDTL[0] <= prandtl <= _PRANDTL[1]:
-        raise InputError("prandtl", prandtl, allowed=f"{_PRANDTL[0]} .. {_PRANDTL[1]:g}")
-    if not exponent >= 0.0:
-        raise InputError("exponent", exponent, allowed=">= 0")
-    from scipy.integrate import solve_ivp
-
-    flow = _flow()
-
-    def slope(back: float, p: Floats) -> Floats:
-        f, _, _, _, h = flow(_FAR - back)  # type: ignore[operator]
-        return np.asarray(-(p**2 + prandtl * h * p - prandtl * exponent * f))
-
-    solved = solve_ivp(
-        slope, (0.0, _FAR), [prandtl * _WALL[2]], method="LSODA", rtol=1e-9, atol=1e-11
-    )
-    found = float(solved.y[0, -1])
-    if not (solved.success and found > 0.0):
-        raise ConvergenceError(f"rotating disc, Pr = {prandtl:g}: {found:g}, {solved.message}")
-    return found
-
-
-@cache
-def _gradient_table(exponent: float) -> Chebyshev:
-    """ln(-theta'(0)) over ln Pr: smooth, so that a low degree gives six digits."""
-    return Chebyshev(_GROWING, domain=_ends()) if exponent == 2.0 else _solved_table(exponent)
-
-
-def _ends() -> list[float]:
-    return [np.log(_PRANDTL[0]), np.log(_PRANDTL[1])]
-
-
-def _solved_table(exponent: float) -> Chebyshev:
-    def logarithm(ln_pr: Floats) -> Floats:
-        values = [
-            np.log(rotating_disc_gradient(float(np.exp(p)), exponent=exponent)) for p in ln_pr
-        ]
-        return np.asarray(values)
-
-    return Chebyshev.interpolate(logarithm, 26, domain=_ends())
-
-
-def disc_nusselt(prandtl: ArrayLike, *, exponent: float = 2.0) -> Floats:
-    """Nu/sqrt(Re) of a laminar rotating face [-], for arrays of Prandtl numbers.
-
-    ``prandtl`` Pr [-] 0.1..1e6 of any shape, ``exponent`` m of the wall's excess temperature
-    ~ r^m (0 uniform, 2 growing towards the rim). Interpolates
-    :func:`rotating_disc_gradient` to better than 1e-5. Grows as Pr^(1/3)
-    for large Pr; m = 2, Pr = 1 is the Reynolds analogy, -G'(0) = 0.61592.
-
-    >>> f"{disc_nusselt(1.0, exponent=2.0):.4f}"
+    >>> f"{disc_nusselt(1.0):.4f}"
     '0.6159'
     """
     pr = np.asarray(prandtl, dtype=float)
     if not np.all((pr >= 0.1) & (pr <= MOST_PRANDTL)):
         raise InputError("prandtl", f"{pr.min():.3g} .. {pr.max():.3g}", allowed="0.1 .. 1e6")
-    return np.asarray(np.exp(_gradient_table(float(exponent))(np.log(pr))))
+    return np.asarray(np.exp(_TABLE(np.log(pr))))
 
 
 def turbulent_share(reynolds: ArrayLike) -> Floats:
@@ -177,17 +100,17 @@ def turbulent_share(reynolds: ArrayLike) -> Floats:
     return np.asarray(x * x * (3.0 - 2.0 * x))
 
 
-def turbulent_nusselt(reynolds: ArrayLike, *, prandtl: ArrayLike, exponent: float = 2.0) -> Floats:
+def turbulent_nusselt(reynolds: ArrayLike, *, prandtl: ArrayLike) -> Floats:
     """Local Nusselt number h r/k of a turbulent layer on a rotating face [-].
 
     1/St = 1/St_1 + 12.7 (Pr^(2/3) - 1)/sqrt(c),   Nu = Re Pr St,
-    St_1 = 0.0197 (m + 2.6)^0.2 Re^-0.2,   c = 0.0267 Re^-0.2.
+    St_1 = 0.0197 (2 + 2.6)^0.2 Re^-0.2,   c = 0.0267 Re^-0.2.
 
     ``reynolds`` Re = omega r^2/nu > 0, ``prandtl`` Pr [-] 0.5 .. 1e6, any shapes that
-    broadcast; ``exponent`` m of the wall's excess temperature ~ r^m. Resistances in series: the
-    layer at Pr = 1, where heat obeys the equation of the swirl (m = 2: Nu = 0.0267 Re^0.8, von
-    Karman's torque), and what the viscous sublayer adds or saves, which knows neither m nor the
-    layer's outside. For large Pr it grows as Pr^(1/3).
+    broadcast. The wall's excess temperature grows as r^2. Resistances in series: the layer at
+    Pr = 1, where heat obeys the equation of the swirl (Nu = 0.0267 Re^0.8, von Karman's torque),
+    and what the viscous sublayer adds or saves, which knows nothing of the layer's outside. For
+    large Pr it grows as Pr^(1/3).
 
     The customary Pr^0.6 is the slope of this at Pr = 1 alone: at Re = 3e5 it is 2.7 times too
     high at Pr = 300 and 3.7 times at Pr = 1000. The sublayer's term is Petukhov's for pipes and
@@ -202,7 +125,7 @@ def turbulent_nusselt(reynolds: ArrayLike, *, prandtl: ArrayLike, exponent: floa
     """
     re, pr = np.asarray(reynolds, dtype=float), np.asarray(prandtl, dtype=float)
     root = np.sqrt(SHEAR) * re**-0.1
-    plain = 1.0 / (0.0197 * (exponent + 2.6) ** 0.2 * re**-0.2)
+    plain = 1.0 / (0.0197 * (2.0 + 2.6) ** 0.2 * re**-0.2)
     return np.asarray(re * pr / (plain + SUBLAYER * (np.cbrt(pr) ** 2 - 1.0) / root))
 
 
@@ -212,18 +135,16 @@ def rotating_face_convection(
     viscosity: ArrayLike,
     conductivity: ArrayLike,
     prandtl: ArrayLike,
-    *,
-    exponent: float = 2.0,
 ) -> Floats:
     """Heat transfer coefficient of a rotating face at ``radius`` [W/(m^2 K)].
 
-    h = k/r [ (1 - gamma) Nu_0(Pr, m) sqrt(Re) + gamma Nu_t(Re, Pr, m) ],   Re = omega r^2/nu,
+    h = k/r [ (1 - gamma) Nu_0(Pr) sqrt(Re) + gamma Nu_t(Re, Pr) ],   Re = omega r^2/nu,
 
     the laminar similarity solution (:func:`disc_nusselt`), the turbulent layer
     (:func:`turbulent_nusselt`), and gamma of :func:`turbulent_share` between them.
 
     ``speed`` omega [rad/s], ``radius`` r [m], ``viscosity`` nu [m^2/s], ``conductivity`` k
-    [W/(m K)], ``prandtl`` Pr [-], ``exponent`` m. Any shape; 0 at rest. Continuous with its
+    [W/(m K)], ``prandtl`` Pr [-]. Any shape; 0 at rest. Continuous with its
     slope in every argument. A disc is laminar inside and turbulent outside: integrate over r.
     The turbulent layer is taken as if it began at the axis, as in the drag. The fluid is what
     covers the face: pure oil for a dipped gear, less for a mist.
@@ -235,10 +156,8 @@ def rotating_face_convection(
         np.asarray(a, dtype=float) for a in (speed, radius, viscosity, conductivity, prandtl)
     )
     reynolds = omega * r**2 / nu
-    laminar = disc_nusselt(pr, exponent=exponent) * np.sqrt(reynolds)
-    turbulent = turbulent_nusselt(
-        np.maximum(reynolds, TRANSITION[0]), prandtl=pr, exponent=exponent
-    )
+    laminar = disc_nusselt(pr) * np.sqrt(reynolds)
+    turbulent = turbulent_nusselt(np.maximum(reynolds, TRANSITION[0]), prandtl=pr)
     share = turbulent_share(reynolds)
     return np.asarray(k / r * ((1.0 - share) * laminar + share * turbulent))
 

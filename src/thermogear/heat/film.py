@@ -117,26 +117,6 @@ def pressure_viscosity(lubricant: Lubricant, temperature: ArrayLike) -> Floats:
     return pressure_viscosity_gold(kinematic_viscosity(lubricant, temperature), lubricant.kind)
 
 
-def roelands(viscosity: ArrayLike, pressure: ArrayLike, coefficient: ArrayLike) -> Floats:
-    """Viscosity under pressure by Roelands, isothermal [Pa s].
-
-    eta = eta_0 exp{ (ln eta_0 + 9.67) [ (1 + 5.1e-9 p)^Z - 1 ] },
-    Z = alpha/[5.1e-9 (ln eta_0 + 9.67)].
-
-    ``viscosity`` eta_0 [Pa s], ``pressure`` p [Pa], ``coefficient`` alpha [1/Pa]. Meets Barus,
-    eta_0 exp(alpha p), at low pressure, where its slope is alpha eta_0. Source: form of Stachowiak
-    and Batchelor, Engineering Tribology.
-
-    >>> f"{roelands(0.1, 100e6, 20e-9):.3f} Pa s"
-    '0.609 Pa s'
-    """
-    eta = np.asarray(viscosity, dtype=float)
-    reach = np.log(eta) + 9.67
-    z = np.asarray(coefficient) / (5.1e-9 * reach)
-    raised = np.expm1(z * np.log1p(5.1e-9 * np.asarray(pressure, dtype=float)))
-    return np.asarray(eta * np.exp(reach * raised))
-
-
 def _groups(
     line_load: ArrayLike,
     entrainment: ArrayLike,
@@ -341,41 +321,31 @@ def mean_roughness_film_parameter(
     return np.asarray(np.asarray(thickness) / mean)
 
 
-def regime(
-    film_parameter: ArrayLike, *, boundary_below: float = 1.0, full_film_above: float = 3.0
-) -> NDArray[np.int64]:
+def regime(film_parameter: ArrayLike) -> NDArray[np.int64]:
     """Lubrication regime as an index into :data:`REGIMES` (0 to 3).
 
-    ``film_parameter`` Lambda [-], any shape; boundary below ``boundary_below``, full
-    elastohydrodynamic film from ``full_film_above`` on, mixed between: the customary 1 and 3.
-    Infinite Lambda is a pair that carries nothing: unloaded.
+    ``film_parameter`` Lambda [-], any shape; boundary below 1, full elastohydrodynamic film from 3
+    on, mixed between: the customary limits. Infinite Lambda is a pair that carries nothing:
+    unloaded.
 
     >>> [REGIMES[place] for place in regime([0.5, 2.0, 4.0])]
     ['boundary', 'mixed', 'elastohydrodynamic']
     """
-    if not 0.0 < boundary_below < full_film_above:
-        raise InputError(
-            "regime limits",
-            f"{boundary_below} and {full_film_above}",
-            allowed="0 < boundary_below < full_film_above",
-        )
     thickness = np.asarray(film_parameter, dtype=float)
     if np.any(np.isnan(thickness)):
         raise InputError("film parameter", "nan", allowed="a number, or inf without load")
-    index = np.digitize(thickness, [boundary_below, full_film_above, np.inf])
+    index = np.digitize(thickness, [1.0, 3.0, np.inf])
     return np.asarray(index, dtype=np.int64)
 
 
-def regime_shares(
-    film_parameter: ArrayLike, *, boundary_below: float = 1.0, full_film_above: float = 3.0
-) -> Floats:
+def regime_shares(film_parameter: ArrayLike) -> Floats:
     """Share of the path (the last axis) spent in each of :data:`REGIMES` [-].
 
-    ``film_parameter`` Lambda (..., position), positions evenly spaced; limits as
-    :func:`regime`. Returns (..., 4), each row adding up to 1.
+    ``film_parameter`` Lambda (..., position), positions evenly spaced. Returns (..., 4), each
+    row adding up to 1.
 
     >>> regime_shares([0.5, 2.0, 2.5, 4.0])
     array([0.25, 0.5 , 0.25, 0.  ])
     """
-    index = regime(film_parameter, boundary_below=boundary_below, full_film_above=full_film_above)
+    index = regime(film_parameter)
     return np.stack([np.mean(index == k, axis=-1) for k in range(len(REGIMES))], axis=-1)

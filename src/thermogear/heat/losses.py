@@ -1,4 +1,4 @@
-"""Losses of a gear pair and its surroundings: mesh, churning, jet, seals, bearings [W]."""
+"""Losses of a gear pair and its surroundings: mesh, churning, bearings [W]."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from thermogear.base.arrays import Floats
-from thermogear.base.units import RPM
 from thermogear.heat.convection import disc_torque
 
 
@@ -57,38 +56,6 @@ def churning_loss(
     """
     omega = np.asarray(speed, dtype=float)
     return np.asarray(omega * disc_torque(omega, tip_radius, density, viscosity, immersion))
-
-
-def jet_loss(
-    speed: ArrayLike,
-    pitch_radius: ArrayLike,
-    density: ArrayLike,
-    flow: ArrayLike,
-    jet_speed: ArrayLike = 0.0,
-) -> Floats:
-    """Power that brings an oil jet up to the pitch line, rho Q r omega (v_t + v_jet) [W].
-
-    ``speed`` omega [rad/s], ``pitch_radius`` r [m], ``density`` [kg/m^3], ``flow`` Q [m^3/s],
-    ``jet_speed`` [m/s] against the rotation (negative with it). Any shape: momentum theorem.
-
-    >>> f"{jet_loss(500.0, 40e-3, 870.0, 50e-6):.1f} W"
-    '17.4 W'
-    """
-    rim = np.asarray(speed, dtype=float) * np.asarray(pitch_radius)
-    return np.asarray(np.asarray(density) * np.asarray(flow) * rim * (rim + np.asarray(jet_speed)))
-
-
-def seal_loss(diameter: ArrayLike, speed: ArrayLike) -> Floats:
-    """Loss of one radial shaft seal, 7.69e-6 d^2 n with d in mm and n in rpm [W].
-
-    ``diameter`` [m], ``speed`` omega [rad/s]. Any shape. Source: ISO/TR 14179-2.
-
-    >>> f"{seal_loss(40e-3, 100.0 * math.pi):.1f} W"
-    '36.9 W'
-    """
-    millimetres = np.asarray(diameter, dtype=float) * 1e3
-    rpm = np.asarray(speed, dtype=float) / RPM
-    return np.asarray(7.69e-6 * millimetres**2 * rpm)
 
 
 def bearing_loss(

@@ -6,6 +6,7 @@ T_x of the radial field.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -92,46 +93,6 @@ def _invert(radiance: float, band: Band) -> float:
     )
 
 
-def infrared_temperature(
-    indicated: ArrayLike,
-    *,
-    emissivity: float,
-    transmission: float,
-    surroundings: float,
-    path: float,
-    band: Band = None,
-    indicated_emissivity: float = 1.0,
-) -> Floats:
-    """True surface temperature behind an infrared reading [K].
-
-    Solves :func:`infrared_signal` (T; eps, tau) = signal that made the instrument, set to
-    ``indicated_emissivity`` and no window, say ``indicated`` [K].
-
-    ``emissivity`` eps in (0, 1], ``transmission`` tau in (0, 1], ``surroundings``, ``path`` [K].
-    Any shape. Raises when the reading is darker than its own reflections.
-
-    >>> t = infrared_temperature(
-    ...     373.15, emissivity=0.9, transmission=1.0, surroundings=293.15, path=293.15
-    ... )
-    >>> f"{t - 273.15:.2f} C"
-    '106.26 C'
-    """
-    for name, value in (
-        ("emissivity", emissivity),
-        ("transmission", transmission),
-        ("indicated emissivity", indicated_emissivity),
-    ):
-        require_share(name, value)
-    reading = np.asarray(indicated, dtype=float)
-    flat = [
-        _corrected(
-            float(value), emissivity, transmission, surroundings, path, band, indicated_emissivity
-        )
-        for value in np.ravel(reading)
-    ]
-    return np.asarray(flat).reshape(reading.shape)
-
-
 def infrared_indication(
     temperature: ArrayLike,
     *,
@@ -144,7 +105,7 @@ def infrared_indication(
 ) -> Floats:
     """What an infrared instrument says of a surface at ``temperature`` [K].
 
-    Inverse of :func:`infrared_temperature`: T_i with eps_i L(T_i) + (1 - eps_i) L(T_env) = S, S of
+    T_i with eps_i L(T_i) + (1 - eps_i) L(T_env) = S, S of
     :func:`infrared_signal`, the instrument set to ``indicated_emissivity`` eps_i and no window.
 
     ``emissivity``, ``transmission`` in (0, 1]; ``surroundings``, ``path`` [K], any shapes that
@@ -182,16 +143,8 @@ def _corrected(
     surroundings: float,
     path: float,
     band: Band,
-    set_to: float = 1.0,
 ) -> float:
-    signal = infrared_signal(
-        indicated,
-        emissivity=set_to,
-        transmission=1.0,
-        surroundings=surroundings,
-        path=path,
-        band=band,
-    )
+    signal = band_radiance(indicated, band)
     mirrored = (1.0 - emissivity) * transmission * band_radiance(surroundings, band)
     window = (1.0 - transmission) * band_radiance(path, band)
     return _invert(float((signal - mirrored - window) / (emissivity * transmission)), band)
@@ -228,18 +181,14 @@ def buried_temperature(
 
 def _propagate(
     value: Callable[..., float], best: dict[str, float], spread: dict[str, float]
-) -> tuple[float, dict[str, float]]:
-    """Standard uncertainty by central differences, independent inputs; each one's part [K]."""
-    parts: dict[str, float] = {}
-    for name, sigma in spread.items():
-        if sigma == 0.0:
-            parts[name] = 0.0
-            continue
-        step = 1e-3 * sigma
-        up = value(**{**best, name: best[name] + step})
-        down = value(**{**best, name: best[name] - step})
-        parts[name] = abs(up - down) / (2.0 * step) * sigma
-    return float(np.sqrt(sum(p**2 for p in parts.values()))), parts
+) -> float:
+    """Standard uncertainty [K] by central differences, of independent inputs."""
+    parts = [
+        500.0
+        * (value(**best | {name: best[name] + step}) - value(**best | {name: best[name] - step}))
+        for name, step in ((name, 1e-3 * sigma) for name, sigma in spread.items())
+    ]
+    return math.hypot(*parts)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -288,7 +237,7 @@ class InfraredReading:
     def uncertainty(self) -> float:
         """Its standard uncertainty [K]."""
         spread = {name: getattr(self, f"u_{name}") for name in self._inputs()}
-        return _propagate(self._value, self._inputs(), spread)[0]
+        return _propagate(self._value, self._inputs(), spread)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -325,4 +274,4 @@ class ThermocoupleReading:
 
         best = {"indicated": self.indicated, "flux": self.flux, "depth": self.depth}
         spread = {name: getattr(self, f"u_{name}") for name in best}
-        return _propagate(value, best, spread)[0]
+        return _propagate(value, best, spread)

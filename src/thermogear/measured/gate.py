@@ -184,6 +184,8 @@ class _Channel:
                 self.coarse(one)
         kept = [(one, count) for one, count in counted if one.kind != "coarse"]
         total = sum(count for _, count in kept) / size
+        # what alone is too much, or all that are too much together
+        most = max((count for _, count in kept), default=0) / size
         missing = np.zeros(values.size, dtype=bool)
         withhold = self.through.withheld.get(self.channel.name, "")
         for one, count in kept:
@@ -199,11 +201,11 @@ class _Channel:
                     )
                 )
                 continue
-            if total <= FILLED:
+            known = one.kind == "clipping" or (one.kind == "held" and not _in_blocks(one))
+            if total <= FILLED or not known:  # a number must stand there
                 missing |= one.samples
+            if total <= FILLED or most > FILLED >= share:
                 continue
-            if one.kind != "clipping" and (one.kind != "held" or _in_blocks(one)):
-                missing |= one.samples  # a number must stand there
             withhold = withhold or f"{one.kind}, {100 * share:.2g} % of the samples"
             self.through.findings.append(
                 Notice.of("amplitudes_withheld", value=one.value, **self.where(one))

@@ -215,8 +215,7 @@ def measure(
     notices = list(record.notices)
     chosen = chosen_channels(record, channels, notices)
     through = passed(chosen, LONGEST)
-    if len(chosen[0]) > LONGEST:
-        notices.append(Notice.of("record_cut", used=LONGEST, samples=len(chosen[0])))
+    notices = _of_the_read(notices, through, len(chosen[0]))
     given = teeth, speed
     expected, stated = expected_mesh(record, teeth, speed), stated_of(record, teeth, speed)
     changing, said = read_in_angle(
@@ -337,6 +336,14 @@ def _swelling(
         shaft = speed / (2.0 * np.pi) / record.rate
     rate = None if record.rate_doubt else record.rate
     return swelling_of([one.name for one in chosen], table, rate, shaft)
+
+
+def _of_the_read(notices: Sequence[Notice], through: Passed, samples: int) -> list[Notice]:
+    """``notices`` of a record without names of twins left out as copies, and that it is cut."""
+    copies = {one.data["channel"] for one in through.findings if one.code == "copy_left_out"}
+    kept = [one for one in notices if one.data.get("renamed") not in copies]
+    cut = Notice.of("record_cut", used=LONGEST, samples=samples)
+    return [*kept, cut] if samples > LONGEST else kept
 
 
 def _require(

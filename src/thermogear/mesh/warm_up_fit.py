@@ -59,7 +59,7 @@ def require_factors(names: Sequence[str], field: str) -> tuple[str, ...]:
     """``names`` where at most two known ones are named once each; InputError under ``field``."""
     for name in names:
         if name not in FACTORS:
-            fix = nearest(name, FACTORS)
+            fix = nearest(str(name), FACTORS)
             raise InputError(field, repr(name), allowed=" | ".join(FACTORS), fix=fix)
     if not names or len(names) > MOST_FACTORS or len(set(names)) < len(names):
         raise InputError(

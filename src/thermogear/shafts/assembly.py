@@ -199,39 +199,6 @@ def assemble(train: DriveTrain) -> Assembly:
     return replace(empty, drive=drive, back=back, bearings=places, slip=slip)
 
 
-def lumped(
-    frame: MeshFrame,
-    *,
-    masses: tuple[float, float],
-    inertias: tuple[float, float],
-    bearings: tuple[Bearing, Bearing],
-    damping: Damping | None = None,
-    gravity: float = 0.0,
-) -> Assembly:
-    """Two rigid gears, each on one bearing in its plane: x, y and tz of both, six coordinates.
-
-    ``masses`` [kg], ``inertias`` [kg m^2] polar, of pinion and wheel; ``gravity`` [m/s^2] along -y.
-    The limit of stiff shafts with bearings on both sides of each gear, and the smallest train in
-    which gears part and bearings give.
-    """
-    names = tuple(f"{shaft}.0.{one}" for shaft in SHAFTS for one in ("x", "y", "tz"))
-    empty = Assembly(
-        frame=frame,
-        damping=damping or Damping(),
-        coordinates=names,
-        **(_empty(6) | dict(zip(("drive", "back"), frame.columns, strict=True))),
-        bearings=(),
-        nodes=(np.zeros(1), np.zeros(1)),
-        gear_nodes=(0, 0),
-        mesh_mass=mesh_mass(frame, pinion=inertias[0], wheel=inertias[1]),
-    )
-    own = [value for m, inertia in zip(masses, inertias, strict=True) for value in (m, m, inertia)]
-    empty.mass[...] = np.diag(own)
-    _weigh(empty, gravity)
-    places = tuple(_put_bearing(empty, one, np.zeros((6, 2))) for one in bearings)
-    return replace(empty, bearings=places)
-
-
 def mesh_mass(frame: MeshFrame, *, pinion: float, wheel: float) -> float:
     """m_e = I1 I2/(I1 r_b2^2 + I2 r_b1^2) [kg] of two polar inertias [kg m^2]."""
     r1, r2 = frame.base_radii

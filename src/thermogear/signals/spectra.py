@@ -44,19 +44,6 @@ class Spectrum:
         return self.rate / self.samples
 
 
-def line_shares(samples: int) -> Floats:
-    """Mean square of each one-sided line over its amplitude squared: 1, 1/2, ..., 1/2, (1).
-
-    >>> line_shares(6)
-    array([1. , 0.5, 0.5, 1. ])
-    """
-    shares = np.full(samples // 2 + 1, 0.5)
-    shares[0] = 1.0
-    if samples % 2 == 0:
-        shares[-1] = 1.0
-    return shares
-
-
 def finite_record(x: ArrayLike, field: str = "record") -> Floats:
     """The record as floats, time on the last axis; empty or non-finite records are refused.
 

@@ -58,9 +58,9 @@ def loaded_survey(
     ``iso_6336`` the stiffness of method B at the same loads.
     """
     most = max(case.torques, default=0.0)
-    if not torques and most <= 0.0:
+    if not len(torques) and most <= 0.0:
         raise InputError("operating.torque", "0 N m", allowed="> 0 N m", fix="pass --torques")
-    moments = np.asarray(torques, dtype=float) if torques else most * np.asarray(PARTS)
+    moments = np.asarray(torques, dtype=float) if len(torques) else most * np.asarray(PARTS)
     if not np.all(np.isfinite(moments) & (moments > 0.0)):
         raise InputError("torques", f"{moments} N m", allowed="> 0 N m, finite")
     model = case.models[0].override(stiffness="loaded", body=body or case.models[0].body)

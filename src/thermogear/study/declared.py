@@ -10,10 +10,11 @@ from __future__ import annotations
 import inspect
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import Field, dataclass, field, fields
 from functools import partial, wraps
 from importlib import import_module
 from itertools import pairwise
+from numbers import Integral
 from typing import TYPE_CHECKING, Any, ClassVar, ParamSpec, TypeVar
 
 from thermogear.base.errors import InputError
@@ -34,15 +35,17 @@ def option(
     *,
     read: Callable[[str, Any], Any] | None = None,
     allowed: range | Sequence[str] = (),
+    bounds: str = "",
     **more: Any,
 ) -> T:
     """A field: its ``default`` in SI, and its option ``flag`` with the ``words`` of its help.
 
     ``read(flag, value)`` makes an SI value of what a person wrote. ``allowed`` are whole numbers of
-    a range, or these words, from Python too. ``more``: metavar and type.
+    a range, or these words, from Python too; ``bounds``: of :mod:`~thermogear.base.bounds`, by its
+    name there, likewise. ``more``: metavar and type.
     """
-    about = {"flag": flag, "help": words, "read": read, "allowed": allowed, **more}
-    declared: T = field(default=default, metadata=about)
+    about = {"flag": flag, "help": words, "read": read, "allowed": allowed, "bounds": bounds}
+    declared: T = field(default=default, metadata=about | more)
     return declared
 
 
@@ -64,11 +67,9 @@ class Study:
 
     def __post_init__(self) -> None:
         for each in fields(self):  # type: ignore[arg-type]  # subclasses are dataclasses
-            value, allowed = getattr(self, each.name), each.metadata["allowed"]
-            if allowed and value is not None and value not in allowed:
-                whole = isinstance(allowed, range)
-                words = f"{allowed[0]}..{allowed[-1]}" if whole else " | ".join(allowed)
-                raise InputError(each.name, repr(value), allowed=words)
+            value = getattr(self, each.name)
+            if value is not each.default:
+                _require(each, value)
 
     def arguments(self, subject: Any) -> dict[str, Any]:
         """The keyword arguments of the function, for this case or point."""
@@ -104,12 +105,46 @@ def declared(study: type[Study]) -> Callable[[Callable[P, Result]], Callable[P, 
         @wraps(function)
         def studied(*args: P.args, **kwargs: P.kwargs) -> Result:
             given = signature.bind(*args, **kwargs).arguments
+            if study.of == "gears":
+                from thermogear.case.case import gear_case
+
+                gear_case(next(iter(given.values())))
             asked = study(**{name: given[name] for name in names & given.keys()})
             return function(*args, **kwargs).with_(asked=asked.asked({}))
 
         return studied
 
     return checked
+
+
+def _require(asked: Field[Any], value: Any) -> None:
+    """Refuse what the type of a field, its words or its bounds do not take.
+
+    Texts without such words name files, which a study reads or refuses itself.
+    """
+    allowed, kind = asked.metadata["allowed"], str(asked.type).removesuffix(" | None")
+    if kind == "int" and (isinstance(value, bool) or not isinstance(value, Integral)):
+        words = f"{allowed[0]}..{allowed[-1]}, " if allowed else ""
+        raise InputError(asked.name, repr(value), allowed=f"{words}a whole number")
+    if allowed and value not in list(allowed):
+        whole = isinstance(allowed, range)
+        words = f"{allowed[0]}..{allowed[-1]}" if whole else " | ".join(allowed)
+        raise InputError(asked.name, repr(value), allowed=words)
+    if kind == "Sequence[str]" and not isinstance(value, list | tuple):
+        raise InputError(asked.name, repr(value), allowed="a list of names")
+    if not asked.metadata["bounds"]:
+        return
+    from thermogear.base import bounds
+
+    limits = getattr(bounds, asked.metadata["bounds"])
+    if kind == "float":
+        limits.require_number(asked.name, value)
+        return
+    shape = bounds.floats(asked.name, value, limits.si).shape
+    if len(shape) != 1 or shape == (0,) or (kind.startswith("tuple") and shape != (2,)):
+        words = "two numbers" if kind.startswith("tuple") else "one number or more, on one axis"
+        raise InputError(asked.name, repr(value), allowed=f"{words} [{limits.si}]")
+    limits.require(asked.name, value)
 
 
 def _plain(value: Any) -> Any:
@@ -165,6 +200,12 @@ def _axis(flag: str, text: str, scale: float = 1.0) -> tuple[float, ...]:
     return scaled
 
 
+def _file(flag: str, name: str) -> str:
+    if not name.strip():
+        raise InputError(flag, repr(name), allowed="the name of a file")
+    return name
+
+
 def _kelvin(flag: str, celsius: float) -> float:
     from thermogear.case.allowed import kelvin
 
@@ -216,6 +257,7 @@ class Temperature(Study, kind="temperature", home="thermogear.study.temperature:
         "--speeds",
         "Pinion speeds, or FROM:TO:COUNT; 500:6000:12 if left out.",
         read=partial(_axis, scale=RPM),
+        bounds="SPEED",
         metavar="RPM[,RPM...]",
     )
     torques: Sequence[float] = option(
@@ -223,6 +265,7 @@ class Temperature(Study, kind="temperature", home="thermogear.study.temperature:
         "--torques",
         "Pinion torques, or FROM:TO:COUNT; 50:500:10 if left out.",
         read=_axis,
+        bounds="TORQUE",
         metavar="NM[,NM...]",
     )
     own: bool = option(False, "--own", "Take the speeds and torques of the case instead.")
@@ -256,6 +299,7 @@ class WarmUpSurvey(Study, kind="warmup", home="thermogear.study.warm_up:warm_up_
         "--duty",
         "CSV table of the duty: time [min],speed [rpm],torque [N m],ambient [degC]; each row "
         "holds until the next, the last says the end.",
+        read=_file,
         metavar="FILE",
     )
     at: Sequence[float] | None = option(
@@ -272,6 +316,7 @@ class WarmUpSurvey(Study, kind="warmup", home="thermogear.study.warm_up:warm_up_
         "Temperature of everything at the start; the ambient's if left out.",
         type=float,
         read=_kelvin,
+        bounds="BODY",
         metavar="DEGC",
     )
     measured: str | None = option(
@@ -279,6 +324,7 @@ class WarmUpSurvey(Study, kind="warmup", home="thermogear.study.warm_up:warm_up_
         "--measured",
         "CSV record to draw over the curves: time [min],pinion_tooth [degC],oil [degC],...; "
         "columns named by nodes or sensors.",
+        read=_file,
         metavar="FILE",
     )
     fit: Sequence[str] = option(
@@ -316,7 +362,7 @@ class ReliefSurvey(Study, kind="relief", home="thermogear.study.relief:relief_su
         "--torque",
         "Pinion torque; the case's greatest if left out.",
         type=float,
-        read=_positive,
+        bounds="TORQUE",
         metavar="NM",
     )
     gear_temperature: float | None = option(
@@ -326,6 +372,7 @@ class ReliefSurvey(Study, kind="relief", home="thermogear.study.relief:relief_su
         "state if left out.",
         type=float,
         read=_kelvin,
+        bounds="BODY",
         metavar="DEGC",
     )
     shape: str = option(
@@ -339,7 +386,8 @@ class ReliefSurvey(Study, kind="relief", home="thermogear.study.relief:relief_su
         "--largest",
         "Greatest amount to be tried.",
         type=float,
-        read=partial(_positive, scale=1e-6),
+        read=lambda _, um: um * 1e-6,
+        bounds="RELIEF_AMOUNT",
         metavar="UM",
     )
 
@@ -359,6 +407,7 @@ class Contact(Study, kind="contact", home="thermogear.study.contact:loaded_surve
         "--torques",
         "Pinion torques, or FROM:TO:COUNT; parts of the case's greatest if left out.",
         read=_axis,
+        bounds="TORQUE",
         metavar="NM[,NM...]",
     )
     body: str | None = option(
@@ -392,6 +441,7 @@ class Sensitivity(
         "Pinion speed; the case's middle one.",
         type=float,
         read=lambda _, rpm: rpm * RPM,
+        bounds="SPEED",
         metavar="RPM",
     )
     seed: int = option(1, "--seed", "Seed of sampling and bootstrap.")
@@ -439,10 +489,16 @@ class Campbell(Study, kind="campbell", home="thermogear.study.shafts.campbell:ca
         "--rpm",
         "Pinion speeds; 0 to 1.5 times the case's greatest.",
         read=_range,
+        bounds="SPEED",
         metavar="LOW:HIGH",
     )
     torque: float | None = option(
-        None, "--torque", "Pinion torque; the hardest point's.", type=float, metavar="NM"
+        None,
+        "--torque",
+        "Pinion torque; the hardest point's.",
+        type=float,
+        bounds="TORQUE",
+        metavar="NM",
     )
     count: int = option(12, "--count", "Number of modes.", allowed=COUNT)
 

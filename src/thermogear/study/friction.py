@@ -20,7 +20,7 @@ from thermogear.mesh.friction_path import FrictionPath
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.thermal import HotPair
 from thermogear.results.result import Notice, Result
-from thermogear.study.declared import Friction
+from thermogear.study.declared import Friction, declared
 
 
 def friction_path(case: GearCase, model: MeshModel, positions: int) -> FrictionPath:
@@ -39,6 +39,7 @@ def laws_beside(model: MeshModel) -> dict[str, FrictionLaw]:
     return {words if name == own.name else name: law for name, law in laws.items()}
 
 
+@declared(Friction)
 def friction_survey(case: GearCase, *, progress: Progress = silent) -> Result:
     """|mu| by every law over the path of contact at every operating point, hot.
 

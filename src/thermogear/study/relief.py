@@ -56,8 +56,9 @@ def relief_survey(
     if not case.torques:
         raise InputError("operating.torque", "nothing", allowed="one torque")
     moment = max(case.torques) if torque is None else torque
-    if not (np.isfinite(moment) and moment > 0.0):
-        raise InputError("torque", f"{moment} N m", allowed="> 0 N m")
+    for name, value, unit in (("torque", moment, "N m"), ("largest", largest, "m")):
+        if value == 0.0:
+            raise InputError(name, f"0 {unit}", allowed=f"> 0 {unit}")
     model = case.models[0].override(stiffness="loaded")
     state = HOT if gear_temperature is None else ThermalState.of(gear_temperature)
     state.require_settled(case, case.models[0])

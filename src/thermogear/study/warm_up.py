@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from thermogear.base.arrays import Floats
+from thermogear.base.bounds import whole
 from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.base.progress import Progress, silent
 from thermogear.base.units import RPM
@@ -30,6 +31,7 @@ from thermogear.study.declared import WarmUpSurvey, declared
 
 if TYPE_CHECKING:
     import xarray as xr
+from scipy.optimize import brentq
 
 LEAST_LOSS = 5e-9
 """A steady loss of backlash [m] below which another one is no share of it."""
@@ -69,6 +71,12 @@ def warm_up_survey(
     has the moment of the least half backlash [m], its margin [K] and the steady one beside it.
     """
     began = time.perf_counter()
+    for name, value, kind, fix in (
+        ("duty", duty, Duty, "read_duty(FILE, case)"),
+        ("measured", measured, Measured, "read_measured(FILE)"),
+    ):
+        if not isinstance(value, kind | None):
+            raise InputError(name, repr(value), allowed=f"a {kind.__name__}", fix=f"pass {fix}")
     names = require_factors(fit, "fit") if fit else ()
     if names and measured is None:
         raise InputError(
@@ -77,7 +85,7 @@ def warm_up_survey(
     work = point_duty(case, *chosen_point(case)) if duty is None else duty
     if work.pieces > MOST_PIECES:
         raise InputError("duty", f"{work.pieces} rows", allowed=f"at most {MOST_PIECES}")
-    of_each = max(12, min(MOST_OF_ONE, moments // work.pieces))
+    of_each = max(12, min(MOST_OF_ONE, whole("moments", moments, least=1) // work.pieces))
     found: Fit | None = None
     with warnings.catch_warnings():
         # told in the notices, with how long
@@ -108,14 +116,14 @@ def warm_up_survey(
         WarmUpSurvey.kind,
         f"Warm-up: {case.title}",
         groups,
-        _notices(case, course, steady, measured, found, worst, seconds),
+        _notices(case, course, steady, measured, found, seconds),
         **case.provenance,
         bundle=case.models[0].name,
         choices=case.models[0].choices(),
         held=dict(course.held),
         duty="one point until steady" if duty is None else "table",
         worst=worst,
-        jams=[float(t) for t in course.jams],
+        jams=jams_of(course),
         sensors={one.name: one.words for one in shown},
         fit=_fit_words(found),
         evaluations=course.course.evaluations,
@@ -396,22 +404,39 @@ def _fit_words(found: Fit | None) -> dict[str, Any]:
 # --- in words -----------------------------------------------------------------------------------
 
 
+def jams_of(course: WarmUp) -> list[float]:
+    """When [s] the backlash is used up, 0 among them where none is there from the start."""
+    jams: list[float] = [0.0] * bool(course.half_backlash[0] <= 0.0) + course.jams.tolist()
+    return jams or [course.worst.time] * bool(course.worst.half_backlash <= 0.0)
+
+
+def no_bath_from(course: WarmUp) -> float:
+    """When [s] the oil of a course first gets hotter than any bath of it, between the moments too.
+
+    0 where it is so from the start. Only for a course that has such a moment.
+    """
+    place = int(np.argmax(course.operating.no_bath))
+    if place == 0:
+        return 0.0
+    hottest, between = course.operating.lubricant.hottest_bath, course.time[place - 1 : place + 1]
+    return float(brentq(lambda time: course.course.at(time)["oil"] - hottest, *between))
+
+
 def _notices(
     case: GearCase,
     course: WarmUp,
     steady: xr.Dataset,
     measured: Measured | None,
     found: Fit | None,
-    worst: Mapping[str, Any],
     seconds: float,
 ) -> Iterator[Notice]:
-    if worst["half_backlash_m"] <= 0.0:
-        yield Notice.of("pair_jams", time=course.jams[0] if course.jams.size else course.time[0])
+    if jams := jams_of(course):
+        yield Notice.of("pair_jams", time=jams[0])
     if course.course.too_hot:
         yield Notice.of("node_too_hot", time=course.time[-1], limit=HOTTEST)
     lubricant = case.stated.lubricant
-    if (hot := course.operating.no_bath).any():
-        yield Notice.of("no_bath_from", time=course.time[hot][0], hottest=lubricant.hottest_bath)
+    if course.operating.no_bath.any():
+        yield Notice.of("no_bath_from", time=no_bath_from(course), hottest=lubricant.hottest_bath)
     low, high = lubricant.temperature_range
     oil = np.asarray(course.operating.oil_temperature)
     outside = (oil < low) | (oil > high)

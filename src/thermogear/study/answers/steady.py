@@ -27,6 +27,7 @@ from thermogear.study.answers.asked import (
     undecided,
 )
 from thermogear.study.scuffing import load_stage, not_steel, steel
+from thermogear.study.warm_up import no_bath_from
 
 MESH, HEAT, GAP = "Does it mesh?", "How hot does it run?", "What is left of the backlash?"
 FILM = "Is there a film, does it scuff?"
@@ -271,7 +272,7 @@ def _worst_moment(asked: Asked) -> Answer:
             unknown = "no steady state is known"
         if hot.any():
             least = 2e6 * float(course.half_backlash[~hot].min())
-            figures["end"] = float(course.time[hot][0]) / 60.0
+            figures["end"] = no_bath_from(course) / 60.0
             figures["hottest"] = asked.case.stated.lubricant.hottest_bath - ZERO_CELSIUS
             until, unknown = "until the oil reaches {hottest:.0f °C} after", "no bath exists beyond"
         elif burnt:

@@ -22,7 +22,7 @@ from thermogear.results.answer import Answer
 from thermogear.results.result import Later, Notice, Result
 from thermogear.study.answers import moving, shafts, steady
 from thermogear.study.answers.asked import MOST_POINTS, MOVES, OF_COLD, OF_HOT, Asked
-from thermogear.study.declared import Answers
+from thermogear.study.declared import Answers, declared
 from thermogear.study.speeds import Speeds
 
 if TYPE_CHECKING:
@@ -41,6 +41,7 @@ MAKERS = (
 """What answers each question, in the order of the page."""
 
 
+@declared(Answers)
 def answers(case: GearCase, *, progress: Progress = silent) -> Result:
     """The answers of a gear case by its first model: ``result.answers``, the ``speeds`` behind.
 

@@ -157,7 +157,7 @@ def campbell(
     if torque is not None:
         case = case.with_values({"torque": torque})
         place = int(np.argmax(case.stated.speed * case.stated.torque))
-    low, high = speeds or (0.0, 1.5 * float(at.speed.max()))
+    low, high = (0.0, 1.5 * float(at.speed.max())) if speeds is None else speeds
     if not 0.0 <= low < high <= FASTEST:
         raise InputError(
             "speeds",

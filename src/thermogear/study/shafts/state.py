@@ -17,7 +17,7 @@ from thermogear.base.arrays import Complexes, Floats
 from thermogear.base.errors import GeometryError, InputError, ValidityWarning
 from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import HEAT_NOT_SETTLED, STATUS, moves, still
-from thermogear.case.case import GearCase
+from thermogear.case.case import GearCase, gear_case
 from thermogear.case.shaft_plan import TrainPlan
 from thermogear.case.thermal_state import HOT, UNDEFORMED, ThermalState
 from thermogear.gears.pair import GearPair, tight_distance
@@ -110,14 +110,15 @@ class TrainState:
 
 def plan_of(case: GearCase) -> TrainPlan:
     """The shafts of a case; InputError where it has none."""
-    if case.train is None:
+    train = gear_case(case).train
+    if train is None:
         raise InputError(
             "shafts",
             "nothing",
             why="the case has a gear pair alone",
             fix="describe [[shafts]] and [[bearings]], or begin with `thermogear new --shafts`",
         )
-    return case.train
+    return train
 
 
 def places_of(case: GearCase, *, most: int = MOST_POINTS) -> list[int]:

@@ -16,7 +16,7 @@ from thermogear.base.vocabulary import STATUS, label
 from thermogear.case.case import GearCase
 from thermogear.results.result import Notice, Result
 from thermogear.shafts.train import SHAFTS
-from thermogear.study.declared import Statics
+from thermogear.study.declared import Statics, declared
 from thermogear.study.shafts.sketch import sketch
 from thermogear.study.shafts.state import JAMMED, TrainState, places_of, plan_of, settled
 
@@ -28,6 +28,7 @@ TILT_SHARE = 0.5
 POINT, RING = ("state", "operating"), ("state", "operating", "bearing")
 
 
+@declared(Statics)
 def statics(case: GearCase, *, progress: Progress = silent) -> Result:
     """Bearing loads, deflections, tilts and centre distance of a case's drive train at rest.
 

@@ -22,6 +22,7 @@ from numpy.typing import ArrayLike
 
 from thermogear.analysis.family import axis_values
 from thermogear.base.arrays import Floats
+from thermogear.base.bounds import floats
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.base.notice import Notice, stored_notices
 from thermogear.base.plan import (
@@ -37,6 +38,7 @@ from thermogear.base.plan import (
 )
 from thermogear.base.vocabulary import STATUS, moves
 from thermogear.case.case import GearCase
+from thermogear.case.one_point import counted
 from thermogear.case.thermal_state import HOT, UNDEFORMED, ThermalState
 from thermogear.dynamics.geared_map import GearedMap
 from thermogear.dynamics.ladder import Engine, Steps
@@ -451,15 +453,12 @@ def waterfall_plan(
     axis = np.sort(axis_values("speeds", speeds))
     if axis[0] <= 0.0:
         raise InputError("speeds", f"{axis[0] * 30.0 / np.pi:.6g} rpm", allowed="> 0 rpm")
-    if not (np.isfinite(duration) and 0.0 < duration <= 3600.0):
+    if not 0.0 < floats("duration", duration, "s") <= 3600.0:
         raise InputError("duration", f"{duration:.6g} s", allowed="0..3600 s")
     at = case.stated
-    most = at.speed.size
     place = int(np.argmax(at.speed * at.torque))
     if operating is not None:
-        if not 1 <= operating <= most:
-            raise InputError("operating", operating, allowed=f"1..{most}")
-        place = operating - 1
+        place = counted("operating", operating, most=at.speed.size)
     return WaterfallPlan(
         case=case, speeds=tuple(axis.tolist()), states=tuple(states), place=place,
         duration=float(duration), size=coordinates or 0, block=block, threads=threads,
