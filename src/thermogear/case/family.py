@@ -452,15 +452,21 @@ class Tabulated:
         )  # fmt: skip
         return all(np.array_equal(row[1:], row[:-1]) for row in rows)
 
+    @cached_property
+    def _first(self) -> Points:
+        return self.points.take(np.zeros(1, int))
+
     def __call__(self, points: Floats) -> Points:
         at = np.asarray(points, dtype=float)[:, 0]
-        place = np.clip(np.searchsorted(self.values, at, side="right") - 1, 0, len(self.values) - 2)
+        place = np.searchsorted(self.values, at, side="right") - 1
+        place = np.minimum(np.maximum(place, 0), len(self.values) - 2)
         low, high = self.values[place], self.values[place + 1]
         # a little beyond the ends too, so that it can be differentiated there
-        weight = np.clip((at - low) / (high - low), -0.01, 1.01)
-        a = self.points.take(place)
-        b = a if self._fixed else self.points.take(place + 1)
-        beyond = self.points.mesh_frequency[place + 1]
+        weight = np.minimum(np.maximum((at - low) / (high - low), -0.01), 1.01)
+        if self._fixed:
+            a = b = self._first if at.size == 1 else self._first.take(np.zeros(at.size, int))
+        else:
+            a, b = self.points.take(place), self.points.take(place + 1)
 
         def mix(one: NDArray[Any], two: NDArray[Any]) -> NDArray[Any]:
             if one is two:
@@ -475,15 +481,17 @@ class Tabulated:
         rate = mix(a.rate, b.rate)
         error = mix(a.error, b.error)
         force = mix(a.force, b.force)
-        mesh = mix(a.mesh_frequency, beyond)
+        mesh = mix(self.points.mesh_frequency[place], self.points.mesh_frequency[place + 1])
         frequency = mesh / rate
         ranks = np.arange(error.shape[1])
         with np.errstate(invalid="ignore"):  # a point without a gap has no lengths
             push = error * (ranks * frequency[:, None]) ** 2 / length[:, None]
         push[:, 0] = force / (stiffness * length)
-        # a grid point has its own status; between two the worse one holds
-        worse = np.where(moves(a.status) & (b.status != 0), b.status, a.status)
-        status = np.select([weight == 0.0, weight == 1.0], [a.status, b.status], worse)
+        status = a.status
+        if a is not b:
+            # a grid point has its own status; between two the worse one holds
+            worse = np.where(moves(a.status) & (b.status != 0), b.status, a.status)
+            status = np.select([weight == 0.0, weight == 1.0], [a.status, b.status], worse)
         flat = Lanes(
             period=2.0 * np.pi / frequency,
             damping=mix(a.flat.damping, b.flat.damping),

@@ -27,18 +27,25 @@ BLOCK = 128
 _COUNTS = tuple(base * 2**k for k in range(11) for base in (32, 48))
 
 
-def _bounds(lanes: LaneTables, name: str) -> tuple[Floats, Floats]:
-    """Per lane: a bound of |p| over the period and of |dp/dphi| (without the jumps)."""
-    coefficients = np.abs(getattr(lanes, name))
-    size = coefficients.sum(axis=1)
-    rate = 2.0 * np.pi * coefficients @ np.arange(coefficients.shape[1])
+def _largest(lanes: LaneTables, name: str) -> Floats:
+    """Per lane: a bound of |p| over the period."""
+    size = np.abs(getattr(lanes, name)).sum(axis=1)
     for lane, piece in enumerate(getattr(lanes, name + "_pieces")):
         if piece is not None:
             size[lane] += max(sum(abs(c) for c in row) for row in piece.coefficients)
+    return np.asarray(size)
+
+
+def _steepest(lanes: LaneTables, name: str) -> Floats:
+    """Per lane: a bound of |dp/dphi| over the period, without the jumps."""
+    coefficients = np.abs(getattr(lanes, name))
+    rate = 2.0 * np.pi * coefficients @ np.arange(coefficients.shape[1])
+    for lane, piece in enumerate(getattr(lanes, name + "_pieces")):
+        if piece is not None:
             rate[lane] += max(
                 sum(m * abs(c) for m, c in enumerate(row)) for row in piece.coefficients
             )
-    return size, rate
+    return np.asarray(rate)
 
 
 @lru_cache(maxsize=64)
@@ -54,8 +61,7 @@ def substeps(lanes: LaneTables, order: int = ORDER) -> Whole:
     The tail of the series stays below a few units in the last place: h sqrt(k_max) <= 0.3 for
     half width h in time, and every harmonic q of the tables adds at most 2e-17 of the scale.
     """
-    stiffest, _ = _bounds(lanes, "stiffness")
-    strongest, _ = _bounds(lanes, "force")
+    stiffest, strongest = _largest(lanes, "stiffness"), _largest(lanes, "force")
     mean = np.array(
         [
             row[0].real + (0.0 if piece is None else piece.mean)
@@ -172,13 +178,14 @@ class State:
 
 def _aligned(*shapes: tuple[int, ...], of: Callable[[int], Floats] = np.zeros) -> list[Floats]:
     """Zeros that start on a cache line: eight numbers then lie in one."""
-    sizes = [-(-prod(shape) // 8) * 8 for shape in shapes]
-    room = of(sum(sizes) + 8)
+    counts = [prod(shape) for shape in shapes]
+    room = of(sum(counts) + 8 * len(counts) + 8)
     first = -(room.__array_interface__["data"][0] // 8) % 8
     found = []
-    for shape, size in zip(shapes, sizes, strict=True):
-        found.append(room[first : first + prod(shape)].reshape(shape))
-        first += size
+    for shape, count in zip(shapes, counts, strict=True):
+        part = room[first : first + count]
+        found.append(part if len(shape) == 1 else part.reshape(shape))
+        first += -(-count // 8) * 8
     return found
 
 
@@ -247,8 +254,7 @@ def prepare_maps(lanes: LaneTables, borders: Floats, marks: Bytes, order: int = 
     widths = np.diff(borders)
     centres = borders[:-1] + 0.5 * widths
     half = 0.5 * widths[:, None] * lanes.period
-    size, rate = _bounds(lanes, "force")
-    jerk = rate / lanes.period + lanes.damping * size
+    jerk = _steepest(lanes, "force") / lanes.period + lanes.damping * _largest(lanes, "force")
     reach = jerk * half.max(axis=0) ** 3
     width, room = order + 1, -(-(5 * (order + 1) + BEHIND) // 8) * 8
     (steps,) = _aligned((centres.size, -(-len(lanes) // 8), 11, 8))
@@ -437,7 +443,7 @@ def advance(
         state.counts,
         state.spent,
     )
-    flat: list[NDArray[Any]] = [np.ravel(array) for array in owned]
+    flat: list[NDArray[Any]] = [array.reshape(-1) for array in owned]
     x, y, region, tangent, counts, spent = flat
     advance_exact(
         maps.steps.ravel(),

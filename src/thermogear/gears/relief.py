@@ -10,7 +10,15 @@ import numpy as np
 
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
-from thermogear.gears.deviations import GEARS, Contacts, Deviation, Relief, active_profile
+from thermogear.gears.candidates import mesh_points
+from thermogear.gears.deviations import (
+    GEARS,
+    Contacts,
+    Deviation,
+    FlankShape,
+    Relief,
+    active_profile,
+)
 from thermogear.gears.loaded import LoadedModel, solve_mesh
 from thermogear.gears.pair import GearPair
 from thermogear.gears.stiffness import Moduli
@@ -27,23 +35,26 @@ _EDGE = 0.05
 
 
 @dataclass(frozen=True, eq=False)
-class _AtNominal:
+class _Asked:
+    """A deviation's gap [m] at the only contacts that it is asked for."""
+
+    values: Floats
+
+    def gap(self, _: Contacts) -> Floats:
+        """e [m], (..., position, pair)."""
+        return self.values
+
+
+def _at_nominal(depth: Floats, amount: Floats, length: Floats, shape: str) -> _Asked:
     """Tip reliefs of many cases that count at the nominal point of contact, without a search.
 
-    amount, length [m]: (case, gear). Next to the first touch, which a relief moves along the
-    flank, the peak-to-peak error is off by some per cent, at a twentieth of the time.
+    amount, length [m]: (case, gear); depth [m]: contacts outside the start of the tip, (gear,
+    position, pair). Next to the first touch, which a relief moves along the flank, the
+    peak-to-peak error is off by some per cent, at a twentieth of the time.
     """
-
-    amount: Floats
-    length: Floats
-    shape: str
-
-    def gap(self, at: Contacts) -> Floats:
-        """e [m], (case, position, pair)."""
-        depth = np.stack([at.string(g) - active_profile(at.pair, g)[2] for g in GEARS])
-        x = np.clip(1.0 + depth / self.length[..., None, None], 0.0, 1.0)
-        x = x if self.shape == "linear" else x * x
-        return np.asarray((self.amount[..., None, None] * x).sum(axis=1))
+    x = np.minimum(np.maximum(1.0 + depth / length[..., None, None], 0.0), 1.0)
+    x = x if shape == "linear" else x * x
+    return _Asked(np.asarray((amount[..., None, None] * x).sum(axis=1)))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -97,24 +108,36 @@ def optimise_tip_relief(
     """
     if not (np.isfinite(normal_force) and normal_force > 0.0):
         raise InputError("normal_force", f"{normal_force} N", allowed="> 0, finite")
-    phase = np.arange(positions) / positions
+    phase, model = np.arange(positions) / positions, model or LoadedModel()
 
-    def error(phase: Floats, *extra: Deviation) -> Floats:
+    def error(step: int, with_these: Sequence[Deviation]) -> Floats:
         return (
             solve_mesh(
                 pair,
                 normal_force,
-                phase,
+                phase[::step],
                 pinion=pinion,
                 wheel=wheel,
-                deviations=[*deviations, *extra],
+                deviations=with_these,
                 model=model,
             )
             .checked()
             .deflection
         )
 
-    plain = error(phase)
+    plain = error(1, deviations)
+    contacts = {
+        step: mesh_points(pair, phase[::step], "drive", model.extended).contacts for step in (1, 2)
+    }
+    # heat and pitch errors count at the nominal point, which no relief moves
+    kept = {
+        step: [d if isinstance(d, FlankShape) else _Asked(d.gap(at)) for d in deviations]
+        for step, at in contacts.items()
+    }
+    depth = {
+        step: np.stack([at.string(g) - active_profile(pair, g)[2] for g in GEARS])
+        for step, at in contacts.items()
+    }
     unrelieved = float(np.ptp(plain))
     most = 3.0 * float(plain.mean() - plain.min() + np.ptp(plain)) if largest is None else largest
     shortest, longest = _SHORTEST * pair.base_pitch, pair.path.e - pair.path.a
@@ -136,10 +159,11 @@ def optimise_tip_relief(
         done += 1
         if progress is not None:
             progress(done)
-        return error(phase, *reliefs(x))
+        return error(1, [*kept[1], *reliefs(x)])
 
     def rough(x: Floats, step: int = 1) -> Floats:
-        return error(phase[::step], _AtNominal(*sizes(np.atleast_2d(x)), shape))
+        relief = _at_nominal(depth[step], *sizes(np.atleast_2d(x)), shape)
+        return error(step, [*kept[step], relief])
 
     from scipy.optimize import differential_evolution, minimize
 
