@@ -105,7 +105,7 @@ def _plane(r: Floats, phi: Floats) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class Profile:
-    """One flank of a gear, from the bottom of the gap to the tip; :class:`Density` has the joint."""
+    """One flank of a gear, from the bottom of the gap to the tip, with the joint of a mesh."""
 
     gear: Gear
     whole_fillet: bool = False
@@ -113,9 +113,7 @@ class Profile:
     @cached_property
     def start(self) -> float:
         """Rack normal angle of the point where tooth and foot meet."""
-        return (
-            self.gear.junction[0] if self.whole_fillet else start_angle(self.gear, "30-degree")
-        )
+        return self.gear.junction[0] if self.whole_fillet else start_angle(self.gear, "30-degree")
 
     def fillet(self, gamma: Floats) -> tuple[Floats, Floats]:
         """(r, phi) on the fillet."""

@@ -79,19 +79,34 @@ class TipCompliance(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class ToothTable:
-    """Compliances of a gear's loaded flanks, times E b, by place and by distance in pitches.
+class Flank:
+    """Places on a loaded flank.
 
     ``ends``: arcs of the involute [modules] from the base circle at form circle and tip; ``base``:
-    r_b [modules]; ``tooth``, ``body``: compliance of a tooth under its load at the ``stations``
+    r_b [modules].
+    """
+
+    ends: tuple[float, float]
+    base: float
+
+    def place(self, t: ArrayLike) -> Floats:
+        """-1 at the form circle .. 1 at the tip, by arc, for t = tan(alpha_k)."""
+        arc = 0.5 * self.base * np.asarray(t, dtype=float) ** 2
+        low, high = self.ends
+        return np.asarray(np.clip((2.0 * arc - low - high) / (high - low), -1.0, 1.0))
+
+
+@dataclass(frozen=True, eq=False)
+class ToothTable(Flank):
+    """Compliances of a gear's loaded flanks, times E b, by place and by distance in pitches.
+
+    ``tooth``, ``body``: compliance of a tooth under its load at the ``stations``
     (-1 at the form circle .. 1 at the tip), by where the energy sits; ``coupling`` (lag, degree,
     degree): Chebyshev series of the deflection of the tooth ``lag - MATES`` pitches ahead of the
     loaded one, towards the loaded flank; ``tip_tooth``, ``tip_body``: at the tip; ``windup``: of
     the ring between bore and root circle, in every entry. Bore held.
     """
 
-    ends: tuple[float, float]
-    base: float
     stations: Floats
     tooth: Floats
     body: Floats
@@ -100,12 +115,6 @@ class ToothTable:
     tip_body: TipCompliance
     windup: float
 
-    def _place(self, t: ArrayLike) -> Floats:
-        """-1 at the form circle .. 1 at the tip, by arc, for t = tan(alpha_k)."""
-        arc = 0.5 * self.base * np.asarray(t, dtype=float) ** 2
-        low, high = self.ends
-        return np.asarray(np.clip((2.0 * arc - low - high) / (high - low), -1.0, 1.0))
-
     def self_compliance(self, t: ArrayLike) -> tuple[Floats, Floats]:
         """(tooth's part, body's part) at t = tan(alpha_k) of a tooth under its load, times E b.
 
@@ -113,7 +122,7 @@ class ToothTable:
         the root of a thick tooth the tooth's part may be below 0, for the contact's law counts
         material that the tooth does not have. Shape of ``t``.
         """
-        place = self._place(t)
+        place = self.place(t)
         return _cubic(place, self.stations, self.tooth), _cubic(place, self.stations, self.body)
 
     def coupled(self, t: Floats, loaded: Floats, lag: int) -> Floats:
@@ -121,7 +130,7 @@ class ToothTable:
         if abs(lag) > MATES:
             return np.zeros(np.broadcast_shapes(t.shape, loaded.shape))
         return np.asarray(
-            chebyshev.chebval2d(self._place(t), self._place(loaded), self.coupling[lag + MATES])
+            chebyshev.chebval2d(self.place(t), self.place(loaded), self.coupling[lag + MATES])
         )
 
 
@@ -136,30 +145,39 @@ def tooth_table(gear: Gear, plane: str = "stress") -> ToothTable:
     >>> f"{tooth:.2f} {body:.2f}"
     '1.71 4.60'
     """
-    m, rack = gear.module, gear.rack
-    key = (gear.tip_radius / m, gear.bore_radius / m, rack.dedendum, rack.fillet_radius)
-    numbers = (gear.pressure_angle, gear.profile_shift, *key, gear.material.poisson_ratio)
-    # modules of the same drawing differ in the last digit
-    shape = tuple(float(f"{number:.12g}") for number in numbers)
-    return _table(_Shape(gear.teeth, plane, shape, gear))
+    return _table(Shape.of(gear, plane))
 
 
 @dataclass(frozen=True)
-class _Shape:
-    """What the table depends on, and a gear that has it."""
+class Shape:
+    """What a gear's finite elements depend on, and a gear that has it."""
 
     teeth: int
     plane: str
     numbers: tuple[float, ...]
     gear: Gear = field(compare=False)
 
+    @classmethod
+    def of(cls, gear: Gear, plane: str) -> Shape:
+        """In modules, to the digits in which modules of the same drawing agree."""
+        m, rack = gear.module, gear.rack
+        key = (gear.tip_radius / m, gear.bore_radius / m, rack.dedendum, rack.fillet_radius)
+        numbers = (gear.pressure_angle, gear.profile_shift, *key, gear.material.poisson_ratio)
+        return cls(gear.teeth, plane, tuple(float(f"{n:.12g}") for n in numbers), gear)
+
+    @property
+    def poisson(self) -> float:
+        """Of the plane state: nu, or nu/(1 - nu) in plane strain."""
+        nu = self.gear.material.poisson_ratio
+        return nu if self.plane == "stress" else nu / (1.0 - nu)
+
 
 @lru_cache(maxsize=64)
-def _table(shape: _Shape) -> ToothTable:
-    nu = shape.gear.material.poisson_ratio
+def _table(shape: Shape) -> ToothTable:
+    sector = Sector.of(shape.gear, shape.poisson)
     if shape.plane == "stress":
-        return Sector.of(shape.gear, nu).table()
-    return Sector.of(shape.gear, nu / (1.0 - nu)).table(1.0 - nu * nu)
+        return sector.table()
+    return sector.table(1.0 - shape.gear.material.poisson_ratio**2)
 
 
 def _pressure_load(gear: Gear, tooth: Tooth, centre: float, half_width: float) -> Floats:
