@@ -10,6 +10,7 @@ and ISO 6336-3, which lies 1 to 19 % above on the gears held there.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import NamedTuple
@@ -25,7 +26,7 @@ from thermogear.gears.pair import GearPair
 from thermogear.gears.tooth_mesh import Density, Profile
 from thermogear.gears.tooth_table import MATES, Flank, Sector, Shape
 
-MESH = Density(growth=1.5, sides=10, below=6, whole_fillet=True)
+MESH = Density(growth=1.5, sides=10, below=6, joint=math.radians(10.0))
 """10 elements along the fillet and half of the gap: the greatest stress within .4 % of a mesh whose
 elements are half as large, on seven gears of the tests."""
 ROWS, COLUMNS = 10, 6
@@ -86,12 +87,14 @@ def table_of(sector: Sector) -> RootTable:
     low, high = Profile(gear).ends
     place = (2.0 * arcs - low - high) / (high - low)
     fit = np.linalg.inv(chebyshev.chebvander(place, STATIONS - 1))
-    steps = np.diff(at, axis=0, prepend=sector.patch.nodes[edge[:1]])
+    fillet = np.linspace(gear.junction[0], Profile(gear, MESH.joint).start, 200)
+    above = np.hypot(*np.diff(gear.fillet.point(fillet))).sum()
+    steps = np.hypot(*np.diff(at, axis=0, prepend=sector.patch.nodes[edge[:1]]).T)
     return RootTable(
         ends=(low / m, high / m),
         base=gear.base_radius / m,
         slope=np.arctan2(along[:, 0], -along[:, 1]),
-        way=np.cumsum(np.hypot(*steps.T)) / m,
+        way=(above + np.cumsum(steps)) / m,
         series=np.einsum("ds,kps->dkp", fit, stress),
     )
 

@@ -16,7 +16,7 @@ import numpy as np
 from thermogear.base.arrays import Floats
 from thermogear.gears.elements import Integers, Patch
 from thermogear.gears.geometry import Gear
-from thermogear.gears.tooth import start_angle
+from thermogear.gears.tooth import CRITICAL_SLOPE, section_angle
 
 _FINE_SAMPLES = 2001
 
@@ -27,9 +27,8 @@ class Density:
 
     ``per_half_width`` elements along the Hertzian half width, from where they grow by
     ``growth`` from one to the next up to a ``coarsest`` part of a module. ``sides`` elements along
-    a fillet with half of the gap, ``below`` from the root half a module down. ``whole_fillet``: the
-    grids meet at the form circle, so that no corner of the joint is near the fillet's greatest
-    stress; otherwise at its 30-degree point.
+    a fillet with half of the gap, ``below`` from the root half a module down. ``joint``: angle
+    [rad] of the fillet's tangent to the tooth's axis where tooth and foot meet.
     """
 
     refinement: int = 1
@@ -38,7 +37,7 @@ class Density:
     coarsest: float = 0.4
     sides: int = 5
     below: int = 3
-    whole_fillet: bool = False
+    joint: float = CRITICAL_SLOPE
 
     @property
     def rate(self) -> float:
@@ -108,12 +107,12 @@ class Profile:
     """One flank of a gear, from the bottom of the gap to the tip, with the joint of a mesh."""
 
     gear: Gear
-    whole_fillet: bool = False
+    joint: float = CRITICAL_SLOPE
 
     @cached_property
     def start(self) -> float:
         """Rack normal angle of the point where tooth and foot meet."""
-        return self.gear.junction[0] if self.whole_fillet else start_angle(self.gear, "30-degree")
+        return section_angle(self.gear, self.joint)
 
     def fillet(self, gamma: Floats) -> tuple[Floats, Floats]:
         """(r, phi) on the fillet."""
@@ -190,7 +189,7 @@ def _body_radii(*, low: float, high: float, size: float, rate: float, part: floa
 
 def foot_mesh(gear: Gear, across: Floats, density: Density) -> Foot:
     """The foot of a tooth whose joint has corners at ``across`` in -1 .. 1 of its half angle."""
-    profile = Profile(gear, density.whole_fillet)
+    profile = Profile(gear, density.joint)
     m, half = gear.module, np.pi / gear.teeth
     r_joint, phi_joint = profile.meeting
     rim = gear.root_radius - gear.bore_radius
@@ -261,7 +260,7 @@ def tooth_mesh(gear: Gear, *, across: Floats, arcs: Floats, density: Density) ->
 
     ``arcs`` ascend from the form circle to the tip.
     """
-    profile = Profile(gear, density.whole_fillet)
+    profile = Profile(gear, density.joint)
     r, phi = profile.involute(halved(arcs))
     if abs(profile.start - gear.junction[0]) > 1e-9:
         gammas = halved(np.linspace(profile.start, gear.junction[0], density.count(3) + 1))
