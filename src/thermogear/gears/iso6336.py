@@ -178,11 +178,6 @@ class RootFactors(NamedTuple):
     form: float
     notch: float
 
-    @property
-    def stress(self) -> float:
-        """sigma_F0 b m/F_t."""
-        return self.form * self.notch
-
 
 def root_factors(gear: Gear, t: float) -> RootFactors:
     """Form factor Y_F and stress correction factor Y_S of a spur gear loaded at t = tan(alpha_k).
@@ -199,7 +194,7 @@ def root_factors(gear: Gear, t: float) -> RootFactors:
     >>> pair = GearPair(Gear(25, 5e-3), Gear(75, 5e-3))
     >>> factors = root_factors(pair.pinion, single_contact(pair)[0])
     >>> f"{factors.form:.3f} {factors.notch:.3f}"
-    ''
+    '1.386 1.922'
     """
     m, fillet, at = gear.module, gear.fillet, flank_point(gear, t)
     gamma = section_angle(gear, CRITICAL_SLOPE)
@@ -212,9 +207,8 @@ def root_factors(gear: Gear, t: float) -> RootFactors:
     if not 1.0 <= notch < 8.0:
         raise InputError(
             "rack.fillet_radius",
-            f"{gear.rack.fillet_radius:g} modules",
-            allowed="1 <= q_s < 8 of ISO 6336-3",
-            why=f"q_s = {notch:.3g}",
+            f"{gear.rack.fillet_radius:g} modules, q_s = {notch:.3g}",
+            allowed="1 <= q_s < 8 in ISO 6336-3",
         )
     slim = chord / lever
     return RootFactors(

@@ -1,11 +1,12 @@
 """Stress along the loaded fillet of a tooth, from finite elements of one sector of the gear.
 
 The sector is that of :mod:`thermogear.gears.tooth_table`, with smaller elements along the fillet
-and its grids meeting at the form circle, so that the greatest stress lies inside of one grid. On an
-edge without load the strain along it says the whole stress, sigma = E e_t. Load and deflection are
-of plane stress or plane strain; modulus and temperature act through the load alone.
+and its two grids meeting at the fillet's 10-degree tangent: where they meet the stress is a few
+percent off, and at 30 degrees it would be near its greatest. On an edge without load the strain
+along it says the whole stress, sigma = E e_t, with E/(1 - nu^2) in plane strain. The modulus does
+not matter, nor the temperature but by the load's shares; tooth and body are of one modulus here.
 Checked by ``tests/gears/test_root_stress.py``: a hole in a plate, convergence, another assembly,
-and ISO 6336-3, which lies 1 to 19 % above on the gears held there.
+and figures of finite elements not written here.
 """
 
 from __future__ import annotations
@@ -26,10 +27,11 @@ from thermogear.gears.pair import GearPair
 from thermogear.gears.tooth_mesh import Density, Profile
 from thermogear.gears.tooth_table import MATES, Flank, Sector, Shape
 
-MESH = Density(growth=1.5, sides=10, below=6, joint=math.radians(10.0))
-"""10 elements along the fillet and half of the gap: the greatest stress within .4 % of a mesh whose
-elements are half as large, on seven gears of the tests."""
-ROWS, COLUMNS = 10, 6
+MESH = Density(growth=1.8, sides=9, below=5, joint=math.radians(10.0))
+"""The greatest stress is within 0.7 % of that of elements half as large, on twelve gears of 9 to
+120 teeth, 14.5 to 28 degrees, shifts of -0.5 to 0.8 and rims from 0.8 modules on."""
+ROWS, COLUMNS = 8, 5
+"""Elements along the flank and across the tooth."""
 STATIONS = 9
 """Chebyshev points of the loads along a flank."""
 
@@ -56,7 +58,7 @@ class RootTable(Flank):
 
         >>> gear = Gear(25, 5e-3)
         >>> f"{root_table(gear).stress(math.tan(math.radians(20))).max():.2f}"
-        '1.76'
+        '2.41'
         """
         place = self.place(t)
         if abs(lag) > MATES:
@@ -110,10 +112,10 @@ class RootStress(NamedTuple):
     slope: Floats
     way: Floats
 
-    def greatest(self) -> RootStress:
-        """That of the worst position, shape ``lead``; nan where a position is not known."""
-        worst = np.argmax(self.stress, axis=-1)[..., None]
-        return RootStress(*(np.take_along_axis(a, worst, axis=-1)[..., 0] for a in self))
+    def greatest(self, case: int) -> RootStress:
+        """That of the worst position of one case, scalars; nan where a position is not known."""
+        worst = int(np.argmax(self.stress[case]))
+        return RootStress(*(values[case, worst] for values in self))
 
 
 def root_stress(
@@ -126,10 +128,11 @@ def root_stress(
     counts as one along the involute's normal there. Static: no dynamic factor. nan where the
     contact did not settle.
 
+    >>> from thermogear.gears.loaded import solve_mesh
     >>> pair = GearPair(Gear(25, 5e-3), Gear(75, 5e-3))
     >>> pinion, wheel = root_stress(pair, solve_mesh(pair, 5e3, np.arange(20) / 20))
     >>> f"{1e-6 * pinion.stress.max():.0f} MPa, {1e-6 * wheel.stress.max():.0f} MPa"
-    ''
+    '96 MPa, 89 MPa'
     """
     point, line = mesh.points.point, mesh.force / pair.face_width
     found = []
