@@ -147,6 +147,16 @@ LIMITS: dict[str, Limit] = {
         source="ours: f_Hα + f_fα of the class by ISO 1328-1, both gears', are what manufacture "
         "allows; the load adds 0.43 w/c', the step from one tooth pair to two",
     ),
+    "root_stress": Limit("MPa", source="no fatigue strength is known of the material"),
+    **{
+        f"root_{name}": Limit(
+            "MPa",
+            most=850.0 / 1.4,
+            source="ISO 6336-5: 2 x 425 MPa, case-hardened, quality MQ, over a usual safety of 1.4",
+            confirmed=False,
+        )
+        for name in ("16MnCr5", "20MnCr5", "18CrNiMo7-6", "AISI 9310")
+    },
     "critical_speed": Limit(
         "%",
         what="own speeds off it by",

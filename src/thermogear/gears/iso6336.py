@@ -1,7 +1,7 @@
-"""Mesh stiffness by ISO 6336-1, method B: a standard's figure to compare with.
+"""Mesh stiffness by ISO 6336-1 and root stress by ISO 6336-3, method B: figures to compare with.
 
-It knows neither bore nor rim shape nor the course over the mesh; expect it within about 20 %
-of the loaded contact.
+They know neither bore nor rim shape nor the course over the mesh; expect the stiffness within about
+20 % of the loaded contact, the stress -5 to +20 % off finite elements.
 """
 
 from __future__ import annotations
@@ -14,9 +14,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from thermogear.base.arrays import Floats
-from thermogear.base.errors import ValidityWarning
+from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.gears.geometry import Gear
 from thermogear.gears.pair import GearPair
+from thermogear.gears.tooth import CRITICAL_SLOPE, flank_point, section_angle
 
 MEASURED_TO_THEORY = 0.8  # C_M
 _STEEL = 206e9
@@ -169,3 +170,58 @@ def _warn_of_shifts(first: Gear, second: Gear) -> None:
                 ValidityWarning,
                 stacklevel=3,
             )
+
+
+class RootFactors(NamedTuple):
+    """Y_F and Y_S: sigma_F0 = F_t/(b m) Y_F Y_S, F_t = F_n cos(alpha) at the reference circle."""
+
+    form: float
+    notch: float
+
+
+def root_factors(gear: Gear, t: float) -> RootFactors:
+    """Form factor Y_F and stress correction factor Y_S of a spur gear loaded at t = tan(alpha_k).
+
+    Y_F = 6 (h_F/m) cos(alpha_F)/((s_F/m)^2 cos(alpha)),
+    Y_S = (1.2 + 0.13 L) q^(1/(1.21 + 2.3/L)), L = s_F/h_F, q = s_F/(2 rho_F),
+
+    s_F the chord at the fillet's 30-degree tangents, h_F the height above it at which the force
+    meets the tooth's axis, alpha_F its angle to that axis' normal, rho_F the fillet's radius there.
+    Method B loads the outer point of single contact, :func:`single_contact`. Rim thickness and deep
+    teeth (Y_B, Y_DT) are left out. Raises InputError outside the source's 1 <= q < 8.
+    Source: ISO 6336-3:2006, clauses 6 and 7.
+
+    >>> pair = GearPair(Gear(25, 5e-3), Gear(75, 5e-3))
+    >>> factors = root_factors(pair.pinion, single_contact(pair)[0])
+    >>> f"{factors.form:.3f} {factors.notch:.3f}"
+    '1.386 1.922'
+    """
+    m, fillet, at = gear.module, gear.fillet, flank_point(gear, t)
+    gamma = section_angle(gear, CRITICAL_SLOPE)
+    x, y = fillet.point(gamma)
+    chord, sine = 2.0 * float(x), math.sin(gamma)
+    lever = float(at.y - at.x * np.tan(at.beta) - y)
+    depth = fillet.centre_depth
+    curved = sine * (gear.pitch_radius * sine**2 + depth)
+    notch = chord / (2.0 * (fillet.radius + depth**2 / curved))
+    if not 1.0 <= notch < 8.0:
+        raise InputError(
+            "rack.fillet_radius",
+            f"{gear.rack.fillet_radius:g} modules, q_s = {notch:.3g}",
+            allowed="1 <= q_s < 8 in ISO 6336-3",
+        )
+    slim = chord / lever
+    return RootFactors(
+        6.0 * lever * m * math.cos(at.beta) / (chord**2 * math.cos(gear.pressure_angle)),
+        (1.2 + 0.13 * slim) * notch ** (1.0 / (1.21 + 2.3 / slim)),
+    )
+
+
+def single_contact(pair: GearPair) -> tuple[float, float]:
+    """t = tan(alpha_k) of the outer point of single contact on pinion and wheel.
+
+    A base pitch from where the contact begins at the gear's root: D of the path for the pinion, B
+    for the wheel. Above a contact ratio of 2 the pair is not alone there.
+    """
+    path, length = pair.path, pair.line_of_action
+    return path.d / pair.pinion.base_radius, (length - path.b) / pair.wheel.base_radius

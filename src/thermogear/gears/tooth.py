@@ -7,6 +7,7 @@ normal of the tooth axis.
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -23,7 +24,8 @@ STARTS = {
     "30-degree": "from the section whose fillet tangent makes 30 deg with the tooth axis",
 }
 SHEAR_FACTOR = 1.2  # rectangle
-_CRITICAL_SLOPE = np.radians(30.0)
+CRITICAL_SLOPE = math.radians(30.0)
+"""Tangent of the fillet to the tooth's axis [rad] at the section of ISO 6336-3."""
 _FILLET_NODES = np.polynomial.legendre.leggauss(40)
 _FLANK_NODES = np.polynomial.legendre.leggauss(24)
 _NEAREST = 1e-9
@@ -88,9 +90,20 @@ def start_angle(gear: Gear, start: str) -> float:
     if start == "root-circle":
         return 0.5 * np.pi
     if start == "30-degree":
-        # a deeply undercut tooth may be past that slope already where the involute begins
-        return max(gear.fillet.section_at_slope(_CRITICAL_SLOPE), gear.junction[0])
+        return section_angle(gear, CRITICAL_SLOPE)
     raise InputError("start", repr(start), allowed=" | ".join(STARTS), fix=nearest(start, STARTS))
+
+
+def section_angle(gear: Gear, slope: float) -> float:
+    """Rack normal angle gamma [rad] where the fillet's tangent makes ``slope`` [rad] with the axis.
+
+    Where the involute begins on a tooth whose tangent is past that slope there already: a deeply
+    undercut one, or one of large profile shift.
+    """
+    gamma = gear.junction[0]
+    if gamma - float(gear.fillet.roll(gamma)) >= slope:
+        return gamma
+    return gear.fillet.section_at_slope(slope)
 
 
 def _moments(x: Floats, y: Floats, dy: Floats, point: FlankPoint) -> tuple[Floats, Floats, Floats]:

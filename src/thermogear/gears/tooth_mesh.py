@@ -16,7 +16,7 @@ import numpy as np
 from thermogear.base.arrays import Floats
 from thermogear.gears.elements import Integers, Patch
 from thermogear.gears.geometry import Gear
-from thermogear.gears.tooth import start_angle
+from thermogear.gears.tooth import CRITICAL_SLOPE, section_angle
 
 _FINE_SAMPLES = 2001
 
@@ -26,13 +26,18 @@ class Density:
     """How fine the mesh is: counts are multiplied by ``refinement``.
 
     ``per_half_width`` elements along the Hertzian half width, from where they grow by
-    ``growth`` from one to the next up to a ``coarsest`` part of a module.
+    ``growth`` from one to the next up to a ``coarsest`` part of a module. ``sides`` elements along
+    a fillet with half of the gap, ``below`` from the root half a module down. ``joint``: angle
+    [rad] of the fillet's tangent to the tooth's axis where tooth and foot meet.
     """
 
     refinement: int = 1
     per_half_width: float = 3.0
     growth: float = 1.6
     coarsest: float = 0.4
+    sides: int = 5
+    below: int = 3
+    joint: float = CRITICAL_SLOPE
 
     @property
     def rate(self) -> float:
@@ -110,14 +115,15 @@ def _plane(r: Floats, phi: Floats) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class Profile:
-    """One flank of a gear, from the bottom of the gap to the tip."""
+    """One flank of a gear, from the bottom of the gap to the tip, with the joint of a mesh."""
 
     gear: Gear
+    joint: float = CRITICAL_SLOPE
 
     @cached_property
     def start(self) -> float:
         """Rack normal angle of the point where tooth and foot meet."""
-        return start_angle(self.gear, "30-degree")
+        return section_angle(self.gear, self.joint)
 
     def fillet(self, gamma: Floats) -> tuple[Floats, Floats]:
         """(r, phi) on the fillet."""
@@ -165,7 +171,8 @@ class Foot:
     """Sector of the body with the fillets of one tooth; ``across`` is the joint's grading.
 
     Node numbers of its edges: ``bore``, ``left`` and ``right`` (towards the neighbours, from
-    the bore outward, bore left out) and ``joint`` (towards the tooth, ascending phi).
+    the bore outward, bore left out), ``joint`` (towards the tooth, ascending phi) and ``fillet``
+    (of the loaded flank, from the joint to the middle of the gap).
     """
 
     patch: Patch
@@ -173,6 +180,7 @@ class Foot:
     left: Integers
     right: Integers
     joint: Integers
+    fillet: Integers
     half_angle: float
 
 
@@ -196,7 +204,7 @@ def foot_mesh(gear: Gear, across: Floats, density: Density) -> Foot:
     >>> foot_mesh(Gear(20, 4e-3), plain_across(Density()), Density()).joint.size
     9
     """
-    profile = Profile(gear)
+    profile = Profile(gear, density.joint)
     m, half = gear.module, np.pi / gear.teeth
     r_joint, phi_joint = profile.meeting
     rim = gear.root_radius - gear.bore_radius
@@ -204,7 +212,7 @@ def foot_mesh(gear: Gear, across: Floats, density: Density) -> Foot:
     # the lines below the joint lean inward, so that three equal corners meet in the fillet
     phi_low = max(phi_joint - np.tan(np.pi / 6.0) * (r_joint - r_low) / r_joint, 0.5 * phi_joint)
 
-    steps = density.count(5)
+    steps = density.count(density.sides)
     part = halved(np.linspace(0.0, 1.0, steps + 1))
     middle = halved(across)
     low_side = phi_low + part * (half - phi_low)
@@ -221,7 +229,7 @@ def foot_mesh(gear: Gear, across: Floats, density: Density) -> Foot:
         part=0.25 / density.refinement,
     )
     body_rows = halved(body)
-    lift = halved(np.linspace(0.0, 1.0, density.count(3) + 1))[1:]
+    lift = halved(np.linspace(0.0, 1.0, density.count(density.below) + 1))[1:]
     r = np.concatenate(
         [
             np.broadcast_to(body_rows[:, None], (body_rows.size, low.size)),
@@ -244,17 +252,22 @@ def foot_mesh(gear: Gear, across: Floats, density: Density) -> Foot:
         left=number[1:, 0],
         right=number[1:, -1],
         joint=number[-1, 2 * steps : columns - 2 * steps],
+        fillet=number[-1, columns - 2 * steps - 1 :],
         half_angle=half,
     )
 
 
 @dataclass(frozen=True, eq=False)
 class Tooth:
-    """Mesh of a tooth above its joint; ``flank``: nodes of the loaded flank, upward."""
+    """Mesh of a tooth above its joint; ``flank``: nodes of the loaded flank, upward.
+
+    Their last ``rows`` elements are on the involute.
+    """
 
     patch: Patch
     joint: Integers
     flank: Integers
+    rows: int
 
 
 def tooth_mesh(gear: Gear, *, across: Floats, arcs: Floats, density: Density) -> Tooth:
@@ -267,7 +280,7 @@ def tooth_mesh(gear: Gear, *, across: Floats, arcs: Floats, density: Density) ->
     >>> tooth_mesh(gear, across=across, arcs=arcs, density=density).patch.cells.shape
     (28, 3, 3)
     """
-    profile = Profile(gear)
+    profile = Profile(gear, density.joint)
     r, phi = profile.involute(halved(arcs))
     if abs(profile.start - gear.junction[0]) > 1e-9:
         gammas = halved(np.linspace(profile.start, gear.junction[0], density.count(3) + 1))
@@ -278,7 +291,8 @@ def tooth_mesh(gear: Gear, *, across: Floats, arcs: Floats, density: Density) ->
     nodes = _plane(grid_r, phi[:, None] * columns).reshape(-1, 2)
     number = np.arange(nodes.shape[0]).reshape(r.size, columns.size)
     cells = cells_of(rows=(r.size - 1) // 2, columns=(columns.size - 1) // 2)
-    return Tooth(Patch(nodes, cells, gear.material.poisson_ratio), number[0], number[:, -1])
+    patch = Patch(nodes, cells, gear.material.poisson_ratio)
+    return Tooth(patch, number[0], number[:, -1], arcs.size - 1)
 
 
 def plain_arcs(gear: Gear, density: Density) -> Floats:

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -26,6 +26,9 @@ from thermogear.gears.geometry import Gear
 from thermogear.gears.tooth import flank_point
 from thermogear.gears.tooth_mesh import Density, Foot, Profile, Tooth, foot_mesh, tooth_mesh
 
+if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
+
 PLANES = {
     "stress": "teeth and bodies in plane stress, the contact alone in plane strain",
     "strain": "plane strain everywhere, as in the middle of a wide gear",
@@ -36,12 +39,13 @@ PATCH = 0.12
 """Half width [modules] of the pressure of a load."""
 STATIONS = 12
 """Chebyshev points of the loads along a flank; two more stand at its tip."""
+MESH = Density(growth=1.5)
 _COUPLED = 6
 """Degree, in both places, of the coupling's polynomial."""
 _PRESSURE = 40
 """Points of Gauss and Chebyshev's rule over an elliptic pressure."""
-ROWS, FILLET_ROWS, COLUMNS = 22, 5, 8
-"""Elements along the flank, along the fillet above the tooth's foot, and across the tooth."""
+ROWS, COLUMNS = 22, 8
+"""Elements along the flank and across the tooth."""
 
 
 def indentation(depth_ratio: ArrayLike, *, poisson: float) -> Floats:
@@ -76,19 +80,34 @@ class TipCompliance(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class ToothTable:
-    """Compliances of a gear's loaded flanks, times E b, by place and by distance in pitches.
+class Flank:
+    """Places on a loaded flank.
 
     ``ends``: arcs of the involute [modules] from the base circle at form circle and tip; ``base``:
-    r_b [modules]; ``tooth``, ``body``: compliance of a tooth under its load at the ``stations``
+    r_b [modules].
+    """
+
+    ends: tuple[float, float]
+    base: float
+
+    def place(self, t: ArrayLike) -> Floats:
+        """-1 at the form circle .. 1 at the tip, by arc, for t = tan(alpha_k)."""
+        arc = 0.5 * self.base * np.asarray(t, dtype=float) ** 2
+        low, high = self.ends
+        return np.asarray(np.clip((2.0 * arc - low - high) / (high - low), -1.0, 1.0))
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ToothTable(Flank):
+    """Compliances of a gear's loaded flanks, times E b, by place and by distance in pitches.
+
+    ``tooth``, ``body``: compliance of a tooth under its load at the ``stations``
     (-1 at the form circle .. 1 at the tip), by where the energy sits; ``coupling`` (lag, degree,
     degree): Chebyshev series of the deflection of the tooth ``lag - MATES`` pitches ahead of the
     loaded one, towards the loaded flank; ``tip_tooth``, ``tip_body``: at the tip; ``windup``: of
     the ring between bore and root circle, in every entry. Bore held.
     """
 
-    ends: tuple[float, float]
-    base: float
     stations: Floats
     tooth: Floats
     body: Floats
@@ -97,12 +116,6 @@ class ToothTable:
     tip_body: TipCompliance
     windup: float
 
-    def _place(self, t: ArrayLike) -> Floats:
-        """-1 at the form circle .. 1 at the tip, by arc, for t = tan(alpha_k)."""
-        arc = 0.5 * self.base * np.asarray(t, dtype=float) ** 2
-        low, high = self.ends
-        return np.asarray(np.clip((2.0 * arc - low - high) / (high - low), -1.0, 1.0))
-
     def self_compliance(self, t: ArrayLike) -> tuple[Floats, Floats]:
         """(tooth's part, body's part) at t = tan(alpha_k) of a tooth under its load, times E b.
 
@@ -110,7 +123,7 @@ class ToothTable:
         the root of a thick tooth the tooth's part may be below 0, for the contact's law counts
         material that the tooth does not have. Shape of ``t``.
         """
-        place = self._place(t)
+        place = self.place(t)
         return _cubic(place, self.stations, self.tooth), _cubic(place, self.stations, self.body)
 
     def coupled(self, t: Floats, *, loaded: Floats, lag: int) -> Floats:
@@ -118,7 +131,7 @@ class ToothTable:
         if abs(lag) > MATES:
             return np.zeros(np.broadcast_shapes(t.shape, loaded.shape))
         return np.asarray(
-            chebyshev.chebval2d(self._place(t), self._place(loaded), self.coupling[lag + MATES])
+            chebyshev.chebval2d(self.place(t), self.place(loaded), self.coupling[lag + MATES])
         )
 
 
@@ -133,30 +146,39 @@ def tooth_table(gear: Gear, plane: str = "stress") -> ToothTable:
     >>> f"{tooth:.2f} {body:.2f}"
     '1.71 4.60'
     """
-    m, rack = gear.module, gear.rack
-    key = (gear.tip_radius / m, gear.bore_radius / m, rack.dedendum, rack.fillet_radius)
-    numbers = (gear.pressure_angle, gear.profile_shift, *key, gear.material.poisson_ratio)
-    # modules of the same drawing differ in the last digit
-    shape = tuple(float(f"{number:.12g}") for number in numbers)
-    return _table(_Shape(gear.teeth, plane, shape, gear))
+    return _table(Shape.of(gear, plane))
 
 
 @dataclass(frozen=True)
-class _Shape:
-    """What the table depends on, and a gear that has it."""
+class Shape:
+    """What a gear's finite elements depend on, and a gear that has it."""
 
     teeth: int
     plane: str
     numbers: tuple[float, ...]
     gear: Gear = field(compare=False)
 
+    @classmethod
+    def of(cls, gear: Gear, plane: str) -> Shape:
+        """In modules, to the digits in which modules of the same drawing agree."""
+        m, rack = gear.module, gear.rack
+        key = (gear.tip_radius / m, gear.bore_radius / m, rack.dedendum, rack.fillet_radius)
+        numbers = (gear.pressure_angle, gear.profile_shift, *key, gear.material.poisson_ratio)
+        return cls(gear.teeth, plane, tuple(float(f"{n:.12g}") for n in numbers), gear)
+
+    @property
+    def poisson(self) -> float:
+        """Of the plane state: nu, or nu/(1 - nu) in plane strain."""
+        nu = self.gear.material.poisson_ratio
+        return nu if self.plane == "stress" else nu / (1.0 - nu)
+
 
 @lru_cache(maxsize=64)
-def _table(shape: _Shape) -> ToothTable:
-    nu = shape.gear.material.poisson_ratio
+def _table(shape: Shape) -> ToothTable:
+    sector = Sector.of(shape.gear, shape.poisson)
     if shape.plane == "stress":
-        return Sector.of(shape.gear, nu).table()
-    return Sector.of(shape.gear, nu / (1.0 - nu)).table(1.0 - nu * nu)
+        return sector.table()
+    return sector.table(1.0 - shape.gear.material.poisson_ratio**2)
 
 
 def _pressure_load(gear: Gear, tooth: Tooth, centre: float, half_width: float) -> Floats:
@@ -173,14 +195,37 @@ def _pressure_load(gear: Gear, tooth: Tooth, centre: float, half_width: float) -
     weight /= weight.sum()
     beta = np.sqrt(2.0 * np.maximum(arc, 0.0) / gear.base_radius) - gear.base_half_angle
     force = -weight[:, None] * np.stack([np.cos(beta), np.sin(beta)], axis=-1)
-    step = (high - low) / ROWS
-    element = np.clip(((arc - low) / step).astype(int), 0, ROWS - 1)
+    step = (high - low) / tooth.rows
+    element = np.clip(((arc - low) / step).astype(int), 0, tooth.rows - 1)
     shape, _ = quadratic(2.0 * ((arc - low) / step - element) - 1.0)
-    first = tooth.flank.size - (2 * ROWS + 1)
+    first = tooth.flank.size - (2 * tooth.rows + 1)
     out = np.zeros(tooth.patch.nodes.shape)
     for node in range(3):
         np.add.at(out, tooth.flank[first + 2 * element + node], shape[node][:, None] * force)
     return out
+
+
+class Solved(NamedTuple):
+    """Motion of the sectors under unit forces on the tooth of one, unit modulus and width.
+
+    Unknowns ``inner`` and at the ``sides``; ``own`` (inner, load) with the sides held, ``by_side``
+    (inner, side); ``moved`` (lag, side, load): the sides of the sector ``lag - MATES`` pitches
+    ahead; ``lags`` (lag, load, load): deflections at the loads' places there.
+    """
+
+    inner: Integers
+    sides: Integers
+    own: Floats
+    by_side: Floats
+    moved: Floats
+    lags: Floats
+
+    def felt(self, operator: csr_matrix) -> Floats:
+        """(lag, row, load): what ``operator`` (row, unknown) makes of the motion."""
+        by_side = operator[:, self.sides].toarray() + operator[:, self.inner] @ self.by_side
+        out = np.asarray(by_side @ self.moved)
+        out[MATES] += operator[:, self.inner] @ self.own
+        return out
 
 
 @dataclass(frozen=True, eq=False)
@@ -194,15 +239,21 @@ class Sector:
     number: Integers
 
     @classmethod
-    def of(cls, gear: Gear, poisson: float) -> Sector:
+    def of(
+        cls,
+        gear: Gear,
+        poisson: float,
+        density: Density = MESH,
+        *,
+        rows: int = ROWS,
+        columns: int = COLUMNS,
+    ) -> Sector:
         """The mesh of ``gear``; ``poisson`` of plane stress, or nu/(1 - nu) of plane strain."""
-        density = Density(growth=1.5)
-        across = _graded_columns()
+        across = _graded_columns(density.count(columns))
         low, high = Profile(gear).ends
         foot = foot_mesh(gear, across, density)
-        mesh = tooth_mesh(
-            gear, across=across, arcs=np.linspace(low, high, ROWS + 1), density=density
-        )
+        arcs = np.linspace(low, high, density.count(rows) + 1)
+        mesh = tooth_mesh(gear, across=across, arcs=arcs, density=density)
         rest = np.setdiff1d(np.arange(mesh.patch.nodes.shape[0]), mesh.joint)
         below = foot.patch.nodes.shape[0]
         number = np.empty(mesh.patch.nodes.shape[0], dtype=np.int64)
@@ -212,39 +263,32 @@ class Sector:
         above = replace(mesh, patch=replace(mesh.patch, poisson=poisson))
         return cls(gear, foot, above, Patch(nodes, cells, poisson), number)
 
-    def _loads(self) -> tuple[Floats, Floats, Floats]:
-        """(unknown, load) of all stations and the tip's turned one; their arcs and half widths."""
-        low, high = Profile(self.gear).ends
-        patch = PATCH * self.gear.module
-        inner = chebyshev.chebpts2(STATIONS)
-        first, last = low + 0.5 * patch, high - 0.5 * patch
-        arcs = np.concatenate(
-            [0.5 * (first + last) + 0.5 * (last - first) * inner, [high - 0.25 * patch, high]]
-        )
-        widths = np.clip(np.minimum(arcs - low, high - arcs), 0.5 * patch, patch)
-        widths[-1] = 0.7 * patch
-        loads = np.zeros((self.patch.nodes.shape[0], 2, arcs.size + 1))
+    def loads(self, arcs: Floats, widths: Floats) -> Floats:
+        """(unknown, load) of unit forces at the lengths ``arcs`` of the involute [m].
+
+        Of elliptic pressures of the half ``widths`` [m].
+        """
+        loads = np.zeros((self.patch.nodes.shape[0], 2, arcs.size))
         for i, (arc, width) in enumerate(zip(arcs, widths, strict=True)):
             loads[self.number, :, i] = _pressure_load(self.gear, self.mesh, arc, width)
-        # turned by a right angle: from into the flank to along it, towards the tip
-        loads[:, 0, -1], loads[:, 1, -1] = -loads[:, 1, -2], loads[:, 0, -2]
-        loads[:, :, -1] *= -1.0
-        return loads.reshape(-1, arcs.size + 1), arcs, widths
+        return loads.reshape(-1, arcs.size)
 
-    def table(self, softness: float = 1.0) -> ToothTable:
-        """Factorize, join the sectors, take the indentation off, and fit.
+    def stations(self, count: int) -> tuple[Floats, Floats]:
+        """(arc, half width) [m] of ``count`` Chebyshev points of the flank; shape (count,)."""
+        low, high = Profile(self.gear).ends
+        patch = PATCH * self.gear.module
+        first, last = low + 0.5 * patch, high - 0.5 * patch
+        arcs = 0.5 * (first + last) + 0.5 * (last - first) * chebyshev.chebpts2(count)
+        return arcs, np.clip(np.minimum(arcs - low, high - arcs), 0.5 * patch, patch)
 
-        ``softness``: what the compliances are multiplied by, 1 - nu^2 in plane strain.
-        """
+    def solved(self, loads: Floats) -> Solved:
+        """Factorize and join the sectors, ``loads`` (unknown, load) between bore and sides."""
         from scipy.sparse.linalg import splu
 
-        gear, patch, foot = self.gear, self.patch, self.foot
-        loads, arcs, widths = self._loads()
-        whole = patch.stiffness()
+        whole, foot = self.patch.stiffness(), self.foot
         sides = _unknowns(np.concatenate([foot.left, foot.right]))
-        inner = np.setdiff1d(
-            np.arange(patch.unknowns), np.concatenate([sides, _unknowns(foot.bore)])
-        )
+        held = np.concatenate([sides, _unknowns(foot.bore)])
+        inner = np.setdiff1d(np.arange(self.patch.unknowns), held)
         columns = whole[:, sides]
         factor = splu(
             whole[inner][:, inner].tocsc(),
@@ -254,27 +298,45 @@ class Sector:
         )
         coupling = columns[inner].toarray()
         moved = factor.solve(np.concatenate([loads[inner], -coupling], axis=1))
-        count = arcs.size + 1
+        count = loads.shape[1]
         own, by_side = moved[:, :count], moved[:, count:]
         frame = _polar_frame(foot)
         pushed = loads[inner].T @ by_side @ frame
         stiffness = frame.T @ (columns[sides].toarray() + coupling.T @ by_side) @ frame
-        lags, shifted = _joined(stiffness, pushed, gear.teeth)
+        shifted = _joined(stiffness, pushed, self.gear.teeth)
+        lags = pushed @ shifted
         lags[MATES] += loads[inner].T @ own
+        return Solved(inner, sides, own, by_side, frame @ shifted, lags)
+
+    def table(self, softness: float = 1.0) -> ToothTable:
+        """Factorize, join the sectors, take the indentation off, and fit.
+
+        ``softness``: what the compliances are multiplied by, 1 - nu^2 in plane strain.
+        """
+        gear, patch = self.gear, self.patch
+        arcs, widths = self.stations(STATIONS)
+        low, high = Profile(gear).ends
+        wide = PATCH * gear.module
+        arcs = np.concatenate([arcs, [high - 0.25 * wide, high]])
+        widths = np.concatenate([widths, [0.5 * wide, 0.7 * wide]])
+        loads = self.loads(arcs, widths)
+        # turned by a right angle: from into the flank to along it, towards the tip
+        turned = loads[:, -1].reshape(-1, 2) @ np.array([[0.0, -1.0], [1.0, 0.0]])
+        solved = self.solved(np.column_stack([loads, turned.ravel()]))
+        count = arcs.size + 1
 
         # the energy of the tooth above its foot, under its load
         motion = np.zeros((patch.unknowns, count))
-        motion[inner] = own + by_side @ (frame @ shifted)
-        motion[sides] = frame @ shifted
+        motion[solved.inner] = solved.own + solved.by_side @ solved.moved[MATES]
+        motion[solved.sides] = solved.moved[MATES]
         above = motion.reshape(-1, 2, count)[self.number].reshape(-1, count)
         tooth = above.T @ (self.mesh.patch.stiffness() @ above)
         at = flank_point(gear, np.sqrt(2.0 * arcs / gear.base_radius))
         nu = patch.poisson
         local = indentation(at.x / np.cos(at.beta) / widths, poisson=nu) - 0.5 / np.pi
-        body = softness * (lags[MATES] - tooth)
+        body = softness * (solved.lags[MATES] - tooth)
         tooth[np.diag_indices(count)] -= np.append(local, local[-1])
         tooth *= softness
-        low, high = Profile(gear).ends
         place = (2.0 * arcs - low - high) / (high - low)
         order = np.argsort(place)
         fit = np.linalg.pinv(chebyshev.chebvander(place, _COUPLED))
@@ -287,7 +349,7 @@ class Sector:
             coupling=np.einsum(
                 "is,kst,jt->kij",
                 fit,
-                softness * lags[:, : arcs.size, : arcs.size],
+                softness * solved.lags[:, : arcs.size, : arcs.size],
                 fit,
                 optimize=True,
             ),
@@ -313,9 +375,9 @@ def _cubic(place: Floats, nodes: Floats, values: Floats) -> Floats:
     return np.asarray((1.0 - right) * values[i] + right * values[i + 1] + tangents)
 
 
-def _graded_columns() -> Floats:
+def _graded_columns(count: int) -> Floats:
     """Corners across the tooth in -1 .. 1, narrower towards the loaded flank by 1.5 in all."""
-    steps = 1.5 ** -np.linspace(0.0, 1.0, COLUMNS)
+    steps = 1.5 ** -np.linspace(0.0, 1.0, count)
     return np.asarray(np.concatenate([[0.0], np.cumsum(steps)]) / steps.sum() * 2.0 - 1.0)
 
 
@@ -334,14 +396,14 @@ def _polar_frame(foot: Foot) -> Floats:
     return frame
 
 
-def _joined(stiffness: Floats, pushed: Floats, teeth: int) -> tuple[Floats, Floats]:
-    """Deflections by the sides' motion, (lag, load, load), and that motion itself, (side, load).
+def _joined(stiffness: Floats, pushed: Floats, teeth: int) -> Floats:
+    """Motion of the sides of the sectors about the loaded one, (lag, side, load).
 
     stiffness (side, side), left before right: of the sector at its sides; pushed (load, side): the
     deflection at the loads by a unit motion of the sides, which is the force of the loads on them.
-    With w = exp(2 pi i n/z) the sides' equation of harmonic n is K_n u = V^H f,
-    K_n = K_LL + K_RR + w K_LR + K_RL/w, V = P_L + w P_R, and C_k = (1/z) sum over n of
-    w^k V K_n^-1 V^H.
+    With w = exp(2 pi i n/z) the left sides' equation of harmonic n is K_n u_n = V^H f,
+    K_n = K_LL + K_RR + w K_LR + K_RL/w, V = P_L + w P_R; k pitches ahead they move by
+    (1/z) sum over n of w^k u_n, and their right sides as the next sector's left ones.
     """
     half = stiffness.shape[0] // 2
     left, right = slice(None, half), slice(half, None)
@@ -356,10 +418,7 @@ def _joined(stiffness: Floats, pushed: Floats, teeth: int) -> tuple[Floats, Floa
     felt = pushed[:, left] + turn * pushed[:, right]
     moved = np.linalg.solve(ring, np.conj(np.swapaxes(felt, 1, 2)))
     often = np.where((order == 0) | (2 * order == teeth), 1.0, 2.0) / teeth
-    mean = np.einsum("n,nst->st", often, moved.real)
-    ahead = np.einsum("n,nst->st", often, (turn * moved).real)
-    each = felt @ moved
-    lag = np.arange(-MATES, MATES + 1)
+    lag = np.arange(-MATES, MATES + 2)
     weight = often * turn[:, 0, 0] ** lag[:, None]
-    lags = np.einsum("kn,nst->kst", weight, each).real
-    return lags, np.concatenate([mean, ahead])
+    shifted = np.tensordot(weight, moved, 1).real
+    return np.concatenate([shifted[:-1], shifted[1:]], axis=1)

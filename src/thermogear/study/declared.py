@@ -230,7 +230,8 @@ class Answers(
     """Answer what one wants to know of CASE: each in a sentence with its limit and a verdict.
 
     Does it mesh, how hot does it run, what is left of the backlash, is there a film, at which
-    speeds does it resonate or lose contact, how large are dynamic factor and transmission error.
+    speeds does it resonate or lose contact, how large are dynamic factor and transmission error,
+    how much the teeth's roots carry.
     """
 
 
