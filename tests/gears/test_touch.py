@@ -132,7 +132,7 @@ def least_of_samples(pair: GearPair, s: float, gap: float, one: Shape, two: Shap
     stands = closed(pair, s, gap)
     for _ in range(3):  # the whole flank, then the neighbourhood of the least advance
         rho = np.linspace(low, high, 10_001)
-        string, advance = pinion_point(pair, stands - one(rho), rho=rho)
+        string, advance, *_ = pinion_point(pair, stands - one(rho), rho=rho)
         total = advance + one(rho) + two(string)
         total[(string < lowest * (1.0 - 1e-14)) | (string > highest * (1.0 + 1e-14))] = np.inf
         place = int(np.argmin(total))

@@ -125,7 +125,7 @@ def solve_mesh(
     secant = carried[:, None] / (delta - unloaded)
     delta = np.where(idle, unloaded, delta)
     edge = system.edges * (force > 0.0)
-    pressure = hertz_pressure(force / width, system.radius, system.reduced[:, None, None])
+    pressure = hertz_pressure(force / width, system.places[..., 2], system.reduced[:, None, None])
     pressure[edge > 0] = np.nan
 
     def shaped(values: Floats) -> Floats:

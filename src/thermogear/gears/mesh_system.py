@@ -21,6 +21,7 @@ from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, nearest
 from thermogear.gears.candidates import MeshPoints, mesh_points
 from thermogear.gears.contact import reduced_modulus
+from thermogear.gears.corner import flank_ends
 from thermogear.gears.deviations import Deviation
 from thermogear.gears.geometry import Gear
 from thermogear.gears.pair import GearPair
@@ -86,26 +87,32 @@ def _body_unit(gear: Gear, t: Floats, direction: int, model: LoadedModel) -> Flo
 
 
 class Drawn(NamedTuple):
-    """What the drawing alone decides of a mesh: unit compliances, radii [m]."""
+    """What the drawing alone decides of a mesh: unit compliances, what the contact law takes.
+
+    places (position, pair, 7): see :func:`~thermogear.gears.sharing_kernel._approach`.
+    """
 
     tooth: Floats
     body: Floats
-    depth: Floats
-    radius: Floats
+    places: Floats
 
 
 @lru_cache(maxsize=32)
 def as_drawn(pair: GearPair, phases: bytes, flank: str, model: LoadedModel) -> Drawn:
     """Remembered: a heat balance, a row of temperatures, a sweep ask for the same places."""
-    points = mesh_points(pair, np.frombuffer(phases), flank, model.extended)
-    gears = (pair.pinion, pair.wheel)
-    strings = (points.point.pinion, points.point.wheel)
-    parameters = [_on_flank(gear, rho) for gear, rho in zip(gears, strings, strict=True)]
+    at = mesh_points(pair, np.frombuffer(phases), flank, model.extended).point
+    gears, strings = (pair.pinion, pair.wheel), (at.pinion, at.wheel)
+    # a candidate that misses the flank (it never carries) at its end
+    parameters = [
+        np.clip(rho, *ends) / gear.base_radius
+        for gear, rho, ends in zip(gears, strings, flank_ends(pair), strict=True)
+    ]
     radius = np.maximum(
         strings[0] * strings[1] / (strings[0] + strings[1]), 1e-3 * pair.pinion.module
     )
-    places = [flank_point(gear, t) for gear, t in zip(gears, parameters, strict=True)]
-    depth = np.stack([(at.x / np.cos(at.beta)) ** 2 for at in places]) / (4.0 * radius)
+    flanks = [flank_point(gear, t) for gear, t in zip(gears, parameters, strict=True)]
+    depths = [p.x / np.cos(p.beta) for p in flanks]
+    places = np.stack([*depths, radius, at.rounding, np.abs(at.angle), at.distance, at.lever], axis=-1)
     tooth = np.stack(
         [unit_compliance(g, t, model.start) for g, t in zip(gears, parameters, strict=True)]
     )
@@ -116,7 +123,8 @@ def as_drawn(pair: GearPair, phases: bytes, flank: str, model: LoadedModel) -> D
             for g, t, sign in zip(gears, parameters, (-1, 1), strict=True)
         ]
     )
-    return Drawn(tooth, body, depth, radius)
+    lever = at.lever[..., None]
+    return Drawn(tooth / at.lever**2, body / (lever * at.lever[..., None, :]), places)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -134,8 +142,7 @@ class MeshSystem:
     edges: NDArray[np.int8]
     tooth: Floats
     body: Floats
-    depth: Floats
-    radius: Floats
+    places: Floats
     tooth_modulus: Floats
     body_modulus: Floats
     reduced: Floats
@@ -158,6 +165,7 @@ class MeshSystem:
         drawn = as_drawn(pair, np.asarray(phase, dtype=float).tobytes(), flank, model)
         positions, count = points.s.shape
         gap, edge = first_touch(points, deviations)
+        gap = gap / points.point.lever
         lead = np.broadcast_shapes(
             shape, gap.shape[:-2], *(np.shape(e) for m in moduli for e in (m.tooth, m.body))
         )
@@ -179,8 +187,7 @@ class MeshSystem:
             edges=np.asarray(edges, dtype=np.int8),
             tooth=drawn.tooth,
             body=drawn.body,
-            depth=drawn.depth,
-            radius=drawn.radius,
+            places=drawn.places,
             tooth_modulus=tooth_modulus,
             body_modulus=np.stack([flat(m.body, lead=lead) for m in moduli], axis=-1),
             reduced=reduced_modulus(
@@ -213,10 +220,10 @@ class MeshSystem:
             self.gaps,
             self.tooth,
             self.body,
-            self.depth,
+            self.places,
             1.0 / (self.tooth_modulus * width),
             1.0 / (self.body_modulus * width),
-            np.pi * width * self.reduced,
+            4.0 / (np.pi * width * self.reduced),
             _contact_coefficients(self.law, self.tooth_modulus, nu, self.reduced, width),
             force,
             delta,
@@ -224,12 +231,6 @@ class MeshSystem:
             settled,
         )
         return force, delta, stiffness, settled
-
-
-def _on_flank(gear: Gear, rho: Floats) -> Floats:
-    """t of string lengths [m]; a candidate that misses the flank (it never carries) at its end."""
-    ends = gear.junction[1], gear.curvature_radius(gear.tip_radius) / gear.base_radius
-    return np.asarray(np.clip(rho / gear.base_radius, *ends))
 
 
 def flat(values: ArrayLike, *, lead: tuple[int, ...]) -> Floats:
