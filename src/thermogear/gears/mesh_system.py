@@ -20,9 +20,9 @@ from numpy.typing import ArrayLike, NDArray
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, nearest
 from thermogear.gears.candidates import MeshPoints, mesh_points
-from thermogear.gears.contact import reduced_modulus
+from thermogear.gears.contact import pair_reduced_modulus, reduced_modulus
 from thermogear.gears.corner import flank_ends
-from thermogear.gears.deviations import Deviation
+from thermogear.gears.deviations import Deviation, FlankShape
 from thermogear.gears.geometry import Gear
 from thermogear.gears.pair import GearPair
 from thermogear.gears.ring import body_matrices, foot_load
@@ -33,12 +33,17 @@ from thermogear.gears.stiffness import (
     yang_sun_stiffness,
 )
 from thermogear.gears.tooth import STARTS, flank_point, unit_compliance
-from thermogear.gears.touch import first_touch
+from thermogear.gears.touch import Touch, first_touch
 
 BODIES = {
     "bore_clamped": "ring held at the bore: statics",
     "rim": "the same without its wind-up against the bore: for a lumped dynamic model",
 }
+
+
+_MOST_WIDTHS = 4
+"""Half widths at which averaged flanks are asked for: from 0 to 0.4 mm their gap is known to 20 nm
+beside a corner of 3 um/mm."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,7 +117,9 @@ def as_drawn(pair: GearPair, phases: bytes, flank: str, model: LoadedModel) -> D
     )
     flanks = [flank_point(gear, t) for gear, t in zip(gears, parameters, strict=True)]
     depths = [p.x / np.cos(p.beta) for p in flanks]
-    places = np.stack([*depths, radius, at.rounding, np.abs(at.angle), at.distance, at.lever], axis=-1)
+    places = np.stack(
+        [*depths, radius, at.rounding, np.abs(at.angle), at.distance, at.lever], axis=-1
+    )
     tooth = np.stack(
         [unit_compliance(g, t, model.start) for g, t in zip(gears, parameters, strict=True)]
     )
@@ -159,12 +166,16 @@ class MeshSystem:
         deviations: Sequence[Deviation],
         model: LoadedModel,
         flank: str,
+        load: ArrayLike = 0.0,
     ) -> MeshSystem:
-        """Geometry, unit compliances and gaps; see :func:`loaded_contact` for the arguments."""
+        """Geometry, unit compliances and gaps; see :func:`loaded_contact` for the arguments.
+
+        load [N]: its Hertzian half width averages the flanks' shapes.
+        """
         points = mesh_points(pair, phase, flank, model.extended)
         drawn = as_drawn(pair, np.asarray(phase, dtype=float).tobytes(), flank, model)
         positions, count = points.s.shape
-        gap, edge = first_touch(points, deviations)
+        gap, edge = _pressed_touch(points, deviations, load)
         gap = gap / points.point.lever
         lead = np.broadcast_shapes(
             shape, gap.shape[:-2], *(np.shape(e) for m in moduli for e in (m.tooth, m.body))
@@ -231,6 +242,30 @@ class MeshSystem:
             settled,
         )
         return force, delta, stiffness, settled
+
+
+def _pressed_touch(points: MeshPoints, deviations: Sequence[Deviation], load: ArrayLike) -> Touch:
+    """Gaps and edges of flanks averaged over the half width of each ``load`` [N], (*lead, ...).
+
+    Of more than :data:`_MOST_WIDTHS` loads the gaps are interpolated in the half width, which the
+    mean of a corner follows in proportion.
+    """
+    pair = points.contacts.pair
+    shaped = any(isinstance(d, FlankShape) for d in deviations)
+    softness = 4.0 / (np.pi * pair.face_width * pair_reduced_modulus(pair))
+    roots = np.sqrt(softness * np.asarray(load, dtype=float) * shaped)
+    nodes = np.unique(roots)
+    if nodes.size > _MOST_WIDTHS:
+        nodes = np.linspace(nodes[0], nodes[-1], _MOST_WIDTHS)
+    touches = [first_touch(points, deviations, float(root) ** 2) for root in nodes]
+    gap, edge = touches[0]
+    for low, high, touch in zip(nodes[:-1], nodes[1:], touches[1:], strict=True):
+        part = np.clip((roots - low) / (high - low), 0.0, 1.0)[..., None, None]
+        with np.errstate(invalid="ignore"):  # what never touches has no share of it
+            between = (1.0 - part) * gap + part * touch.gap
+        gap = np.where(part == 0.0, gap, np.where(part == 1.0, touch.gap, between))
+        edge = np.where(part < 0.5, edge, touch.edge)
+    return Touch(gap, edge)
 
 
 def flat(values: ArrayLike, *, lead: tuple[int, ...]) -> Floats:

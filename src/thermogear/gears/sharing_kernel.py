@@ -55,42 +55,46 @@ def _solve_spd(matrix: Floats, size: int, right: Floats) -> None:
 
 
 @compiled
-def _half_width(wide: float, place: Floats) -> tuple[float, float]:
+def _half_width(
+    wide: float, radius: float, edge_radius: float, angle: float, distance: float
+) -> tuple[float, float]:
     """Half width b [m] of a pair's contact and d ln b/d ln F at ``wide`` = 4 F/(pi b E*) [m].
 
-    place: see :func:`_approach`. With a = sqrt(wide rho*) of the involutes, a_e = sqrt(wide r*) of
-    the edge circle on its mate, l = wide/theta of a punch tilted by theta and d the distance along
-    the flank to its end,
+    With a = sqrt(wide rho*) of the involutes, a_e = sqrt(wide r*) of the edge circle on its mate,
+    l = wide/theta of a punch tilted by theta and d the distance along the flank to its end,
 
         b = a_e + w/2 + 0.7 d,   1/w = 1/(0.65 l) + 1/(0.6 a),   not above a.
 
     On the path theta = 0: at the end of a sharp tip b = 0.3 a, and a from d = a on; on an edge
     d = 0.
-    Source of the four factors: measured here against plane finite elements (half widths of the
-    pressure on tip corners, those of w within 25 %); a, a_e: Johnson, eq. 4.43; l: a rigid punch
-    that is tilted until its edge lifts has the length 4 F/(pi b E* theta).
+    Source: a and a_e Johnson, eq. 4.43; l the contact of a flat punch on its edge, whose pressure
+    (E* theta/2) sqrt((l - x)/x) carries F/b = pi E* theta l/4; the factors 0.65, 0.6 and 0.7 [-]
+    measured here against plane finite elements, whose contacts on corners are as wide as w within
+    25 %.
     """
-    whole = np.sqrt(wide * place[2])
-    if _NEAR * place[5] >= whole:
+    whole = np.sqrt(wide * radius)
+    if _NEAR * distance >= whole:
         return whole, 0.5
-    edge = np.sqrt(wide * place[3])
-    tilted, free = place[4] / (_TILTED * wide), 1.0 / (_FREE * whole)
+    edge = np.sqrt(wide * edge_radius)
+    tilted, free = angle / (_TILTED * wide), 1.0 / (_FREE * whole)
     punch = 1.0 / (tilted + free)
-    half = edge + 0.5 * punch + _NEAR * place[5]
+    half = edge + 0.5 * punch + _NEAR * distance
     if half >= whole:
         return whole, 0.5
     return half, 0.5 * (edge + punch * punch * (tilted + 0.5 * free)) / half
 
 
 @compiled
-def _approach(force: float, soft: float, place: Floats, law: Floats) -> tuple[float, float]:
+def _approach(
+    force: float, soft: float, places: Floats, j: int, law: Floats
+) -> tuple[float, float]:
     """delta_H/lever [m] at lever x F = ``force`` > 0, and its slope [m/N].
 
-    ``soft`` 4/(pi b E*) [m/N]; ``place``: depths h_1, h_2, rho*, r*, all [m], theta [rad], d [m]
+    ``soft`` 4/(pi b E*) [m/N]; ``places`` [j]: depths h_1 and h_2, rho*, r* [m], theta [rad], d [m]
     (see :func:`_half_width`), lever; ``law``: factors of both gears' logarithmic approach, their
     nu/(1 - nu), K of K F^0.9 and a constant compliance.
     """
-    lever = place[6]
+    lever = places[j, 6]
     pressed = force / lever
     mean, slope = law[5], law[5]
     if law[4] != 0.0:
@@ -98,9 +102,11 @@ def _approach(force: float, soft: float, place: Floats, law: Floats) -> tuple[fl
         mean += tenth
         slope += 0.9 * tenth
     if law[0] != 0.0:
-        half, power = _half_width(soft * pressed, place)
+        half, power = _half_width(
+            soft * pressed, places[j, 2], places[j, 3], places[j, 4], places[j, 5]
+        )
         for i in range(2):
-            eta = place[i] / half
+            eta = places[j, i] / half
             root = np.sqrt(1.0 + eta * eta)
             narrow = 1.0 / (root + eta)
             bracket = np.arcsinh(eta) - law[2 + i] * eta * narrow
@@ -130,9 +136,9 @@ def _share_one(
 ) -> tuple[float, float, bool]:
     """Forces of one position into ``force``; returns (delta, tangent stiffness, settled).
 
-    ``asked`` is the load F_n > 0, or delta where ``by_load`` is false; ``soft``,
-    ``places`` [pair, 7] and ``law`` as :func:`_approach` takes them. A gap of inf never closes. nan everywhere and not
-    settled where a gap is nan or the steps find no balance of finite numbers.
+    ``asked`` is the load F_n > 0, or delta where ``by_load`` is false; ``soft``, ``places``
+    [pair, 7] and ``law`` as :func:`_approach` takes them. A gap of inf never closes. nan everywhere
+    and not settled where a gap is nan or the steps find no balance of finite numbers.
     """
     count = gap.size
     force[:] = 0.0
@@ -156,7 +162,7 @@ def _share_one(
             return asked, 0.0, True
         # a first guess, and the scale of the tolerances
         load = delta / compliance[first, first]
-        contact, _ = _approach(load, soft, places[first], law)
+        contact, _ = _approach(load, soft, places, first, law)
         load = delta / (compliance[first, first] + contact / load)
     active[first] = True
     force[first] = load
@@ -177,7 +183,7 @@ def _share_one(
                 k = index[b]
                 body += compliance[j, k] * force[k]
                 matrix[a, b] = compliance[j, k]
-            contact, slope = _approach(f, soft, places[j], law)
+            contact, slope = _approach(f, soft, places, j, law)
             matrix[a, a] += slope
             compliant = max(compliant, matrix[a, a])
             right[a, 0] = delta - (body + contact + (gap[j] - origin))
