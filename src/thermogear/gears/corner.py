@@ -2,9 +2,9 @@
 
 A pair whose involutes would meet off the path of contact cannot touch there; a loaded mesh
 lets the tip's edge of one tooth touch the other's flank, early on the way in and late on the
-way out. The gap of a pair is how far the mate must turn, along its base circle, before it
-touches. Plane kinematics, exact; the only approximation is that the elastic advance does
-not move the point of contact.
+way out. The gap of a pair is how far the pinion must turn, along its base circle, before it
+touches. Plane kinematics, exact; the only approximation is that the advance moves neither the
+point of contact nor its normal.
 
 Where undercut ends the path before a tip does, its edge on the undercut gear takes the place of
 that edge.
@@ -29,7 +29,9 @@ class ContactPoint(NamedTuple):
     """Where a tooth pair touches: string lengths rho_1, rho_2 [m] and the gap [m] to touching.
 
     On the path rho_1 + rho_2 = N1N2 and the gap is 0; inf where the edge misses the flank.
-    lever: arm of the pair's force about the pinion's axis over r_b1, 1 on the path; angle [rad]:
+    gap: advance of the pinion along its base circle, the wheel at rest; off the path that is what
+    is open along the mate's normal over the lever. lever: arm of the pair's force about the
+    pinion's axis over r_b1, 1 on the path and where the wheel's edge touches; angle [rad]:
     from the normal of the flank that the edge ends to the mate's, along which the force acts, 0 on
     the path; rounding [m]: reduced radius r* of the edge that touches or is nearest and its mate's
     flank, 1/r* = 1/r_e + 1/rho; distance [m]: along the flank to that edge, 0 off the path.
@@ -183,9 +185,9 @@ def contact_point(pair: GearPair, s: ArrayLike, extended: bool = True) -> Contac
         at = tuple(axis[nearer] for axis in np.nonzero(here))
         strings[gear][at], strings[mate][at] = edge, met.string[nearer]
         rounding[at] = _reduced(radius, met.string[nearer])
-        gap[at], angle[at] = met.gap[nearer], met.angle[nearer]
         # along the pinion's own normal a force has the arm r_b1
         lever[at] = met.lever[nearer] if gear == 0 else 1.0
+        gap[at], angle[at] = met.gap[nearer] / lever[at], met.angle[nearer]
     fields = (*strings, gap, lever, angle, rounding, distance)
     return ContactPoint(*(values.reshape(shape) for values in fields))
 

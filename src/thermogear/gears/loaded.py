@@ -69,7 +69,7 @@ class LoadedMesh(NamedTuple):
     @property
     def unloaded(self) -> Floats:
         """Advance [m] of the pinion at first touch, without load, (*lead, position)."""
-        gap = first_touch(self.points, self.deviations).gap / self.points.point.lever
+        gap = first_touch(self.points, self.deviations).gap
         return np.array(np.broadcast_to(gap.min(axis=-1), self.elastic.shape))
 
     @property

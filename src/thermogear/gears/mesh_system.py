@@ -176,7 +176,6 @@ class MeshSystem:
         drawn = as_drawn(pair, np.asarray(phase, dtype=float).tobytes(), flank, model)
         positions, count = points.s.shape
         gap, edge = _pressed_touch(points, deviations, load)
-        gap = gap / points.point.lever
         lead = np.broadcast_shapes(
             shape, gap.shape[:-2], *(np.shape(e) for m in moduli for e in (m.tooth, m.body))
         )

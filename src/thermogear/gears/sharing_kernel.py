@@ -252,8 +252,8 @@ def share_many(
     pair]; tooth [2, position, pair] and body [2, position, pair, pair]: compliances of both
     gears for unit modulus and width; places [position, pair, 7], softness [case]: 4/(pi b E*),
     law [case, 6]: see :func:`_approach`; tooth_softness, body_softness [case, 2]: 1/(E b).
-    A pair whose force F has the lever lambda enters with gap/lambda and compliances
-    /(lambda_j lambda_k), so that ``force`` is its part lambda F of the load.
+    A pair whose force F has the lever lambda enters with compliances over lambda_j lambda_k, so
+    that ``force`` is its part lambda F of the load, and gap and delta are advances of the pinion.
     """
     cases, positions, count = force.shape
     compliance = np.empty((count, count))

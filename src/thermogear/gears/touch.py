@@ -62,8 +62,9 @@ def first_touch(
     points, which turns them about their gear. Close to the nominal point a = x^2/(2 rho*),
     x = (rho_1 - s) tan(alpha_k) along the flank. At A the wheel is at its phase while the
     pinion advances, at E the pinion while the wheel falls back, between them both in proportion:
-    exchanging the gears changes nothing. Deviations that are no shape of a flank (pitch errors,
-    heat) count at the nominal point.
+    on the path exchanging the gears changes nothing. Beyond E the pinion's advance is that of the
+    wheel over the lever of :class:`~thermogear.gears.corner.ContactPoint`. Deviations that are no
+    shape of a flank (pitch errors, heat) count at the nominal point.
 
     ``spread`` 4 F/(pi b E*) [m] >= 0: a load presses the flanks over Hertz's half width
     sqrt(spread rho*); e_1 and e_2 are then their means over its ellipse, weight (1 - x^2)^(1/2)
@@ -161,6 +162,8 @@ def _shaped(
         gap,
         edge,
     )
+    # off the path what the wheel would fall back is the pinion's advance times its lever
+    gap += np.where(near, nominal.gap, 0.0) * (1.0 - nominal.lever)
     # the flanks end where a rounding begins, which reaches farther by r_e (1 - cos theta)
     gap -= nominal.rounding * (1.0 - np.cos(nominal.angle)) * (near & (edge > 0))
     gap, edge = gap.reshape(*lead, *size), edge.reshape(*lead, *size)
