@@ -32,8 +32,8 @@ class ContactPoint(NamedTuple):
     gap: advance of the pinion along its base circle, the wheel at rest; off the path that is what
     is open along the mate's normal over the lever. lever: arm of the pair's force about the
     pinion's axis over r_b1, 1 on the path and where the wheel's edge touches; angle [rad]:
-    from the normal of the flank that the edge ends to the mate's, along which the force acts, 0 on
-    the path; rounding [m]: reduced radius r* of the edge that touches or is nearest and its mate's
+    from the normal of the flank that the edge ends to the mate's, along which the force acts,
+    towards that flank's root, >= 0, 0 on the path; rounding [m]: reduced radius r* of the edge that touches or is nearest and its mate's
     flank, 1/r* = 1/r_e + 1/rho; distance [m]: along the flank to that edge, 0 off the path.
     """
 
@@ -187,7 +187,7 @@ def contact_point(pair: GearPair, s: ArrayLike, extended: bool = True) -> Contac
         rounding[at] = _reduced(radius, met.string[nearer])
         # along the pinion's own normal a force has the arm r_b1
         lever[at] = met.lever[nearer] if gear == 0 else 1.0
-        gap[at], angle[at] = met.gap[nearer] / lever[at], met.angle[nearer]
+        gap[at], angle[at] = met.gap[nearer] / lever[at], abs(met.angle[nearer])
     fields = (*strings, gap, lever, angle, rounding, distance)
     return ContactPoint(*(values.reshape(shape) for values in fields))
 

@@ -33,6 +33,7 @@ from thermogear.gears.stiffness import (
     yang_sun_stiffness,
 )
 from thermogear.gears.tooth import STARTS, flank_point, unit_compliance
+from thermogear.gears.tooth_table import PLANES, tooth_table
 from thermogear.gears.touch import Touch, first_touch
 
 BODIES = {
@@ -50,14 +51,17 @@ beside a corner of 3 um/mm."""
 class LoadedModel:
     """The choices of the loaded contact.
 
-    body: reading of the hub, see :data:`BODIES`, by default that of a case file; contact: see
-    :data:`CONTACT_LAWS`; start: of the tooth's beam, see :data:`STARTS`; extended: contact on tip
-    corners off the path; coupled: a tooth moves under its neighbours' load.
+    tooth: see :data:`TEETH`; plane: of the solved tooth, see :data:`PLANES`; body: reading of the
+    hub, see :data:`BODIES`, by default that of a case file; contact: see :data:`CONTACT_LAWS`;
+    start: of the tooth's beam, see :data:`STARTS`; extended: contact on tip corners off the path;
+    coupled: a tooth moves under its neighbours' load.
 
     >>> LoadedModel(contact="palmgren").body
     'rim'
     """
 
+    tooth: str = "beam"
+    plane: str = "stress"
     body: str = "rim"
     contact: str = "weber-banaschek"
     start: str = "30-degree"
@@ -65,7 +69,13 @@ class LoadedModel:
     coupled: bool = True
 
     def __post_init__(self) -> None:
-        for name, known in (("body", BODIES), ("contact", CONTACT_LAWS), ("start", STARTS)):
+        for name, known in (
+            ("tooth", TEETH),
+            ("plane", PLANES),
+            ("body", BODIES),
+            ("contact", CONTACT_LAWS),
+            ("start", STARTS),
+        ):
             value = getattr(self, name)
             if value not in known:
                 raise InputError(
@@ -76,10 +86,19 @@ class LoadedModel:
                 )
 
 
-def _body_unit(gear: Gear, t: Floats, direction: int, model: LoadedModel) -> Floats:
-    """Ring compliance between the candidates for unit modulus and width, (position, pair, pair).
+TEETH = {
+    "solved": "finite elements of one sector of the gear, tooth, fillets and body",
+    "beam": "beam of the true profile on a ring: Weber and Banaschek with a coupled body",
+}
 
-    ``direction`` +1: teeth farther on the path are ahead in the direction of their load.
+
+def _beam_on_ring(
+    gear: Gear, t: Floats, angle: Floats, direction: int, model: LoadedModel
+) -> tuple[Floats, Floats]:
+    """Beam compliance (position, pair) and ring compliance (position, pair, pair).
+
+    Unit modulus and width. ``direction`` +1: teeth farther on the path are ahead in the direction
+    of their load; ``angle`` [rad], by which the load on a tip's edge is turned, is left out.
     """
     table, centre = body_matrices(gear, windup=model.body == "bore_clamped")
     load = foot_load(gear, t)
@@ -88,7 +107,31 @@ def _body_unit(gear: Gear, t: Floats, direction: int, model: LoadedModel) -> Flo
         if j == k or model.coupled:
             by = load[:, k] @ table[centre + direction * (j - k)].T
             out[:, j, k] = np.einsum("pa,pa->p", load[:, j], by)
-    return out
+    return unit_compliance(gear, t, model.start), out
+
+
+def _solved(
+    gear: Gear, t: Floats, angle: Floats, direction: int, model: LoadedModel
+) -> tuple[Floats, Floats]:
+    """The same from finite elements, split by where the energy sits."""
+    table = tooth_table(gear, model.plane)
+    # the mate's normal on an edge is turned from the flank's towards the root
+    tooth, body = (
+        plain + tip.turned(-angle) - tip.normal
+        for plain, tip in zip(
+            table.self_compliance(t), (table.tip_tooth, table.tip_body), strict=True
+        )
+    )
+    out = np.zeros((*t.shape, t.shape[1]))
+    for j, k in np.ndindex(out.shape[1:]):
+        if j == k:
+            out[:, j, j] = body[:, j]
+        elif model.coupled:
+            # the load points away from the side that the loaded flank faces
+            out[:, j, k] = table.coupled(t[:, j], t[:, k], -direction * (j - k))
+    if model.body == "rim":
+        out -= table.windup
+    return tooth, out
 
 
 class Drawn(NamedTuple):
@@ -117,19 +160,16 @@ def as_drawn(pair: GearPair, phases: bytes, flank: str, model: LoadedModel) -> D
     )
     flanks = [flank_point(gear, t) for gear, t in zip(gears, parameters, strict=True)]
     depths = [p.x / np.cos(p.beta) for p in flanks]
-    places = np.stack(
-        [*depths, radius, at.rounding, np.abs(at.angle), at.distance, at.lever], axis=-1
-    )
-    tooth = np.stack(
-        [unit_compliance(g, t, model.start) for g, t in zip(gears, parameters, strict=True)]
-    )
+    places = np.stack([*depths, radius, at.rounding, at.angle, at.distance, at.lever], axis=-1)
+    compliance = _solved if model.tooth == "solved" else _beam_on_ring
     # the pinion's load points against its rotation, the wheel's along it
-    body = np.stack(
-        [
-            _body_unit(g, t, sign, model)
-            for g, t, sign in zip(gears, parameters, (-1, 1), strict=True)
-        ]
-    )
+    parts = [
+        compliance(gear, t, np.where(rho == ends[1], at.angle, 0.0), sign, model)
+        for gear, t, rho, ends, sign in zip(
+            gears, parameters, strings, flank_ends(pair), (-1, 1), strict=True
+        )
+    ]
+    tooth, body = (np.stack(part) for part in zip(*parts, strict=True))
     lever = at.lever[..., None]
     return Drawn(tooth / at.lever**2, body / (lever * at.lever[..., None, :]), places)
 
