@@ -82,6 +82,29 @@ class LoadedMesh(NamedTuple):
         """Share of the positions at which a tip corner carries load, shape ``lead``."""
         return np.asarray((self.edge > 0).any(axis=-1).mean(axis=-1))
 
+    @property
+    def effective_ratio(self) -> Floats:
+        """Effective contact ratio: mean number of tooth pairs that carry, shape ``lead``.
+
+        Over the positions of one mesh period, each as long as the next, that is the length of path
+        on which a pair carries over the base pitch, what tip corners carry beyond A and E
+        included. Above the nominal ratio (E - A)/p_b where corners carry, below it where a gap
+        keeps the ends of the path free. To 1/positions for each end.
+        """
+        return np.asarray((self.share > 0.0).sum(axis=-1).mean(axis=-1))
+
+    @property
+    def corner_load(self) -> Floats:
+        """Greatest share of the load on a tip corner of pinion and wheel, shape (*lead, 2)."""
+        most = [np.where(self.edge & bit, self.share, 0.0).max(axis=(-2, -1)) for bit in (2, 1)]
+        return np.stack(most, axis=-1)
+
+    @property
+    def corner_part(self) -> Floats:
+        """Share of the positions at which that corner carries, of pinion and wheel, (*lead, 2)."""
+        part = [((self.edge & bit) > 0).any(axis=-1).mean(axis=-1) for bit in (2, 1)]
+        return np.stack(part, axis=-1)
+
     def wider(self, times: Floats) -> LoadedMesh:
         """The same deflections of pairs ``times`` as wide under as much more load, each a case."""
         curve, pairs = times[..., None], times[..., None, None]
@@ -232,6 +255,9 @@ _MEANING = {
         "greatest Hertzian pressure of the tooth pair; not valid (nan) in edge contact",
     ),
     "edge_contact_share": ("1", "share of the mesh period in which a tip corner carries load"),
+    "corner_period_share": ("1", "share of the mesh period in which this gear's corner carries"),
+    "corner_load_share": ("1", "greatest share of the load on a tip corner of this gear"),
+    "effective_contact_ratio": ("1", "mean number of tooth pairs that carry"),
     "pair_position": ("m", "distance of the pair from the pinion's tangent point"),
     "mean_stiffness": ("N/m", "tangent mesh stiffness, mean over the positions"),
     "double_contact_length": ("m", "length of path on which two or more pairs carry"),
@@ -278,7 +304,9 @@ def loaded_contact(
     Where a tip corner carries, ``edge_contact`` says whose it is and the
     pressure is nan: Hertz's curvature of two involutes does not hold on an edge, whose pressure
     is several times higher. ``edge_contact_share`` is the share of the positions with such a
-    corner. Forces and stiffness there take the corner for a flank of the involute's curvature.
+    corner; ``corner_period_share`` and ``corner_load_share``, the greatest share of the load on
+    it, are each gear's. Forces and stiffness there take the corner for a flank of the involute's
+    curvature. ``effective_contact_ratio``: :attr:`LoadedMesh.effective_ratio`.
 
     Plane stress body and plane strain contact; the band between all plane stress and all plane
     strain is -2.6 .. +4.3 % in stiffness.
@@ -325,8 +353,10 @@ def loaded_contact(
     )
     if len(names) != len(lead):
         raise InputError("dimensions", names, allowed=f"{len(lead)} names, one for each axis")
-    loaded, settled = (mesh.share > 0.0).sum(axis=-1), mesh.settled.all(axis=-1)
+    loaded = (mesh.share > 0.0).sum(axis=-1)
+    settled = np.asarray(mesh.settled.all(axis=-1))
     along, by_pair = (*names, "mesh_phase"), (*names, "mesh_phase", "pair")
+    by_gear = (*names, "gear")
     values: dict[str, tuple[tuple[str, ...], ArrayLike]] = {
         "transmission_error": (along, mesh.deflection),
         "unloaded_error": (along, mesh.unloaded),
@@ -342,6 +372,9 @@ def loaded_contact(
             np.where(settled, (loaded > 1).mean(axis=-1), np.nan) * pair.base_pitch,
         ),
         "edge_contact_share": (names, np.where(settled, mesh.edge_share, np.nan)),
+        "effective_contact_ratio": (names, np.where(settled, mesh.effective_ratio, np.nan)),
+        "corner_period_share": (by_gear, np.where(settled[..., None], mesh.corner_part, np.nan)),
+        "corner_load_share": (by_gear, np.where(settled[..., None], mesh.corner_load, np.nan)),
         "pair_position": (("mesh_phase", "pair"), mesh.points.s),
     }
     coordinates: dict[str, tuple[tuple[str, ...], ArrayLike]] = {
@@ -360,7 +393,8 @@ def loaded_contact(
     }
     return label(
         {k: xr.Variable(d, v, dressed(k)) for k, (d, v) in values.items()} | flags,
-        {k: xr.Variable(d, v, dressed(k)) for k, (d, v) in coordinates.items()},
+        {k: xr.Variable(d, v, dressed(k)) for k, (d, v) in coordinates.items()}
+        | {"gear": ["pinion", "wheel"]},
         {
             "body": choice.body,
             "contact": choice.contact,
