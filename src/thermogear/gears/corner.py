@@ -31,10 +31,11 @@ class ContactPoint(NamedTuple):
     On the path rho_1 + rho_2 = N1N2 and the gap is 0; inf where the edge misses the flank.
     gap: advance of the pinion along its base circle, the wheel at rest; off the path that is what
     is open along the mate's normal over the lever. lever: arm of the pair's force about the
-    pinion's axis over r_b1, 1 on the path and where the wheel's edge touches; angle [rad]:
+    pinion's axis over r_b1, 1 on the path and where the wheel's edge touches; angle [rad] >= 0:
     from the normal of the flank that the edge ends to the mate's, along which the force acts,
-    towards that flank's root, >= 0, 0 on the path; rounding [m]: reduced radius r* of the edge that touches or is nearest and its mate's
-    flank, 1/r* = 1/r_e + 1/rho; distance [m]: along the flank to that edge, 0 off the path.
+    towards that flank's root, 0 on the path; rounding [m]: reduced radius r* of the edge that
+    touches or is nearest and its mate's flank, 1/r* = 1/r_e + 1/rho; distance [m]: along the flank
+    to that edge, 0 off the path.
     """
 
     pinion: Floats
@@ -182,6 +183,7 @@ def contact_point(pair: GearPair, s: ArrayLike, extended: bool = True) -> Contac
         met = (pinion_point, wheel_point)[gear](pair, s_[here], rho=edge, rounding=radius)
         lowest, highest = ends[mate]
         nearer = (met.string >= lowest) & (met.string <= highest) & (met.gap <= gap[here])
+        nearer &= met.lever > 0.0  # else it would turn the gear the other way
         at = tuple(axis[nearer] for axis in np.nonzero(here))
         strings[gear][at], strings[mate][at] = edge, met.string[nearer]
         rounding[at] = _reduced(radius, met.string[nearer])
