@@ -121,8 +121,8 @@ def _meeting(
 ) -> Meeting:
     """Base radii [m] of the gear with the edge and of its mate; s from the gear's tangent point."""
     own, mate = radii
-    string = np.asarray(rho, dtype=float) - rounding
-    turned = (s - rho) / own
+    rho, rounding = np.asarray(rho, dtype=float), np.asarray(rounding, dtype=float)
+    string, turned = rho - rounding, (s - rho) / own
     # seen from the mate's centre, with its axes turned to meet its own string
     seen = np.conj((own + mate + 1j * length) - (own + 1j * string) * np.exp(1j * turned))
     met = np.sqrt(np.maximum(np.abs(seen) ** 2 - mate**2, 0.0))

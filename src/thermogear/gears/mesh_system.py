@@ -289,10 +289,11 @@ def _pressed_touch(points: MeshPoints, deviations: Sequence[Deviation], load: Ar
     Of more than :data:`_MOST_WIDTHS` loads the gaps are interpolated in the half width, which the
     mean of a corner follows in proportion.
     """
+    if not any(isinstance(d, FlankShape) for d in deviations):
+        return first_touch(points, deviations)
     pair = points.contacts.pair
-    shaped = any(isinstance(d, FlankShape) for d in deviations)
     softness = 4.0 / (np.pi * pair.face_width * pair_reduced_modulus(pair))
-    roots = np.sqrt(softness * np.asarray(load, dtype=float) * shaped)
+    roots = np.sqrt(softness * np.asarray(load, dtype=float))
     nodes = np.unique(roots)
     if nodes.size > _MOST_WIDTHS:
         nodes = np.linspace(nodes[0], nodes[-1], _MOST_WIDTHS)

@@ -195,16 +195,16 @@ def _polynomials(
     borders = borders[np.diff(borders, prepend=-np.inf) > _APART * (high - low)]
     borders[-1] = high
     nodes = borders[:-1, None] + np.diff(borders)[:, None] * _NODES
-    asked = np.concatenate([nodes.ravel(), string])
-    inside = _pressed(asked, *flank) if spread > 0.0 else asked[:, None]
+    inside = _pressed(nodes.ravel(), *flank) if spread > 0.0 else nodes.reshape(-1, 1)
     weights = _WEIGHTS if spread > 0.0 else np.ones(1)
-    total = np.zeros((*lead, asked.size))
+    values, there = np.zeros((*lead, nodes.size)), np.zeros((*lead, string.size))
     for shape in shapes:
-        total += shape.taken_off(pair, inside) @ weights
-    total = total.reshape(-1, asked.size)
-    values = total[:, : nodes.size].reshape(len(total), *nodes.shape)
+        values += shape.taken_off(pair, inside) @ weights
+        there += shape.taken_off(pair, string)
+    values = values.reshape(-1, *nodes.shape)
     powers = np.ascontiguousarray(values @ _TO_POWERS.T)
-    return borders, powers, np.ptp(values, axis=(1, 2))[:, None], total[:, nodes.size :]
+    span = np.ptp(values, axis=(1, 2))[:, None]
+    return borders, powers, span, there.reshape(-1, string.size)
 
 
 def _pressed(
