@@ -482,12 +482,12 @@ class TestForceAtGivenDeflection:
     def test_how_far_one_spring_is_from_the_shared_force(self) -> None:
         """F = k_t (y - e_0), tangent at the mean load: near it where the loaded set stays.
 
-        At half load it misses by 0.5 % of the mean load in the median, and by 17 % where a tip
-        corner has let go meanwhile (phase 0.94); at a tenth of the load by 2 % and 37 %.
+        At half load it misses by 0.5 % of the mean load in the median, and by 14 % where a tip
+        corner has let go meanwhile (phase 0.94); at a tenth of the load by 2 % and 31 %.
         """
         model, phase = LoadedModel(body="rim"), np.arange(100) / 100
         mesh = solve_mesh(PAIR, 4e3, phase, model=model)
-        for part, median, worst in ((0.9, 1.5e-4, 8e-4), (0.5, 4.5e-3, 0.17), (0.1, 0.02, 0.37)):
+        for part, median, worst in ((0.9, 1.5e-4, 8e-4), (0.5, 4.5e-3, 0.144), (0.1, 0.02, 0.31)):
             other = solve_mesh(PAIR, part * 4e3, phase, model=model)
             spring = 4e3 + mesh.tangent * (other.deflection - mesh.deflection)
             apart = np.abs(spring - part * 4e3) / 4e3

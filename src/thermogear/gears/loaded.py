@@ -305,8 +305,9 @@ def loaded_contact(
     pressure is nan: Hertz's curvature of two involutes does not hold on an edge, whose pressure
     is several times higher. ``edge_contact_share`` is the share of the positions with such a
     corner; ``corner_period_share`` and ``corner_load_share``, the greatest share of the load on
-    it, are each gear's. Forces and stiffness there take the corner for a flank of the involute's
-    curvature. ``effective_contact_ratio``: :attr:`LoadedMesh.effective_ratio`.
+    it, are each gear's. Forces and stiffness there are those of a narrow contact
+    (:func:`~thermogear.gears.sharing_kernel._half_width`) whose force acts along the normal of the
+    flank it touches. ``effective_contact_ratio``: :attr:`LoadedMesh.effective_ratio`.
 
     Plane stress body and plane strain contact; the band between all plane stress and all plane
     strain is -2.6 .. +4.3 % in stiffness.
