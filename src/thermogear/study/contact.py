@@ -134,7 +134,7 @@ def loaded_survey(
         Contact.kind,
         f"Loaded contact: {case.title}",
         {"contact": contact, "base_pitch": base_pitch, "iso_6336": compared},
-        _notices(case, model.body, lost, contact["edge_contact_share"], compared),
+        _notices(case, model.body, lost, contact, compared),
         **case.provenance,
         body=model.body,
         base_pitch_length=case.pair.base_pitch,
@@ -193,18 +193,23 @@ def apart(point: Operating, difference: float) -> Operating:
 
 
 def _notices(
-    case: GearCase, body: str, lost: int, edges: xr.DataArray, compared: xr.Dataset
+    case: GearCase, body: str, lost: int, contact: xr.Dataset, compared: xr.Dataset
 ) -> Iterator[Notice]:
     apart = (compared["iso_stiffness"] / compared["loaded_stiffness"] - 1.0).values
     yield Notice.of("loaded_contact_unchecked", body=body)
     yield Notice.of("iso_stiffness_apart", apart=[[apart.min(), apart.max()]])
+    edges = contact["edge_contact_share"]
     if bool((edges > 0.0).any()):
-        most = edges.isel(edges.argmax(...))
+        most = contact.isel(edges.argmax(...))
         yield Notice.of(
             "edge_contact_at_most",
-            share=most.item(),
+            share=most["edge_contact_share"].item(),
             state=str(most["temperature"].values),
             torque=most["load"].item(),
+            **{
+                gear: float(((most["edge_contact"] & flag) > 0).any("pair").mean())
+                for gear, flag in (("wheel", 1), ("pinion", 2))
+            },
         )
     if lost:
         yield Notice.of("positions_not_settled", lost=lost)

@@ -131,7 +131,7 @@ COLUMNS = (
     Column(
         "edge contact [%]",
         lambda row: " / ".join(
-            number(PERCENT(row[f"{gear}_corner"]), 2) for gear in ("wheel", "pinion")
+            number(PERCENT(row[f"{gear}_corner"])) for gear in ("wheel", "pinion")
         ),
     ),
     Column("greatest pressure on the flanks", "contact_pressure", 3, MEGAPASCAL),
