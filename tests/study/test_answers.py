@@ -276,7 +276,7 @@ UNITS = {
     "K": "flash off margin", "kW": "made carried", "min": "after end", "kHz": "natural",
     "rpm": "main there own strong looked ranges", "%": "off most",
     "": "wetted more_wetted top limit motions factor own ratio grade drawings points of more stage "
-        "safety unsettled speeds",
+        "safety unsettled speeds open",
 }  # fmt: skip
 """Unit -> the figures that have it; one name may stand in several answers with other units."""
 
