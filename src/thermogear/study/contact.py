@@ -201,15 +201,16 @@ def _notices(
     edges = contact["edge_contact_share"]
     if bool((edges > 0.0).any()):
         most = contact.isel(edges.argmax(...))
+        wheel, pinion = (
+            float(((most["edge_contact"] & flag) > 0).any("pair").mean()) for flag in (1, 2)
+        )
         yield Notice.of(
             "edge_contact_at_most",
             share=most["edge_contact_share"].item(),
             state=str(most["temperature"].values),
             torque=most["load"].item(),
-            **{
-                gear: float(((most["edge_contact"] & flag) > 0).any("pair").mean())
-                for gear, flag in (("wheel", 1), ("pinion", 2))
-            },
+            wheel=wheel,
+            pinion=pinion,
         )
     if lost:
         yield Notice.of("positions_not_settled", lost=lost)

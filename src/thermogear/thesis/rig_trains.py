@@ -40,10 +40,11 @@ class Assumed:
         """The value at a place 0..1 of the range; of choices the number of one."""
         if self.choices:
             return float(min(int(share * len(self.choices)), len(self.choices) - 1))
-        if self.logarithmic:
-            found = self.low * (self.high / self.low) ** share
-        else:
-            found = self.low + (self.high - self.low) * share
+        found = (
+            self.low * (self.high / self.low) ** share
+            if self.logarithmic
+            else self.low + (self.high - self.low) * share
+        )
         return float(f"{found:.{DIGITS}g}")
 
     @property
