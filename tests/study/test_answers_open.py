@@ -10,7 +10,7 @@ import pytest
 from thermogear.base.errors import InputError
 from thermogear.base.limits import OPEN, Limit
 from thermogear.base.progress import silent
-from thermogear.case.case import GearCase, gear_case, load_case
+from thermogear.case.case import GearCase, gear_case, load_case, load_example
 from thermogear.case.thermal_state import HOT
 from thermogear.heat.convection import MOST_PRANDTL
 from thermogear.heat.gearbox import fluid_from, oil_prandtl
@@ -89,3 +89,19 @@ def test_an_oil_too_cold_for_convection_is_refused_by_its_field() -> None:
         answers(pair("oil.temperature=-28 degC"))
     oil = pair().stated.lubricant
     assert oil_prandtl(oil, fluid_from(oil)) == pytest.approx(MOST_PRANDTL)
+
+
+def test_what_never_closes_is_recorded_long_enough_to_be_told_again() -> None:
+    """Near no load flanks bounce: a load a ten-thousandth higher has the same dynamic factor, and
+    a second motion that does not settle leaves a jump open."""
+    found = []
+    for torque in ("0.01 N m", "0.010001 N m"):
+        changes = [f'operating.torque=["{torque}"]', 'operating.speed=["1000 rpm"]']
+        case = load_example("rig", changes)
+        assert isinstance(case, GearCase)
+        found.append({one.name: one for one in answers(case).answers})
+    factors = [one["dynamic_factor"].value for one in found]
+    assert factors[0] == pytest.approx(factors[1], rel=0.02)
+    for one in found:
+        assert one["coexisting"].verdict == OPEN
+        assert one["coexisting"].figures["open"] > 0

@@ -21,6 +21,7 @@ from thermogear.mesh.balance import heat_balance
 from thermogear.mesh.body_estimates import ESTIMATES, body_estimates
 from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.trends import _rank, _rank_along, _rises, _verdict
+from thermogear.study.notices import heat_notices
 from thermogear.study.scuffing import load_stage, not_steel
 from thermogear.study.temperature import MESH_POSITIONS, PATH_POSITIONS, thermal_map
 from thermogear.views.pages.temperature import page
@@ -190,6 +191,24 @@ def test_one_point_that_cannot_be_computed_does_not_cost_the_map() -> None:
     (told,) = coded(tree.notices)["heat_not_settled"]
     assert (told["lost"], told["points"]) == (2, 4)
     assert {reason.partition(":")[0] for reason in told["reasons"]} == {"prandtl"}
+
+
+def test_reasons_alike_but_for_their_numbers_are_one() -> None:
+    """Count and range; what is said once, or always the same, stays as it is."""
+    settled = np.array([True, *[False] * 6])
+    data = xr.Dataset({"several": ("point", np.zeros(7, np.int8))})
+    why = [f"prandtl: got {got}; allowed 0.1 .. 1e6" for got in ("1.2e6", "8e6", "2.5e6")]
+    why += ["a node: {mesh} stays", "oil: got 5", "oil: got 5"]
+    (told,) = heat_notices(data, settled, why)
+    assert told.data["reasons"] == [
+        "prandtl: got 1.2e6 to 8e6; allowed 0.1 .. 1e6 (3 points)",
+        "a node: {mesh} stays",
+        "oil: got 5",
+    ]
+    assert told.text.startswith("6 of 7 operating points have no steady temperature")
+    (one,) = heat_notices(data.isel(point=[1]), settled[1:2], why[-1:])
+    assert one.text.startswith("1 of 1 operating point has no steady temperature")
+    assert "motion" not in one.text
 
 
 def test_the_map_says_where_two_states_are_steady() -> None:

@@ -47,7 +47,7 @@ def test_the_page_says_where_and_how_long_corners_carry(folder: Path, data: xr.D
     assert re.search(r"pressure [^<]*\[MPa\]", page)
     flags = data["edge_contact"].sel(temperature="hot").isel(load=0).values
     early, late = (100 * np.mean((flags == corner).any(axis=-1)) for corner in (1, 2))
-    assert f"{early:.1f} / {late:.1f}" in page
+    assert f"{early:.2f} / {late:.2f}" in page
     assert re.search(r"contact: \w", page)
 
 

@@ -255,16 +255,19 @@ def _late(
     """Attractors that only single starts of the grid found, in the grid's order."""
     lanes = single(plan.model)
     field = Field(lanes)
-    points = np.stack([data["point_x"].values, data["point_v"].values], axis=-1)
-    if "point" in data:
-        points = data["point"].values
+    points = (
+        data["point"].values
+        if "point" in data
+        else np.stack([data["point_x"].values, data["point_v"].values], axis=-1)
+    )
     period, label = data["period"].values, data["label"].values
     for i, j in np.argwhere((where == -1) & np.isfinite(points[..., 0])):
         point, n = points[i, j], int(period[i, j])
-        if label[i, j] == CHAOTIC:
-            number = chaotic_index(known, field, point)
-        else:
-            number = periodic_index(known, point, n, field.unit)
+        number = (
+            chaotic_index(known, field, point)
+            if label[i, j] == CHAOTIC
+            else periodic_index(known, point, n, field.unit)
+        )
         if number < 0:
             fresh, landed = attractors_from(lanes, point[None], plan.rule)
             if landed[0] < 0:

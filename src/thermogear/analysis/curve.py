@@ -289,10 +289,11 @@ class Curve:
             raise InputError(self.parameter, value, allowed="values with neighbours")
         rates = [(weight / small, around[k]) for k, weight in weights.items()]
         found: Any
-        if is_moved(section):
-            found = section.rates(rates)
-        else:
-            found = [(w, return_map(one)) for w, one in rates]
+        found = (
+            section.rates(rates)
+            if is_moved(section)
+            else [(w, return_map(one)) for w, one in rates]
+        )
         _keep(self._moved, value, found)
         return found
 

@@ -184,9 +184,11 @@ class DiagramPlan:
         state = np.array(self.starts)
         if before is not None:
             last = -1 if up else 0
-            state = np.stack([before[f"end_{n}"][0, :, last] for n in "xv"], axis=1)
-            if self.dimension != 2:
-                state = before["end"][0, :, last]
+            state = (
+                before["end"][0, :, last]
+                if self.dimension != 2
+                else np.stack([before[f"end_{n}"][0, :, last] for n in "xv"], axis=1)
+            )
         count = len(self.starts)
         found = empty_arrays(self, key)
         lanes, status = lanes_and_status(self.family, values[:, None])

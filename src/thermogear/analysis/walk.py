@@ -216,9 +216,11 @@ class _Approach:
         """Multipliers, and what takes a deviation at a point of the orbit to its eigenvectors."""
         if place not in self._bases:
             orbit, unit = self.orbit, self.orbit.section.unit
-            jacobian = orbit.jacobian
-            if place:
-                jacobian = orbit.section.visit(orbit.points[place], orbit.period).jacobian
+            jacobian = (
+                orbit.section.visit(orbit.points[place], orbit.period).jacobian
+                if place
+                else orbit.jacobian
+            )
             values, vectors = np.linalg.eig(jacobian * unit / unit[:, None])
             self._bases[place] = (values.astype(complex), np.linalg.pinv(vectors.astype(complex)))
         return self._bases[place]

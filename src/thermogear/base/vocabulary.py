@@ -352,9 +352,11 @@ def attributes(name: str) -> dict[str, Any]:
 def still(status: int, words: str) -> InputError:
     """What to raise where a motion is asked of a point that has none, in the state ``words``."""
     name = STATUS[status]
-    fix = "lower the temperature or raise the backlash"
-    if name != "jammed":
-        fix = "choose another operating point, or give temperatures"
+    fix = (
+        "choose another operating point, or give temperatures"
+        if name != "jammed"
+        else "lower the temperature or raise the backlash"
+    )
     return InputError("operating", f"{name.replace('_', ' ')} ({words})", why=STILL[name], fix=fix)
 
 

@@ -160,12 +160,16 @@ def _held(case: GearCase) -> list[Fact]:
         return found
     group = "temperatures computed from the heat balance"
     held = {name: float(np.ravel(t)[0]) for name, t in case.gearbox.measured.items()}
-    for name, kelvin in held.items():
-        found.append(Fact(group, f"{name} is held at", kelvin - ZERO_CELSIUS, "degC"))
+    found += [
+        Fact(group, f"{name} is held at", kelvin - ZERO_CELSIUS, "degC")
+        for name, kelvin in held.items()
+    ]
     for one in case.readings:
-        found.append(Fact(group, f"{one.node}, {one.kind} reading", one.indicated, "K"))
-        found.append(Fact(group, f"{one.node}, correction", one.temperature - one.indicated, "K"))
-        found.append(Fact(group, f"{one.node}, standard uncertainty", one.uncertainty, "K"))
+        found += [
+            Fact(group, f"{one.node}, {one.kind} reading", one.indicated, "K"),
+            Fact(group, f"{one.node}, correction", one.temperature - one.indicated, "K"),
+            Fact(group, f"{one.node}, standard uncertainty", one.uncertainty, "K"),
+        ]
     return found or [Fact(group, "held nodes", "none")]
 
 

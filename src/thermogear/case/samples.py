@@ -358,16 +358,20 @@ def _cycle(
 ) -> dict[str, NDArray[Any]]:
     temperature = columns.get(GEARS_AT)
     if temperature is None:
-        balance = None
-        if state != UNDEFORMED and state.held is None:
-            balance = state.balance(case, model, from_hot=False)
+        balance = (
+            state.balance(case, model, from_hot=False)
+            if state != UNDEFORMED and state.held is None
+            else None
+        )
         operating = state.moving(case, model)
     else:
         within("state", BODY, temperature)
         fixed = case.follow != "proportional"
-        balance = None
-        if case.computed:
-            balance = case.balance(model, temperature if fixed else None, from_hot=False)
+        balance = (
+            case.balance(model, temperature if fixed else None, from_hot=False)
+            if case.computed
+            else None
+        )
         operating = case.operating_at(temperature, model)
     hot = HotPair(case.pair, replace(operating, housing=case.housing), model)
     s = path_of_contact(case.pair, path_positions)

@@ -205,13 +205,14 @@ class TrainPlan:
                 nodes.get(inner, bore),
                 nodes.get(f"{names[one.name]}_outer", nodes.get(inner, at.temperatures.housing)),
             ]
-            if not cold:
-                rings = [
+            rings = (
+                [
                     seen if told is None else told
                     for seen, told in zip(rings, one.given, strict=True)
                 ]
-            else:
-                rings = [bore, at.temperatures.housing]
+                if not cold
+                else [bore, at.temperatures.housing]
+            )
             found[:, place, 0], found[:, place, 2] = (np.broadcast_to(t, count) for t in rings)
             found[:, place, 1] = 0.5 * (found[:, place, 0] + found[:, place, 2])
             found[:, place, 3] = np.broadcast_to(at.temperatures.housing, count)

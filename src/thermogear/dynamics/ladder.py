@@ -368,8 +368,8 @@ def periodic_table(
         (k.ERROR, model.error),
     ]
     if model.friction is not None:
-        for place, one in ((k.PITCH, model.friction_at_pitch), (k.METRE, model.friction_per_metre)):
-            own.append((place, Periodic(0.0) if one is None else one))
+        pairs = ((k.PITCH, model.friction_at_pitch), (k.METRE, model.friction_per_metre))
+        own += [(place, Periodic(0.0) if one is None else one) for place, one in pairs]
     harmonics = max([len(one.harmonics) for _, one in own if isinstance(one, Periodic)], default=1)
     count = max(int(np.ceil(np.pi * max(harmonics, 1) / PANEL)), 4)
     starts = sorted({s for _, one in own if isinstance(one, Pieces) for s in one.starts} - {0.0})

@@ -285,9 +285,11 @@ def _sweeps(
         name = parameter_name(point, parameter)
         if to is None:
             raise InputError("--to", "nothing", fix="for instance --to 0.1")
-        first = point.parameters.get(name, 0.0)
-        if begin is not None:
-            first = parameter_value("--from", point, name, begin)
+        first = (
+            parameter_value("--from", point, name, begin)
+            if begin is not None
+            else point.parameters.get(name, 0.0)
+        )
         last = parameter_value("--to", point, name, to)
         return (sweep_of_point(point, name, first=first, last=last),), point.title
     if begin is not None or to is not None:

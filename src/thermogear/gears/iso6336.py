@@ -93,19 +93,6 @@ def single_stiffness(
     return np.asarray(np.asarray(theoretical, dtype=float) * factor)
 
 
-def blank_factor(*, web: float, rim: float) -> float:
-    """C_R of a gear with a web, 1 + ln(b_s/b)/(5 e^(s_R/(5 m))); 1 for a solid disc.
-
-    ``web``: b_s/b, 0.2..1.2; ``rim``: s_R/m, at least 1, both held at the ends of their range.
-    Source: ISO 6336-1:2006, method B, clause 9.
-
-    >>> f"{blank_factor(web=0.5, rim=5.0):.3f}"
-    '0.949'
-    """
-    ratio, thickness = min(max(web, 0.2), 1.2), max(rim, 1.0)
-    return 1.0 + math.log(ratio) / (5.0 * math.exp(thickness / 5.0))
-
-
 def pinion_first(pair: GearPair) -> tuple[Gear, Gear]:
     """The source's gear 1 and 2: fewer teeth first, of equally many the larger shift.
 
@@ -125,7 +112,7 @@ def iso6336_stiffness(
     """c'_th, c' and c_gamma_alpha = c' (0.75 eps_alpha + 0.25) of a spur pair [N/m^2].
 
     line_load: F_t K_A/b [N/m], any shape; below 100 N/mm c' falls with its fourth root, and
-    0 gives 0. blank: C_R, the mean of both gears' :func:`blank_factor`. Moduli scale by
+    0 gives 0. blank: C_R, the mean of both gears', 1 for solid discs. Moduli scale by
     2 E1 E2/(E1 + E2) over that of steel. The source's first gear is the pinion: the one with
     fewer teeth, whichever drives. Of two with equally many teeth it is the one with the larger
     shift, the only order inside the source's range. So c is continuous in both shifts, and

@@ -151,10 +151,11 @@ def reduced(
     band = chain.filter(rate)
     if integrate and band is not None and chain.low_cut is not None:
         filtered, offset = band.apply(centred), band.delay
-        if chain.method == "trapezoid":
-            displacement = without_trend(integrate_twice_trapezoid(filtered, rate))
-        else:
-            displacement = integrate_twice(filtered, rate, low_cut=chain.low_cut)
+        displacement = (
+            without_trend(integrate_twice_trapezoid(filtered, rate))
+            if chain.method == "trapezoid"
+            else integrate_twice(filtered, rate, low_cut=chain.low_cut)
+        )
     own, axis = rate, 1.0
     if turning is not None:
         centred = turning.resampled(centred, 0)

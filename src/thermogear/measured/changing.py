@@ -239,9 +239,11 @@ def _sliced(
     inside = through.table[:, angle.first : angle.first + turns.size]
     per_turn = samples_per_turn(turns)
     mean = float((turns[-1] - turns[0]) / (turns.size - 1))
-    gearing = None
-    if angle.mesh is not None and angle.gearing is not None:
-        gearing = replace(angle.gearing, mesh_frequency=angle.mesh * mean)
+    gearing = (
+        replace(angle.gearing, mesh_frequency=angle.mesh * mean)
+        if angle.mesh is not None and angle.gearing is not None
+        else None
+    )
     slowest = float(np.percentile(np.diff(turns), 1.0))
     _require_seen(orders, angle, highest=min(0.43 * per_turn, _HIGHEST / slowest))
     if angle.mesh is not None:

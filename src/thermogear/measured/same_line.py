@@ -121,9 +121,11 @@ def speed_ratio(own: Turns, base: Turns) -> tuple[float, dict[str, Any] | None]:
     """
     scale = own.scale(base)
     tachos = own.tacho is not None and base.tacho is not None and own.tacho[0] == base.tacho[0]
-    by_tacho = float("nan")
-    if tachos and own.tacho is not None and base.tacho is not None:
-        by_tacho = own.tacho[1] / base.tacho[1] * scale
+    by_tacho = (
+        own.tacho[1] / base.tacho[1] * scale
+        if tachos and own.tacho is not None and base.tacho is not None
+        else float("nan")
+    )
     ratio = own.mesh / base.mesh * scale
     if np.isnan(own.mesh) or np.isnan(base.mesh):
         return (1.0 if np.isnan(by_tacho) else by_tacho), None

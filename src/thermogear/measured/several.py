@@ -328,21 +328,20 @@ def figures_of_several(found: Several) -> dict[str, Any]:
             found.names, found.turns, found.ratio, found.change, strict=True
         )
     ]
-    rows = []
-    for k, (channel, name) in enumerate(found.keys):
-        for i in np.flatnonzero(beyond[:, k]):
-            rows.append(
-                {
-                    "record": found.names[i],
-                    "shaft_speed": speeds[i]["shaft_speed"],
-                    "mesh_frequency": speeds[i]["mesh_frequency"],
-                    "channel": channel,
-                    "name": name,
-                    "reading": float(found.reading[i, k]),
-                    "change": float(change[i, k]),
-                    "change_half_width": float(width[i, k]),
-                }
-            )
+    rows = [
+        {
+            "record": found.names[i],
+            "shaft_speed": speeds[i]["shaft_speed"],
+            "mesh_frequency": speeds[i]["mesh_frequency"],
+            "channel": channel,
+            "name": name,
+            "reading": float(found.reading[i, k]),
+            "change": float(change[i, k]),
+            "change_half_width": float(width[i, k]),
+        }
+        for k, (channel, name) in enumerate(found.keys)
+        for i in np.flatnonzero(beyond[:, k])
+    ]
     trends = [
         {"channel": c, "name": n, "trend": float(slope[k]), "trend_half_width": float(half[k])}
         for k, (c, n) in enumerate(found.keys)

@@ -223,9 +223,11 @@ def of_one_length(channels: list[Channel], notes: list[Notice]) -> list[Channel]
 
 def agreed(rates: list[tuple[float, str]], notes: list[Notice]) -> tuple[float | None, str]:
     """The one rate that every place in the file agrees on, else None with a notice."""
-    for rate, origin in rates:
-        if not is_possible_rate(rate):
-            notes.append(Notice.of("rate_impossible", origin=origin, rate=rate))
+    notes += [
+        Notice.of("rate_impossible", origin=origin, rate=rate)
+        for rate, origin in rates
+        if not is_possible_rate(rate)
+    ]
     rates = [one for one in rates if is_possible_rate(one[0])]
     if not rates:
         return None, ""

@@ -185,10 +185,11 @@ def carry_out(
         clock.found = len(there)
         wanted = [key for key in keys_of(plan) if key not in there]
         clock.step(len(there))
-        if client is None:
-            source = computed(plan, wanted, kept.load, threads=threads, alive=alive)
-        else:
-            source = computed_on(client, plan, wanted, kept.load)
+        source = (
+            computed(plan, wanted, kept.load, threads=threads, alive=alive)
+            if client is None
+            else computed_on(client, plan, wanted, kept.load)
+        )
         done = len(there)
         try:
             for key, arrays in source:

@@ -73,10 +73,11 @@ class MeshFrame:
     def columns(self) -> tuple[Floats, Floats]:
         """Gradients of delta_d and delta_b over (x1, y1, th1, x2, y2, th2): (6,) each."""
         r1, r2 = self.base_radii
-        found = []
-        for normal, turn in zip(self.normals, (self.sense, -self.sense), strict=True):
-            found.append(np.array([*normal, turn * r1, *-normal, turn * r2]))
-        return found[0], found[1]
+        drive, back = (
+            np.array([*normal, turn * r1, *-normal, turn * r2])
+            for normal, turn in zip(self.normals, (self.sense, -self.sense), strict=True)
+        )
+        return drive, back
 
     @property
     def friction_columns(self) -> tuple[Floats, Floats]:

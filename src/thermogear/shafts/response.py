@@ -142,9 +142,11 @@ def _outputs(
         lost = u @ train.bearing_damping(number).T
         pushed.append(u @ np.asarray(k).T + 1j * w[:, None] * lost)
         shaken.append(-(w[:, None] ** 2) * (q @ place.ring))
-    casing = np.zeros((omega.size, 2), complex)
-    if "casing.x" in own.index:
-        casing = -(w[:, None] ** 2) * q[:, [own.index["casing.x"], own.index["casing.y"]]]
+    casing = (
+        -(w[:, None] ** 2) * q[:, [own.index["casing.x"], own.index["casing.y"]]]
+        if "casing.x" in own.index
+        else np.zeros((omega.size, 2), complex)
+    )
     count = len(own.bearings)
     return Response(
         speed=omega,

@@ -246,7 +246,7 @@ def _held(x: Floats, free: Mask) -> list[Damage]:
     typical = lengths[lengths < _SHORTEST]
     chance = max(float(np.sum(typical - 1)) / x.size, 1e-6)
     least = max(_SHORTEST, int(np.ceil(np.log(_CHANCE / x.size) / np.log(min(chance, 0.9)))))
-    found = []
+    found: list[Damage] = []
     zeros, held = np.zeros(x.size, dtype=bool), np.zeros(x.size, dtype=bool)
     for start, stop in zip(starts[lengths >= least], stops[lengths >= least], strict=True):
         (zeros if x[start] == 0.0 else held)[start:stop] = True
@@ -255,10 +255,11 @@ def _held(x: Floats, free: Mask) -> list[Damage]:
     # a coarse converter repeats values by chance: neighbours are equal as often as at random
     if np.count_nonzero(short) > 1e-3 * x.size and _not_by_chance(x, free, short):
         held |= short
-    for kind, where in (("zeros", zeros), ("held", held)):
-        if where.any():
-            found.append(Damage(kind=kind, samples=where))
-    return found
+    return found + [
+        Damage(kind=kind, samples=where)
+        for kind, where in (("zeros", zeros), ("held", held))
+        if where.any()
+    ]
 
 
 def _not_by_chance(x: Floats, free: Mask, short: Mask) -> bool:

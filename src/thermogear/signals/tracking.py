@@ -48,10 +48,11 @@ class Path:
     def cycles(self, samples: int) -> Floats:
         """Cycles of the line at each of ``samples``, 0 at the first."""
         knots = self.at / samples
-        if knots.size >= 5:
-            spline = interpolate.make_smoothing_spline(knots, np.log(self.frequency))
-        else:
-            spline = interpolate.make_interp_spline(knots, np.log(self.frequency), k=1)
+        spline = (
+            interpolate.make_smoothing_spline(knots, np.log(self.frequency))
+            if knots.size >= 5
+            else interpolate.make_interp_spline(knots, np.log(self.frequency), k=1)
+        )
         grid = np.clip(np.arange(samples) / samples, knots[0], knots[-1])
         local = np.exp(spline(grid))
         return np.asarray(np.concatenate([[0.0], np.cumsum(0.5 * (local[1:] + local[:-1]))]))

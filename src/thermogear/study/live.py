@@ -44,13 +44,10 @@ def mesh(case: GearCase, alive: Alive = keep_going) -> xr.Dataset:
     Of the first operating point under the first model: ``mesh_stiffness`` (state, mesh_phase),
     its mean, the half backlash and both jam temperatures (state); SI. ``status`` of each state.
     """
-    found: list[dict[str, NDArray[Any]]] = []
-    for state in STATES:
-        found.append(
-            GearFamily(case, (), "", ThermalState.of(state), alive).quasi_static(
-                np.empty((1, 0)), MESH
-            )
-        )
+    found: list[dict[str, NDArray[Any]]] = [
+        GearFamily(case, (), "", ThermalState.of(state), alive).quasi_static(np.empty((1, 0)), MESH)
+        for state in STATES
+    ]
     variables: dict[str, Any] = {
         name: (
             ("state", "mesh_phase")[: found[0][name].ndim],

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -108,6 +109,24 @@ def range_notices(case: GearCase, data: xr.Dataset) -> Iterator[Notice]:
     )
 
 
+_NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+
+
+def _grouped(reasons: Iterable[str]) -> list[str]:
+    """Reasons that differ in numbers alone are one: how many, and between what the numbers lie."""
+    alike: dict[str, list[list[str]]] = {}
+    for reason in reasons:
+        alike.setdefault(_NUMBER.sub("\0", reason), []).append(_NUMBER.findall(reason))
+    found = []
+    for words, rows in alike.items():
+        ends = [(min(each, key=float), max(each, key=float)) for each in zip(*rows, strict=True)]
+        many = f" ({len(rows)} points)" if any(least != most for least, most in ends) else ""
+        spans = [" to ".join(dict.fromkeys(span)) for span in ends]
+        parts = zip(words.split("\0"), [*spans, many], strict=True)
+        found.append("".join(part + span for part, span in parts))
+    return found
+
+
 def heat_notices(
     data: xr.Dataset, settled: NDArray[np.bool_], why: Iterable[str], about: str = ""
 ) -> Iterator[Notice]:
@@ -119,7 +138,7 @@ def heat_notices(
             about=about,
             lost=lost,
             points=settled.size,
-            reasons=list(dict.fromkeys(why)) or None,
+            reasons=_grouped(why) or None,
         )
     several = settled & (data["several"].values == 1)
     if several.any():

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.analysis.settle import UNDECIDED
+from thermogear.analysis.settle import CHAOTIC, UNDECIDED, WATCHED
 from thermogear.analysis.side_by_side import Motions, motions_along
 from thermogear.base.arrays import Floats
 from thermogear.base.excitation import Excitations
@@ -32,6 +32,9 @@ LOWEST, HIGHEST, STEP = 0.05, 1.8, 0.025
 """Mesh over natural frequency, and the step of it. At the lowest the twentieth harmonic of the
 mesh meets the natural frequency: what those above it do, dies out within a mesh period."""
 RECORD = Recording(periods=8, samples=64)
+LONG = replace(RECORD, periods=WATCHED)
+"""Of a chaotic motion: its greatest force differs from one such record to the next by some
+percent, of eight periods by some ten."""
 FARTHEST = 10.0
 """How far the case's own speeds may widen that range."""
 PEAK = 1.05
@@ -131,6 +134,12 @@ class Speeds:
         known = np.isfinite(self.column("contact_loss_share"))
         return self.grid.size - np.unique(self.column("pinion_speed")[known]).size
 
+    @property
+    def open(self) -> int:
+        """At how many speeds some start's motion does not settle: there may be another one."""
+        waiting = self.column("label_code") == UNDECIDED
+        return np.unique(self.column("pinion_speed")[waiting]).size
+
     def peaks(self) -> list[tuple[float, float]]:
         """(speed [rad/s], dynamic factor) of the resonances, the greatest first."""
         speed, factor = self.column("pinion_speed"), self.column("dynamic_factor")
@@ -176,9 +185,16 @@ def figures_of(points: Points, motions: Motions) -> dict[str, Floats]:
     """:func:`~thermogear.case.response.respond` of ``motions`` of ``points``, (motion,).
 
     nan where a motion does not settle, and where the record lies within a flight longer than it:
-    over a steady motion the mesh force has the load as its mean, so its greatest is no less.
+    over a steady motion the mesh force has the load as its mean, so its greatest is no less. What
+    closes after more periods than are recorded, or never, is recorded over :data:`LONG`.
     """
-    found = respond(points.take(motions.lane), motions.state, RECORD, lines=False)
+    lanes = points.take(motions.lane)
+    found = respond(lanes, motions.state, RECORD, lines=False)
+    long = (motions.label == CHAOTIC) | (motions.period > RECORD.periods)
+    if long.any():
+        more = respond(lanes.take(np.flatnonzero(long)), motions.state[long], LONG, lines=False)
+        for name, values in more.items():
+            found[name][long] = values
     unknown = (motions.label == UNDECIDED) | (found["dynamic_factor"] < LEAST_FACTOR)
     return {
         name: values if name == "frequency_ratio" else np.where(unknown, np.nan, values)

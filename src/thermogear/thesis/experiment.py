@@ -171,9 +171,7 @@ def trains(count: int = SAMPLES_STORED, *, seed: int = SEED, first: int = 0) -> 
 
 def header() -> list[str]:
     """Names of the columns of the stored table."""
-    found = [one.name for one in ASSUMED]
-    for rpm in SPEEDS:
-        found.append(f"label_{rpm:.0f}")
+    found = [*(one.name for one in ASSUMED), *(f"label_{rpm:.0f}" for rpm in SPEEDS)]
     for place in SEEN:
         found.append(f"{place}_channel")
         found += [f"{place}_{rpm:.0f}" for rpm in SPEEDS]

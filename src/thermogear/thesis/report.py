@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import csv
-import hashlib
 import io
-import re
 import time
-import unicodedata
 from collections import Counter
 from dataclasses import dataclass
 from importlib.resources import files
@@ -27,29 +24,6 @@ if TYPE_CHECKING:
 
 
 TABLE = "sentences.csv"
-
-_FORMULA = re.compile(r"\$\$.*?\$\$", re.DOTALL)
-_END = re.compile(r"(?<=[.!?:])\s+(?=[A-Z])")
-
-
-def sentences(text: str) -> list[str]:
-    """The sentences of a document in order; a displayed formula or a table's line counts as one.
-
-    White space is single, the characters are composed (NFC); headings are sentences too.
-    """
-    flat = _FORMULA.sub(
-        lambda found: " ".join(found[0].split()), unicodedata.normalize("NFC", text)
-    )
-    found: list[str] = []
-    for line in (" ".join(line.split()) for line in flat.splitlines()):
-        if line:
-            found += [line] if line.startswith("$$") else _END.split(line)
-    return found
-
-
-def digest(sentence: str) -> str:
-    """SHA-256 of a normalised sentence, hexadecimal."""
-    return hashlib.sha256(sentence.encode("utf-8")).hexdigest()
 
 
 @dataclass(frozen=True)

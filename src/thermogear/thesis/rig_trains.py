@@ -40,10 +40,11 @@ class Assumed:
         """The value at a place 0..1 of the range; of choices the number of one."""
         if self.choices:
             return float(min(int(share * len(self.choices)), len(self.choices) - 1))
-        if self.logarithmic:
-            found = self.low * (self.high / self.low) ** share
-        else:
-            found = self.low + (self.high - self.low) * share
+        found = (
+            self.low * (self.high / self.low) ** share
+            if self.logarithmic
+            else self.low + (self.high - self.low) * share
+        )
         return float(f"{found:.{DIGITS}g}")
 
     @property
@@ -235,17 +236,17 @@ def case_text(values: Mapping[str, float]) -> str:
         )
         told[f"{shaft}_gear"] = before + place * span
         told[f"{shaft}_bore"] = 0.5 * middle
-        for side, position in (("left", before), ("right", before + span)):
-            bearings.append(
-                _BEARING.format(
-                    shaft=shaft,
-                    name=f"{shaft} {side}",
-                    position=position,
-                    kind=kind,
-                    seat_damping=values["seat_loss"] * values["seat_stiffness"],
-                    **{n: values[n] for n in _OF_BEARINGS},
-                )
+        bearings += [
+            _BEARING.format(
+                shaft=shaft,
+                name=f"{shaft} {side}",
+                position=position,
+                kind=kind,
+                seat_damping=values["seat_loss"] * values["seat_stiffness"],
+                **{n: values[n] for n in _OF_BEARINGS},
             )
+            for side, position in (("left", before), ("right", before + span))
+        ]
     told["bearings"] = "".join(bearings)
     told["box_below"] = values["shafts_below"] + values["housing_below"]
     told["coupling_damping"] = 5e-4 * values["coupling"]

@@ -200,9 +200,11 @@ def trend(e: Evidence, quantity: str, along: str) -> Finding:
         verdict = Verdict.ASSUMED
     else:
         verdict = Verdict.CONTRADICTED
-    said = f"mixed {words['given']}" + (f", dry {dry}" if dry else "")
-    if quantity == "growth":
-        said = words["given"]
+    said = (
+        words["given"]
+        if quantity == "growth"
+        else f"mixed {words['given']}" + (f", dry {dry}" if dry else "")
+    )
     reasons = {
         "rises": "It does so with given and with computed temperatures.",
         "friction-speed": "Mixed friction falls as the film grows with speed; dry friction is a "

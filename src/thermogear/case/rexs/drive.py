@@ -200,9 +200,11 @@ class Drive:
         if not self.switched:
             return []
         unit = next(iter(self.model.of_type("gear_unit")), None)
-        index = None
-        if unit is not None:
-            index = self.reader.whole(unit, "gear_shift_index", over.get(unit.id))
+        index = (
+            self.reader.whole(unit, "gear_shift_index", over.get(unit.id))
+            if unit is not None
+            else None
+        )
         found = []
         for one, other, coupling in self.switched:
             engaged = self.reader.attribute(coupling, "is_engaged", over.get(coupling.id))
@@ -246,9 +248,9 @@ class Drive:
             return balanced[stage.component.id]
         for place, gear in enumerate(stage.gears):
             data = gearbox.gear_data_of(self.model, stage.component, gear)
-            found = None
-            if data is not None:
-                found = self.reader.number(data, "torque", over.get(data.id))
+            found = (
+                self.reader.number(data, "torque", over.get(data.id)) if data is not None else None
+            )
             if found is not None:
                 teeth = [self.reader.whole(one, "number_of_teeth") or 1 for one in stage.gears]
                 scale = 1.0 if place == 0 else abs(teeth[0] / teeth[1])

@@ -342,8 +342,7 @@ def one_rack(made: Draft) -> None:
     if not values[0] or values[0] != values[1]:
         return
     made.lines = [one for one in made.lines if ".rack." not in one.path]
-    for key, one in racks[0].items():
-        made.lines.append(replace(one, path=f"gears.rack.{key}"))
+    made.lines += [replace(one, path=f"gears.rack.{key}") for key, one in racks[0].items()]
 
 
 # --- the pair -------------------------------------------------------------------------------

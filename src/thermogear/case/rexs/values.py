@@ -96,9 +96,11 @@ def put_back(model: Model, stage: Stage, old: Values, keys: Iterable[Key]) -> Mo
         while len(again.load_cases) < load:
             again.load(LoadCase(id=len(again.load_cases) + 1, spectrum=1, components={}))
         if part in held:
-            table = again.components[held[part].id].attributes
-            if load:
-                table = again.load_cases[load - 1].components.setdefault(held[part].id, {})
+            table = (
+                again.load_cases[load - 1].components.setdefault(held[part].id, {})
+                if load
+                else again.components[held[part].id].attributes
+            )
             for spelling in (name, *LATER.get(name, ())):
                 table.pop(spelling, None)
             if (load, part, name) in old:

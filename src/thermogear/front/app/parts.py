@@ -298,9 +298,7 @@ def shafts(look: Look) -> Iterator[Part]:
     for place, study in enumerate((statics, campbell)):
         page = page_of(study(look.case, progress=look.told))
         rows += [[line] for line in page.lines()]
-        for one in page.pictures:
-            if moving(one.picture):
-                pictures.append((one.heading, one.picture))
+        pictures += [(one.heading, one.picture) for one in page.pictures if moving(one.picture)]
         yield Part(name="shafts", rows=rows, pictures=pictures, done=place + 1, total=2)
     look.kept.keys["shafts"] = key
 

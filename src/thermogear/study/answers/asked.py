@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.analysis.settle import UNDECIDED
 from thermogear.analysis.side_by_side import RULE, motions_along
 from thermogear.base.arrays import Floats
 from thermogear.base.display import worded
@@ -232,15 +233,16 @@ class Asked:
         """Figures (point, motion) of the motions at the operating points answered, else nan.
 
         From rest first, then from the other starts of the look over speeds and from the motions
-        that it found within a step of the point's own. Nan too where a motion does not settle, and
-        where the pair turns so slowly that none is followed: the load is static.
+        that it found within a step of the point's own. Nan too where a motion does not settle,
+        which is 1 in ``undecided``, and where the pair turns so slowly that none is followed: the
+        load is static.
         """
         points = points_of(excitations(self.case, self._part(self.points)))
         slow = np.array([self.slow(point) for point in self.points])
         stated = np.array([not self.unsettled(point) for point in self.points])
         moving = np.flatnonzero((points.status == 0) & ~slow & stated)
         if not moving.size:
-            return {name: np.full((self.count, 1), np.nan) for name in VALUES}
+            return {name: np.full((self.count, 1), np.nan) for name in (*VALUES, "undecided")}
         points = points.take(moving)
         starts = starts_of(points)
         if self.speeds is not None:
@@ -249,6 +251,7 @@ class Asked:
         motions = motions_along(points.flat, starts)
         lane = motions.lane
         figures = figures_of(points, motions)
+        figures["undecided"] = np.where(motions.label == UNDECIDED, 1.0, 0.0)
         place = np.arange(lane.size) - np.searchsorted(lane, lane)
         every = {}
         for name, values in figures.items():

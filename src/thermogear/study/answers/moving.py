@@ -89,16 +89,21 @@ def speeds(asked: Asked) -> Iterator[Answer]:
     sentence = (
         f"Two motions exist {words}: it may jump there, up and down elsewhere"
         if found.several
-        else f"One motion exists at every {LOOKED}: no jump"
+        else f"One motion exists at every {LOOKED}{': no jump' * (found.open == 0)}"
     )
     if several.any():
         sentence += "; two or more at {points} of {of} operating points"
         figures |= {"points": int(several.sum()), "of": several.size}
+    # what does not settle may be another motion, which a jump ends on
     value = 2.0 if several.any() else 1.0
+    if not several.any() and (asked.motion["undecided"] == 1.0).any():
+        value = float("nan")
+        sentence += "; at its own speeds another motion does not settle"
     if not moves.any():
         sentence, value = _faster(asked, sentence), float("nan")
-    sentence += open_at
-    figures |= of_open
+    if found.open:
+        sentence += "; at {open} of {speeds} speeds a motion does not settle, which may be another"
+        figures |= {"open": found.open, "speeds": found.grid.size}
     yield answer(SPEEDS, "coexisting", f"{sentence}.", value, figures=figures, units=OF_SPEEDS)
 
 

@@ -177,9 +177,9 @@ class TrainFamily:
         state = ThermalState.at(values[GEARS_AT]) if GEARS_AT in values else self.state
         # where the heat is given, neither mesh nor bearings know the speed
         known = dict(whole)
-        speed = None
-        if not state.hangs_on_the_load(self._alone):
-            speed = known.pop("pinion_speed", None)
+        speed = (
+            known.pop("pinion_speed", None) if not state.hangs_on_the_load(self._alone) else None
+        )
         found = self._at_rest(known, state)
         return found if speed is None else replace(found, speed=speed), self._case_with(whole)
 
@@ -311,9 +311,11 @@ class TrainFamily:
             train = self.train(row)
             if train is None:
                 continue
-            periods = min(max(int(found.period[place]), 1) * train.model.cycle, WATCHED)
-            if found.period[place] == 0:
-                periods = WATCHED
+            periods = (
+                WATCHED
+                if found.period[place] == 0
+                else min(max(int(found.period[place]), 1) * train.model.cycle, WATCHED)
+            )
             run = Engine(train.model).run(found.state[place], periods, samples=SAMPLES)
             record = shown(train, run, 0.0)
             force = np.linalg.norm(record.bearing_force, axis=2)

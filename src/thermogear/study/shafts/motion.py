@@ -76,10 +76,11 @@ def moved(case: GearCase, state: TrainState, *, coordinates: int | None = None) 
         return Moved(state=state)
     train = moving(case, state, coordinates=coordinates, friction=rubbing(case, state))
     cycle = train.model.cycle
-    if cycle > LONGEST:
-        found = _followed(train)
-    else:
-        found = settle(train.model.return_map(), train.start, search_of(cycle))
+    found = (
+        _followed(train)
+        if cycle > LONGEST
+        else settle(train.model.return_map(), train.start, search_of(cycle))
+    )
     if found.name == "diverged":
         return Moved(state=state, train=train, motion=found)
     teeth = max(case.pair.pinion.teeth, case.pair.wheel.teeth)
@@ -189,9 +190,11 @@ def _table(case: GearCase, found: Sequence[Sequence[Moved]]) -> xr.Dataset:
 
     def felt(one: Moved, values: Floats) -> Floats:
         """Lines at the orders that this motion has, nan at those of others."""
-        there = own
-        if one.torus_sections is not None:
-            there = torus_orders(_torus(one).frequency, curves=_torus(one).curves)
+        there = (
+            torus_orders(_torus(one).frequency, curves=_torus(one).curves)
+            if one.torus_sections is not None
+            else own
+        )
         found = lines(values, orders=orders)
         found[~np.isin(orders, np.round(there, 9))] = np.nan
         return found

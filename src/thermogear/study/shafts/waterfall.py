@@ -386,9 +386,11 @@ class WaterfallPlan:
         trains = [self.train(state) for state in kinds]
         first = next((one for one in trains if one is not None), None)
         size = 0 if first is None else first.model.size
-        error = float("nan")
-        if first is not None:
-            error = float(np.abs(first.reduction.frequency_errors(first.state.linear)).max())
+        error = (
+            float(np.abs(first.reduction.frequency_errors(first.state.linear)).max())
+            if first is not None
+            else float("nan")
+        )
         notices = [
             Notice.of("one_point_all_through", duration=self.duration),
             Notice.of("train_reduced", coordinates=size, error=error),
@@ -456,9 +458,11 @@ def waterfall_plan(
     if not 0.0 < floats("duration", duration, "s") <= 3600.0:
         raise InputError("duration", f"{duration:.6g} s", allowed="0..3600 s")
     at = case.stated
-    place = int(np.argmax(at.speed * at.torque))
-    if operating is not None:
-        place = counted("operating", operating, most=at.speed.size)
+    place = (
+        counted("operating", operating, most=at.speed.size)
+        if operating is not None
+        else int(np.argmax(at.speed * at.torque))
+    )
     return WaterfallPlan(
         case=case, speeds=tuple(axis.tolist()), states=tuple(states), place=place,
         duration=float(duration), size=coordinates or 0, block=block, threads=threads,

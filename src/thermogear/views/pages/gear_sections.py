@@ -218,9 +218,11 @@ def _jam_texts(data: xr.Dataset, end: str = "") -> list[Block]:
             stuck = [o for o in range(len(names)) if tables.is_jammed(here.isel(operating=o))]
             if stuck:
                 where = ", ".join(names[o] for o in stuck)
-                jam = np.nan
-                if "jam_temperature" in here:
-                    jam = float(here["jam_temperature"].isel(operating=stuck).min())
+                jam = (
+                    float(here["jam_temperature"].isel(operating=stuck).min())
+                    if "jam_temperature" in here
+                    else np.nan
+                )
                 found.append(Text(f"{bundle}, {state}, {where} — {jam_words(jam)}{end}.", "jam"))
     return found
 

@@ -49,9 +49,11 @@ def _heat(mesh: xr.Dataset) -> str:
         return ""
     cold, hot = (mesh["hot_temperature"].isel(state=i).values for i in (0, -1))
     drawn, pinion = celsius(float(cold.min())), celsius(float(hot.max()))
-    wheel = pinion
-    if "hot_wheel_temperature" in mesh:
-        wheel = celsius(float(mesh["hot_wheel_temperature"].isel(state=-1).max()))
+    wheel = (
+        celsius(float(mesh["hot_wheel_temperature"].isel(state=-1).max()))
+        if "hot_wheel_temperature" in mesh
+        else pinion
+    )
     gears = f"gears at {pinion}" if wheel == pinion else f"pinion at {pinion}, wheel at {wheel}"
     colder = "; the state of operation, here a cold one, is called hot" * bool(
         hot.max() < cold.min()

@@ -127,9 +127,11 @@ def _rises(values: NDArray[np.float64]) -> bool:
 def contact_path(data: xr.Dataset) -> str:
     """Of load share and pressure along the path."""
     loads = [exactly(float(data["load"][end])) for end in (0, -1)]
-    words = f"At {loads[0]} N m"
-    if data.sizes["load"] > 1:
-        words = f"Thin at {loads[0]} N m, broad at {loads[1]} N m"
+    words = (
+        f"Thin at {loads[0]} N m, broad at {loads[1]} N m"
+        if data.sizes["load"] > 1
+        else f"At {loads[0]} N m"
+    )
     edges = data["edge_contact"].values[:, [0, -1]]
     corners = [name for bit, name in ((1, "wheel"), (2, "pinion")) if (edges & bit).any()]
     if not corners:

@@ -183,9 +183,11 @@ def _sweep_caption(data: xr.Dataset) -> str:
 
 
 def _run_up_caption(data: xr.Dataset) -> str:
-    words = "Full lines run up, dashed ones down"
-    if data.sizes["pinion_speed"] == 1:
-        words = "One speed, met from below and from above"
+    words = (
+        "One speed, met from below and from above"
+        if data.sizes["pinion_speed"] == 1
+        else "Full lines run up, dashed ones down"
+    )
     folds = "bifurcation_kind" in data and bool((data["bifurcation_kind"].values == 0).any())
     return words + ("; thin vertical lines are located folds." if folds else ".")
 

@@ -160,9 +160,11 @@ def _diagram(name: str, result: Result, pictures: Pictures) -> Told:
     data = result.group(f"diagrams/{name}")
     if data is None:
         cold = result.groups["motion"].isel(bundle=0, operating=0, state=0)
-        why = f"undeformed it is {label_of(cold)}"
-        if moves(cold["status"]):
-            why = "its stiffness does not fluctuate"
+        why = (
+            "its stiffness does not fluctuate"
+            if moves(cold["status"])
+            else f"undeformed it is {label_of(cold)}"
+        )
         why = "stopped before it" if result.interrupted else why
         return f"Not computed: {why}.", []
     states = json.loads(str(data.attrs["state_names"]))

@@ -51,9 +51,11 @@ def over_temperature(row: xr.Dataset, mesh: xr.Dataset | None) -> Picture:
     """
     panel = Panel(axis_of("gear_temperature"), axis_of("half_backlash", "half backlash"))
     x, bundles = shown(row, "gear_temperature"), names_of(row, "bundle")
-    cold = MICROMETRE(float(row["cold_half_backlash"].max()))
-    if mesh is not None:
-        cold = MICROMETRE(float(mesh["half_backlash"].isel(state=0, operating=0).max()))
+    cold = (
+        MICROMETRE(float(mesh["half_backlash"].isel(state=0, operating=0).max()))
+        if mesh is not None
+        else MICROMETRE(float(row["cold_half_backlash"].max()))
+    )
     panel.line(y=cold, colour=COLD, width=1.2, label=UNDEFORMED)
     for place, bundle in enumerate(bundles):
         values = shown(row.isel(bundle=place, operating=0), "half_backlash")

@@ -143,14 +143,15 @@ def forces_picture(data: xr.Dataset) -> Picture:
     free = Panel(along, Axis("time without contact [%]", low=0.0))
     ways = (("up", ()), ("down", (3.0, 2.0)))
     rows = [("teeth", INK, data["greatest_mesh_force"].values, data["drive_free_share"].values)]
-    for b, bearing in enumerate(named(data, "bearing")):
-        rows.append(
-            (
-                bearing, OKABE_ITO[b % len(OKABE_ITO)],
-                data["greatest_bearing_force"].values[..., b],
-                data["bearing_free_share"].values[..., b],
-            )
-        )  # fmt: skip
+    rows += [
+        (
+            bearing,
+            OKABE_ITO[b % len(OKABE_ITO)],
+            data["greatest_bearing_force"].values[..., b],
+            data["bearing_free_share"].values[..., b],
+        )
+        for b, bearing in enumerate(named(data, "bearing"))
+    ]
     for words, colour, forces, shares in rows:
         for direction, (way, dash) in enumerate(ways):
             for start in range(data.sizes["start"]):
