@@ -47,8 +47,8 @@ def names(result: Result) -> tuple[str, str]:
     return f"{result.kind}.html", f"{result.kind}.json"
 
 
-def write(page: Page, folder: Path) -> list[Path]:
-    """The page, its pictures, tables and figures in ``folder``; the files, the page first.
+def write(page: Page, folder: Path, *, tables: bool = True) -> list[Path]:
+    """The page, its pictures, ``tables`` and figures in ``folder``; the files, the page first.
 
     The page needs no other file, no script and no network; the same result gives the same page.
     """
@@ -61,10 +61,14 @@ def write(page: Page, folder: Path) -> list[Path]:
         for ending in page.files:
             path = folder / f"{_stem(page, one)}.{ending}"
             written.append(put_picture(one.picture, path, resolution=RESOLUTION))
-    for name, text in page.tables().items():
+    return written + (_put_tables(page, folder) if tables else [])
+
+
+def _put_tables(page: Page, folder: Path) -> list[Path]:
+    texts = page.tables()
+    for name in texts:
         (folder / name).parent.mkdir(exist_ok=True)
-        written.append(put(folder / name, text))
-    return written
+    return [put(folder / name, text) for name, text in texts.items()]
 
 
 def _stem(page: Page, one: Shown) -> str:
@@ -114,6 +118,15 @@ def write_report(directory: str | Path, kind: str = "", *, hidden: Collection[st
     directory = Path(directory)
     result = open_results(directory, kind).hiding(hidden)
     return put(directory / names(result)[0], render(page_of(result)))
+
+
+def write_tables(directory: Path, kind: str = "") -> list[Path]:
+    """Save the tables of the page of what is stored in ``directory`` there; their paths.
+
+    ``kind`` chooses where results of several studies stand there. Raises InputError, in one line,
+    where the results are missing, damaged or not ours.
+    """
+    return _put_tables(page_of(open_results(directory, kind)), directory)
 
 
 @dataclass(frozen=True)
