@@ -81,7 +81,7 @@ def pretended(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
         seen["reported"] = directory
         return directory / "report.html"
 
-    def write_tables(directory: Path, of: str) -> list[Path]:
+    def write_tables(page: Any, directory: Path) -> list[Path]:
         return [directory / "csv" / name for name in ("one.csv", "two.csv")]
 
     made = {
@@ -419,8 +419,12 @@ def test_a_defect_of_the_program_is_not_hidden(
 
 
 def test_report_draws_the_page_anew(
-    tmp_path: Path, pretended: dict[str, Any], capsys: pytest.CaptureFixture[str]
+    tmp_path: Path,
+    pretended: dict[str, Any],
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
+    monkeypatch.setattr("thermogear.results.result.open_results", lambda place, of: place)
     assert main(["report", str(tmp_path), "--curves"]) == 0
     assert pretended["reported"] == tmp_path
     assert capsys.readouterr().out == f"{tmp_path / 'report.html'}\n{tmp_path / 'csv'}\n"

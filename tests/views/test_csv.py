@@ -113,12 +113,13 @@ def test_files_of_an_earlier_run_go_and_others_stay(tmp_path: Path) -> None:
 
 def test_curves_are_written_when_they_are_asked_for_and_then_the_same(whole: list[Path]) -> None:
     place = whole[0].parents[1]
-    files = write(page_of(open_results(place)), place, tables=False)
+    page = page_of(open_results(place))
+    files = write(page, place, tables=False)
     assert [path.name for path in files] == ["report.html", "summary.json"]
     before = {path: path.read_bytes() for path in whole}
     for path in whole:
         path.unlink()
-    assert {path: path.read_bytes() for path in write_tables(place)} == before
+    assert {path: path.read_bytes() for path in write_tables(page, place)} == before
 
 
 def test_missing_results_are_an_error(tmp_path: Path) -> None:

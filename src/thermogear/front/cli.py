@@ -195,7 +195,8 @@ def run(
 @delivery.hide
 def report(directory: str, of: str, pictures: str | None, kind: str | None, curves: bool) -> None:
     """Draw the page anew, with every picture, from the results of any command stored in DIR."""
-    from thermogear.views.write import write_pictures, write_report, write_tables
+    from thermogear.results.result import open_results
+    from thermogear.views.write import page_of, write_pictures, write_report, write_tables
 
     place, written = Path(directory), list[Path]()
     if kind is not None and pictures is None:
@@ -203,7 +204,8 @@ def report(directory: str, of: str, pictures: str | None, kind: str | None, curv
     if pictures is not None:
         written = write_pictures(place, Path(pictures), kind or "png", of)
     if curves:
-        written += dict.fromkeys(path.parent for path in write_tables(place, of))
+        page = page_of(open_results(place, of))
+        written += dict.fromkeys(path.parent for path in write_tables(page, place))
     hidden = click.get_current_context().meta.get(delivery.HIDDEN, ())
     for path in (write_report(place, of, hidden=hidden), *written):
         show_path(path)

@@ -61,10 +61,11 @@ def write(page: Page, folder: Path, *, tables: bool = True) -> list[Path]:
         for ending in page.files:
             path = folder / f"{_stem(page, one)}.{ending}"
             written.append(put_picture(one.picture, path, resolution=RESOLUTION))
-    return written + (_put_tables(page, folder) if tables else [])
+    return written + (write_tables(page, folder) if tables else [])
 
 
-def _put_tables(page: Page, folder: Path) -> list[Path]:
+def write_tables(page: Page, folder: Path) -> list[Path]:
+    """The tables of ``page`` in ``folder``, as CSV; the files."""
     texts = page.tables()
     for name in texts:
         (folder / name).parent.mkdir(exist_ok=True)
@@ -118,15 +119,6 @@ def write_report(directory: str | Path, kind: str = "", *, hidden: Collection[st
     directory = Path(directory)
     result = open_results(directory, kind).hiding(hidden)
     return put(directory / names(result)[0], render(page_of(result)))
-
-
-def write_tables(directory: Path, kind: str = "") -> list[Path]:
-    """Save the tables of the page of what is stored in ``directory`` there; their paths.
-
-    ``kind`` chooses where results of several studies stand there. Raises InputError, in one line,
-    where the results are missing, damaged or not ours.
-    """
-    return _put_tables(page_of(open_results(directory, kind)), directory)
 
 
 @dataclass(frozen=True)
