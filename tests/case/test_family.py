@@ -89,6 +89,23 @@ def test_table_between_speeds_is_exact_where_nothing_depends_on_speed(rig):
         assert np.allclose(one, other, rtol=1e-12, atol=1e-18), name
 
 
+def test_a_table_of_one_state_hands_on_what_does_not_move_with_the_speed(rig):
+    """Alone and beside others a speed has the same numbers, and what is alike is not copied."""
+    table = Tabulated.of(
+        GearFamily(rig, ("pinion_speed",), state="undeformed"), np.linspace(100.0, 1200.0, 5)
+    )
+    at = np.array([[150.0], [555.5], [1200.0]])
+    together, alone = table(at), [table(one[None]) for one in at]
+    assert all(one.error is alone[0].error for one in alone)
+    assert all(one.flat.stiffness is alone[0].flat.stiffness for one in alone)
+    for name in ("status", "length", "rate", "stiffness", "force", "error", "mesh_frequency"):
+        rows = np.concatenate([getattr(one, name) for one in alone])
+        assert np.array_equal(rows, getattr(together, name)), name
+    for name in ("period", "damping", "half_backlash", "stiffness", "force"):
+        rows = np.concatenate([getattr(one.flat, name) for one in alone])
+        assert np.array_equal(rows, getattr(together.flat, name)), name
+
+
 def test_words_and_units():
     assert gear_parameter("rpm").name == "pinion_speed"
     speed, heat, backlash = map(gear_parameter, ("pinion_speed", "temperature", "backlash"))

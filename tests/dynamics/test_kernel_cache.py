@@ -5,6 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from thermogear.base.kernel_cache import KernelCacheWarning
@@ -39,11 +40,9 @@ def test_where_numba_keeps_its_code_is_where_it_is_dropped(tmp_path, monkeypatch
 
 
 KERNEL = """
-from numba import njit
-from thermogear.base.kernel_cache import rebuilt
+from thermogear.base.kernel_cache import compiled
 
-@rebuilt
-@njit(cache=True)
+@compiled
 def twice(x):
     return 2.0 * x
 """
@@ -72,3 +71,9 @@ def test_damaged_code_is_compiled_anew_and_stored(ending: str, tmp_path: Path) -
             assert loaded(path)(1.5) == 3.0
         assert stored.stat().st_size > 0.9 * len(whole)
         assert loaded(path)(1.5) == 3.0  # without a warning
+
+
+def test_a_kernel_divides_by_zero_as_numpy_does(tmp_path: Path) -> None:
+    path = tmp_path / "a_kernel.py"
+    path.write_text(KERNEL.replace("2.0 * x", "2.0 / x"))
+    assert [loaded(path)(value) for value in (0.5, 0.0, -0.0)] == [4.0, np.inf, -np.inf]

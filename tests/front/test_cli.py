@@ -68,9 +68,10 @@ def pretended(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
         page.showing = lambda which, every: page
         return page
 
-    def write(page: Any, folder: Path) -> list[Path]:
+    def write(page: Any, folder: Path, *, tables: bool) -> list[Path]:
         assert (folder / "results.nc").is_file()
         seen["reported"] = folder
+        seen["tables"] = tables
         return [folder / "report.html"]
 
     def clear_tables(directory: Path, kept: list[Path]) -> None:
@@ -80,12 +81,15 @@ def pretended(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
         seen["reported"] = directory
         return directory / "report.html"
 
+    def write_tables(page: Any, directory: Path) -> list[Path]:
+        return [directory / "csv" / name for name in ("one.csv", "two.csv")]
+
     made = {
         "thermogear.study.run": {"run": study},
         "thermogear.thesis.errata": {"with_errata": lambda result, case: result},
         "thermogear.views.write": {
             "page_of": page_of, "write": write, "clear_tables": clear_tables,
-            "write_report": write_report, "write_pictures": None,
+            "write_report": write_report, "write_pictures": None, "write_tables": write_tables,
         },
     }  # fmt: skip
     for name, functions in made.items():
@@ -322,6 +326,9 @@ def test_run_without_overrides_hands_the_text_on_as_it_is(
     assert main(["run", str(rig), "-o", str(tmp_path / "results")]) == 0
     assert pretended["result"].text("case") == example_text("rig")
     assert pretended["result"].values("overrides") == []
+    assert not pretended["tables"]
+    assert main(["run", str(rig), "-o", str(tmp_path / "results"), "--curves"]) == 0
+    assert pretended["tables"]
 
 
 def test_the_reference_flash_is_asked_for_by_a_flag(
@@ -412,11 +419,15 @@ def test_a_defect_of_the_program_is_not_hidden(
 
 
 def test_report_draws_the_page_anew(
-    tmp_path: Path, pretended: dict[str, Any], capsys: pytest.CaptureFixture[str]
+    tmp_path: Path,
+    pretended: dict[str, Any],
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
-    assert main(["report", str(tmp_path)]) == 0
+    monkeypatch.setattr("thermogear.results.result.open_results", lambda place, of: place)
+    assert main(["report", str(tmp_path), "--curves"]) == 0
     assert pretended["reported"] == tmp_path
-    assert capsys.readouterr().out == f"{tmp_path / 'report.html'}\n"
+    assert capsys.readouterr().out == f"{tmp_path / 'report.html'}\n{tmp_path / 'csv'}\n"
 
 
 def test_arguments_come_from_the_program_when_not_given(

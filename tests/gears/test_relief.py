@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
 import pytest
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
-from thermogear.gears.deviations import BasePitchDifference, Relief
+from thermogear.gears.deviations import BasePitchDifference, Contacts, Relief
 from thermogear.gears.geometry import Gear
 from thermogear.gears.loaded import loaded_contact
 from thermogear.gears.pair import GearPair
@@ -53,6 +54,27 @@ def test_hot_pinion_wants_more_relief_on_its_own_tip() -> None:
     warm = optimise_tip_relief(PAIR, LOAD, deviations=[hot], evaluations=60)
     assert warm.relieved < peak(hot, cold().pinion, cold().wheel)
     assert warm.pinion.amount / warm.wheel.amount > cold().pinion.amount / cold().wheel.amount
+
+
+def test_a_search_asks_what_no_relief_moves_once_for_each_set_of_phases() -> None:
+    """Heat counts at the nominal point: however long the search, its gap stays as it is."""
+
+    @dataclass(frozen=True, eq=False)
+    class Counted(BasePitchDifference):
+        asked: list[int]
+
+        def gap(self, at: Contacts) -> Floats:
+            self.asked.append(at.s.shape[0])
+            return super().gap(at)
+
+    hot = Counted(11.5e-6 * 20.0, [])
+    design = optimise_tip_relief(
+        PAIR, LOAD, deviations=[hot], positions=100, symmetric=True, evaluations=8
+    )
+    # without a relief, and then at all phases and at every other one
+    assert hot.asked == [100, 100, 50]
+    left = peak(hot, design.pinion, design.wheel)
+    assert design.relieved == pytest.approx(left, rel=1e-12)
 
 
 def test_a_relief_known_beforehand_is_little_better() -> None:

@@ -15,7 +15,7 @@ from plain_numbers import told_in_csv
 from thermogear.base.errors import InputError
 from thermogear.results.result import open_results
 from thermogear.views import write as files
-from thermogear.views.write import clear_tables, page_of, write
+from thermogear.views.write import clear_tables, page_of, write, write_tables
 
 
 def write_csv(place: Path) -> list[Path]:
@@ -109,6 +109,17 @@ def test_files_of_an_earlier_run_go_and_others_stay(tmp_path: Path) -> None:
     assert "mine.csv" in names
     assert "path_consistent_hot.csv" in names
     assert "path_thesis_hot.csv" not in names
+
+
+def test_curves_are_written_when_they_are_asked_for_and_then_the_same(whole: list[Path]) -> None:
+    place = whole[0].parents[1]
+    page = page_of(open_results(place))
+    files = write(page, place, tables=False)
+    assert [path.name for path in files] == ["report.html", "summary.json"]
+    before = {path: path.read_bytes() for path in whole}
+    for path in whole:
+        path.unlink()
+    assert {path: path.read_bytes() for path in write_tables(page, place)} == before
 
 
 def test_missing_results_are_an_error(tmp_path: Path) -> None:

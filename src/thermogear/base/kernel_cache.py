@@ -59,5 +59,9 @@ def rebuilt(kernel: Kernel) -> Kernel:
 
 
 def compiled(function: Function) -> Function:
-    """numba's decorator with a type; no fast math, so that results do not depend on the lane."""
-    return rebuilt(cast(Function, numba.njit(cache=True)(function)))
+    """numba's decorator with a type; no fast math, so that results do not depend on the lane.
+
+    A division by zero gives inf or nan, as numpy's: to look for one costs time at every division.
+    """
+    made = numba.njit(cache=True, error_model="numpy", no_cfunc_wrapper=True)(function)
+    return rebuilt(cast(Function, made))

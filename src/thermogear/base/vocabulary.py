@@ -56,8 +56,7 @@ STILL = {
 
 def moves(status: ArrayLike) -> NDArray[np.bool_]:
     """Where a point has a motion by its ``status``: ok, or computed without an oil bath."""
-    codes = np.asarray(status)
-    return np.asarray((codes == 0) | (codes == NO_OIL_BATH))
+    return np.asarray((np.asarray(status) == 0) | (np.asarray(status) == NO_OIL_BATH))
 
 
 EDGE_CONTACT = ("no_edge_contact", "wheel_tip_corner", "pinion_tip_corner", "both_tip_corners")

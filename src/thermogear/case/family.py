@@ -463,10 +463,8 @@ class Tabulated:
         low, high = self.values[place], self.values[place + 1]
         # a little beyond the ends too, so that it can be differentiated there
         weight = np.minimum(np.maximum((at - low) / (high - low), -0.01), 1.01)
-        if self._fixed:
-            a = b = self._first if at.size == 1 else self._first.take(np.zeros(at.size, int))
-        else:
-            a, b = self.points.take(place), self.points.take(place + 1)
+        a = self._first if self._fixed and at.size == 1 else self.points.take(place)
+        b = a if self._fixed else self.points.take(place + 1)
 
         def mix(one: NDArray[Any], two: NDArray[Any]) -> NDArray[Any]:
             if one is two:
@@ -487,11 +485,9 @@ class Tabulated:
         with np.errstate(invalid="ignore"):  # a point without a gap has no lengths
             push = error * (ranks * frequency[:, None]) ** 2 / length[:, None]
         push[:, 0] = force / (stiffness * length)
-        status = a.status
-        if a is not b:
-            # a grid point has its own status; between two the worse one holds
-            worse = np.where(moves(a.status) & (b.status != 0), b.status, a.status)
-            status = np.select([weight == 0.0, weight == 1.0], [a.status, b.status], worse)
+        # a grid point has its own status; between two the worse one holds
+        worse = np.where(moves(a.status) & (b.status != 0), b.status, a.status)
+        status = np.where(weight == 0.0, a.status, np.where(weight == 1.0, b.status, worse))
         flat = Lanes(
             period=2.0 * np.pi / frequency,
             damping=mix(a.flat.damping, b.flat.damping),

@@ -27,25 +27,18 @@ BLOCK = 128
 _COUNTS = tuple(base * 2**k for k in range(11) for base in (32, 48))
 
 
-def _largest(lanes: LaneTables, name: str) -> Floats:
-    """Per lane: a bound of |p| over the period."""
-    size = np.abs(getattr(lanes, name)).sum(axis=1)
-    for lane, piece in enumerate(getattr(lanes, name + "_pieces")):
-        if piece is not None:
-            size[lane] += max(sum(abs(c) for c in row) for row in piece.coefficients)
-    return np.asarray(size)
-
-
-def _steepest(lanes: LaneTables, name: str) -> Floats:
-    """Per lane: a bound of |dp/dphi| over the period, without the jumps."""
+def _bounds(lanes: LaneTables, name: str) -> tuple[Floats, Floats]:
+    """Per lane: a bound of |p| over the period and of |dp/dphi| (without the jumps)."""
     coefficients = np.abs(getattr(lanes, name))
+    size = coefficients.sum(axis=1)
     rate = 2.0 * np.pi * coefficients @ np.arange(coefficients.shape[1])
     for lane, piece in enumerate(getattr(lanes, name + "_pieces")):
         if piece is not None:
+            size[lane] += max(sum(abs(c) for c in row) for row in piece.coefficients)
             rate[lane] += max(
                 sum(m * abs(c) for m, c in enumerate(row)) for row in piece.coefficients
             )
-    return np.asarray(rate)
+    return size, rate
 
 
 @lru_cache(maxsize=64)
@@ -61,7 +54,8 @@ def substeps(lanes: LaneTables, order: int = ORDER) -> Whole:
     The tail of the series stays below a few units in the last place: h sqrt(k_max) <= 0.3 for
     half width h in time, and every harmonic q of the tables adds at most 2e-17 of the scale.
     """
-    stiffest, strongest = _largest(lanes, "stiffness"), _largest(lanes, "force")
+    stiffest, _ = _bounds(lanes, "stiffness")
+    strongest, _ = _bounds(lanes, "force")
     mean = np.array(
         [
             row[0].real + (0.0 if piece is None else piece.mean)
@@ -254,7 +248,8 @@ def prepare_maps(lanes: LaneTables, borders: Floats, marks: Bytes, order: int = 
     widths = np.diff(borders)
     centres = borders[:-1] + 0.5 * widths
     half = 0.5 * widths[:, None] * lanes.period
-    jerk = _steepest(lanes, "force") / lanes.period + lanes.damping * _largest(lanes, "force")
+    size, rate = _bounds(lanes, "force")
+    jerk = rate / lanes.period + lanes.damping * size
     reach = jerk * half.max(axis=0) ** 3
     width, room = order + 1, -(-(5 * (order + 1) + BEHIND) // 8) * 8
     (steps,) = _aligned((centres.size, -(-len(lanes) // 8), 11, 8))

@@ -197,14 +197,6 @@ class ExactMap:
             exact.advance(exact.first_half(self.maps), state, 1, columns=2)
         return np.array([state.x[0], state.y[0]]), state.tangent[:, 0].reshape(2, 2)
 
-    @property
-    def contact(self) -> Floats:
-        """D P of a motion in lasting drive contact."""
-        product = np.eye(2)
-        for maps in self.maps.maps[:, :4, 0]:
-            product = np.array([[maps[0], maps[2]], [maps[1], maps[3]]]) @ product
-        return product
-
     def rates(self, around: Sequence[tuple[float, object]]) -> Rates:
         """Derivatives of the affine maps where the numbers change at sum(weight * model)."""
         lanes = [(weight, _lanes(model)) for weight, model in around]

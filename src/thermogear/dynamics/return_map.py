@@ -105,27 +105,26 @@ class MovedMap(ReturnMap, Protocol):
         ...
 
 
-_MAPS: set[type] = set()
-_MOVED: set[type] = set()
+_KNOWN: dict[str, set[type]] = {"visit": set(), "moved": set()}
 """Classes that were found to be return maps: asking a protocol member by member is dear."""
+
+
+def _is(thing: object, kind: type, member: str) -> bool:
+    """Whether it is of that protocol ``kind``, which has such a ``member``."""
+    known = _KNOWN[member]
+    if type(thing) not in known and hasattr(thing, member) and isinstance(thing, kind):
+        known.add(type(thing))
+    return type(thing) in known
 
 
 def is_map(thing: object) -> TypeGuard[ReturnMap]:
     """Whether it is a return map by itself."""
-    if type(thing) not in _MAPS:
-        if not (hasattr(thing, "visit") and isinstance(thing, ReturnMap)):
-            return False
-        _MAPS.add(type(thing))
-    return True
+    return _is(thing, ReturnMap, "visit")
 
 
 def is_moved(thing: object) -> TypeGuard[MovedMap]:
     """Whether it is one that can be differentiated in a parameter."""
-    if type(thing) not in _MOVED:
-        if not (hasattr(thing, "moved") and isinstance(thing, MovedMap)):
-            return False
-        _MOVED.add(type(thing))
-    return True
+    return _is(thing, MovedMap, "moved")
 
 
 def return_map(model: object, samples: int = 0) -> ReturnMap:

@@ -156,6 +156,9 @@ def cli() -> None:
     show_default=True,
     help="Which the page shows; `thermogear report DIR` draws all of them later.",
 )
+@click.option(
+    "--curves", is_flag=True, help="Write the curves as CSV; `thermogear report DIR` can later."
+)
 def run(
     case: str,
     output: str,
@@ -164,8 +167,9 @@ def run(
     force: bool,
     reference: bool,
     pictures: str,
+    curves: bool,
 ) -> None:
-    """Run CASE and write results.nc, summary.json, CSV curves and report.html to DIR."""
+    """Run CASE and write results.nc, summary.json and report.html to DIR."""
     from thermogear.case.size import require_room
     from thermogear.results.files import require_ours
 
@@ -179,7 +183,7 @@ def run(
 
         return with_errata(study(read, progress=report), read)
 
-    delivery.deliver(make, output, as_json=as_json, pictures=pictures)
+    delivery.deliver(make, output, as_json=as_json, pictures=pictures, curves=curves)
 
 
 @cli.command()
@@ -187,16 +191,21 @@ def run(
 @click.option("--of", default="", metavar="KIND", help="Which results, where DIR holds several.")
 @click.option("--pictures", metavar="FOLDER", help="Save the page's pictures to FOLDER as well.")
 @click.option("--kind", metavar="KIND", help="Of the pictures: png [the default], svg or pdf.")
+@click.option("--curves", is_flag=True, help="Write the curves as CSV to DIR as well.")
 @delivery.hide
-def report(directory: str, of: str, pictures: str | None, kind: str | None) -> None:
+def report(directory: str, of: str, pictures: str | None, kind: str | None, curves: bool) -> None:
     """Draw the page anew, with every picture, from the results of any command stored in DIR."""
-    from thermogear.views.write import write_pictures, write_report
+    from thermogear.results.result import open_results
+    from thermogear.views.write import page_of, write_pictures, write_report, write_tables
 
     place, written = Path(directory), list[Path]()
     if kind is not None and pictures is None:
         raise InputError("--kind", kind, why="no picture is saved", fix="add --pictures FOLDER")
     if pictures is not None:
         written = write_pictures(place, Path(pictures), kind or "png", of)
+    if curves:
+        page = page_of(open_results(place, of))
+        written += dict.fromkeys(path.parent for path in write_tables(page, place))
     hidden = click.get_current_context().meta.get(delivery.HIDDEN, ())
     for path in (write_report(place, of, hidden=hidden), *written):
         show_path(path)

@@ -155,12 +155,14 @@ def deliver(
     as_json: bool,
     kept: str = "what was found so far stays",
     pictures: str = "all",
+    curves: bool = True,
 ) -> None:
     """Compute, store and draw into ``directory`` if one is named, and print.
 
     The directory is claimed before anything is computed; everything is written, or after an
-    error or Ctrl+C nothing. ``pictures`` says how many the page shows: all, first or none. A
-    result that Ctrl+C cut short is kept, and Ctrl+C passed on.
+    error or Ctrl+C nothing. ``pictures`` says how many the page shows: all, first or none;
+    ``curves``, whether its tables are written. A result that Ctrl+C cut short is kept, and Ctrl+C
+    passed on.
     """
     from thermogear.front.progress import Stopped, progress
     from thermogear.results.files import claimed
@@ -178,7 +180,7 @@ def deliver(
             result.put(folder)
             every = f"All of them: thermogear report {printable(str(place))}"
             shown = page if pictures == "all" else page.showing(pictures, every)
-            written = write(shown, folder)
+            written = write(shown, folder, tables=curves)
     if place is not None:
         clear_tables(place, written)
     tell(page, None if place is None else place / written[0].name, as_json=as_json)

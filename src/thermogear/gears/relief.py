@@ -162,8 +162,8 @@ def optimise_tip_relief(
         return error(1, [*kept[1], *reliefs(x)])
 
     def rough(x: Floats, step: int = 1) -> Floats:
-        relief = _at_nominal(depth[step], *sizes(np.atleast_2d(x)), shape)
-        return error(step, [*kept[step], relief])
+        amounts, lengths = sizes(np.atleast_2d(x))
+        return error(step, [*kept[step], _at_nominal(depth[step], amounts, lengths, shape)])
 
     from scipy.optimize import differential_evolution, minimize
 

@@ -219,16 +219,19 @@ class RunUpPlan:
         for place in order:
             one = np.array([place])
             settled = run.step(points.take(one), float(speeds[place]))
-            for name, row in outcome_arrays(settled, points.status[one]).items():
-                found[name][0, 0, place] = row[0]
-            found["section_x"][0, 0, place] = settled.sections[0, :, 0]
-            found["section_v"][0, 0, place] = settled.sections[0, :, 1]
-            if bool(np.isfinite(settled.state).all()):
-                ends[place] = settled.state[0]
-            found["end_x"][0, 0, place], found["end_v"][0, 0, place] = run.state
-            found["end_speed"][0, 0, place] = run.at
-            found["end_period"][0, 0, place] = run.period
-            found["left_early"][0, 0, place] = run.early
+            ends[place] = np.where(np.isfinite(settled.state).all(), settled.state[0], np.nan)
+            outcome = outcome_arrays(settled, points.status[one])
+            row = {name: values[0] for name, values in outcome.items()} | {
+                "section_x": settled.sections[0, :, 0],
+                "section_v": settled.sections[0, :, 1],
+                "end_x": run.state[0],
+                "end_v": run.state[1],
+                "end_speed": run.at,
+                "end_period": run.period,
+                "left_early": run.early,
+            }
+            for name, value in row.items():
+                found[name][0, 0, place] = value
             for number, leap in enumerate(run.leaps[:LEAPS]):
                 for name, value in leap.items():
                     found[name][0, 0, place, number] = value

@@ -47,8 +47,8 @@ def names(result: Result) -> tuple[str, str]:
     return f"{result.kind}.html", f"{result.kind}.json"
 
 
-def write(page: Page, folder: Path) -> list[Path]:
-    """The page, its pictures, tables and figures in ``folder``; the files, the page first.
+def write(page: Page, folder: Path, *, tables: bool = True) -> list[Path]:
+    """The page, its pictures, ``tables`` and figures in ``folder``; the files, the page first.
 
     The page needs no other file, no script and no network; the same result gives the same page.
     """
@@ -61,10 +61,15 @@ def write(page: Page, folder: Path) -> list[Path]:
         for ending in page.files:
             path = folder / f"{_stem(page, one)}.{ending}"
             written.append(put_picture(one.picture, path, resolution=RESOLUTION))
-    for name, text in page.tables().items():
+    return written + (write_tables(page, folder) if tables else [])
+
+
+def write_tables(page: Page, folder: Path) -> list[Path]:
+    """The tables of ``page`` in ``folder``, as CSV; the files."""
+    texts = page.tables()
+    for name in texts:
         (folder / name).parent.mkdir(exist_ok=True)
-        written.append(put(folder / name, text))
-    return written
+    return [put(folder / name, text) for name, text in texts.items()]
 
 
 def _stem(page: Page, one: Shown) -> str:
