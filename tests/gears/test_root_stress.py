@@ -37,7 +37,7 @@ def flank(gear: Gear, count: int = 9) -> np.ndarray:
     return np.linspace(gear.junction[1], tip, count)
 
 
-@pytest.mark.parametrize(("count", "error"), [(5, 0.06), (10, 0.012)])
+@pytest.mark.parametrize(("count", "error"), [(5, 0.025), (10, 0.006)])
 def test_a_hole_in_a_pulled_plate_bears_three_times_the_stress(count: int, error: float) -> None:
     """Kirsch 1898: sigma_t = 1 - 2 cos(2 theta) along the hole; displacements given far off."""
     nu, far = 0.3, 4.0
@@ -71,7 +71,6 @@ def test_a_hole_in_a_pulled_plate_bears_three_times_the_stress(count: int, error
     law = 1.0 - 2.0 * np.cos(2.0 * np.arctan2(at[:, 1], at[:, 0]))
     # the hole's ends at the held edges are corners
     inner = abs(at[:, 0]) < 0.9
-    print(abs(strain @ u - law)[inner].max())
     assert (strain @ u)[inner] == pytest.approx(law[inner], abs=error)
     assert law.max() > 2.9
 
@@ -161,7 +160,7 @@ def test_the_standard_is_not_asked_beyond_its_notches() -> None:
     with pytest.raises(InputError) as caught:
         root_factors(gear, flank(gear)[-1])
     assert str(caught.value) == (
-        "rack.fillet_radius: got 0.02 modules, q_s = 12; allowed 1 <= q_s < 8 in ISO 6336-3"
+        "rack.fillet_radius: got 0.02 modules, q_s = 29.6; allowed 1 <= q_s < 8 in ISO 6336-3"
     )
 
 

@@ -72,7 +72,8 @@ CASES: dict[str, tuple[str, ...]] = {
             "gears.pinion.pressure_angle_error=0.6 deg", "flanks.accuracy=2"),
     "high": ("gears.rack.addendum=1.3", "gears.rack.dedendum=1.6", "gears.rack.fillet_radius=0.2",
              "gears.pinion.teeth=40", "gears.wheel.teeth=60"),
-    "short": ("gears.rack.addendum=0.65",),
+    "short": ("gears.rack.addendum=0.65", "gears.pinion.material=16MnCr5",
+              "gears.wheel.material=18CrNiMo7-6"),
 }  # fmt: skip
 # (fine, look here, not decided); None: that cannot be, or is refused before
 MESH = ("contact_ratio", "form_clearance", "tip_thickness", "tip_clearance")
@@ -96,6 +97,7 @@ SEEN: dict[str, tuple[str, str | None, str | None]] = {
     "dynamic_factor": ("relieved", "resonant", "still"),
     "transmission_error": ("plain", "odd", "unsettled"),
     "relief": ("relieved", "plain", "jammed"),
+    "root_stress": ("short", None, "plain"),
 }
 
 
@@ -273,10 +275,11 @@ UNITS = {
     "µm": "deviations speed heat nominal least steady cold hot made load greatest relief before "
           "after undeformed left",
     "°C": "wetter carried_at hottest_bath borne jam start hottest contact limit integral",
+    "MPa": "hot undeformed standard", "°": "slope", "mm": "way",
     "K": "flash off margin", "kW": "made carried", "min": "after end", "kHz": "natural",
     "rpm": "main there own strong looked ranges", "%": "off most",
     "": "wetted more_wetted top limit motions factor own ratio grade drawings points of more stage "
-        "safety unsettled speeds",
+        "safety unsettled speeds form notch",
 }  # fmt: skip
 """Unit -> the figures that have it; one name may stand in several answers with other units."""
 
@@ -294,7 +297,9 @@ def test_verdicts_follow_from_value_and_limit() -> None:
     for name in CASES:
         for one in of(name):
             bound = re.search(r"at (least|most) (-?[0-9.e+]+)", one.limit)
-            assert bound is not None
+            if bound is None:
+                assert (one.limit, one.verdict, one.value) == ("no limit known", OPEN, None)
+                continue
             if one.value is None or one.name in ("backlash", "warm_up_backlash"):
                 continue
             limit = float(bound[2])
