@@ -275,7 +275,7 @@ UNITS = {
     "µm": "deviations speed heat nominal least steady cold hot made load greatest relief before "
           "after undeformed left",
     "°C": "wetter carried_at hottest_bath borne jam start hottest contact limit integral",
-    "MPa": "hot undeformed standard", "°": "slope", "mm": "way",
+    "MPa": "hot undeformed standard", "°": "slope",
     "K": "flash off margin", "kW": "made carried", "min": "after end", "kHz": "natural",
     "rpm": "main there own strong looked ranges", "%": "off most",
     "": "wetted more_wetted top limit motions factor own ratio grade drawings points of more stage "
