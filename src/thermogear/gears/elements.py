@@ -115,5 +115,5 @@ class Patch:
         unknowns = 2 * sides[:, None, :, None] + np.arange(2)
         rows = np.arange(2 * len(sides)).reshape(-1, 2, 1, 1)
         places = [np.broadcast_to(n, parts.shape).ravel() for n in (rows, unknowns)]
-        shape = (2 * len(sides), self.unknowns)
-        return csr_matrix((parts.ravel(), places), shape=shape), along.reshape(-1, 2)
+        strain = csr_matrix((parts.ravel(), places), shape=(2 * len(sides), self.unknowns))
+        return strain, along.reshape(-1, 2)

@@ -119,12 +119,6 @@ class Profile:
         x, y = self.gear.fillet.point(gamma)
         return np.hypot(x, y), np.arctan2(x, y)
 
-    @cached_property
-    def meeting(self) -> tuple[float, float]:
-        """(r, phi) of the point where tooth and foot meet."""
-        r, phi = self.fillet(np.asarray(self.start))
-        return float(r), float(phi)
-
     def involute(self, arc: Floats) -> tuple[Floats, Floats]:
         """(r, phi) at the length ``arc`` of the involute from the base circle."""
         base = self.gear.base_radius
@@ -191,7 +185,7 @@ def foot_mesh(gear: Gear, across: Floats, density: Density) -> Foot:
     """The foot of a tooth whose joint has corners at ``across`` in -1 .. 1 of its half angle."""
     profile = Profile(gear, density.joint)
     m, half = gear.module, np.pi / gear.teeth
-    r_joint, phi_joint = profile.meeting
+    r_joint, phi_joint = (float(at) for at in profile.fillet(np.asarray(profile.start)))
     rim = gear.root_radius - gear.bore_radius
     r_low = gear.root_radius - min(0.5 * m, 0.5 * rim)
     # the lines below the joint lean inward, so that three equal corners meet in the fillet
@@ -271,8 +265,9 @@ def tooth_mesh(gear: Gear, *, across: Floats, arcs: Floats, density: Density) ->
     nodes = _plane(grid_r, phi[:, None] * columns).reshape(-1, 2)
     number = np.arange(nodes.shape[0]).reshape(r.size, columns.size)
     cells = cells_of(rows=(r.size - 1) // 2, columns=(columns.size - 1) // 2)
-    patch = Patch(nodes, cells, gear.material.poisson_ratio)
-    return Tooth(patch, number[0], number[:, -1], arcs.size - 1)
+    return Tooth(
+        Patch(nodes, cells, gear.material.poisson_ratio), number[0], number[:, -1], arcs.size - 1
+    )
 
 
 def plain_arcs(gear: Gear, density: Density) -> Floats:

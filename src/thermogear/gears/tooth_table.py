@@ -174,10 +174,8 @@ class Shape:
 
 @lru_cache(maxsize=64)
 def _table(shape: Shape) -> ToothTable:
-    sector = Sector.of(shape.gear, shape.poisson)
-    if shape.plane == "stress":
-        return sector.table()
-    return sector.table(1.0 - shape.gear.material.poisson_ratio**2)
+    softness = 1.0 if shape.plane == "stress" else 1.0 - shape.gear.material.poisson_ratio**2
+    return Sector.of(shape.gear, shape.poisson).table(softness)
 
 
 def _pressure_load(gear: Gear, tooth: Tooth, centre: float, half_width: float) -> Floats:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,13 +13,19 @@ from thermogear.base.materials import NEVER, Material
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import STILL
 from thermogear.case.case import GearCase
-from thermogear.case.thermal_state import HOT, UNDEFORMED, ThermalState
+from thermogear.case.thermal_state import HOT, UNDEFORMED
 from thermogear.gears.iso6336 import root_factors, single_contact
 from thermogear.gears.pair import GearPair
-from thermogear.gears.root_stress import RootStress, root_stress
+from thermogear.gears.root_stress import root_stress
 from thermogear.heat.transient import HOTTEST
 from thermogear.mesh.elastic import loaded_pair
-from thermogear.mesh.scuffing_rating import Scuffing, flash_rating, integral_rating
+from thermogear.mesh.scuffing_rating import (
+    FlashRating,
+    IntegralRating,
+    Scuffing,
+    flash_rating,
+    integral_rating,
+)
 from thermogear.results.answer import Answer
 from thermogear.study.answers.asked import (
     MOST_WETTED,
@@ -335,11 +340,8 @@ def film(asked: Asked) -> Iterator[Answer]:
         state = Scuffing(
             lubricant=case.stated.lubricant, oil_temperature=float(oil[point]), load_stage=stage
         )
-        for name, words in (
-            ("scuffing_margin", _flash_words),
-            ("scuffing_safety", _integral_words),
-        ):
-            yield _rated(name, partial(words, case, torque, speed, state, whose), at)
+        for rating in RATINGS:
+            yield _rated(*rating, case.pair, torque, speed, state, whose, at)
 
 
 def unrated(case: GearCase, torque: float, oil: float) -> str:
@@ -351,50 +353,37 @@ def unrated(case: GearCase, torque: float, oil: float) -> str:
     return "" if np.isfinite(oil) else STILL["heat_not_settled"]
 
 
-def _rated(name: str, make: Callable[[], tuple[str, float, dict[str, Any]]], at: str) -> Answer:
+RATINGS: tuple[tuple[str, Callable[..., FlashRating | IntegralRating], str, str, str], ...] = (
+    (
+        "scuffing_margin", flash_rating, "contact", "margin",
+        "By flash temperature, with the standard's friction and bulk, the contact reaches "
+        "{contact:.0f °C} of {limit:.0f °C} (stage {stage:g}{whose}): margin {margin:.0f K}, "
+        "safety {safety:.2f}.",
+    ),
+    (
+        "scuffing_safety", integral_rating, "integral", "safety",
+        "By integral temperature it is {integral:.0f °C} of {limit:.0f °C} (stage {stage:g}"
+        "{whose}): safety {safety:.2f}.",
+    ),
+)  # fmt: skip
+"""Answer, what rates it, the temperature and the figure that decides, and the sentence."""
+
+
+def _rated(
+    name: str, rate: Callable[..., FlashRating | IntegralRating], hottest: str, decides: str,
+    words: str, pair: GearPair, torque: float, speed: float, state: Scuffing, whose: str, at: str,
+) -> Answer:  # fmt: skip
     try:
-        sentence, value, figures = make()
+        found = rate(pair, torque, speed, state)._asdict()
     except InputError as error:
         return undecided(FILM, name, str(error), at=at)
-    return answer(FILM, name, sentence, value, at=at, figures=figures)
-
-
-def _flash_words(
-    case: GearCase, torque: float, speed: float, state: Scuffing, whose: str
-) -> tuple[str, float, dict[str, Any]]:
-    found = flash_rating(case.pair, torque, speed, state)
-    figures = {
-        "contact": float(found.contact) - ZERO_CELSIUS,
-        "limit": found.limit - ZERO_CELSIUS,
+    figures: dict[str, Any] = {
+        **{one: float(found[one]) - ZERO_CELSIUS for one in (hottest, "limit")},
         "stage": state.load_stage,
-        "margin": float(found.margin),
-        "safety": float(found.safety),
+        "whose": whose,
+        **{one: float(found[one]) for one in ("margin", "safety") if one in found},
     }
-    return (
-        "By flash temperature, with the standard's friction and bulk, the contact reaches "
-        f"{{contact:.0f °C}} of {{limit:.0f °C}} (stage {{stage:g}}{whose}): margin {{margin:.0f "
-        "K}, safety {safety:.2f}.",
-        figures["margin"],
-        figures,
-    )
-
-
-def _integral_words(
-    case: GearCase, torque: float, speed: float, state: Scuffing, whose: str
-) -> tuple[str, float, dict[str, Any]]:
-    found = integral_rating(case.pair, torque, speed, state)
-    figures = {
-        "integral": float(found.integral) - ZERO_CELSIUS,
-        "limit": found.limit - ZERO_CELSIUS,
-        "stage": state.load_stage,
-        "safety": float(found.safety),
-    }
-    return (
-        "By integral temperature it is {integral:.0f °C} of {limit:.0f °C} (stage {stage:g}"
-        f"{whose}): safety {{safety:.2f}}.",
-        figures["safety"],
-        figures,
-    )
+    return answer(FILM, name, words, figures[decides], at=at, figures=figures)
 
 
 # --- the teeth's roots ---------------------------------------------------------------------------
@@ -403,33 +392,40 @@ def _integral_words(
 def root(asked: Asked) -> Iterator[Answer]:
     """Of both gears, under the shares of the loaded contact over a mesh period."""
     pair, force = asked.case.pair, asked.hot["normal_force"]
-    standard, words = _standard(pair)
-    bound = _nearest(pair, [0.0, 0.0])[1]
+    (standard, words), phase = _standard(pair), np.arange(POSITIONS) / POSITIONS
+    names = [f"root_{gear.material.name}" for gear in (pair.pinion, pair.wheel)]
+    # of one strength, as long as the table knows one alone
+    limit = names[0] if LIMITS.keys() >= set(names) else "root_unknown"
     for point in asked.points:
         at, load = asked.at(point), float(force[point])
         why = asked.still(point) or "there is no load" * (not load > 0.0)
         if why:
-            yield undecided(ROOT, "root_stress", why, limit=bound, at=at)
+            yield undecided(ROOT, "root_stress", why, limit=limit, at=at)
             continue
-        hot, cold = (_greatest(asked, state, point) for state in (HOT, UNDEFORMED))
+        hot, cold = (
+            root_stress(pair, loaded_pair(elastic).solve(phase), asked.model.loaded.plane)
+            for elastic in (
+                asked.elastic(state, point, asked.case.deviations) for state in (HOT, UNDEFORMED)
+            )
+        )
         stress, undeformed = ([1e-6 * float(one.stress[0]) for one in both] for both in (hot, cold))
         if not np.isfinite(stress + undeformed).all():
             why = "the loaded contact did not settle"
-            yield undecided(ROOT, "root_stress", why, limit=bound, at=at)
+            yield undecided(ROOT, "root_stress", why, limit=limit, at=at)
             continue
         nominal = 1e-6 * load * np.cos(pair.pinion.pressure_angle)
         nominal /= pair.face_width * pair.pinion.module
         factors = zip(standard.get("form", ()), standard.get("notch", ()), strict=True)
-        value, limit = _nearest(pair, stress)
-        strength = "" if np.isfinite(value) else "; no fatigue strength is known of a material"
+        known = limit in LIMITS
+        words += "; no fatigue strength is known of a material" * (not known)
         yield answer(
             ROOT,
             "root_stress",
             "Static, the pinion's fillet carries {hot[0]:.0f MPa} hot and {undeformed[0]:.0f MPa} "
             "undeformed, the wheel's {hot[1]:.0f MPa} and {undeformed[1]:.0f MPa}, where its "
             "tangent makes {slope[0]:.0f}° and {slope[1]:.0f}° with the tooth's axis; "
-            f"{words}{strength}.",
-            value,
+            f"{words}.",
+            max(stress) if known else np.nan,
             limit=limit,
             at=at,
             figures={
@@ -443,13 +439,6 @@ def root(asked: Asked) -> Iterator[Answer]:
         )
 
 
-def _greatest(asked: Asked, state: ThermalState, point: int) -> tuple[RootStress, RootStress]:
-    """Greatest stresses over the mesh phase at an operating point."""
-    elastic = asked.elastic(state, point, asked.case.deviations)
-    mesh = loaded_pair(elastic).solve(np.arange(POSITIONS) / POSITIONS)
-    return root_stress(asked.case.pair, mesh, asked.model.loaded.plane)
-
-
 def _standard(pair: GearPair) -> tuple[dict[str, Any], str]:
     """Y_F and Y_S of ISO 6336-3 for both gears and how its stress is told, or why there is none."""
     gears = zip((pair.pinion, pair.wheel), single_contact(pair), strict=True)
@@ -459,17 +448,3 @@ def _standard(pair: GearPair) -> tuple[dict[str, Any], str]:
         return {"why": str(error)}, "ISO 6336-3 does not cover it: {why}"
     words = "ISO 6336-3 has {standard[0]:.0f MPa} and {standard[1]:.0f MPa}"
     return {"form": list(form), "notch": list(notch)}, words
-
-
-def _nearest(pair: GearPair, stress: list[float]) -> tuple[float, str]:
-    """The stress [MPa] that is nearest to its limit, and the limit's name.
-
-    One without a limit has no value here, and goes before those that keep theirs.
-    """
-    names = [f"root_{gear.material.name}" for gear in (pair.pinion, pair.wheel)]
-    most = [LIMITS[name].most if name in LIMITS else np.inf for name in names]
-    ranks = [s / m if np.isfinite(m) else 1.0 for s, m in zip(stress, most, strict=True)]
-    worst = int(np.argmax(ranks))
-    if np.isfinite(most[worst]):
-        return stress[worst], names[worst]
-    return np.nan, "root_unknown"
