@@ -26,9 +26,10 @@ from thermogear.gears.pair import GearPair
 from thermogear.gears.tooth_mesh import Density, Profile
 from thermogear.gears.tooth_table import MATES, Flank, Sector, Shape
 
-MESH = Density(growth=1.8, sides=9, below=5, joint=float(np.radians(10.0)))
-"""The greatest stress is within 0.7 % of that of elements half as large, on twelve gears of 9 to
-120 teeth, 14.5 to 28 degrees, shifts of -0.5 to 0.8 and rims from 0.8 modules on."""
+MESH = Density(growth=1.8, sides=9, below=4, inward=1.8, joint=float(np.radians(10.0)))
+"""The greatest stress is within 0.7 % of that of elements half as large, on eleven gears of 9 to
+120 teeth, 14.5 to 28 degrees, shifts of -0.5 to 0.8 and rims from 0.8 modules on. Sharp fillets of
+shifted teeth lose more: 1 % at a rack's tip radius of 0.1 modules, 3 % at 0.05."""
 ROWS, COLUMNS = 8, 5
 """Elements along the flank and across the tooth."""
 STATIONS = 9

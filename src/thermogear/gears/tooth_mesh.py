@@ -27,7 +27,8 @@ class Density:
 
     ``per_half_width`` elements along the Hertzian half width, from where they grow by
     ``growth`` from one to the next up to a ``coarsest`` part of a module. ``sides`` elements along
-    a fillet with half of the gap, ``below`` from the root half a module down. ``joint``: angle
+    a fillet with half of the gap, ``below`` from the root half a module down,
+    each ``inward`` times as thick as the last. ``joint``: angle
     [rad] of the fillet's tangent to the tooth's axis where tooth and foot meet.
     """
 
@@ -37,6 +38,7 @@ class Density:
     coarsest: float = 0.4
     sides: int = 5
     below: int = 3
+    inward: float = 1.0
     joint: float = CRITICAL_SLOPE
 
     @property
@@ -208,7 +210,8 @@ def foot_mesh(gear: Gear, across: Floats, density: Density) -> Foot:
         part=0.25 / density.refinement,
     )
     body_rows = halved(body)
-    lift = halved(np.linspace(0.0, 1.0, density.count(density.below) + 1))[1:]
+    rows = density.inward ** (-np.arange(density.count(density.below)) / density.refinement)
+    lift = halved(np.append(0.0, np.cumsum(rows) / rows.sum()))[1:]
     r = np.concatenate(
         [
             np.broadcast_to(body_rows[:, None], (body_rows.size, low.size)),

@@ -396,6 +396,7 @@ def root(asked: Asked) -> Iterator[Answer]:
     names = [f"root_{gear.material.name}" for gear in (pair.pinion, pair.wheel)]
     # of one strength, as long as the table knows one alone
     limit = names[0] if LIMITS.keys() >= set(names) else "root_unknown"
+    words += "; no fatigue strength is known of a material" * (limit not in LIMITS)
     for point in asked.points:
         at, load = asked.at(point), float(force[point])
         why = asked.still(point) or "there is no load" * (not load > 0.0)
@@ -416,16 +417,13 @@ def root(asked: Asked) -> Iterator[Answer]:
         nominal = 1e-6 * load * np.cos(pair.pinion.pressure_angle)
         nominal /= pair.face_width * pair.pinion.module
         factors = zip(standard.get("form", ()), standard.get("notch", ()), strict=True)
-        known = limit in LIMITS
-        words += "; no fatigue strength is known of a material" * (not known)
         yield answer(
             ROOT,
             "root_stress",
             "Static, the pinion's fillet carries {hot[0]:.0f MPa} hot and {undeformed[0]:.0f MPa} "
-            "undeformed, the wheel's {hot[1]:.0f MPa} and {undeformed[1]:.0f MPa}, where its "
-            "tangent makes {slope[0]:.0f}° and {slope[1]:.0f}° with the tooth's axis; "
-            f"{words}.",
-            max(stress) if known else np.nan,
+            "undeformed, the wheel's {hot[1]:.0f MPa} and {undeformed[1]:.0f MPa}, at their "
+            f"{{slope[0]:.0f}}° and {{slope[1]:.0f}}° tangents; {words}.",
+            max(stress) if limit in LIMITS else np.nan,
             limit=limit,
             at=at,
             figures={
