@@ -300,7 +300,7 @@ def test_verdicts_follow_from_value_and_limit() -> None:
         for one in of(name):
             bound = re.search(r"at (least|most) (-?[0-9.e+]+)", one.limit)
             if bound is None:
-                assert (one.limit, one.verdict, one.value) == ("no limit known", OPEN, None)
+                assert (one.verdict, one.value) == (OPEN, None), one
                 continue
             if one.value is None or one.name in ("backlash", "warm_up_backlash"):
                 continue
@@ -358,7 +358,6 @@ def test_the_roots_are_held_against_a_strength_that_is_known(
     assert one.value == (None if verdict == OPEN else max(one.figures["hot"]))
     known = "no limit known" if verdict == OPEN else "at most 607.1 MPa, usual"
     assert one.limit == known
-    assert one.sentence.endswith("is known of a material.") == (verdict == OPEN)
 
 
 def test_a_sharp_fillet_beyond_the_standard_says_so() -> None:

@@ -36,7 +36,7 @@ STATIONS = 9
 """Chebyshev points of the loads along a flank."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class RootTable(Flank):
     """Stress along the fillet of a gear's loaded flanks, times b m/F, by the load's place.
 
@@ -81,7 +81,7 @@ def table_of(sector: Sector) -> RootTable:
     gear, m = sector.gear, sector.gear.module
     arcs, widths = sector.stations(STATIONS)
     strain, along = sector.patch.edge_strains(sector.foot.fillet)
-    stress = m * sector.solved(sector.loads(arcs, widths)).felt(strain)
+    stress = m * sector.solved(sector.loads(arcs=arcs, widths=widths)).felt(strain)
     low, high = Profile(gear).ends
     place = (2.0 * arcs - low - high) / (high - low)
     fit = np.linalg.inv(chebyshev.chebvander(place, STATIONS - 1))

@@ -78,7 +78,7 @@ class TipCompliance(NamedTuple):
         return np.asarray(c * c * self.normal + 2.0 * c * s * self.mixed + s * s * self.tangential)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Flank:
     """Places on a loaded flank.
 
@@ -96,7 +96,7 @@ class Flank:
         return np.asarray(np.clip((2.0 * arc - low - high) / (high - low), -1.0, 1.0))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class ToothTable(Flank):
     """Compliances of a gear's loaded flanks, times E b, by place and by distance in pitches.
 
@@ -260,7 +260,7 @@ class Sector:
         above = replace(mesh, patch=replace(mesh.patch, poisson=poisson))
         return cls(gear, foot, above, Patch(nodes, cells, poisson), number)
 
-    def loads(self, arcs: Floats, widths: Floats) -> Floats:
+    def loads(self, *, arcs: Floats, widths: Floats) -> Floats:
         """(unknown, load) of unit forces at the lengths ``arcs`` of the involute [m].
 
         Of elliptic pressures of the half ``widths`` [m].
@@ -314,7 +314,7 @@ class Sector:
         wide = PATCH * gear.module
         arcs = np.concatenate([arcs, [high - 0.25 * wide, high]])
         widths = np.concatenate([widths, [0.5 * wide, 0.7 * wide]])
-        loads = self.loads(arcs, widths)
+        loads = self.loads(arcs=arcs, widths=widths)
         # turned by a right angle: from into the flank to along it, towards the tip
         turned = loads[:, -1].reshape(-1, 2) @ np.array([[0.0, -1.0], [1.0, 0.0]])
         solved = self.solved(np.column_stack([loads, turned.ravel()]))
