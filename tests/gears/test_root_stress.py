@@ -37,7 +37,7 @@ def flank(gear: Gear, count: int = 9) -> np.ndarray:
     return np.linspace(gear.junction[1], tip, count)
 
 
-@pytest.mark.parametrize(("count", "error"), [(5, 0.06), (10, 0.012)])
+@pytest.mark.parametrize(("count", "error"), [(5, 0.025), (10, 0.006)])
 def test_a_hole_in_a_pulled_plate_bears_three_times_the_stress(count: int, error: float) -> None:
     """Kirsch 1898: sigma_t = 1 - 2 cos(2 theta) along the hole; displacements given far off."""
     nu, far = 0.3, 4.0
@@ -67,18 +67,18 @@ def test_a_hole_in_a_pulled_plate_bears_three_times_the_stress(count: int, error
     whole = patch.stiffness().toarray()
     u = exact.copy()
     u[free] = np.linalg.solve(whole[np.ix_(free, free)], -whole[np.ix_(free, known)] @ exact[known])
-    strain, at, _ = patch.edge_strains(number[0])
-    law = 1.0 - 2.0 * np.cos(2.0 * np.arctan2(at[:, 1], at[:, 0]))
+    strain, along = patch.edge_strains(number[0])
+    theta = np.arctan2(along[:, 1], along[:, 0]) - 0.5 * np.pi
+    law = 1.0 - 2.0 * np.cos(2.0 * theta)
     # the hole's ends at the held edges are corners
-    inner = abs(at[:, 0]) < 0.9
-    print(abs(strain @ u - law)[inner].max())
+    inner = abs(np.cos(theta)) < 0.9
     assert (strain @ u)[inner] == pytest.approx(law[inner], abs=error)
     assert law.max() > 2.9
 
 
 def test_a_stretch_strains_an_edge_by_its_direction() -> None:
     sector = Sector.of(RIG.pinion, 0.3, MESH, rows=ROWS, columns=COLUMNS)
-    strain, _, along = sector.patch.edge_strains(sector.foot.fillet)
+    strain, along = sector.patch.edge_strains(sector.foot.fillet)
     stretch = np.array([[0.3, 0.1], [0.1, -0.2]])
     way = along / np.linalg.norm(along, axis=1)[:, None]
     wanted = np.einsum("pi,ij,pj->p", way, stretch, way)
@@ -93,8 +93,9 @@ def test_elements_half_as_large_say_the_same(gear: Gear) -> None:
     wanted = finer.stress(t)
     assert table.stress(t).max(axis=-1) == pytest.approx(wanted.max(axis=-1), rel=7e-3)
     # the place: the greatest stress is a flat top
-    there = np.interp(table.way, finer.way, wanted[2])
-    assert there[table.stress(t[2]).argmax()] > 0.99 * wanted[2].max()
+    place = table.stress(t[2]).argmax()
+    near = abs(finer.slope - table.slope[place]).argmin()
+    assert wanted[2, near] > 0.99 * wanted[2].max()
 
 
 def test_another_library_assembles_the_same_stress() -> None:
@@ -114,12 +115,11 @@ def test_elements_not_written_here_and_the_standard(
 ) -> None:
     """sigma b m/F_n, the load at the outer point of single contact; triangles, computed apart."""
     gear, t = (pair.pinion, pair.wheel)[place], single_contact(pair)[place]
-    table, factors = root_table(gear), root_factors(gear, t)
+    table, (form, notch) = root_table(gear), root_factors(gear, t)
     stress = table.stress(t)
     assert stress.max() == pytest.approx(elements, rel=3e-3)
     assert 35.0 < math.degrees(table.slope[stress.argmax()]) < 45.0
-    by_standard = math.cos(gear.pressure_angle) * factors.form * factors.notch
-    assert by_standard == pytest.approx(standard, abs=5e-4)
+    assert math.cos(gear.pressure_angle) * form * notch == pytest.approx(standard, abs=5e-4)
 
 
 def own_way(gear: Gear, contact_ratio: float) -> tuple[float, float]:
@@ -153,7 +153,7 @@ def own_way(gear: Gear, contact_ratio: float) -> tuple[float, float]:
 def test_the_standards_factors_by_its_auxiliary_values(pair: GearPair) -> None:
     for gear, t in zip((pair.pinion, pair.wheel), single_contact(pair), strict=True):
         got = root_factors(gear, t)
-        assert tuple(got) == pytest.approx(own_way(gear, pair.contact_ratio), rel=1e-9)
+        assert got == pytest.approx(own_way(gear, pair.contact_ratio), rel=1e-9)
 
 
 def test_the_standard_is_not_asked_beyond_its_notches() -> None:
@@ -161,7 +161,7 @@ def test_the_standard_is_not_asked_beyond_its_notches() -> None:
     with pytest.raises(InputError) as caught:
         root_factors(gear, flank(gear)[-1])
     assert str(caught.value) == (
-        "rack.fillet_radius: got 0.02 modules, q_s = 12; allowed 1 <= q_s < 8 in ISO 6336-3"
+        "rack.fillet_radius: got 0.02 modules, q_s = 29.6; allowed 1 <= q_s < 8 in ISO 6336-3"
     )
 
 
@@ -183,33 +183,38 @@ def test_the_stress_is_that_of_the_shape_and_fades_from_tooth_to_tooth() -> None
     assert table is root_table(large)
     assert table is not root_table(small, "strain")
     own = table.stress(t).max()
-    sizes = [abs(table.stress(t, lag)).max() / own for lag in range(MATES + 2)]
+    sizes = [abs(table.stress(t, lag)).max() / own for lag in range(MATES + 1)]
     assert sizes == sorted(sizes, reverse=True)
     assert 0.0 < sizes[MATES] < 0.05
-    assert sizes[MATES + 1] == 0.0
 
 
 def test_one_pair_alone_loads_its_own_roots() -> None:
     """Where one pair carries, the stress is that of its load; twice the load, twice the stress."""
-    phase, load = np.linspace(0.0, 1.0, 40, endpoint=False), 5e3
-    mesh = solve_mesh(RIG, np.array([load, 2.0 * load]), phase)
-    alone = np.flatnonzero(((mesh.share > 0.0).sum(axis=-1) == 1).all(axis=0))
-    assert alone.size > 1
-    per_force = RIG.face_width * RIG.pinion.module
-    for gear, got, string in zip(
-        (RIG.pinion, RIG.wheel),
-        root_stress(RIG, mesh),
-        (mesh.points.point.pinion, mesh.points.point.wheel),
-        strict=True,
+    load, phase = np.array([5e3, 1e4]), np.linspace(0.0, 1.0, 40, endpoint=False)
+    carried = (solve_mesh(RIG, load, phase).share > 0.0).sum(axis=-1)
+    alone = phase[(carried == 1).all(axis=0)]
+    mesh = solve_mesh(RIG, load, alone)
+    place = mesh.share[0].argmax(axis=-1)
+    points = (mesh.points.point.pinion, mesh.points.point.wheel)
+    both = (RIG.pinion, RIG.wheel)
+    for gear, got, string in zip(both, root_stress(RIG, mesh), points, strict=True):
+        t = string[np.arange(alone.size), place] / gear.base_radius
+        table = root_table(gear)
+        wanted = table.stress(t).max() * load / (RIG.face_width * gear.module)
+        assert got.stress == pytest.approx(wanted)
+        at = np.unravel_index(table.stress(t).argmax(), (alone.size, table.slope.size))[1]
+        assert got.slope == pytest.approx([table.slope[at]] * 2)
+
+
+def test_loads_shared_bear_less_and_what_did_not_settle_nothing() -> None:
+    mesh = solve_mesh(RIG, 5e3, np.arange(30) / 30)
+    lost = mesh._replace(settled=np.zeros_like(mesh.settled))
+    for gear, got, none in zip(
+        (RIG.pinion, RIG.wheel), root_stress(RIG, mesh), root_stress(RIG, lost), strict=True
     ):
-        place = mesh.share[0, alone].argmax(axis=-1)
-        wanted = root_table(gear).stress(string[alone, place] / gear.base_radius)
-        assert got.stress[0, alone] * per_force / load == pytest.approx(wanted.max(axis=-1))
-        assert got.stress[1, alone] == pytest.approx(2.0 * got.stress[0, alone])
-        worst = got.greatest(0)
-        assert worst.stress == got.stress[0].max()
-        # by the loads' shares, less than alone at the tip
-        assert worst.stress * per_force / load < root_table(gear).stress(flank(gear)[-1]).max()
+        alone = root_table(gear).stress(flank(gear)[-1]).max() * 5e3
+        assert 0.5 * alone < got.stress * RIG.face_width * gear.module < alone
+        assert np.isnan(none.stress)
 
 
 def test_a_gear_bears_the_same_driving_and_driven() -> None:
@@ -220,5 +225,4 @@ def test_a_gear_bears_the_same_driving_and_driven() -> None:
         for pair in (RIG, GearPair(RIG.wheel, RIG.pinion))
     )
     for gear, other in ((0, 1), (1, 0)):
-        assert there[gear].stress.max() == pytest.approx(back[other].stress.max(), rel=2e-3)
-        assert there[gear].stress.mean() == pytest.approx(back[other].stress.mean(), rel=2e-3)
+        assert there[gear].stress == pytest.approx(back[other].stress, rel=2e-3)

@@ -157,7 +157,6 @@ LIMITS: dict[str, Limit] = {
         source="ours: f_Hα + f_fα of the class by ISO 1328-1, both gears', are what manufacture "
         "allows; the load adds 0.43 w/c', the step from one tooth pair to two",
     ),
-    "root_stress": Limit("MPa", source="no fatigue strength is known of the material"),
     **{
         f"root_{name}": Limit(
             "MPa",
@@ -192,5 +191,8 @@ LIMITS: dict[str, Limit] = {
 }
 """Every threshold of a verdict, by the name of its answer."""
 
-NO_LIMIT = Limit("°C", source="no limit is known for a material that is no steel")
-"""Of teeth whose strength is not given."""
+NO_LIMIT = {
+    "teeth_unknown": Limit("°C", source="no limit is known for a material that is no steel"),
+    "root_unknown": Limit("MPa", source="no fatigue strength is known of the material"),
+}
+"""Of answers whose material has no bound in the table."""

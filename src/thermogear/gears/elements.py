@@ -105,23 +105,21 @@ class Patch:
             (parts.ravel(), (rows.ravel(), columns.ravel())), shape=(self.unknowns,) * 2
         ).tocsc()
 
-    def edge_strains(self, edge: Integers) -> tuple[csr_matrix, Floats, Floats]:
+    def edge_strains(self, edge: Integers) -> tuple[csr_matrix, Floats]:
         """Strain along the boundary ``edge``, its nodes in order, by the displacements.
 
         e_t = x' . u'/|x'|^2 at the two points of Gauss's rule of each side, where the slopes of a
-        quadratic interpolation err least (Barlow 1976). Returns the matrix (point, unknown), and
-        places and tangents (point, 2). On an edge without load E e_t is the whole stress there.
+        quadratic interpolation err least (Barlow 1976). Returns the matrix (point, unknown) and the
+        tangents x' (point, 2). On an edge without load E e_t is the whole stress there.
         """
-        from scipy.sparse import coo_matrix
+        from scipy.sparse import csr_matrix
 
         sides = np.stack([edge[:-2:2], edge[1:-1:2], edge[2::2]], axis=1)
-        shape, slope = quadratic(np.polynomial.legendre.leggauss(2)[0])
-        at = np.einsum("kq,skc->sqc", shape, self.nodes[sides]).reshape(-1, 2)
-        along = np.einsum("kq,skc->sqc", slope, self.nodes[sides]).reshape(-1, 2)
-        by_node = np.tile(slope.T, (len(sides), 1))[:, :, None] * along[:, None]
-        parts = by_node / np.sum(along**2, axis=-1)[:, None, None]
-        unknowns = np.repeat(2 * sides[:, :, None] + np.arange(2), 2, axis=0)
-        rows = np.broadcast_to(np.arange(len(at))[:, None, None], parts.shape)
-        places = (rows.ravel(), unknowns.ravel())
-        strain = coo_matrix((parts.ravel(), places), shape=(len(at), self.unknowns))
-        return strain.tocsr(), at, along
+        _, slope = quadratic(np.polynomial.legendre.leggauss(2)[0])
+        along = np.einsum("kq,skc->sqc", slope, self.nodes[sides])
+        parts = np.einsum("kq,sqc->sqkc", slope, along / np.sum(along**2, axis=-1, keepdims=True))
+        unknowns = 2 * sides[:, None, :, None] + np.arange(2)
+        rows = np.arange(2 * len(sides)).reshape(-1, 2, 1, 1)
+        places = [np.broadcast_to(n, parts.shape).ravel() for n in (rows, unknowns)]
+        strain = csr_matrix((parts.ravel(), places), shape=(2 * len(sides), self.unknowns))
+        return strain, along.reshape(-1, 2)

@@ -159,16 +159,10 @@ def _warn_of_shifts(first: Gear, second: Gear) -> None:
             )
 
 
-class RootFactors(NamedTuple):
-    """Y_F and Y_S: sigma_F0 = F_t/(b m) Y_F Y_S, F_t = F_n cos(alpha) at the reference circle."""
-
-    form: float
-    notch: float
-
-
-def root_factors(gear: Gear, t: float) -> RootFactors:
+def root_factors(gear: Gear, t: float) -> tuple[float, float]:
     """Form factor Y_F and stress correction factor Y_S of a spur gear loaded at t = tan(alpha_k).
 
+    sigma_F0 = F_t/(b m) Y_F Y_S, F_t = F_n cos(alpha) at the reference circle,
     Y_F = 6 (h_F/m) cos(alpha_F)/((s_F/m)^2 cos(alpha)),
     Y_S = (1.2 + 0.13 L) q^(1/(1.21 + 2.3/L)), L = s_F/h_F, q = s_F/(2 rho_F),
 
@@ -179,27 +173,24 @@ def root_factors(gear: Gear, t: float) -> RootFactors:
     Source: ISO 6336-3:2006, clauses 6 and 7.
 
     >>> pair = GearPair(Gear(25, 5e-3), Gear(75, 5e-3))
-    >>> factors = root_factors(pair.pinion, single_contact(pair)[0])
-    >>> f"{factors.form:.3f} {factors.notch:.3f}"
+    >>> form, notch = root_factors(pair.pinion, single_contact(pair)[0])
+    >>> f"{form:.3f} {notch:.3f}"
     '1.386 1.922'
     """
-    m, fillet, at = gear.module, gear.fillet, flank_point(gear, t)
-    gamma = section_angle(gear, CRITICAL_SLOPE)
-    x, y = fillet.point(gamma)
-    chord, sine = 2.0 * float(x), math.sin(gamma)
-    lever = float(at.y - at.x * np.tan(at.beta) - y)
-    depth = fillet.centre_depth
-    curved = sine * (gear.pitch_radius * sine**2 + depth)
-    notch = chord / (2.0 * (fillet.radius + depth**2 / curved))
+    fillet, at = gear.fillet, flank_point(gear, t)
+    gamma, depth = section_angle(gear, CRITICAL_SLOPE), fillet.centre_depth
+    x, y = (float(length) for length in fillet.point(gamma))
+    chord, lever = 2.0 * x, float(at.y - at.x * np.tan(at.beta)) - y
+    curved = math.sin(gamma) * (gear.pitch_radius * math.sin(gamma) ** 2 + depth)
+    notch, slim = 0.5 * chord / (fillet.radius + depth**2 / curved), chord / lever
     if not 1.0 <= notch < 8.0:
         raise InputError(
             "rack.fillet_radius",
             f"{gear.rack.fillet_radius:g} modules, q_s = {notch:.3g}",
             allowed="1 <= q_s < 8 in ISO 6336-3",
         )
-    slim = chord / lever
-    return RootFactors(
-        6.0 * lever * m * math.cos(at.beta) / (chord**2 * math.cos(gear.pressure_angle)),
+    return (
+        6.0 * lever * gear.module * math.cos(at.beta) / (chord**2 * math.cos(gear.pressure_angle)),
         (1.2 + 0.13 * slim) * notch ** (1.0 / (1.21 + 2.3 / slim)),
     )
 

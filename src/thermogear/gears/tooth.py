@@ -7,7 +7,6 @@ normal of the tooth axis.
 
 from __future__ import annotations
 
-import math
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -24,7 +23,7 @@ STARTS = {
     "30-degree": "from the section whose fillet tangent makes 30 deg with the tooth axis",
 }
 SHEAR_FACTOR = 1.2  # rectangle
-CRITICAL_SLOPE = math.radians(30.0)
+CRITICAL_SLOPE = float(np.radians(30.0))
 """Tangent of the fillet to the tooth's axis [rad] at the section of ISO 6336-3."""
 _FILLET_NODES = np.polynomial.legendre.leggauss(40)
 _FLANK_NODES = np.polynomial.legendre.leggauss(24)

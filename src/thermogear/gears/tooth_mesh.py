@@ -27,7 +27,8 @@ class Density:
 
     ``per_half_width`` elements along the Hertzian half width, from where they grow by
     ``growth`` from one to the next up to a ``coarsest`` part of a module. ``sides`` elements along
-    a fillet with half of the gap, ``below`` from the root half a module down. ``joint``: angle
+    a fillet with half of the gap, ``below`` from the root half a module down,
+    each ``inward`` times as thick as the last. ``joint``: angle
     [rad] of the fillet's tangent to the tooth's axis where tooth and foot meet.
     """
 
@@ -37,6 +38,7 @@ class Density:
     coarsest: float = 0.4
     sides: int = 5
     below: int = 3
+    inward: float = 1.0
     joint: float = CRITICAL_SLOPE
 
     @property
@@ -130,12 +132,6 @@ class Profile:
         x, y = self.gear.fillet.point(gamma)
         return np.hypot(x, y), np.arctan2(x, y)
 
-    @cached_property
-    def meeting(self) -> tuple[float, float]:
-        """(r, phi) of the point where tooth and foot meet."""
-        r, phi = self.fillet(np.asarray(self.start))
-        return float(r), float(phi)
-
     def involute(self, arc: Floats) -> tuple[Floats, Floats]:
         """(r, phi) at the length ``arc`` of the involute from the base circle."""
         base = self.gear.base_radius
@@ -206,7 +202,7 @@ def foot_mesh(gear: Gear, across: Floats, density: Density) -> Foot:
     """
     profile = Profile(gear, density.joint)
     m, half = gear.module, np.pi / gear.teeth
-    r_joint, phi_joint = profile.meeting
+    r_joint, phi_joint = (float(at) for at in profile.fillet(np.asarray(profile.start)))
     rim = gear.root_radius - gear.bore_radius
     r_low = gear.root_radius - min(0.5 * m, 0.5 * rim)
     # the lines below the joint lean inward, so that three equal corners meet in the fillet
@@ -229,7 +225,8 @@ def foot_mesh(gear: Gear, across: Floats, density: Density) -> Foot:
         part=0.25 / density.refinement,
     )
     body_rows = halved(body)
-    lift = halved(np.linspace(0.0, 1.0, density.count(density.below) + 1))[1:]
+    rows = density.inward ** (-np.arange(density.count(density.below)) / density.refinement)
+    lift = halved(np.append(0.0, np.cumsum(rows) / rows.sum()))[1:]
     r = np.concatenate(
         [
             np.broadcast_to(body_rows[:, None], (body_rows.size, low.size)),
@@ -291,8 +288,9 @@ def tooth_mesh(gear: Gear, *, across: Floats, arcs: Floats, density: Density) ->
     nodes = _plane(grid_r, phi[:, None] * columns).reshape(-1, 2)
     number = np.arange(nodes.shape[0]).reshape(r.size, columns.size)
     cells = cells_of(rows=(r.size - 1) // 2, columns=(columns.size - 1) // 2)
-    patch = Patch(nodes, cells, gear.material.poisson_ratio)
-    return Tooth(patch, number[0], number[:, -1], arcs.size - 1)
+    return Tooth(
+        Patch(nodes, cells, gear.material.poisson_ratio), number[0], number[:, -1], arcs.size - 1
+    )
 
 
 def plain_arcs(gear: Gear, density: Density) -> Floats:

@@ -175,10 +175,8 @@ class Shape:
 
 @lru_cache(maxsize=64)
 def _table(shape: Shape) -> ToothTable:
-    sector = Sector.of(shape.gear, shape.poisson)
-    if shape.plane == "stress":
-        return sector.table()
-    return sector.table(1.0 - shape.gear.material.poisson_ratio**2)
+    softness = 1.0 if shape.plane == "stress" else 1.0 - shape.gear.material.poisson_ratio**2
+    return Sector.of(shape.gear, shape.poisson).table(softness)
 
 
 def _pressure_load(gear: Gear, tooth: Tooth, centre: float, half_width: float) -> Floats:
@@ -263,7 +261,7 @@ class Sector:
         above = replace(mesh, patch=replace(mesh.patch, poisson=poisson))
         return cls(gear, foot, above, Patch(nodes, cells, poisson), number)
 
-    def loads(self, arcs: Floats, widths: Floats) -> Floats:
+    def loads(self, *, arcs: Floats, widths: Floats) -> Floats:
         """(unknown, load) of unit forces at the lengths ``arcs`` of the involute [m].
 
         Of elliptic pressures of the half ``widths`` [m].
@@ -319,7 +317,7 @@ class Sector:
         wide = PATCH * gear.module
         arcs = np.concatenate([arcs, [high - 0.25 * wide, high]])
         widths = np.concatenate([widths, [0.5 * wide, 0.7 * wide]])
-        loads = self.loads(arcs, widths)
+        loads = self.loads(arcs=arcs, widths=widths)
         # turned by a right angle: from into the flank to along it, towards the tip
         turned = loads[:, -1].reshape(-1, 2) @ np.array([[0.0, -1.0], [1.0, 0.0]])
         solved = self.solved(np.column_stack([loads, turned.ravel()]))

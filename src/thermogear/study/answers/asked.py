@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from types import MappingProxyType
@@ -23,11 +23,15 @@ from thermogear.case.case import GearCase
 from thermogear.case.duty import chosen_point, point_duty
 from thermogear.case.points import excitations, points_of
 from thermogear.case.response import VALUES
+from thermogear.case.thermal_state import ThermalState
+from thermogear.gears.deviations import Deviation
 from thermogear.mesh.balance import Gearbox, HeatBalance
 from thermogear.mesh.balance_table import LOSSES
 from thermogear.mesh.clearance import PARTS
+from thermogear.mesh.elastic import ElasticPair, elastic_pair
 from thermogear.mesh.excite import EXCITES
 from thermogear.mesh.model import MeshModel
+from thermogear.mesh.thermal import HotPair
 from thermogear.mesh.warm_up import WarmUp, warm_up
 from thermogear.results.answer import Answer
 from thermogear.study.speeds import Speeds, figures_of, look, starts_of
@@ -141,6 +145,14 @@ class Asked:
         teeth = np.maximum(at.temperatures.pinion_addendum, at.temperatures.wheel_addendum)
         shape = (self.count,)
         return np.broadcast_to(at.oil_temperature, shape), np.broadcast_to(teeth, shape)
+
+    def elastic(
+        self, state: ThermalState, point: int, deviations: Sequence[Deviation]
+    ) -> ElasticPair:
+        """The springs of the pair with ``deviations`` at one operating point."""
+        operating = state.operating(self.case, self.model).part(slice(point, point + 1))
+        operating = replace(operating, housing=self.case.housing)
+        return elastic_pair(HotPair(self.case.pair, operating, self.model), deviations)
 
     @property
     def pinion(self) -> Floats:
@@ -279,7 +291,7 @@ def answer(
     ``figures`` stand in the ``sentence`` as :func:`~thermogear.base.display.worded` puts them, and
     are kept beside it; ``units`` of those that it leaves out, or states without.
     """
-    bound = LIMITS.get(limit or name, NO_LIMIT)
+    bound = (LIMITS | NO_LIMIT)[limit or name]
     if most is not None:
         bound = replace(bound, most=most)
     words, told = worded(sentence, figures)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -18,8 +17,6 @@ from thermogear.gears.deviations import GEARS, Deviation, Relief
 from thermogear.gears.dynamic_factor import dynamic_factor
 from thermogear.gears.graded_flanks import WavyProfile, graded_flanks
 from thermogear.gears.iso6336 import iso6336_stiffness
-from thermogear.mesh.elastic import elastic_pair
-from thermogear.mesh.thermal import HotPair
 from thermogear.results.answer import Answer
 from thermogear.study.answers.asked import Asked, answer, undecided
 from thermogear.study.speeds import LOST, Speeds, told
@@ -330,8 +327,6 @@ def _swing(
     asked: Asked, state: ThermalState, deviations: Sequence[Deviation], positions: int
 ) -> float:
     """Static error peak to peak [um] at the hardest point, with these ``deviations``."""
-    point = asked.hardest
-    operating = state.operating(asked.case, asked.model).part(slice(point, point + 1))
-    hot = HotPair(asked.case.pair, replace(operating, housing=asked.case.housing), asked.model)
-    curves = elastic_pair(hot, deviations).over(np.arange(positions) / positions)
+    elastic = asked.elastic(state, asked.hardest, deviations)
+    curves = elastic.over(np.arange(positions) / positions)
     return float(1e6 * np.ptp(curves.transmission_error[0]))

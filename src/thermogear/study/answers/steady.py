@@ -1,9 +1,8 @@
-"""Answers of a steady pair: geometry, heat, backlash, film and scuffing."""
+"""Answers of a steady pair: geometry, heat, backlash, film and scuffing, the teeth's roots."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,9 +13,19 @@ from thermogear.base.materials import NEVER, Material
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import STILL
 from thermogear.case.case import GearCase
+from thermogear.case.thermal_state import HOT, UNDEFORMED
+from thermogear.gears.iso6336 import root_factors, single_contact
 from thermogear.gears.pair import GearPair
+from thermogear.gears.root_stress import root_stress
 from thermogear.heat.transient import HOTTEST
-from thermogear.mesh.scuffing_rating import Scuffing, flash_rating, integral_rating
+from thermogear.mesh.elastic import loaded_pair
+from thermogear.mesh.scuffing_rating import (
+    FlashRating,
+    IntegralRating,
+    Scuffing,
+    flash_rating,
+    integral_rating,
+)
 from thermogear.results.answer import Answer
 from thermogear.study.answers.asked import (
     MOST_WETTED,
@@ -30,7 +39,9 @@ from thermogear.study.scuffing import load_stage, not_steel, steel
 from thermogear.study.warm_up import no_bath_from
 
 MESH, HEAT, GAP = "Does it mesh?", "How hot does it run?", "What is left of the backlash?"
-FILM = "Is there a film, does it scuff?"
+FILM, ROOT = "Is there a film, does it scuff?", "How much does the root carry?"
+POSITIONS = 60
+"""Mesh phases at which the stress of the roots is looked at."""
 
 PARTS = {"deviations": "flank deviations", "speed": "centrifugal growth", "heat": "heat"}
 """What takes or gives backlash, as it is named."""
@@ -330,11 +341,8 @@ def film(asked: Asked) -> Iterator[Answer]:
         state = Scuffing(
             lubricant=case.stated.lubricant, oil_temperature=float(oil[point]), load_stage=stage
         )
-        for name, words in (
-            ("scuffing_margin", _flash_words),
-            ("scuffing_safety", _integral_words),
-        ):
-            yield _rated(name, partial(words, case, torque, speed, state, whose), at)
+        for rating in RATINGS:
+            yield _rated(*rating, case.pair, torque, speed, state, whose, at)
 
 
 def unrated(case: GearCase, torque: float, oil: float) -> str:
@@ -346,47 +354,96 @@ def unrated(case: GearCase, torque: float, oil: float) -> str:
     return "" if np.isfinite(oil) else STILL["heat_not_settled"]
 
 
-def _rated(name: str, make: Callable[[], tuple[str, float, dict[str, Any]]], at: str) -> Answer:
+RATINGS: tuple[tuple[str, Callable[..., FlashRating | IntegralRating], str, str, str], ...] = (
+    (
+        "scuffing_margin", flash_rating, "contact", "margin",
+        "By flash temperature, with the standard's friction and bulk, the contact reaches "
+        "{contact:.0f °C} of {limit:.0f °C} (stage {stage:g}{whose}): margin {margin:.0f K}, "
+        "safety {safety:.2f}.",
+    ),
+    (
+        "scuffing_safety", integral_rating, "integral", "safety",
+        "By integral temperature it is {integral:.0f °C} of {limit:.0f °C} (stage {stage:g}"
+        "{whose}): safety {safety:.2f}.",
+    ),
+)  # fmt: skip
+"""Answer, what rates it, the temperature and the figure that decides, and the sentence."""
+
+
+def _rated(
+    name: str, rate: Callable[..., FlashRating | IntegralRating], hottest: str, decides: str,
+    words: str, pair: GearPair, torque: float, speed: float, state: Scuffing, whose: str, at: str,
+) -> Answer:  # fmt: skip
     try:
-        sentence, value, figures = make()
+        found = rate(pair, torque, speed, state)._asdict()
     except InputError as error:
         return undecided(FILM, name, str(error), at=at)
-    return answer(FILM, name, sentence, value, at=at, figures=figures)
-
-
-def _flash_words(
-    case: GearCase, torque: float, speed: float, state: Scuffing, whose: str
-) -> tuple[str, float, dict[str, Any]]:
-    found = flash_rating(case.pair, torque, speed, state)
-    figures = {
-        "contact": float(found.contact) - ZERO_CELSIUS,
-        "limit": found.limit - ZERO_CELSIUS,
+    figures: dict[str, Any] = {
+        **{one: float(found[one]) - ZERO_CELSIUS for one in (hottest, "limit")},
         "stage": state.load_stage,
-        "margin": float(found.margin),
-        "safety": float(found.safety),
+        "whose": whose,
+        **{one: float(found[one]) for one in ("margin", "safety") if one in found},
     }
-    return (
-        "By flash temperature, with the standard's friction and bulk, the contact reaches "
-        f"{{contact:.0f °C}} of {{limit:.0f °C}} (stage {{stage:g}}{whose}): margin {{margin:.0f "
-        "K}, safety {safety:.2f}.",
-        figures["margin"],
-        figures,
-    )
+    return answer(FILM, name, words, figures[decides], at=at, figures=figures)
 
 
-def _integral_words(
-    case: GearCase, torque: float, speed: float, state: Scuffing, whose: str
-) -> tuple[str, float, dict[str, Any]]:
-    found = integral_rating(case.pair, torque, speed, state)
-    figures = {
-        "integral": float(found.integral) - ZERO_CELSIUS,
-        "limit": found.limit - ZERO_CELSIUS,
-        "stage": state.load_stage,
-        "safety": float(found.safety),
-    }
-    return (
-        "By integral temperature it is {integral:.0f °C} of {limit:.0f °C} (stage {stage:g}"
-        f"{whose}): safety {{safety:.2f}}.",
-        figures["safety"],
-        figures,
-    )
+# --- the teeth's roots ---------------------------------------------------------------------------
+
+
+def root(asked: Asked) -> Iterator[Answer]:
+    """Of both gears, under the shares of the loaded contact over a mesh period."""
+    pair, force = asked.case.pair, asked.hot["normal_force"]
+    (standard, words), phase = _standard(pair), np.arange(POSITIONS) / POSITIONS
+    names = [f"root_{gear.material.name}" for gear in (pair.pinion, pair.wheel)]
+    # of one strength, as long as the table knows one alone
+    limit = names[0] if LIMITS.keys() >= set(names) else "root_unknown"
+    words += "; no fatigue strength is known of a material" * (limit not in LIMITS)
+    for point in asked.points:
+        at, load = asked.at(point), float(force[point])
+        why = asked.still(point) or "there is no load" * (not load > 0.0)
+        if why:
+            yield undecided(ROOT, "root_stress", why, limit=limit, at=at)
+            continue
+        hot, cold = (
+            root_stress(pair, loaded_pair(elastic).solve(phase), asked.model.loaded.plane)
+            for elastic in (
+                asked.elastic(state, point, asked.case.deviations) for state in (HOT, UNDEFORMED)
+            )
+        )
+        stress, undeformed = ([1e-6 * float(one.stress[0]) for one in both] for both in (hot, cold))
+        if not np.isfinite(stress + undeformed).all():
+            why = "the loaded contact did not settle"
+            yield undecided(ROOT, "root_stress", why, limit=limit, at=at)
+            continue
+        nominal = 1e-6 * load * np.cos(pair.pinion.pressure_angle)
+        nominal /= pair.face_width * pair.pinion.module
+        factors = zip(standard.get("form", ()), standard.get("notch", ()), strict=True)
+        yield answer(
+            ROOT,
+            "root_stress",
+            "Static, the pinion's fillet carries {hot[0]:.0f MPa} hot and {undeformed[0]:.0f MPa} "
+            "undeformed, the wheel's {hot[1]:.0f MPa} and {undeformed[1]:.0f MPa}, at their "
+            f"{{slope[0]:.0f}}° and {{slope[1]:.0f}}° tangents; {words}.",
+            max(stress) if limit in LIMITS else np.nan,
+            limit=limit,
+            at=at,
+            figures={
+                "hot": stress,
+                "undeformed": undeformed,
+                "slope": [float(np.degrees(one.slope[0])) for one in hot],
+                **standard,
+                "standard": [nominal * form * notch for form, notch in factors],
+            },
+            units={"slope": "°", "standard": "MPa"},
+        )
+
+
+def _standard(pair: GearPair) -> tuple[dict[str, Any], str]:
+    """Y_F and Y_S of ISO 6336-3 for both gears and how its stress is told, or why there is none."""
+    gears = zip((pair.pinion, pair.wheel), single_contact(pair), strict=True)
+    try:
+        form, notch = zip(*(root_factors(gear, t) for gear, t in gears), strict=True)
+    except ThermogearError as error:
+        return {"why": str(error)}, "ISO 6336-3 does not cover it: {why}"
+    words = "ISO 6336-3 has {standard[0]:.0f MPa} and {standard[1]:.0f MPa}"
+    return {"form": list(form), "notch": list(notch)}, words
