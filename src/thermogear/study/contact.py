@@ -49,9 +49,9 @@ def loaded_survey(
     case's hot state, and the row of gear temperatures.
 
     Groups: ``contact`` over (temperature, load, mesh_phase[, pair]) as :func:`loaded_contact`
-    gives it; ``base_pitch`` over (temperature_difference, load) with the hot pair's gears of
-    unequal temperature: ``double_contact_length``, ``mean_stiffness``, ``edge_contact_share``,
-    ``peak_to_peak_error``;
+    gives it, with ``corner_onset_torque`` [N m] over (temperature, gear); ``base_pitch`` over
+    (temperature_difference, load) with the hot pair's gears of unequal temperature:
+    ``double_contact_length``, ``mean_stiffness``, ``edge_contact_share``, ``peak_to_peak_error``;
     ``iso_6336`` the stiffness of method B at the same loads.
     """
     most = max(case.torques, default=0.0)
