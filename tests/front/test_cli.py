@@ -485,7 +485,7 @@ def test_check_lists_the_defaults_of_a_short_case(
     assert not any(line.strip().startswith("gears.wheel.bore_radius") for line in lines)
     assert not any(line.strip().startswith(("grid.", "simulation.")) for line in lines)
     assert [10.0] in [numbers(line) for line in lines if line.startswith("numerics:")]
-    assert numbers(lines[-1])[0] == 47.0
+    assert numbers(lines[-1])[0] == 49.0
 
 
 def test_what_a_case_states_is_no_default(
@@ -506,4 +506,4 @@ def test_check_of_a_case_with_every_value_declared_lists_no_default(
     assert main(["check", str(rig)]) == 0
     shown = capsys.readouterr().out
     assert "default" not in shown
-    assert numbers(shown.splitlines()[-1])[0] == 61.0
+    assert numbers(shown.splitlines()[-1])[0] == 63.0
