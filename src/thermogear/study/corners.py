@@ -75,8 +75,9 @@ class HotContact(LoadedPair):
 
         p = 2 F/(pi a), a = sqrt(4 F rho/(pi E*)), 1/rho = 1/r_e + 1/q with q the mate's string:
         Hertz's pressure of the edge circle on the flank, within a factor of 2 of finite elements
-        (lower while the flank beside it carries too). Of pinion and wheel, (state, load, gear);
-        False where the edge has no rounding, whose pressure has no bound.
+        (lower while the flank beside it carries too; module 5 mm, 25:75, 200 N/mm, r_e 0.05 and
+        0.2 mm: at most 7.7 and 3.9 GPa, finite elements 6.8 and 4.1). Of pinion and wheel, (state,
+        load, gear); False where the edge has no rounding, whose pressure has no bound.
         """
         strings, modulus = mesh.points.point, self.contact_modulus[:, :, None, None]
         found = []
