@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -52,6 +54,10 @@ def test_on_the_flanks_the_pressure_is_hertzs(data: xr.Dataset) -> None:
 def test_corners_carry_as_long_as_they_lengthen_the_double_contact(data: xr.Dataset) -> None:
     assert data.edge_contact_share.values == pytest.approx(TWO_PAIRS - ON_THE_PATH, abs=6e-3)
     assert np.all(np.diff(data.edge_contact_share.values) > 0.0)
+    # and the mean number of pairs that carry with it
+    assert data.effective_contact_ratio.values == pytest.approx(1.0 + TWO_PAIRS, abs=1e-2)
+    parts = data.corner_period_share.values.sum(axis=-1)
+    assert parts == pytest.approx(data.edge_contact_share.values, abs=1e-12)
 
 
 def test_the_flag_says_what_its_values_mean(data: xr.Dataset) -> None:
@@ -85,3 +91,26 @@ def test_exchanged_gears_exchange_their_corners(flank: str) -> None:
         assert (mine_phases != (two.edge == other).any(axis=-1)).sum() <= 1
     with np.errstate(invalid="ignore"):
         assert np.array_equal(np.isnan(one.pressure), one.edge > 0)
+
+
+@pytest.mark.parametrize(
+    ("rounding", "leaves", "enters"),
+    [
+        (0.0, (0.79289, 0.80827), (0.925, 0.93692)),
+        (0.05e-3, (0.79289, 0.80827), (0.93692, 0.95231)),
+        (0.2e-3, (0.7775, 0.79289), (0.95231, 0.96769)),
+    ],
+)
+def test_rounded_tips_leave_and_enter_where_finite_elements_have_them(
+    rounding: float, leaves: tuple[float, float], enters: tuple[float, float]
+) -> None:
+    """Plane finite elements of whole gears, edges on flanks, 200 N/mm: phases from the sharp A.
+
+    The last phase at which the leaving pair carries and the first at which it does not, the last
+    at which the entering pair does not carry and the first at which it does.
+    """
+    gears = (replace(gear, tip_rounding=rounding) for gear in (PAIR.pinion, PAIR.wheel))
+    pair = GearPair(*gears)
+    phase = np.array([*leaves, *enters]) + (PAIR.path.a - pair.path.a) / pair.base_pitch
+    mesh = solve_mesh(pair, 200e3 * WIDTH, phase, model=LoadedModel(body="bore_clamped"))
+    assert np.count_nonzero(mesh.force > 0.0, axis=-1).tolist() == [2, 1, 1, 2]
