@@ -13,8 +13,8 @@ from thermogear.gears.geometry import Gear
 from thermogear.gears.ring import ring_compliance
 from thermogear.gears.stiffness import weber_approach
 from thermogear.gears.tooth import flank_point, tooth_compliances
+from thermogear.gears.tooth_mesh import Profile
 from thermogear.verify import gear_compliance
-from thermogear.verify.tooth_mesh import Profile
 
 pytestmark = pytest.mark.slow
 

@@ -69,8 +69,8 @@ def stiffness(
 ) -> None:
     """Mesh stiffness and load shares of CASE's pair: model, finite elements, difference."""
     from thermogear.base.display import LINE_LOAD
+    from thermogear.gears.tooth_mesh import Density
     from thermogear.verify.checks import check_stiffness, inner_phases
-    from thermogear.verify.tooth_mesh import Density
 
     read = delivery.load_gears(case, overrides)
     moment = max(read.torques) if torque is None else torque
@@ -150,9 +150,9 @@ def growth(case: str, overrides: tuple[str, ...], bore: str, as_json: bool) -> N
 def pairs(refine: int, near: str, as_json: bool) -> None:
     """The fixed pairs: a published one, four of our own, and three at the model's edges."""
     from thermogear.base.display import LINE_LOAD, PERCENT
+    from thermogear.gears.tooth_mesh import Density
     from thermogear.verify.checks import check_stiffness, inner_phases
     from thermogear.verify.pairs import far_pairs, own_pairs, published_pair
-    from thermogear.verify.tooth_mesh import Density
 
     groups: tuple[tuple[str, tuple[CheckedPair, ...]], ...] = (
         ("published", (published_pair(),)),

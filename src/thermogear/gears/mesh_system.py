@@ -32,6 +32,7 @@ from thermogear.gears.stiffness import (
     yang_sun_stiffness,
 )
 from thermogear.gears.tooth import STARTS, flank_point, unit_compliance
+from thermogear.gears.tooth_table import PLANES, tooth_table
 from thermogear.gears.touch import first_touch
 
 BODIES = {
@@ -44,14 +45,17 @@ BODIES = {
 class LoadedModel:
     """The choices of the loaded contact.
 
-    body: reading of the hub, see :data:`BODIES`, by default that of a case file; contact: see
-    :data:`CONTACT_LAWS`; start: of the tooth's beam, see :data:`STARTS`; extended: contact on tip
-    corners off the path; coupled: a tooth moves under its neighbours' load.
+    tooth: see :data:`TEETH`; plane: of the solved tooth, see :data:`PLANES`; body: reading of the
+    hub, see :data:`BODIES`, by default that of a case file; contact: see :data:`CONTACT_LAWS`;
+    start: of the tooth's beam, see :data:`STARTS`; extended: contact on tip corners off the path;
+    coupled: a tooth moves under its neighbours' load.
 
     >>> LoadedModel(contact="palmgren").body
     'rim'
     """
 
+    tooth: str = "beam"
+    plane: str = "stress"
     body: str = "rim"
     contact: str = "weber-banaschek"
     start: str = "30-degree"
@@ -59,7 +63,13 @@ class LoadedModel:
     coupled: bool = True
 
     def __post_init__(self) -> None:
-        for name, known in (("body", BODIES), ("contact", CONTACT_LAWS), ("start", STARTS)):
+        for name, known in (
+            ("tooth", TEETH),
+            ("plane", PLANES),
+            ("body", BODIES),
+            ("contact", CONTACT_LAWS),
+            ("start", STARTS),
+        ):
             value = getattr(self, name)
             if value not in known:
                 raise InputError(
@@ -70,10 +80,19 @@ class LoadedModel:
                 )
 
 
-def _body_unit(gear: Gear, t: Floats, direction: int, model: LoadedModel) -> Floats:
-    """Ring compliance between the candidates for unit modulus and width, (position, pair, pair).
+TEETH = {
+    "solved": "finite elements of one sector of the gear, tooth, fillets and body",
+    "beam": "beam of the true profile on a ring: Weber and Banaschek with a coupled body",
+}
 
-    ``direction`` +1: teeth farther on the path are ahead in the direction of their load.
+
+def _beam_on_ring(
+    gear: Gear, t: Floats, direction: int, model: LoadedModel
+) -> tuple[Floats, Floats]:
+    """Beam compliance (position, pair) and ring compliance (position, pair, pair).
+
+    Unit modulus and width. ``direction`` +1: teeth farther on the path are ahead in the direction
+    of their load.
     """
     table, centre = body_matrices(gear, windup=model.body == "bore_clamped")
     load = foot_load(gear, t)
@@ -82,7 +101,23 @@ def _body_unit(gear: Gear, t: Floats, direction: int, model: LoadedModel) -> Flo
         if j == k or model.coupled:
             by = load[:, k] @ table[centre + direction * (j - k)].T
             out[:, j, k] = np.einsum("pa,pa->p", load[:, j], by)
-    return out
+    return unit_compliance(gear, t, model.start), out
+
+
+def _solved(gear: Gear, t: Floats, direction: int, model: LoadedModel) -> tuple[Floats, Floats]:
+    """The same from finite elements, split by where the energy sits."""
+    table = tooth_table(gear, model.plane)
+    tooth, body = table.self_compliance(t)
+    out = np.zeros((*t.shape, t.shape[1]))
+    for j, k in np.ndindex(out.shape[1:]):
+        if j == k:
+            out[:, j, j] = body[:, j]
+        elif model.coupled:
+            # the load points away from the side that the loaded flank faces
+            out[:, j, k] = table.coupled(t[:, j], t[:, k], -direction * (j - k))
+    if model.body == "rim":
+        out -= table.windup
+    return tooth, out
 
 
 class Drawn(NamedTuple):
@@ -106,16 +141,13 @@ def as_drawn(pair: GearPair, phases: bytes, flank: str, model: LoadedModel) -> D
     )
     places = [flank_point(gear, t) for gear, t in zip(gears, parameters, strict=True)]
     depth = np.stack([(at.x / np.cos(at.beta)) ** 2 for at in places]) / (4.0 * radius)
-    tooth = np.stack(
-        [unit_compliance(g, t, model.start) for g, t in zip(gears, parameters, strict=True)]
-    )
+    compliance = _solved if model.tooth == "solved" else _beam_on_ring
     # the pinion's load points against its rotation, the wheel's along it
-    body = np.stack(
-        [
-            _body_unit(g, t, sign, model)
-            for g, t, sign in zip(gears, parameters, (-1, 1), strict=True)
-        ]
-    )
+    parts = [
+        compliance(gear, t, sign, model)
+        for gear, t, sign in zip(gears, parameters, (-1, 1), strict=True)
+    ]
+    tooth, body = (np.stack(part) for part in zip(*parts, strict=True))
     return Drawn(tooth, body, depth, radius)
 
 

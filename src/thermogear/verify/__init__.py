@@ -4,6 +4,7 @@ Meshes, condensation and contact are of this floor alone; of the models it takes
 a gear, and the figures it checks. scikit-fem is imported when the first mesh is made.
 """
 
+from thermogear.gears.tooth_mesh import Density
 from thermogear.verify.checks import (
     GrowthCheck,
     StiffnessCheck,
@@ -13,7 +14,6 @@ from thermogear.verify.checks import (
 )
 from thermogear.verify.growth import finite_flank_growth
 from thermogear.verify.stiffness import FinitePair, gear_compliance, pair_stiffness
-from thermogear.verify.tooth_mesh import Density
 
 __all__ = [
     "Density",

@@ -12,10 +12,10 @@ from thermogear.base.errors import InputError
 from thermogear.gears.geometry import Gear
 from thermogear.gears.loaded import LoadedModel, loaded_contact
 from thermogear.gears.pair import GearPair
+from thermogear.gears.tooth_mesh import Density
 from thermogear.heat.expansion import RadialField, flank_growth
 from thermogear.verify.growth import finite_flank_growth, flank_radii
 from thermogear.verify.stiffness import pair_stiffness
-from thermogear.verify.tooth_mesh import Density
 
 
 def inner_phases(pair: GearPair, each: int = 3) -> Floats:

@@ -13,10 +13,10 @@ from scipy.sparse.linalg import splu
 
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, nearest
+from thermogear.gears.elements import Integers, Patch
 from thermogear.gears.geometry import Gear
 from thermogear.gears.tooth import flank_point
-from thermogear.verify.elements import Integers, Patch
-from thermogear.verify.tooth_mesh import (
+from thermogear.gears.tooth_mesh import (
     Density,
     Foot,
     Profile,
@@ -28,6 +28,7 @@ from thermogear.verify.tooth_mesh import (
     plain_arcs,
     tooth_mesh,
 )
+from thermogear.verify.elements import ReferencePatch
 
 
 def unknowns_of(nodes: Integers) -> Integers:
@@ -48,7 +49,7 @@ class Condensed:
         held: Integers | None = None,
         strained: tuple[float, float, float] | None = None,
     ) -> None:
-        whole = patch.stiffness(strained)
+        whole = ReferencePatch.of(patch).stiffness(strained)
         held = np.empty(0, dtype=np.int64) if held is None else held
         inner = np.setdiff1d(np.arange(patch.unknowns), np.concatenate([kept, held]))
         self._inner, self._kept = inner, kept
@@ -203,7 +204,7 @@ class LoadedTooth:
             inside = np.maximum(1.0 - ((arc - self._arc) / half_width) ** 2, 0.0)
             return np.asarray(2.0 / (np.pi * half_width) * np.sqrt(inside))
 
-        load, total = self._mesh.patch.pressure_load(self._mesh.flank, pressure)
+        load, total = ReferencePatch.of(self._mesh.patch).pressure_load(self._mesh.flank, pressure)
         return self._reduced.load(load / total)
 
 

@@ -7,18 +7,16 @@ scikit-fem belongs to the extra ``[fe]`` and is imported when the first mesh is 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
 
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import of_extra
-
-Integers = NDArray[np.int64]
+from thermogear.gears.elements import Integers, Patch
 
 _EDGE_RULE = np.polynomial.legendre.leggauss(24)
 """Rule on a side of an element; many points, for the Hertzian pressure ends in a root."""
@@ -29,17 +27,13 @@ def library(name: str = "skfem") -> Any:
     return of_extra(name, "fe", field="verify", got="finite elements", use="the check")
 
 
-@dataclass(frozen=True, eq=False)
-class Patch:
-    """Nodes and nine-node elements of a plane region.
+class ReferencePatch(Patch):
+    """A plane region whose matrices scikit-fem assembles."""
 
-    ``nodes`` (node, 2) [m]; ``cells`` (element, 3, 3): node numbers, rows along the second
-    parameter, columns along the first; corners, mid-sides and centre.
-    """
-
-    nodes: Floats
-    cells: Integers
-    poisson: float
+    @classmethod
+    def of(cls, patch: Patch) -> ReferencePatch:
+        """The same nodes and elements."""
+        return cls(patch.nodes, patch.cells, patch.poisson)
 
     @cached_property
     def _mesh(self) -> Any:
@@ -77,11 +71,6 @@ class Patch:
         for local in range(9):
             out[ours[:, local]] = theirs[local].T
         return out
-
-    @property
-    def unknowns(self) -> int:
-        """Two displacements at each node, numbered 2 node, 2 node + 1."""
-        return 2 * int(self.nodes.shape[0])
 
     def _ours(self, vector: Floats) -> Floats:
         return np.asarray(vector[self._places.ravel()])

@@ -15,10 +15,9 @@ from scipy.sparse.linalg import splu
 
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, nearest
+from thermogear.gears.elements import Integers
 from thermogear.gears.geometry import Gear
-from thermogear.heat.expansion import BORES, RadialField
-from thermogear.verify.elements import Integers, Patch
-from thermogear.verify.tooth_mesh import (
+from thermogear.gears.tooth_mesh import (
     Density,
     Foot,
     Profile,
@@ -28,6 +27,8 @@ from thermogear.verify.tooth_mesh import (
     plain_across,
     tooth_mesh,
 )
+from thermogear.heat.expansion import BORES, RadialField
+from thermogear.verify.elements import ReferencePatch
 
 
 def flank_radii(gear: Gear, count: int = 7) -> Floats:
@@ -52,7 +53,7 @@ def _arcs(gear: Gear, radius: Floats, density: Density) -> tuple[Floats, Integer
     return arcs, np.argmin(np.abs(arcs - asked[:, None]), axis=-1)
 
 
-def _united(foot: Foot, tooth: Tooth) -> tuple[Patch, Integers]:
+def _united(foot: Foot, tooth: Tooth) -> tuple[ReferencePatch, Integers]:
     """Foot and tooth as one patch, and the numbers of the tooth's nodes in it."""
     below = foot.patch.nodes.shape[0]
     rest = np.setdiff1d(np.arange(tooth.patch.nodes.shape[0]), tooth.joint)
@@ -61,7 +62,7 @@ def _united(foot: Foot, tooth: Tooth) -> tuple[Patch, Integers]:
     number[rest] = below + np.arange(rest.size)
     nodes = np.concatenate([foot.patch.nodes, tooth.patch.nodes[rest]])
     cells = np.concatenate([foot.patch.cells, number[tooth.patch.cells]])
-    return Patch(nodes, cells, foot.patch.poisson), number
+    return ReferencePatch(nodes, cells, foot.patch.poisson), number
 
 
 def finite_flank_growth(
@@ -110,7 +111,7 @@ def finite_flank_growth(
 
 
 def _displacement(
-    patch: Patch, foot: Foot, field: RadialField, expansion: float, bore: str
+    patch: ReferencePatch, foot: Foot, field: RadialField, expansion: float, bore: str
 ) -> Floats:
     """Displacement (node, 2) [m] of the sector under the field."""
 

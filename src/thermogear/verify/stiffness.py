@@ -24,8 +24,8 @@ from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.gears.contact import hertz_half_width
 from thermogear.gears.geometry import Gear
 from thermogear.gears.pair import GearPair
+from thermogear.gears.tooth_mesh import Density
 from thermogear.verify.compliance import ElasticGear, LoadedTooth
-from thermogear.verify.tooth_mesh import Density
 
 _ROUNDS = 30
 _SETTLED = 1e-8

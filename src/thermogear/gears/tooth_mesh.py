@@ -14,9 +14,9 @@ from functools import cached_property
 import numpy as np
 
 from thermogear.base.arrays import Floats
+from thermogear.gears.elements import Integers, Patch
 from thermogear.gears.geometry import Gear
 from thermogear.gears.tooth import start_angle
-from thermogear.verify.elements import Integers, Patch
 
 _FINE_SAMPLES = 2001
 
@@ -165,6 +165,20 @@ class Foot:
     half_angle: float
 
 
+def _body_radii(*, low: float, high: float, size: float, rate: float, part: float) -> Floats:
+    """Ascending radii from ``low`` to ``high`` [m]: steps of ``size`` there, growing inward.
+
+    They grow by ``rate`` up to ``part`` of their radius, for the field of a ring varies with the
+    logarithm of the radius; all are scaled to end where they must.
+    """
+    radii, step = [high], size
+    while radii[-1] > low:
+        radii.append(radii[-1] - step)
+        step = min(step * rate, part * max(radii[-1], low))
+    out = np.array(radii[::-1])
+    return np.asarray(low + (out - out[0]) * (high - low) / (high - out[0]))
+
+
 def foot_mesh(gear: Gear, across: Floats, density: Density) -> Foot:
     """The foot of a tooth whose joint has corners at ``across`` in -1 .. 1 of its half angle."""
     profile = Profile(gear)
@@ -184,15 +198,12 @@ def foot_mesh(gear: Gear, across: Floats, density: Density) -> Foot:
     top_r = np.concatenate([r_side[::-1], np.full(middle.size - 2, r_joint), r_side])
     top_phi = np.concatenate([-phi_side[::-1], phi_joint * middle[1:-1], phi_side])
 
-    size = 0.35 * m / density.refinement
-    body = graded(
+    body = _body_radii(
         low=gear.bore_radius,
         high=r_low,
-        centre=r_low,
-        core=0.0,
-        fine=size,
+        size=0.35 * m / density.refinement,
         rate=density.rate,
-        coarse=0.25 * gear.bore_radius,
+        part=0.25 / density.refinement,
     )
     body_rows = halved(body)
     lift = halved(np.linspace(0.0, 1.0, density.count(3) + 1))[1:]
