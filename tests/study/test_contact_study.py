@@ -13,8 +13,8 @@ from thermogear.base.errors import InputError
 from thermogear.case.case import GearCase, load_example
 from thermogear.case.thermal_state import UNDEFORMED
 from thermogear.gears.loaded import LoadedModel, loaded_contact
-from thermogear.study.contact import PHASES, loaded_survey
-from thermogear.study.relief import relief_survey
+from thermogear.study.contact import loaded_survey
+from thermogear.study.relief import UNIFORM, relief_survey
 
 
 def rig(*changes: str) -> GearCase:
@@ -72,7 +72,7 @@ def test_a_relief_needs_a_load() -> None:
 
 def test_cold_contact_is_the_plain_loaded_contact(contact: xr.DataTree) -> None:
     case = rig()
-    plain = loaded_contact(case.pair, 100.0 / case.pair.pinion.base_radius, PHASES)
+    plain = loaded_contact(case.pair, 100.0 / case.pair.pinion.base_radius, UNIFORM)
     here = contact["contact"].sel(temperature="undeformed").isel(load=1)
     for name in ("tangent_stiffness", "secant_stiffness", "load_share"):
         np.testing.assert_allclose(here[name].values, plain[name].values, rtol=1e-9, atol=1e-12)
@@ -85,7 +85,7 @@ def test_function_command_and_case_file_read_the_hub_alike() -> None:
     cold = case.cycle(UNDEFORMED.operating(case, case.models[0]), case.models[0])
     here = loaded_survey(case, (torque,))
     stiffness = [
-        float(loaded_contact(case.pair, force, PHASES).mean_stiffness),
+        float(loaded_contact(case.pair, force, UNIFORM).mean_stiffness),
         float(here["contact"]["mean_stiffness"].sel(temperature="undeformed")[0]),
         float(cold["mean_stiffness"][0]),
     ]
@@ -96,7 +96,7 @@ def test_function_command_and_case_file_read_the_hub_alike() -> None:
     softer = float(held["contact"]["mean_stiffness"].sel(temperature="undeformed")[0])
     clamped = LoadedModel(body="bore_clamped")
     assert softer == pytest.approx(
-        float(loaded_contact(case.pair, force, PHASES, model=clamped).mean_stiffness), rel=1e-9
+        float(loaded_contact(case.pair, force, UNIFORM, model=clamped).mean_stiffness), rel=1e-9
     )
 
 

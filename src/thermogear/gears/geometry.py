@@ -278,7 +278,6 @@ class Gear:
         ):
             allowed.require_number(name, getattr(self, name))
         self._check_tooth()
-        self._check_edge()
         if self.bore_radius >= self.root_radius:
             raise GeometryError(
                 "bore_radius",
@@ -325,7 +324,6 @@ class Gear:
                 fix="lower the tip radius or the profile shift",
             )
 
-    def _check_edge(self) -> None:
         if self.tip_rounding > 0.0 and self.tip_chamfer > 0.0:
             raise InputError(
                 "tip_chamfer",
@@ -403,19 +401,17 @@ class Gear:
         """
         if self.tip_rounding == 0.0:
             return self.tip_radius - self.tip_chamfer
-        return math.hypot(self.base_radius, self._edge_string(self.tip_rounding))
+        return math.hypot(self.base_radius, self._rounded(self.tip_rounding)[0])
 
-    def _edge_string(self, rounding: float) -> float:
-        """q_t [m] of :attr:`tip_form_radius`; nan where the circle's centre is below the base."""
-        centre = self.tip_radius - rounding
-        square = (centre - self.base_radius) * (centre + self.base_radius)
-        return math.sqrt(square) + rounding if square >= 0.0 else math.nan
+    def _rounded(self, rounding: float) -> tuple[float, float]:
+        """q_t [m] of :attr:`tip_form_radius`, and the tip circle left, 2 r_a of the centres' angle.
 
-    def _rounded_land(self, rounding: float) -> float:
-        """Width [m] of the tip circle between two roundings, 2 r_a times their centre's angle."""
-        centre = math.atan((self._edge_string(rounding) - rounding) / self.base_radius)
+        The circle's centre at or above the base circle.
+        """
+        centre = float(self.pressure_angle_at(self.tip_radius - rounding))
         angle = self.base_half_angle - rounding / self.base_radius - float(involute(centre))
-        return 2.0 * self.tip_radius * angle
+        string = self.base_radius * math.tan(centre) + rounding
+        return string, 2.0 * self.tip_radius * angle
 
     def _largest_edge(self, name: str) -> float:
         """Size [m] below which an edge leaves a tip land and some flank above the form circle."""
@@ -425,8 +421,8 @@ class Gear:
         low, high = 0.0, self.tip_radius - self.base_radius
         for _ in range(60):  # halved down to the digits of a double; land and string both fall
             size = 0.5 * (low + high)
-            fits = self._rounded_land(size) > 0.0 and self._edge_string(size) > lowest
-            low, high = (size, high) if fits else (low, size)
+            string, land = self._rounded(size)
+            low, high = (size, high) if land > 0.0 and string > lowest else (low, size)
         return low
 
     @property
@@ -436,9 +432,8 @@ class Gear:
         A chamfer takes as much off along the tip circle as off the height (our choice; the angle
         moves neither the path of contact nor its end).
         """
-        if self.tip_rounding == 0.0:
-            return self.tip_thickness - 2.0 * self.tip_chamfer
-        return self._rounded_land(self.tip_rounding)
+        sharp = self.tip_thickness - 2.0 * self.tip_chamfer
+        return sharp if self.tip_rounding == 0.0 else self._rounded(self.tip_rounding)[1]
 
     @cached_property
     def pointed_tangent(self) -> float:

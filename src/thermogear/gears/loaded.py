@@ -96,14 +96,17 @@ class LoadedMesh(NamedTuple):
     @property
     def corner_load(self) -> Floats:
         """Greatest share of the load on a tip corner of pinion and wheel, shape (*lead, 2)."""
-        most = [np.where(self.edge & bit, self.share, 0.0).max(axis=(-2, -1)) for bit in (2, 1)]
-        return np.stack(most, axis=-1)
+        return np.stack(
+            [np.where(self.edge & bit, self.share, 0.0).max(axis=(-2, -1)) for bit in (2, 1)],
+            axis=-1,
+        )
 
     @property
     def corner_part(self) -> Floats:
         """Share of the positions at which that corner carries, of pinion and wheel, (*lead, 2)."""
-        part = [((self.edge & bit) > 0).any(axis=-1).mean(axis=-1) for bit in (2, 1)]
-        return np.stack(part, axis=-1)
+        return np.stack(
+            [((self.edge & bit) > 0).any(axis=-1).mean(axis=-1) for bit in (2, 1)], axis=-1
+        )
 
     def wider(self, times: Floats) -> LoadedMesh:
         """The same deflections of pairs ``times`` as wide under as much more load, each a case."""
@@ -355,10 +358,9 @@ def loaded_contact(
     )
     if len(names) != len(lead):
         raise InputError("dimensions", names, allowed=f"{len(lead)} names, one for each axis")
-    loaded = (mesh.share > 0.0).sum(axis=-1)
-    settled = np.asarray(mesh.settled.all(axis=-1))
+    loaded, settled = (mesh.share > 0.0).sum(axis=-1), mesh.settled.all(axis=-1)
+    by_gear, every = (*names, "gear"), mesh.settled.all(axis=-1, keepdims=True)
     along, by_pair = (*names, "mesh_phase"), (*names, "mesh_phase", "pair")
-    by_gear = (*names, "gear")
     values: dict[str, tuple[tuple[str, ...], ArrayLike]] = {
         "transmission_error": (along, mesh.deflection),
         "unloaded_error": (along, mesh.unloaded),
@@ -375,8 +377,8 @@ def loaded_contact(
         ),
         "edge_contact_share": (names, np.where(settled, mesh.edge_share, np.nan)),
         "effective_contact_ratio": (names, np.where(settled, mesh.effective_ratio, np.nan)),
-        "corner_period_share": (by_gear, np.where(settled[..., None], mesh.corner_part, np.nan)),
-        "corner_load_share": (by_gear, np.where(settled[..., None], mesh.corner_load, np.nan)),
+        "corner_period_share": (by_gear, np.where(every, mesh.corner_part, np.nan)),
+        "corner_load_share": (by_gear, np.where(every, mesh.corner_load, np.nan)),
         "pair_position": (("mesh_phase", "pair"), mesh.points.s),
     }
     coordinates: dict[str, tuple[tuple[str, ...], ArrayLike]] = {
@@ -396,7 +398,7 @@ def loaded_contact(
     return label(
         {k: xr.Variable(d, v, dressed(k)) for k, (d, v) in values.items()} | flags,
         {k: xr.Variable(d, v, dressed(k)) for k, (d, v) in coordinates.items()}
-        | {"gear": ["pinion", "wheel"]},
+        | {"gear": xr.Variable("gear", ["pinion", "wheel"], {"long_name": "gear"})},
         {
             "body": choice.body,
             "contact": choice.contact,

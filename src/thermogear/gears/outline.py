@@ -113,16 +113,15 @@ def _half(gear: Gear, fineness: int) -> _Side:
 
 def _edge(gear: Gear, fineness: int) -> NDArray[np.complex128]:
     """The edge from the tip circle down to the flank, which it does not hold [m]; none if sharp."""
-    if gear.tip_form_radius == gear.tip_radius:
-        return np.empty(0, dtype=np.complex128)
-    part = np.linspace(0.0, 1.0, EDGE * fineness + 1)[:-1]
+    steps = EDGE * fineness if gear.tip_form_radius < gear.tip_radius else 0
+    part = np.linspace(0.0, 1.0, steps + 1)[:-1]
     land = np.exp(0.5j * gear.tip_land / gear.tip_radius)
     end = gear.tip_form_radius * np.exp(1j * gear.half_thickness_angle(gear.tip_form_radius))
     if gear.tip_chamfer > 0.0:
         return np.asarray(gear.tip_radius * land + part * (end - gear.tip_radius * land))
     centre = (gear.tip_radius - gear.tip_rounding) * land
-    turn = np.angle((end - centre) / land)
-    return np.asarray(centre + gear.tip_rounding * land * np.exp(1j * part * turn))
+    turned = np.exp(1j * part * np.angle((end - centre) / land))
+    return np.asarray(centre + gear.tip_rounding * land * turned)
 
 
 def _with_lands(

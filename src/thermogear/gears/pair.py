@@ -152,11 +152,14 @@ class GearPair:
                 )
             if too_long and not (other.undercut and self._clears(mine, other)):
                 where = "tangent point" if reach > length else "form circle"
-                edge = mine.tip_radius - mine.tip_form_radius
                 raise GeometryError(
                     f"{name}.tip_radius",
                     millimetres(mine.tip_radius),
-                    allowed=f"<= {millimetres(math.hypot(mine.base_radius, longest) + edge)}",
+                    allowed="<= "
+                    + millimetres(
+                        math.hypot(mine.base_radius, longest)
+                        + (mine.tip_radius - mine.tip_form_radius)
+                    ),
                     why=f"interference: the tip reaches below the {other_name}'s {where}",
                     fix=f"lower the tip radius or raise {other_name}.profile_shift",
                 )

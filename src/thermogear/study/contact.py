@@ -17,10 +17,11 @@ from thermogear.case.thermal_state import HOT, UNDEFORMED, ThermalState
 from thermogear.gears.iso6336 import iso6336_stiffness
 from thermogear.gears.loaded import loaded_contact
 from thermogear.mesh.operating import Operating
+from thermogear.mesh.thermal import HotPair
 from thermogear.results.result import Notice, Result
-from thermogear.study.corners import UNIFORM, HotContact
+from thermogear.study.corners import HotContact
 from thermogear.study.declared import Contact, declared
-from thermogear.study.relief import one_point
+from thermogear.study.relief import UNIFORM, one_point
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -31,7 +32,6 @@ DIFFERENCES = (-40.0, -20.0, 0.0, 20.0, 40.0)
 """Pinion's temperature less the wheel's [K]."""
 LIGHT = tuple(np.geomspace(0.02, 2.0, 41))
 """Loads, as parts of the case's greatest, of the double-contact picture."""
-PHASES = 200
 
 
 @declared(Contact)
@@ -49,9 +49,9 @@ def loaded_survey(
     case's hot state, and the row of gear temperatures.
 
     Groups: ``contact`` over (temperature, load, mesh_phase[, pair]) as :func:`loaded_contact`
-    gives it; ``base_pitch`` over (temperature_difference, load) with the hot pair's gears of
-    unequal temperature: ``double_contact_length``, ``mean_stiffness``, ``edge_contact_share``,
-    ``peak_to_peak_error``;
+    gives it, with ``corner_onset_torque`` [N m] over (temperature, gear); ``base_pitch`` over
+    (temperature_difference, load) with the hot pair's gears of unequal temperature:
+    ``double_contact_length``, ``mean_stiffness``, ``edge_contact_share``, ``peak_to_peak_error``;
     ``iso_6336`` the stiffness of method B at the same loads.
     """
     most = max(case.torques, default=0.0)
@@ -66,14 +66,12 @@ def loaded_survey(
         state.require_settled(case, case.models[0])
     progress("loaded contact", 0, 2)
     ones = [one_point(s.operating(case, case.models[0]), float(moments[0])) for s in states]
-    at = HotContact(case=case, model=model, operating=stacked(ones))
+    at = HotContact(HotPair(case.pair, stacked(ones), model), case.deviations)
     contact = _solve(at, moments)
-    onset = at.onset(float(moments.max()))
-    settles = bool(at.yields(at.solve(moments, UNIFORM)).any())
     contact = contact.assign(
         corner_onset_torque=dressed(
             ("temperature", "gear"),
-            onset,
+            at.onset(float(moments.max())),
             "N m",
             "pinion torque from which a tip corner of this gear carries, 0 where it does at any; "
             "nan where at no load here",
@@ -92,7 +90,8 @@ def loaded_survey(
     unequal = [apart(ones[1], difference) for difference in DIFFERENCES]
     reach = max(most, float(moments.max()))
     light = reach * np.asarray(LIGHT)
-    heated = _solve(HotContact(case=case, model=model, operating=stacked(unequal)), light)
+    hotter = HotPair(case.pair, stacked(unequal), model)
+    heated = _solve(HotContact(hotter, case.deviations), light)
     progress("loaded contact", 2, 2)
     error = heated["transmission_error"]
     base_pitch = label(
@@ -142,7 +141,7 @@ def loaded_survey(
         Contact.kind,
         f"Loaded contact: {case.title}",
         {"contact": contact, "base_pitch": base_pitch, "iso_6336": compared},
-        _notices(at, lost, contact, compared, settles=settles),
+        _notices(case, at, lost, contact, compared),
         **case.provenance,
         body=model.body,
         base_pitch_length=case.pair.base_pitch,
@@ -152,8 +151,10 @@ def loaded_survey(
 
 def _solve(at: HotContact, moments: NDArray[np.float64]) -> xr.Dataset:
     """The loaded contact over (temperature, load, mesh_phase)."""
-    pair, force = at.case.pair, at.force(moments)
-    return loaded_contact(pair, force, PHASES, **at.arguments, dimensions=("temperature", "load"))
+    load = np.tile(moments / at.pair.pinion.base_radius, (at.hot.count, 1))
+    return loaded_contact(
+        at.pair, load, UNIFORM, **at.arguments, dimensions=("temperature", "load")
+    )
 
 
 def stacked(points: Sequence[Operating]) -> Operating:
@@ -185,12 +186,11 @@ def apart(point: Operating, difference: float) -> Operating:
 
 
 def _notices(
-    at: HotContact, lost: int, contact: xr.Dataset, compared: xr.Dataset, *, settles: bool
+    case: GearCase, at: HotContact, lost: int, contact: xr.Dataset, compared: xr.Dataset
 ) -> Iterator[Notice]:
-    case, body = at.case, at.model.body
     edges, loads = contact["edge_contact_share"], contact["corner_load_share"]
     apart = (compared["iso_stiffness"] / compared["loaded_stiffness"] - 1.0).values
-    yield Notice.of("loaded_contact_unchecked", body=body)
+    yield Notice.of("loaded_contact_unchecked", body=at.hot.model.body)
     yield Notice.of("iso_stiffness_apart", apart=[[apart.min(), apart.max()]])
     if bool((edges > 0.0).any()):
         most, heaviest = edges.isel(edges.argmax(...)), loads.isel(loads.argmax(...))
@@ -202,7 +202,7 @@ def _notices(
             gear=str(heaviest["gear"].values),
             load=heaviest.item(),
         )
-    if settles:
+    if at.yields(at.under(contact["load"].values[None, :], UNIFORM)).any():
         yield Notice.of("edge_settles")
     if lost:
         yield Notice.of("positions_not_settled", lost=lost)

@@ -10,62 +10,39 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.arrays import Floats
-from thermogear.case.case import GearCase
 from thermogear.gears.contact import hertz_pressure
+from thermogear.gears.deviations import GEARS
 from thermogear.gears.loaded import LEAST_LINE_LOAD, LoadedMesh, solve_mesh
-from thermogear.gears.stiffness import Moduli
 from thermogear.mesh.elastic import LoadedPair
-from thermogear.mesh.model import MeshModel
-from thermogear.mesh.operating import Operating
-from thermogear.mesh.thermal import HotPair, ThermalDeviation
-from thermogear.study.relief import Seen
+from thermogear.mesh.thermal import ThermalDeviation
+from thermogear.study.relief import UNIFORM, Seen
 
-UNIFORM = np.arange(200) / 200
-"""Positions of a mesh period [periods] at which the contact is solved."""
 EDGE_YIELD = 4e9
 """Pressure [Pa] of a line contact that leaves a lasting mark in hardened bearing steel, as hard as
 gears are made: ISO 76, static load rating of roller bearings, 4000 MPa."""
 HALVINGS = 14
 """Of the logarithm of the torque at which a corner begins to carry: under 0.1 % of four decades."""
-ENDS = {"pinion": "beyond E, in recess", "wheel": "before A, in approach"}
+ENDS = {"wheel": "before A, in approach", "pinion": "beyond E, in recess"}
 """Where a gear's tip corner carries, the pinion driving."""
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class HotContact:
-    """The loaded contact of a case's pair in the states of ``operating``, at any loads."""
-
-    case: GearCase
-    model: MeshModel
-    operating: Operating
-
-    @cached_property
-    def hot(self) -> HotPair:
-        """The pair at the temperatures of every state."""
-        return HotPair(self.case.pair, self.operating, self.model)
+@dataclass(frozen=True, eq=False)
+class HotContact(LoadedPair):
+    """The loaded contact of a pair in several hot states, each under several loads."""
 
     @cached_property
     def arguments(self) -> dict[str, Any]:
         """Of :func:`~thermogear.gears.loaded.solve_mesh` for loads of shape (state, load)."""
-        pinion, wheel = (
-            Moduli(tooth=np.reshape(m.tooth, (-1, 1)), body=np.reshape(m.body, (-1, 1)))
-            for m in LoadedPair(self.hot).moduli
-        )
         return {
-            "pinion": pinion,
-            "wheel": wheel,
-            "deviations": [*self.case.deviations, Seen(ThermalDeviation(self.hot), np.s_[:, None])],
-            "model": self.model.loaded,
+            **dict(zip(("pinion", "wheel"), self.moduli, strict=True)),
+            "deviations": [*self.deviations, Seen(ThermalDeviation(self.hot), np.s_[:, None])],
+            "model": self.hot.model.loaded,
         }
 
-    def force(self, torque: Floats) -> Floats:
-        """Normal force [N] of pinion torques (state, load) or (load,), shape (state, load)."""
-        load = np.asarray(torque / self.case.pair.pinion.base_radius)
-        return np.broadcast_to(load, (self.hot.count, load.shape[-1]))
-
-    def solve(self, torque: Floats, phase: Floats) -> LoadedMesh:
-        """The mesh at ``phase``, leading axes (state, load)."""
-        return solve_mesh(self.case.pair, self.force(torque), phase, **self.arguments)
+    def under(self, torque: Floats, phase: Floats) -> LoadedMesh:
+        """The mesh at ``phase``, axes (state, load) first: pinion torques [N m] of that shape."""
+        force = torque / self.pair.pinion.base_radius
+        return solve_mesh(self.pair, force, phase, **self.arguments)
 
     def onset(self, greatest: float) -> Floats:
         """Pinion torque [N m] from which on the corners of pinion and wheel carry, (state, gear).
@@ -75,26 +52,21 @@ class HotContact:
         it touch first. 0 where that is so at any load (1 N/mm), nan where up to the ``greatest``
         torque it is not. Halved between the two.
         """
-        pair = self.case.pair
+        pair = self.pair
         ends = np.array([pair.path.e, pair.path.a])
         phase = np.concatenate([((ends - pair.path.a) / pair.base_pitch) % 1.0, UNIFORM])
 
         def carry(torque: Floats) -> NDArray[np.bool_]:
-            mesh = self.solve(torque, phase)
-            place = np.abs(mesh.points.s[:2] - ends[:, None]).argmin(axis=-1)
-            both = [
-                (mesh.force[:, i, i, place[i]] > 0.0) | (mesh.corner_load[:, i, i] > 0.0)
-                for i in range(2)
-            ]
-            return np.stack(both, axis=-1)
+            mesh, gear = self.under(torque, phase), np.arange(2)
+            last = np.abs(mesh.points.s[:2] - ends[:, None]).argmin(axis=-1)
+            touched = mesh.force[:, gear, gear, last] > 0.0
+            return np.asarray(touched | (mesh.corner_load[:, gear, gear] > 0.0))
 
-        least = LEAST_LINE_LOAD * pair.face_width * pair.pinion.base_radius
-        low = np.full((self.hot.count, 2), min(least, greatest))
-        high = np.full(low.shape, greatest)
+        least = min(LEAST_LINE_LOAD * pair.face_width * pair.pinion.base_radius, greatest)
+        low, high = (np.full((self.hot.count, 2), torque) for torque in (least, greatest))
         always, ever = carry(low), carry(high)
         for _ in range(HALVINGS):
-            middle = np.sqrt(low * high)
-            there = carry(middle)
+            there = carry(middle := np.sqrt(low * high))
             low, high = np.where(there, low, middle), np.where(there, middle, high)
         return np.where(always, 0.0, np.where(ever, high, np.nan))
 
@@ -106,41 +78,41 @@ class HotContact:
         (lower while the flank beside it carries too). Of pinion and wheel, (state, load, gear);
         False where the edge has no rounding, whose pressure has no bound.
         """
-        pair, modulus = self.case.pair, LoadedPair(self.hot).contact_modulus[:, :, None, None]
-        strings, line = mesh.points.point, mesh.force / pair.face_width
+        strings, modulus = mesh.points.point, self.contact_modulus[:, :, None, None]
         found = []
-        for gear, mate, bit in ((pair.pinion, strings.wheel, 2), (pair.wheel, strings.pinion, 1)):
-            radius = 1.0 / (1.0 / max(gear.tip_rounding, 1e-12) + 1.0 / np.maximum(mate, 1e-12))
-            pressed = hertz_pressure(line, radius, modulus) > EDGE_YIELD
-            found.append(((mesh.edge & bit) > 0) & pressed & (gear.tip_rounding > 0.0))
-        return np.stack([corner.any(axis=(-2, -1)) for corner in found], axis=-1)
+        for gear, mate, bit in (
+            (self.pair.pinion, strings.wheel, 2),
+            (self.pair.wheel, strings.pinion, 1),
+        ):
+            radius = gear.tip_rounding * mate / (gear.tip_rounding + mate)
+            pressure = hertz_pressure(mesh.force / self.pair.face_width, radius, modulus)
+            carries = (mesh.edge & bit > 0) & (gear.tip_rounding > 0.0)
+            found.append((carries & (pressure > EDGE_YIELD)).any(axis=(-2, -1)))
+        return np.stack(found, axis=-1)
 
+    def told(self, torque: float) -> tuple[LoadedMesh, str, dict[str, float]]:
+        """The mesh of one state under ``torque`` [N m], and what corners carry of it in words.
 
-def told(
-    case: GearCase, *, load: Floats, part: Floats, onset: Floats, yields: NDArray[np.bool_]
-) -> tuple[str, dict[str, float]]:
-    """What corners carry in words, and their figures: [%] of the load and period, [N m].
-
-    ``load``, ``part`` (shares), ``onset`` [N m] and ``yields`` of pinion and wheel; empty words
-    where no corner carries.
-    """
-    words, figures, notes = list[str](), dict[str, float](), dict[str, None]()
-    for gear, place in (("wheel", 1), ("pinion", 0)):
-        if not load[place] > 0.0:
-            continue
-        carries, whole, period = ("", "", "") if words else (" tip corner carries", *_WHOLE)
-        begins = f"from {{{gear}_onset:.3g N m}} on" if onset[place] > 0.0 else "at any load"
-        words.append(
-            f"{ENDS[gear]}, the {gear}'s{carries} up to {{{gear}_load:.0f %}}{whole} during "
-            f"{{{gear}_part:.1f %}}{period}, {begins}"
-        )
-        figures |= {f"{gear}_load": 100.0 * load[place], f"{gear}_part": 100.0 * part[place]}
-        figures |= {f"{gear}_onset": onset[place]} if onset[place] > 0.0 else {}
-        if getattr(case.pair, gear).tip_rounding == 0.0:
-            notes["no pressure is known on a sharp edge"] = None
-        elif yields[place]:
-            notes["a rounded edge is pressed above what any steel bears and will settle"] = None
-    return "; ".join([*words, *notes]), {name: float(value) for name, value in figures.items()}
-
-
-_WHOLE = (" of the load", " of the mesh period")
+        Figures of the words: [%] of the load and of the period, [N m]. Empty words where no corner
+        carries.
+        """
+        mesh = self.under(np.array([[torque]]), UNIFORM)
+        load, part, yields = mesh.corner_load[0, 0], mesh.corner_part[0, 0], self.yields(mesh)[0, 0]
+        onset, words, figures = self.onset(torque)[0], list[str](), dict[str, float]()
+        carried = [(place, GEARS[place]) for place in (1, 0) if load[place] > 0.0]
+        for place, gear in carried:
+            since = f"from {{{gear}_onset:.3g N m}} on" if onset[place] > 0.0 else "at any load"
+            words.append(
+                f"{ENDS[gear]}, the {gear}'s tip corner carries up to {{{gear}_load:.0f %}} of the "
+                f"load during {{{gear}_part:.1f %}} of the mesh period, {since}"
+            )
+            figures |= {
+                f"{gear}_load": 100.0 * float(load[place]),
+                f"{gear}_part": 100.0 * float(part[place]),
+                f"{gear}_onset": float(onset[place]),
+            }
+        if any(getattr(self.pair, gear).tip_rounding == 0.0 for _, gear in carried):
+            words.append("no pressure is known on a sharp edge")
+        if yields.any():
+            words.append("a rounded edge is pressed above what any steel bears and will settle")
+        return mesh, "; ".join(words), figures

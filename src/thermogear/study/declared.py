@@ -349,9 +349,9 @@ class Contact(Study, kind="contact", home="thermogear.study.contact:loaded_surve
     """Loaded tooth contact of CASE over mesh position, load and temperature.
 
     Tangent and secant stiffness, transmission error, load shares, pressure, double contact (and
-    how gears of unequal temperature lose it at light load), how long tip corners carry (edge
-    contact, where no pressure is given), and ISO 6336-1. Writes contact.nc, contact.html,
-    pictures and CSV to DIR.
+    how gears of unequal temperature lose it at light load), the effective contact ratio, which tip
+    corner carries how much of the load, how long and from which torque on (edge contact, where no
+    pressure is given), and ISO 6336-1. Writes contact.nc, contact.html, pictures and CSV to DIR.
     """
 
     torques: Sequence[float] = option(

@@ -27,7 +27,8 @@ from thermogear.study.declared import ReliefSurvey, declared
 
 LOADS = tuple(np.arange(0.1, 1.75, 0.1))
 """Loads, as parts of the one designed for, at which the pairs are compared."""
-PHASES = 200
+UNIFORM = np.arange(200) / 200
+"""Positions of a mesh period [periods] at which the loaded contact is solved."""
 EDGE_SHARE = "share of the mesh period in which a tip corner carries load"
 
 
@@ -84,13 +85,12 @@ def relief_survey(
         progress=lambda done: progress("relief", done, most),
     )
     progress("relief", most, most)
-    phase = np.arange(PHASES) / PHASES
 
     def mesh(reliefs: tuple[Relief, ...], forces: NDArray[np.float64]) -> LoadedMesh:
         return solve_mesh(
             case.pair,
             forces,
-            phase,
+            UNIFORM,
             pinion=moduli[0],
             wheel=moduli[1],
             deviations=[*deviations, *reliefs],
@@ -141,7 +141,7 @@ def relief_survey(
                 },
                 {
                     "pair_kind": list(pairs),
-                    "mesh_phase": (("mesh_phase",), phase, "1", "mesh phase"),
+                    "mesh_phase": (("mesh_phase",), UNIFORM, "1", "mesh phase"),
                 },
             ),
             "loads": label(

@@ -154,9 +154,12 @@ class _Maker:
             root_diameter=2.0 * gear.root_radius,
             arithmetic_average_roughness_flank=gear.roughness,
             helix_angle_reference_diameter=0.0,
+            **(
+                {"tip_form_diameter": 2.0 * gear.tip_form_radius}
+                if gear.tip_form_radius < gear.tip_radius
+                else {}
+            ),
         )
-        if gear.tip_form_radius < gear.tip_radius:
-            sizes += self.numbers(tip_form_diameter=2.0 * gear.tip_form_radius)
         self.add(ident, "cylindrical_gear", name, *sizes, number_of_teeth=int(gear.teeth), **grade)
         self._material(place, gear.material)
         rack = self.numbers(

@@ -227,9 +227,12 @@ def _edge(
     if chamfer and chamfer[1].si > 0.0:
         made.read(f"{place}.tip_chamfer", chamfer[1], f"tooth_tip_chamfer of {chamfer[0].called}")
     elif tip is not None and form is not None and form.si < tip.si:
-        height = _tidy(0.5e3 * (tip.si - form.si))
-        by = "(tip_diameter - tip_form_diameter)/2"
-        made.put(f"{place}.tip_chamfer", f"{plain(height)} mm", DERIVED, by)
+        made.put(
+            f"{place}.tip_chamfer",
+            f"{plain(_tidy(0.5e3 * (tip.si - form.si)))} mm",
+            DERIVED,
+            "(tip_diameter - tip_form_diameter)/2",
+        )
 
 
 def _shift(

@@ -6,9 +6,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from thermogear.mesh.thermal import HotPair
 from thermogear.results.answer import Answer
 from thermogear.study.answers.asked import Asked, answer, undecided
-from thermogear.study.corners import UNIFORM, HotContact, told
+from thermogear.study.corners import HotContact
 from thermogear.study.relief import one_point
 
 SHARE = "How do the teeth share the load?"
@@ -21,14 +22,13 @@ def answers(asked: Asked) -> Iterator[Answer]:
     why = asked.still(point) or "there is no load" * (not torque > 0.0)
     if not why:
         operating = one_point(case.operating_of(asked.model).point(point), torque)
-        model = asked.model.override(stiffness="loaded")
-        contact = HotContact(case=case, model=model, operating=operating)
-        mesh = contact.solve(np.array([torque]), UNIFORM)
-        lost = int(np.count_nonzero(~mesh.settled))
-        why = f"{lost} of {UNIFORM.size} positions of the loaded contact do not settle" * (lost > 0)
+        hot = HotPair(case.pair, operating, asked.model.override(stiffness="loaded"))
+        mesh, words, figures = HotContact(hot, case.deviations).told(torque)
+        if lost := int(np.count_nonzero(~mesh.settled)):
+            why = f"{lost} of {mesh.settled.size} positions of the loaded contact do not settle"
     if why:
-        yield undecided(SHARE, "effective_contact_ratio", why, at=at)
-        yield undecided(SHARE, "edge_contact", why, at=at)
+        for name in ("effective_contact_ratio", "edge_contact"):
+            yield undecided(SHARE, name, why, at=at)
         return
     ratio = float(mesh.effective_ratio[0, 0])
     yield answer(
@@ -40,13 +40,13 @@ def answers(asked: Asked) -> Iterator[Answer]:
         at=at,
         figures={"nominal": case.pair.contact_ratio},
     )
-    load = mesh.corner_load[0, 0]
-    words, figures = told(
-        case,
-        load=load,
-        part=mesh.corner_part[0, 0],
-        onset=contact.onset(torque)[0],
-        yields=contact.yields(mesh)[0, 0],
+    words = f"{words[:1].upper()}{words[1:] or 'Tip corners carry 0 % of the load'}."
+    yield answer(
+        SHARE,
+        "edge_contact",
+        words,
+        100.0 * float(mesh.corner_load.max()),
+        at=at,
+        figures=figures,
+        units=dict.fromkeys(("wheel_onset", "pinion_onset"), "N m"),
     )
-    words = f"{words[0].upper()}{words[1:]}." if words else "Tip corners carry 0 % of the load."
-    yield answer(SHARE, "edge_contact", words, 100.0 * float(load.max()), at=at, figures=figures)

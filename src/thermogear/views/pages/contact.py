@@ -19,7 +19,7 @@ from thermogear.base.display import (
 )
 from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.results.result import Result
-from thermogear.views.columns import Column, Row, by_name, declared, key, rows_along, units
+from thermogear.views.columns import Column, by_name, declared, key, rows_along, units
 from thermogear.views.page import Page, Shown
 from thermogear.views.pages import survey_captions as captions
 from thermogear.views.pages.survey import survey
@@ -91,32 +91,22 @@ def page(result: Result) -> Page:
             set(data["contact_pressure"].dims) - {"load", "temperature"}
         ),
     )
-    for gear in ("wheel", "pinion"):
-        for name in ("period", "load"):
-            share = data[f"corner_{name}_share"].sel(gear=gear, drop=True)
-            of_period[f"{gear}_{name}"] = share
     table = declared(
         f"Loaded contact by load and temperature. The nominal contact ratio is "
         f"{data.attrs['contact_ratio']:.3f}, the effective one the mean number of tooth pairs that "
-        "carry. Edge contact: share of the mesh period in which the wheel's tip corner carries "
-        "(before A, in approach) / the pinion's (beyond E, in recess), and what they carry of the "
-        "load at most. The Hertzian pressure is not valid on a corner; the greatest one is that of "
+        "carry. The Hertzian pressure is not valid on a tip corner; the greatest one is that of "
         "the flanks alone.",
         COLUMNS,
         rows_along(of_period, "load", "temperature"),
         names=2,
     )
-    begin = declared(
-        "Pinion torque from which a tip corner carries.",
-        ONSET,
-        [
-            {"temperature": name, **dict(zip(data["gear"].values.tolist(), torques, strict=True))}
-            for name, torques in zip(
-                data["temperature"].values.tolist(),
-                data["corner_onset_torque"].values.tolist(),
-                strict=True,
-            )
-        ],
+    corners = declared(
+        "Edge contact: share of the mesh period in which a tip corner carries, the wheel's before "
+        "A (approach), the pinion's beyond E (recess), what it carries of the load at most, and "
+        "the pinion torque from which on.",
+        CORNERS,
+        rows_along(data, "load", "temperature", "gear"),
+        names=3,
     )
     against = declared(
         "Mean mesh stiffness, undeformed [10⁸ N/m].", AGAINST_ISO, rows_along(beside, "load")
@@ -132,7 +122,7 @@ def page(result: Result) -> Page:
         result,
         summary,
         pictures,
-        [against, table, begin],
+        [against, table, corners],
         numbers=lambda: {**by_name(every, IN_JSON), "units": units(IN_JSON, every)},
     )
 
@@ -146,14 +136,15 @@ COLUMNS = (
     Column("δ peak to peak", "error_swing", 3, MICROMETRE),
     Column("double contact", "double_contact_length", 3, MILLIMETRE),
     Column("effective contact ratio", "effective_contact_ratio", ".2f"),
-    Column("edge contact [%]", lambda row: _of_both(row, "period")),
-    Column("load on a corner [%]", lambda row: _of_both(row, "load")),
     Column("greatest pressure on the flanks", "contact_pressure", 3, MEGAPASCAL),
 )
-ONSET = (
+CORNERS = (
+    Column("torque [N m]", "load", exactly),
     Column("temperature", lambda row: prose(row["temperature"])),
-    Column("the wheel's, before A [N m]", lambda row: row["wheel"] or "any load"),
-    Column("the pinion's, beyond E [N m]", lambda row: row["pinion"] or "any load"),
+    Column("tip", "gear"),
+    Column("of the period", "corner_period_share", 2, PERCENT),
+    Column("of the load", "corner_load_share", 2, PERCENT),
+    Column("from [N m]", lambda row: row["corner_onset_torque"] or "any load"),
 )
 AGAINST_ISO = (
     Column("torque [N m]", "load", exactly),
@@ -166,11 +157,6 @@ AGAINST_ISO = (
         PERCENT,
     ),
 )
-
-
-def _of_both(row: Row, name: str) -> str:
-    """Shares [%] of the wheel's and the pinion's corner."""
-    return " / ".join(number(PERCENT(row[f"{gear}_{name}"]), 2) for gear in ("wheel", "pinion"))
 
 
 IN_JSON = (
