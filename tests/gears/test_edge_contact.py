@@ -9,6 +9,7 @@ import pytest
 import xarray as xr
 
 from thermogear.gears.contact import hertz_pressure, pair_reduced_modulus, reduced_radius
+from thermogear.gears.deviations import BasePitchDifference
 from thermogear.gears.geometry import Gear
 from thermogear.gears.loaded import LoadedModel, loaded_contact, solve_mesh
 from thermogear.gears.pair import GearPair
@@ -114,3 +115,23 @@ def test_rounded_tips_leave_and_enter_where_finite_elements_have_them(
     phase = np.array([*leaves, *enters]) + (PAIR.path.a - pair.path.a) / pair.base_pitch
     mesh = solve_mesh(pair, 200e3 * WIDTH, phase, model=LoadedModel(body="bore_clamped"))
     assert np.count_nonzero(mesh.force > 0.0, axis=-1).tolist() == [2, 1, 1, 2]
+
+
+@pytest.mark.parametrize("rounding", [0.0, 0.1e-3])
+@pytest.mark.parametrize("tooth", ["beam", "solved"])
+def test_nothing_jumps_where_a_contact_passes_onto_an_edge(rounding: float, tooth: str) -> None:
+    """A hotter gear has the pair at the path's end carry all: its contact narrows to the edge's."""
+    pair = GearPair(*(replace(g, tip_rounding=rounding) for g in (PAIR.pinion, PAIR.wheel)))
+    beside = np.array([-1e-9, 1e-9])
+    for strain, at in ((7e-4, pair.contact_ratio - 1.0), (-7e-4, 0.0)):
+        mesh = solve_mesh(
+            pair,
+            2e3,
+            at + beside,
+            deviations=[BasePitchDifference(strain)],
+            model=LoadedModel(tooth=tooth),
+        )
+        assert mesh.share.max(axis=-1).tolist() == [1.0, 1.0]
+        assert sorted(mesh.edge.max(axis=-1)) == [0, 2 if at else 1]
+        assert np.ptp(mesh.deflection) < 1e-12
+        assert np.ptp(mesh.tangent) < 1e-5 * mesh.tangent[0]

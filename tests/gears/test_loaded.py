@@ -19,6 +19,7 @@ from thermogear.gears.ring import ring_compliance
 from thermogear.gears.sharing_kernel import _half_width
 from thermogear.gears.stiffness import CONTACT_LAWS, Moduli, weber_approach
 from thermogear.gears.tooth import flank_point, tooth_compliances
+from thermogear.gears.touch import first_touch
 
 WIDTH = 20e-3
 PAIR = GearPair(
@@ -472,6 +473,31 @@ class TestForceAtGivenDeflection:
             )
             assert float(force[0]) == pytest.approx(4e3, rel=1e-10)
             assert float(stiffness[0]) == pytest.approx(float(mesh.tangent[i]), rel=1e-9)
+
+    def test_flanks_averaged_over_one_load_are_solved_both_ways(self) -> None:
+        """Off the mean load too; first touch and without a load the flanks are as they are."""
+        phase = np.array([0.05, 0.3, 0.55])
+        relief = [Relief(gear, amount=15e-6, length=5e-3) for gear in ("pinion", "wheel")]
+        loads = np.array([0.0, 3e3, 5e3])
+        mesh = solve_mesh(PAIR, loads, phase, deviations=relief, mean_load=4e3)
+        for row in (1, 2):
+            for i in range(phase.size):
+                force, _ = mesh_force(
+                    PAIR, mesh.deflection[row, i], phase[[i]], deviations=relief, mean_load=4e3
+                )
+                assert float(force[0]) == pytest.approx(loads[row], rel=1e-10)
+        touch = first_touch(mesh.points, relief).gap.min(axis=-1)
+        assert np.array_equal(mesh.unloaded, np.broadcast_to(touch, (3, 3)))
+        assert np.array_equal(mesh.deflection[0], touch)
+
+    def test_many_loads_have_their_averages_from_a_few(self) -> None:
+        phase = np.arange(12) / 12
+        relief = [Relief(gear, amount=15e-6, length=5e-3) for gear in ("pinion", "wheel")]
+        loads = 1e3 * np.array([0.2, 0.5, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0])
+        together = solve_mesh(PAIR, loads, phase, deviations=relief)
+        for load, deflection in zip(loads, together.deflection, strict=True):
+            alone = solve_mesh(PAIR, load, phase, deviations=relief).deflection
+            np.testing.assert_allclose(deflection, alone, rtol=0, atol=1e-8)
 
     def test_it_rises_with_the_deflection_and_starts_at_touch(self) -> None:
         deflection = 0.5e-6 * np.arange(-40, 121)

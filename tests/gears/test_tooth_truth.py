@@ -94,16 +94,16 @@ def against(
     error: float,
     unit: str = "1",
 ) -> None:
-    """Error at every phase, its swing within 4 % or 0.05 um, and shares within 0.025."""
+    """Error at every phase, peak to peak within 4 % or 0.05 um, and shares within 0.025."""
     known, got = np.array(load["error"]), 1e6 * mesh.deflection
     apart = got - known if unit == "um" else got / known - 1.0
     compared("transmission error, corners on", "finite elements of others", apart, error, unit)
-    swing = np.ptp(known)
+    peak = np.ptp(known)
     compared(
-        "its swing, corners on",
+        "its peak to peak, corners on",
         "finite elements of others",
-        np.ptp(got) - swing,
-        max(0.04 * swing, 0.05),
+        np.ptp(got) - peak,
+        max(0.04 * peak, 0.05),
         "um",
     )
     compared("shares, corners on", "finite elements of others", shares(mesh, load["shares"]), 0.025)
@@ -147,7 +147,7 @@ def test_rounded_edges(rounding: str, compared: Compared) -> None:
 
 
 def test_relief(compared: Compared) -> None:
-    """Without the mean over the contact the swing at the greatest load is 1 % more."""
+    """Without the mean over the contact it is 1 % more peak to peak at the greatest load."""
     case = TRUTH["relief"]
     relief = [
         Relief(gear, amount=1e-6 * case["amount_um"], length=1e-3 * case["length_mm"])

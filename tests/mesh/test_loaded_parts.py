@@ -9,7 +9,7 @@ import pytest
 
 from thermogear import GearPair, MeshModel, Operating
 from thermogear.gears.contact import path_of_contact
-from thermogear.gears.deviations import Relief
+from thermogear.gears.deviations import BasePitchDifference, Relief
 from thermogear.gears.loaded import LoadedModel, solve_mesh
 from thermogear.gears.stiffness import Moduli
 from thermogear.mesh.elastic import LoadedPair, TextbookPair, elastic_pair
@@ -39,6 +39,16 @@ def test_springs_of_the_loaded_pair(tooth: str, rig: GearPair, hot_rig: Operatin
     assert alone.size >= 3
     secant = loaded.solve((s[alone] - rig.path.a) / rig.base_pitch).secant
     assert series[:, alone] == pytest.approx(secant, rel=1e-6)
+
+
+def test_a_contact_narrows_near_a_tip_in_the_parts_too(rig: GearPair, hot_rig: Operating) -> None:
+    """A hotter pinion alone to its tip, whose parts in series are then the mesh's secant."""
+    hot = HotPair(rig, hot_rig, MeshModel.consistent())
+    loaded = LoadedPair(hot, (BasePitchDifference(2e-3),))
+    s = rig.path.e - np.array([0.0, 3e-5, 1e-4, 1e-3])
+    assert np.all(loaded.share(s).share > 1.0 - 1e-12)
+    secant = loaded.solve((s - rig.path.a) / rig.base_pitch).secant
+    assert loaded.pair_stiffness(s) == pytest.approx(secant, rel=1e-9)
 
 
 def test_each_gear_carries_its_own_modulus_and_deviations_into_the_loaded_contact(

@@ -407,7 +407,8 @@ def test_what_contradicts_its_data_is_found() -> None:
     factor, error = verdicts("plain")["dynamic_factor"], verdicts("plain")["transmission_error"]
     for name, changed in (
         ("dynamic_factor", {"verdict": FINE}),
-        ("dynamic_factor", {"sentence": factor.sentence.replace("1.44", "1.45")}),
+        ("dynamic_factor", {"sentence": factor.sentence.replace(
+            f"{factor.value:.2f}", f"{factor.value + 0.01:.2f}")}),
         ("dynamic_factor", {"value": 2.29, "figures": {**factor.figures, "own": 2.29}}),
         ("transmission_error", {"sentence": "It is nan µm."}),
         ("transmission_error", {"figures": {**error.figures, "least": 3.9}}),

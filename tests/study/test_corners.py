@@ -69,7 +69,8 @@ def test_corners_of_equal_gears_carry_alike() -> None:
     at = contact()
     mesh = at.under(np.array([[100.0]]), np.arange(201) / 201)
     pinion, wheel = mesh.corner_load[0, 0]
-    assert pinion == pytest.approx(wheel, abs=0.01)
+    # but for the lever of the pinion's edge, whose torque is given
+    assert pinion == pytest.approx(wheel, abs=0.02)
     assert 0.2 < pinion < 0.6
     assert np.ptp(mesh.corner_part[0, 0]) <= 1.0 / 200
     assert at.onset(MOST).tolist() == [[0.0, 0.0]]

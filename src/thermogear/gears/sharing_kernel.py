@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.arrays import Floats
 from thermogear.base.kernel_cache import compiled
+from thermogear.gears.corner import FREE, NEAR, TILTED
 
 MOST_STEPS = 200
 _TOLERANCE = 1e-12
@@ -73,12 +74,12 @@ def _half_width(
     25 %.
     """
     whole = np.sqrt(wide * radius)
-    if _NEAR * distance >= whole:
+    if NEAR * distance >= whole:
         return whole, 0.5
     edge = np.sqrt(wide * edge_radius)
-    tilted, free = angle / (_TILTED * wide), 1.0 / (_FREE * whole)
+    tilted, free = angle / (TILTED * wide), 1.0 / (FREE * whole)
     punch = 1.0 / (tilted + free)
-    half = edge + 0.5 * punch + _NEAR * distance
+    half = edge + 0.5 * punch + NEAR * distance
     if half >= whole:
         return whole, 0.5
     return half, 0.5 * (edge + punch * punch * (tilted + 0.5 * free)) / half
