@@ -131,4 +131,4 @@ def test_reasons_of_older_files_are_left_out_and_said_so() -> None:
 def test_an_example_has_as_many_values_of_ours_as_its_table_says() -> None:
     case = load_example("rig")
     assert isinstance(case, GearCase)
-    assert len(case.assumptions) == 61
+    assert len(case.assumptions) == 63

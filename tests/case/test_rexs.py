@@ -174,6 +174,25 @@ def test_the_root_circle_decides_the_dedendum_before_the_tool(tmp_path: Path) ->
     assert case.pair.wheel.rack.dedendum == 1.3
 
 
+@pytest.mark.parametrize("attribute", ["tooth_tip_chamfer", "tip_form_diameter"])
+def test_a_chamfer_of_the_tip_is_that_of_the_flanks_or_of_the_diameters(
+    attribute: str, tmp_path: Path
+) -> None:
+    parts, links = relieved("linear", None)
+    if attribute == "tip_form_diameter":
+        parts = replaced(parts, 7, ("tip_diameter", "mm", 58.5), (attribute, "mm", 58.1))
+    else:
+        for flank in (13, 14):
+            parts = replaced(parts, flank, (attribute, "mm", 0.2))
+    case, _ = case_of(put(tmp_path, xml(parts, links)))
+    assert case.pair.pinion.tip_chamfer == pytest.approx(0.2e-3, rel=1e-12)
+    assert case.pair.wheel.tip_chamfer == 0.0
+    # the relief is deepest where the flank ends
+    relief = case.file.gears.pinion.tip_relief
+    assert relief is not None
+    assert relief.length == pytest.approx(rolled(0.0581) - rolled(0.056), rel=1e-11)
+
+
 def test_a_generated_shift_moves_the_root_and_not_the_flank(tmp_path: Path) -> None:
     parts, links = one_stage()
     parts.append(

@@ -107,6 +107,22 @@ def test_drawn_pairs_come_back(seed: int, tmp_path: Path) -> None:
         assert one.identical(two)
 
 
+@pytest.mark.parametrize("edge", ["tip_rounding", "tip_chamfer"])
+@pytest.mark.usefixtures("without_results")
+def test_an_edge_comes_back_and_ends_the_flank_for_other_programs(
+    edge: str, tmp_path: Path
+) -> None:
+    names = ("pinion", "wheel")
+    case = gear_case(load_example("fzg-c", [f"gears.{n}.{edge}=0.2 mm" for n in names]))
+    path = tmp_path / "gearbox.rexs"
+    assert_same(case, there_and_back(case, path))
+    again = gear_case(load_case(imported(read_rexs(foreign(path))).text))
+    for name in names:
+        mine, other = getattr(case.pair, name), getattr(again.pair, name)
+        assert other.tip_form_radius == pytest.approx(mine.tip_form_radius, rel=1e-11)
+        assert mine.tip_form_radius < mine.tip_radius == pytest.approx(other.tip_radius)
+
+
 @pytest.mark.usefixtures("without_results")
 def test_overrides_are_part_of_the_case(tmp_path: Path) -> None:
     case = gear_case(

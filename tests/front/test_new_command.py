@@ -63,6 +63,28 @@ def test_undercut_that_shortens_the_contact_is_taken_on_request(
     assert case.pair.start_radii[0] == pytest.approx(case.pair.pinion.form_radius, rel=1e-14)
 
 
+@pytest.mark.parametrize("edge", ["tip-rounding", "tip-chamfer"])
+def test_the_edge_of_the_tips_arrives_at_both_gears(edge: str, tmp_path: Path) -> None:
+    text, case = written(tmp_path / "mine.toml", NEEDED | {f"--{edge}": ["0.2 mm"]})
+    name = edge.replace("-", "_")
+    assert text.count(f'{name} = "0.2 mm"') == 2
+    for gear in (case.pair.pinion, case.pair.wheel):
+        assert getattr(gear, name) == pytest.approx(0.2e-3, rel=1e-15)
+        assert gear.tip_form_radius < gear.tip_radius
+
+
+def test_an_edge_that_no_tip_has_room_for_is_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    given = NEEDED | {"--tip-chamfer": ["2 mm"]}
+    assert main(["new", *options(given), "-o", str(tmp_path / "mine.toml")]) == 2
+    assert capsys.readouterr().err == "".join(
+        f"error: gears.{name}.tip_chamfer: got 2 mm; allowed < {largest} mm; no tip land or no "
+        "involute flank is left; make the edge smaller\n"
+        for name, largest in (("pinion", "1.04232"), ("wheel", "1.141"))
+    )
+
+
 def test_five_options_make_a_case_of_at_most_thirty_lines(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 import warnings
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -432,3 +434,90 @@ def test_an_undercut_that_cuts_the_tooth_off_is_refused():
         "profile_shift: got -1.11 for 8 teeth; the undercut cuts the tooth off; "
         "raise the profile shift (no undercut from 0.195)"
     )
+
+
+class TestTipEdge:
+    """A rounding or chamfer ends the involute below the tip circle, and the path with it."""
+
+    @pytest.mark.parametrize(("teeth", "shift", "alpha"), [(12, 0.5, 20.0), (75, 0.0, 25.0)])
+    @pytest.mark.parametrize("rounding", [0.02, 0.1, 0.25])
+    def test_the_rounding_touches_flank_and_tip_circle(
+        self, teeth: int, shift: float, alpha: float, rounding: float
+    ) -> None:
+        sharp = Gear(teeth, 5e-3, pressure_angle=math.radians(alpha), profile_shift=shift)
+        size = rounding * min(sharp.tip_thickness, 5e-3)
+        gear = Gear(
+            teeth,
+            5e-3,
+            pressure_angle=math.radians(alpha),
+            profile_shift=shift,
+            tip_rounding=size,
+        )
+        # the tooth's axis is the first axis; the circle's centre from the land's end
+        centre = (gear.tip_radius - size) * np.exp(1j * 0.5 * gear.tip_land / gear.tip_radius)
+        r = np.linspace(gear.form_radius, gear.tip_radius, 400_001)
+        away = np.abs(r * np.exp(1j * gear.half_thickness_angle(r)) - centre)
+        assert float(away.min()) == pytest.approx(size, rel=1e-8)
+        assert float(r[away.argmin()]) == pytest.approx(gear.tip_form_radius, abs=1e-6)
+
+    def test_a_small_rounding_shortens_the_path_to_first_order(self) -> None:
+        size = 1e-6
+        pair = GearPair(Gear(25, 5e-3, tip_rounding=size), Gear(75, 5e-3, tip_rounding=size))
+        for gear, gone in (
+            (RIG.pinion, RIG.path.e - pair.path.e),
+            (RIG.wheel, pair.path.a - RIG.path.a),
+        ):
+            sine = math.sin(float(gear.pressure_angle_at(gear.tip_radius)))
+            assert gone == pytest.approx(size * (1.0 - sine) / sine, rel=1e-3)
+
+    def test_a_chamfer_ends_the_path_where_a_lower_tip_would(self) -> None:
+        h = 0.3e-3
+        chamfered = [Gear(g.teeth, g.module, tip_chamfer=h) for g in (RIG.pinion, RIG.wheel)]
+        lower = [
+            Gear(g.teeth, g.module, tip_radius=g.tip_radius - h) for g in (RIG.pinion, RIG.wheel)
+        ]
+        assert GearPair(*chamfered).path == GearPair(*lower).path
+        assert chamfered[0].tip_radius == RIG.pinion.tip_radius
+        assert chamfered[0].tip_land == pytest.approx(RIG.pinion.tip_thickness - 2.0 * h)
+
+    def test_without_an_edge_all_is_as_drawn(self) -> None:
+        gear = Gear(25, 5e-3, tip_rounding=0.0, tip_chamfer=0.0)
+        assert (gear.tip_form_radius, gear.tip_land) == (gear.tip_radius, gear.tip_thickness)
+        assert gear == RIG.pinion
+
+    def test_an_edge_frees_a_tip_that_interferes(self) -> None:
+        pinion, tip = Gear(20, 4e-3), 164.6e-3
+        with pytest.raises(GeometryError, match="interference"):
+            GearPair(pinion, Gear(80, 4e-3, tip_radius=tip))
+        for rounding, chamfer in ((0.0, 0.4e-3), (0.8e-3, 0.0)):
+            wheel = Gear(80, 4e-3, tip_radius=tip, tip_rounding=rounding, tip_chamfer=chamfer)
+            pair = GearPair(pinion, wheel)
+            assert pair.path.a > pinion.base_radius * pinion.junction[1]
+            assert pair.wheel.tip_radius == tip
+
+    @pytest.mark.parametrize("name", ["tip_rounding", "tip_chamfer"])
+    def test_an_edge_that_takes_the_land_is_refused_and_the_limit_holds(self, name: str) -> None:
+        gear = Gear(20, 4e-3)
+
+        def values(size: float) -> dict[str, Any]:
+            return {name: size}
+
+        with pytest.raises(GeometryError) as caught:
+            replace(gear, **values(3e-3))
+        largest = {"tip_rounding": "2.28008", "tip_chamfer": "1.38976"}[name]
+        assert str(caught.value) == (
+            f"{name}: got 3 mm; allowed < {largest} mm; no tip land or no involute flank is "
+            "left; make the edge smaller"
+        )
+        allowed = 1e-3 * float(largest)
+        assert 0.0 < replace(gear, **values(allowed * (1.0 - 1e-4))).tip_land < 1e-3 * 4e-3
+        with pytest.raises(GeometryError):
+            replace(gear, **values(allowed * (1.0 + 1e-4)))
+
+    def test_both_edges_at_once_are_refused(self) -> None:
+        with pytest.raises(InputError) as caught:
+            Gear(20, 4e-3, tip_rounding=1e-4, tip_chamfer=2e-4)
+        assert str(caught.value) == (
+            "tip_chamfer: got 0.2 mm; allowed 0 mm; the tip has a rounding of 0.1 mm too; "
+            "give one of the two"
+        )

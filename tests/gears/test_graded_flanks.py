@@ -133,7 +133,8 @@ def test_exchanging_the_gears_changes_nothing() -> None:
     back = first_touch(
         mesh_points(pair.swapped(), -PHASE + pair.contact_ratio), sides("wheel", "pinion")
     ).gap
-    assert np.sort(forth.min(axis=-1)) == pytest.approx(np.sort(back.min(axis=-1)), abs=1e-10)
+    # an edge has the lever of its own gear: there the least gap moves by the second order
+    assert np.sort(forth.min(axis=-1)) == pytest.approx(np.sort(back.min(axis=-1)), abs=4e-8)
 
 
 @pytest.mark.parametrize(("module", "teeth", "edition"), [(0.6e-3, (19, 90), "1995"),

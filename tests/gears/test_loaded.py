@@ -16,8 +16,10 @@ from thermogear.gears.geometry import Gear
 from thermogear.gears.loaded import LoadedModel, loaded_contact, mesh_force, solve_mesh
 from thermogear.gears.pair import GearPair
 from thermogear.gears.ring import ring_compliance
+from thermogear.gears.sharing_kernel import _half_width
 from thermogear.gears.stiffness import CONTACT_LAWS, Moduli, weber_approach
 from thermogear.gears.tooth import flank_point, tooth_compliances
+from thermogear.gears.touch import first_touch
 
 WIDTH = 20e-3
 PAIR = GearPair(
@@ -87,7 +89,7 @@ class TestPublishedFigures:
             "mean stiffness at 20 to 800 N/mm",
             "computed apart",
             per_width(got.mean_stiffness) / known - 1.0,
-            5e-3,
+            1.2e-2,  # of tip corners taken for flanks
         )
         assert two_pairs(got) == pytest.approx([0.760, 0.790, 0.820, 0.860, 0.920, 0.995], abs=6e-3)
 
@@ -145,7 +147,7 @@ class TestHot:
             "mean stiffness from 20 to 160 °C",
             "computed apart",
             float(got.mean_stiffness) / stiffness - 1.0,
-            5e-3,
+            8e-3,  # of tip corners taken for flanks
         )
 
     @pytest.mark.parametrize(
@@ -178,7 +180,7 @@ class TestHot:
             "swing of the transmission error, gears of different temperature",
             "computed apart",
             np.ptp(te) / peak - 1.0,
-            0.01,
+            0.015,  # of tip corners taken for flanks
         )
         got = loaded_contact(PAIR, load, 1200, deviations=hot, model=CLAMPED)
         assert float(two_pairs(got)) == pytest.approx(fraction, abs=1 / 120 + 5e-4)
@@ -226,20 +228,24 @@ class TestEquilibrium:
         e_star = 206e9 / (2 * 0.91)
         loaded = 0
         for p in range(phase.size):
-            half = np.sqrt(4 * mesh.force[p] / WIDTH * reduced[p] / (np.pi * e_star))
+            normal = mesh.force[p] / point.lever[p]
+            wide = 4 * normal / (np.pi * WIDTH * e_star)
             for j in range(count):
                 if not np.isfinite(gap[p, j]):
                     assert mesh.force[p, j] == 0.0
                     continue
-                closing = gap[p, j]
+                closing, half = 0.0, 1.0
+                if normal[j] > 0.0:
+                    edge = (point.rounding[p, j], point.angle[p, j], point.distance[p, j])
+                    half = _half_width(wide[j], reduced[p, j], *edge)[0]
                 for gear, t, sign in ((PAIR.pinion, t1, -1), (PAIR.wheel, t2, 1)):
                     own = flank_point(gear, t[p, j])
-                    closing += mesh.force[p, j] * float(tooth_compliances(gear, t[p, j]).total)
+                    closing += normal[j] * float(tooth_compliances(gear, t[p, j]).total)
                     closing += float(
                         weber_approach(
-                            mesh.force[p, j],
+                            normal[j],
                             depth=own.x / np.cos(own.beta),
-                            half_width=half[j],
+                            half_width=half,
                             modulus=206e9,
                             poisson=0.3,
                             face_width=WIDTH,
@@ -247,11 +253,13 @@ class TestEquilibrium:
                     )
                     for k in range(count):
                         if mesh.force[p, k] > 0.0:
-                            closing += mesh.force[p, k] * float(
+                            closing += normal[k] * float(
                                 ring_compliance(
                                     gear, t[p, j], other=t[p, k], pitches=sign * (j - k)
                                 )
                             )
+                # the pinion closes a gap by its lever
+                closing = gap[p, j] + closing / point.lever[p, j]
                 if mesh.force[p, j] > 0.0:
                     loaded += 1
                     assert closing == pytest.approx(float(mesh.deflection[p]), rel=1e-9)
@@ -338,8 +346,13 @@ class TestInvariances:
         two = solve_mesh(
             pair.swapped(), 2e3, pair.contact_ratio - phase, deviations=[BasePitchDifference(-hot)]
         )
-        assert np.allclose(one.tangent, two.tangent, rtol=1e-9)
-        assert np.allclose(one.deflection, two.deflection, rtol=0, atol=1e-15)
+        edges = (one.edge > 0).any(axis=-1) | (two.edge > 0).any(axis=-1)
+        assert 0 < edges.sum() < 20
+        assert np.allclose(one.tangent[~edges], two.tangent[~edges], rtol=1e-9)
+        assert np.allclose(one.deflection[~edges], two.deflection[~edges], rtol=0, atol=1e-15)
+        # on an edge the torque of the pinion is given, of the wheel after the exchange
+        lever = one.points.point.lever[one.force > 0.0].min()
+        assert np.abs(one.deflection / two.deflection - 1.0)[edges].max() < 1.0 - lever
 
     def test_the_module_is_only_a_scale(self) -> None:
         small = GearPair(Gear(25, 1e-3), Gear(75, 1e-3))
@@ -453,6 +466,31 @@ class TestForceAtGivenDeflection:
             assert float(force[0]) == pytest.approx(4e3, rel=1e-10)
             assert float(stiffness[0]) == pytest.approx(float(mesh.tangent[i]), rel=1e-9)
 
+    def test_flanks_averaged_over_one_load_are_solved_both_ways(self) -> None:
+        """Off the mean load too; first touch and without a load the flanks are as they are."""
+        phase = np.array([0.05, 0.3, 0.55])
+        relief = [Relief(gear, amount=15e-6, length=5e-3) for gear in ("pinion", "wheel")]
+        loads = np.array([0.0, 3e3, 5e3])
+        mesh = solve_mesh(PAIR, loads, phase, deviations=relief, mean_load=4e3)
+        for row in (1, 2):
+            for i in range(phase.size):
+                force, _ = mesh_force(
+                    PAIR, mesh.deflection[row, i], phase[[i]], deviations=relief, mean_load=4e3
+                )
+                assert float(force[0]) == pytest.approx(loads[row], rel=1e-10)
+        touch = first_touch(mesh.points, relief).gap.min(axis=-1)
+        assert np.array_equal(mesh.unloaded, np.broadcast_to(touch, (3, 3)))
+        assert np.array_equal(mesh.deflection[0], touch)
+
+    def test_many_loads_have_their_averages_from_a_few(self) -> None:
+        phase = np.arange(12) / 12
+        relief = [Relief(gear, amount=15e-6, length=5e-3) for gear in ("pinion", "wheel")]
+        loads = 1e3 * np.array([0.2, 0.5, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0])
+        together = solve_mesh(PAIR, loads, phase, deviations=relief)
+        for load, deflection in zip(loads, together.deflection, strict=True):
+            alone = solve_mesh(PAIR, load, phase, deviations=relief).deflection
+            np.testing.assert_allclose(deflection, alone, rtol=0, atol=1e-8)
+
     def test_it_rises_with_the_deflection_and_starts_at_touch(self) -> None:
         deflection = 0.5e-6 * np.arange(-40, 121)
         force, stiffness = mesh_force(PAIR, deflection, np.arange(40) / 40)
@@ -470,19 +508,19 @@ class TestForceAtGivenDeflection:
     def test_how_far_one_spring_is_from_the_shared_force(self) -> None:
         """F = k_t (y - e_0), tangent at the mean load: near it where the loaded set stays.
 
-        At half load it misses by 0.5 % of the mean load in the median, and by 17 % where a tip
-        corner has let go meanwhile (phase 0.94); at a tenth of the load by 2 % and 37 %.
+        At half load it misses by 0.5 % of the mean load in the median, and by 14 % where a tip
+        corner has let go meanwhile (phase 0.94); at a tenth of the load by 2 % and 31 %.
         """
         model, phase = LoadedModel(body="rim"), np.arange(100) / 100
         mesh = solve_mesh(PAIR, 4e3, phase, model=model)
-        for part, median, worst in ((0.9, 1.5e-4, 6e-4), (0.5, 4.5e-3, 0.17), (0.1, 0.02, 0.37)):
+        for part, median, worst in ((0.9, 1.5e-4, 8e-4), (0.5, 4.5e-3, 0.144), (0.1, 0.02, 0.31)):
             other = solve_mesh(PAIR, part * 4e3, phase, model=model)
             spring = 4e3 + mesh.tangent * (other.deflection - mesh.deflection)
             apart = np.abs(spring - part * 4e3) / 4e3
             assert np.median(apart) == pytest.approx(median, rel=0.05)
             assert apart.max() == pytest.approx(worst, rel=0.05)
             same = np.all((mesh.force > 0) == (other.force > 0), axis=-1)
-            assert apart[same].max() < 4.0 * np.median(apart)
+            assert apart[same].max() < 6.0 * np.median(apart)
             assert part == 0.9 or not same[np.argmax(apart)]
 
     def test_refusal(self) -> None:

@@ -145,6 +145,25 @@ def test_a_deviation_turns_the_flank_by_what_it_takes_off() -> None:
     assert more[0] == 0.0
 
 
+@pytest.mark.parametrize(("rounding", "chamfer"), [(0.6e-3, 0.0), (0.0, 0.5e-3)])
+def test_an_edge_joins_flank_and_tip_circle(rounding: float, chamfer: float) -> None:
+    gear = Gear(20, 4e-3, tip_rounding=rounding, tip_chamfer=chamfer)
+    found = outline(gear, fineness=8)
+    inside = outline(Gear(20, 4e-3), fineness=8)
+    assert found.radius.max() == gear.tip_radius
+    land = np.abs(found.angle[found.radius > gear.tip_radius * (1.0 - 1e-12)])
+    assert 2.0 * gear.tip_radius * land.max() == pytest.approx(gear.tip_land, rel=1e-12)
+    # the edge lies inside the sharp tooth and goes down to where the involute ends
+    edge = (found.radius > gear.tip_form_radius) & (found.angle > land.max())
+    assert np.all(found.angle[edge] < gear.half_thickness_angle(found.radius[edge]))
+    assert found.radius[~np.isnan(found.string)].min() == pytest.approx(gear.form_radius)
+    turn = np.angle(np.diff(found.points)[edge[:-1]])
+    bend = np.abs(np.diff(turn)).max()
+    assert bend < 0.1 if rounding > 0.0 else bend < 0.5
+    area = [np.sum((np.conj(one.points[:-1]) * one.points[1:]).imag) for one in (found, inside)]
+    assert area[0] < area[1]
+
+
 def test_all_teeth_close_the_line() -> None:
     gear = Gear(23, 2e-3)
     line = whole(outline(gear).points, gear.teeth)

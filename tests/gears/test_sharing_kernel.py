@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from thermogear.gears.sharing_kernel import _approach, _share_one, _solve_spd
+from thermogear.gears.contact import hertz_half_width
+from thermogear.gears.sharing_kernel import _approach, _half_width, _share_one, _solve_spd
 from thermogear.gears.stiffness import weber_approach
 
 LINEAR = np.zeros(6)
@@ -17,9 +18,17 @@ CURVED = np.array([0.05, 0.08, 0.43, 0.2, 0.02, 0.1])
 RUN = pytest.mark.parametrize("run", [_share_one, _share_one.py_func], ids=["compiled", "python"])
 
 
-def reach(count: int = 4) -> np.ndarray:
-    """(h/a)^2 F of both gears: from deep flanks to one without depth."""
-    return np.stack([np.geomspace(1e-3, 100.0, count), np.linspace(0.0, 5.0, count)])
+def places(count: int = 4) -> np.ndarray:
+    """Of deep flanks and one without depth; far from a tip, near one, on a sharp and a round edge.
+
+    Columns: h_1, h_2, rho*, r*, theta, d, lever.
+    """
+    out = np.ones((count, 7))
+    out[:, 0] = np.sqrt(np.geomspace(1e-3, 100.0, count))
+    out[:, 1] = np.sqrt(np.linspace(0.0, 5.0, count))
+    kinds = [[0.0, 0.0, np.inf, 1.0], [0.0, 0.0, 0.3, 1.0], [0.0, 2.0, 0.0, 0.98]]
+    out[:, 3:] = np.resize([*kinds, [0.1, 0.5, 0.0, 0.99]], (count, 4))
+    return out
 
 
 def random_mesh(seed: int, count: int = 4) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -53,7 +62,7 @@ def test_linear_contact_is_the_only_contact_set_that_fits(run) -> None:  # type:
         for load in (0.05, 1.0, 30.0):
             force = np.empty(4)
             springs = compliance + np.diag(linear)
-            delta, stiffness, settled = run(load, True, gap, springs, reach(), LINEAR, force)
+            delta, stiffness, settled = run(load, True, gap, springs, 1.0, places(), LINEAR, force)
             exact, at, slope = by_enumeration(load, gap, springs)
             assert settled
             assert force == pytest.approx(exact, rel=1e-9, abs=1e-11 * load)
@@ -81,12 +90,46 @@ def test_the_contact_of_the_kernel_is_the_written_law() -> None:
                     face_width=0.02,
                 )
             )
-        near = [d * d / softest for d in depth]
-        got, slope = _approach(force, near[0], near[1], law)
-        assert got == pytest.approx(exact, rel=1e-12)
+        near = np.array([[*depth, 1.0, 0.0, 0.0, np.inf, 1.0]])
+        assert _approach(force, softest, near, 0, law)[0] == pytest.approx(exact, rel=1e-12)
+
+
+@pytest.mark.parametrize("kind", range(4), ids=["flank", "near a tip", "sharp edge", "round edge"])
+def test_the_slope_of_a_contact_is_that_of_its_approach(kind: int) -> None:
+    """Everywhere rising too: a contact widens in proportion to its force at most."""
+    for force in np.geomspace(1e-6, 1e6, 25):
         h = 1e-5 * force
-        ends = [_approach(f, near[0], near[1], law)[0] for f in (force - h, force + h)]
-        assert slope == pytest.approx((ends[1] - ends[0]) / (2.0 * h), rel=1e-8)
+        got, slope = _approach(force, 1.0, places(), kind, CURVED)
+        ends = [_approach(f, 1.0, places(), kind, CURVED)[0] for f in (force - h, force + h)]
+        assert slope == pytest.approx((ends[1] - ends[0]) / (2.0 * h), rel=1e-7)
+        assert slope > 0.0
+        # work along the mate's normal: what the pinion does by its lever
+        plain, straight = places(), places()[kind, 6]
+        plain[kind, 6] = 1.0
+        over = _approach(force / straight, 1.0, plain, kind, CURVED)
+        assert (got, slope) == pytest.approx((over[0] / straight, over[1] / straight**2), rel=1e-13)
+
+
+def test_half_widths_join_where_the_laws_meet() -> None:
+    """a far from a tip; 0.3 a at a sharp tip, on either side; l on a steep edge; a_e on top."""
+    wide, radius = 4.0 * 200e3 / (np.pi * 113e9), 8e-3
+    a = float(hertz_half_width(200e3, radius, 113e9))
+
+    def half(edge: float, angle: float, distance: float) -> float:
+        return float(_half_width(wide, radius, edge, angle, distance)[0])
+
+    assert half(0.0, 0.0, np.inf) == pytest.approx(a, rel=1e-12)
+    assert half(0.0, 0.0, a * (1.0 - 1e-12)) == pytest.approx(a, rel=1e-11)
+    assert half(0.0, 0.0, 0.5 * a) == pytest.approx(a * (0.3 + 0.7 * 0.5), rel=1e-12)
+    assert half(0.0, 0.0, 0.0) == pytest.approx(0.3 * a, rel=1e-12)
+    assert half(0.0, 1e-12, 0.0) == pytest.approx(0.3 * a, rel=1e-8)
+    # a punch whose pressure falls from its edge as sqrt((l - x)/x) carries pi E* theta l/4
+    assert half(0.0, 50.0, 0.0) == pytest.approx(0.5 * 0.65 * wide / 50.0, rel=1e-3)
+    at = 1e-4
+    assert half(at, 0.02, 0.0) - half(0.0, 0.02, 0.0) == pytest.approx(
+        float(hertz_half_width(200e3, at, 113e9)), rel=1e-12
+    )
+    assert half(1e-20, 0.02, 0.0) == pytest.approx(half(0.0, 0.02, 0.0), rel=1e-6)
 
 
 def test_nonlinear_contact_has_the_least_energy() -> None:
@@ -101,15 +144,14 @@ def test_nonlinear_contact_has_the_least_energy() -> None:
                 # the fifth power of the node: the approach has a root at no force
                 at = top * (0.5 * (1.0 + nodes)) ** 5
                 rate = 2.5 * top * (0.5 * (1.0 + nodes)) ** 4 * weights
-                near = reach()[:, j]
                 work += sum(
-                    _approach(p, near[0], near[1], CURVED)[0] * w
+                    _approach(p, 1.0, places(), j, CURVED)[0] * w
                     for p, w in zip(at, rate, strict=True)
                 )
             return float(0.5 * f @ c @ f + g @ f + work)
 
         force = np.empty(4)
-        _, _, settled = _share_one(3.0, True, gap, compliance, reach(), CURVED, force)
+        _, _, settled = _share_one(3.0, True, gap, compliance, 1.0, places(), CURVED, force)
         assert settled
         found = minimize(
             energy,
@@ -127,13 +169,13 @@ def test_a_given_deflection_gives_back_its_load() -> None:
     for seed in range(20):
         compliance, gap, _ = random_mesh(seed)
         one, two = np.empty(4), np.empty(4)
-        delta, stiffness, _ = _share_one(2.0, True, gap, compliance, reach(), CURVED, one)
-        same, slope, settled = _share_one(delta, False, gap, compliance, reach(), CURVED, two)
+        delta, stiffness, _ = _share_one(2.0, True, gap, compliance, 1.0, places(), CURVED, one)
+        same, slope, settled = _share_one(delta, False, gap, compliance, 1.0, places(), CURVED, two)
         assert settled
         assert two == pytest.approx(one, rel=1e-9, abs=1e-10)
         assert (same, slope) == pytest.approx((delta, stiffness), rel=1e-9)
     force = np.empty(4)
-    assert _share_one(gap.min(), False, gap, compliance, reach(), LINEAR, force) == (
+    assert _share_one(gap.min(), False, gap, compliance, 1.0, places(), LINEAR, force) == (
         gap.min(),
         0.0,
         True,
@@ -145,7 +187,7 @@ def test_pairs_that_cannot_touch_are_left_out() -> None:
     compliance, gap, _ = random_mesh(3)
     gap[1] = np.inf
     force = np.empty(4)
-    _, _, settled = _share_one(50.0, True, gap, compliance, reach(), LINEAR, force)
+    _, _, settled = _share_one(50.0, True, gap, compliance, 1.0, places(), LINEAR, force)
     assert settled
     assert force[1] == 0.0
 
@@ -157,11 +199,11 @@ NAN = np.nan
 @pytest.mark.parametrize("by_load", [True, False])
 @pytest.mark.parametrize("place", [0, 3], ids=["nearest pair", "another pair"])
 @pytest.mark.parametrize(
-    "what", ["asked", "gap", "compliance", "negative compliance", "reach", "law"]
+    "what", ["asked", "gap", "compliance", "negative compliance", "place", "law"]
 )
 def test_nothing_settles_that_is_not_a_number(run, by_load: bool, place: int, what: str) -> None:  # type: ignore[no-untyped-def]
     compliance, _, _ = random_mesh(5)
-    gap, near, law = np.array([0.0, 0.1, 0.2, 0.3]), reach(), CURVED.copy()
+    gap, near, law = np.array([0.0, 0.1, 0.2, 0.3]), places(), CURVED.copy()
     asked = 2.0 if by_load else 5.0
     match what:
         case "asked":
@@ -172,12 +214,12 @@ def test_nothing_settles_that_is_not_a_number(run, by_load: bool, place: int, wh
             compliance[place, place] = NAN
         case "negative compliance":
             compliance[place, place] = -5.0
-        case "reach":
-            near[0, place] = NAN
+        case "place":
+            near[place, 2] = NAN
         case "law":
             law[place] = NAN
     force = np.empty(4)
-    delta, stiffness, settled = run(asked, by_load, gap, compliance, near, law, force)
+    delta, stiffness, settled = run(asked, by_load, gap, compliance, 1.0, near, law, force)
     assert not settled
     assert np.isnan([delta, stiffness, *force]).all()
 

@@ -19,6 +19,7 @@ from thermogear.gears.stiffness import (
     sainsot_compliance,
     yang_sun_stiffness,
 )
+from thermogear.verify import pair_stiffness as finite_stiffness
 
 
 def rig(face_width: float, bores: tuple[float, float]) -> GearPair:
@@ -203,3 +204,22 @@ class TestShares:
         assert float(stiffness_share(pair, s[5])) == pytest.approx(k[0] / k.sum(), rel=1e-14)
         assert float(stiffness_share(pair, pair.path.c)) == 1.0
         assert float(stiffness_share(pair, 0.0)) == 0.0
+
+
+def test_the_textbook_sum_is_too_stiff_and_most_where_the_body_is_deep() -> None:
+    """Beside finite elements, bores held: the range stated in the documentation, and its trend."""
+    over = []
+    for bore in (0.5, 0.7):
+        gears = [
+            Gear(z, 5e-3, face_width=25e-3, bore_radius=bore * Gear(z, 5e-3).root_radius)
+            for z in (25, 75)
+        ]
+        pair = GearPair(*gears)
+        more = pair.contact_ratio - 1.0
+        phase = np.array([0.5 * more, 0.5 * (1.0 + more)])  # two pairs, one pair
+        finite = finite_stiffness(pair, 100e3 * pair.face_width, phase).secant
+        over.append(mesh_stiffness(pair, phase) / finite - 1.0)
+    double, single = np.transpose(over)
+    assert np.all((double > 0.11) & (double < 0.68))
+    assert np.all((single > 0.05) & (single < 0.17))
+    assert double[0] > double[1] + 0.1

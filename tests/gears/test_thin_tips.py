@@ -166,4 +166,6 @@ def test_loaded_mesh_of_pointed_teeth(land: float, law: str) -> None:
     assert np.all(mesh.tangent > 0.0)
     assert np.all(mesh.secant > 0.0)
     back = solve_mesh(pair.swapped(), loads, pair.contact_ratio - phase, model=model)
-    assert np.allclose(back.tangent, mesh.tangent, rtol=1e-8)
+    # on an edge the torque of the pinion is given, of the wheel after the exchange
+    flanks = ~(mesh.edge > 0).any(axis=-1) & ~(back.edge > 0).any(axis=-1)
+    assert np.allclose(back.tangent[flanks], mesh.tangent[flanks], rtol=1e-8)

@@ -10,7 +10,7 @@ import pytest
 
 from conftest import Compared
 from thermogear.base.errors import GeometryError
-from thermogear.gears.candidates import mesh_points
+from thermogear.gears.candidates import MeshPoints, mesh_points
 from thermogear.gears.corner import flank_ends, pinion_point
 from thermogear.gears.deviations import (
     BasePitchDifference,
@@ -71,6 +71,12 @@ def closed(pair: GearPair, s: float, gap: float) -> float:
     return float(s + share * gap)
 
 
+def opened(points: MeshPoints, gap: np.ndarray) -> np.ndarray:
+    """Gaps that the mate closes, which beyond E is the wheel, from those that the pinion does."""
+    point = points.point
+    return gap - np.where(np.isfinite(point.gap), point.gap, 0.0) * (1.0 - point.lever)
+
+
 def random_cases() -> list[tuple[GearPair, list[Deviation]]]:
     """Pairs and flanks drawn once, by a seed fixed before the first comparison."""
     rng = np.random.default_rng(20261122)
@@ -114,7 +120,7 @@ def test_the_gap_is_the_turn_until_the_drawn_flanks_touch(compared: Compared) ->
     for pair, devices in random_cases():
         one, two = (shape_of(pair, devices, gear) for gear in ("pinion", "wheel"))
         points = mesh_points(pair, phase)
-        gap = first_touch(points, devices).gap
+        gap = opened(points, first_touch(points, devices).gap)
         drawn = np.full(gap.shape, np.inf)
         for place in zip(*np.nonzero(gap < 0.05 * pair.pinion.module), strict=True):
             stands = closed(pair, float(points.s[place]), float(gap[place]))
@@ -132,7 +138,7 @@ def least_of_samples(pair: GearPair, s: float, gap: float, one: Shape, two: Shap
     stands = closed(pair, s, gap)
     for _ in range(3):  # the whole flank, then the neighbourhood of the least advance
         rho = np.linspace(low, high, 10_001)
-        string, advance = pinion_point(pair, stands - one(rho), rho=rho)
+        string, advance, *_ = pinion_point(pair, stands - one(rho), rho=rho)
         total = advance + one(rho) + two(string)
         total[(string < lowest * (1.0 - 1e-14)) | (string > highest * (1.0 + 1e-14))] = np.inf
         place = int(np.argmin(total))
@@ -150,7 +156,7 @@ def test_a_closed_gap_is_the_least_advance_over_all_of_the_flank(compared: Compa
     for pair, devices in [*random_cases(), (RIG, wavy)]:
         one, two = (shape_of(pair, devices, gear) for gear in ("pinion", "wheel"))
         points = mesh_points(pair, phase)
-        gap = first_touch(points, devices).gap
+        gap = opened(points, first_touch(points, devices).gap)
         for place in zip(*np.nonzero(gap < 0.05 * pair.pinion.module), strict=True):
             e = float(gap[place])
             apart.append(e - least_of_samples(pair, float(points.s[place]), e, one, two))
@@ -217,11 +223,12 @@ def test_exchanging_the_gears_exchanges_the_flanks() -> None:
     back = RIG.swapped()
     there = mesh_points(back, (RIG.line_of_action - here.s[:, 1] - back.path.a) / back.base_pitch)
     one, two = first_touch(here, devices), first_touch(there, swapped)
+    closed_one, closed_two = opened(here, one.gap), opened(there, two.gap)
     for i in range(phase.size):
         for j, s in enumerate(here.s[i]):
             k = np.flatnonzero(np.abs(there.s[i] + s - RIG.line_of_action) < 1e-9)
             if k.size and one.gap[i, j] < 1e-4:
-                assert two.gap[i, k[0]] == pytest.approx(one.gap[i, j], rel=0, abs=1e-11)
+                assert closed_two[i, k[0]] == pytest.approx(closed_one[i, j], rel=0, abs=1e-11)
                 assert two.edge[i, k[0]] == (0, 2, 1)[one.edge[i, j]]
 
 
@@ -251,3 +258,27 @@ def test_several_operating_points_are_each_their_own() -> None:
         ]
         alone = first_touch(points, devices)
         assert np.array_equal(both.gap[row], alone.gap)
+
+
+def test_a_straight_flank_is_its_own_mean_and_a_corner_lies_below_it() -> None:
+    """At a corner of slope k over the arc the mean is 2 k a/(3 pi), a the half width."""
+    spread, active = 1.6e-5, RIG.path.e - RIG.path.a
+    points = mesh_points(RIG, np.linspace(0.0, 1.0, 41))
+    tilted: list[Deviation] = [PressureAngleError("pinion", 1e-3)]
+    plain, mean = (first_touch(points, tilted, wide).gap for wide in (0.0, spread))
+    inner = (points.s > RIG.path.a + 2e-3) & (points.s < RIG.path.e - 2e-3)
+    s, base = points.s[inner], RIG.pinion.base_radius
+    # a line over the string is bent over the arc by r_b^2/rho^3; x^2 has the mean a^2/4
+    bent = np.tan(RIG.pinion.pressure_angle) * 1e-3 * base**2 / s**3
+    square = 0.125 * spread * s * (1.0 - s / RIG.line_of_action)
+    np.testing.assert_allclose(mean[inner] - plain[inner], -bent * square, rtol=0, atol=1e-8)
+    relief: list[Deviation] = [Relief("pinion", amount=10e-6, length=0.5 * active)]
+    corner = RIG.path.e - 0.5 * active
+    at = mesh_points(RIG, [(corner - RIG.path.a) / RIG.base_pitch])
+    place = np.argmin(np.abs(at.s[0] - corner))
+    pressed = [first_touch(at, relief, wide).gap[0, place] for wide in (0.0, spread, 4.0 * spread)]
+    half = np.sqrt(spread * corner * (1.0 - corner / RIG.line_of_action))
+    slope = 10e-6 / (0.5 * active) * base / corner
+    assert pressed[0] == pytest.approx(0.0, abs=1e-12)
+    assert pressed[1] == pytest.approx(2.0 * slope * half / (3.0 * np.pi), rel=0.06)
+    assert pressed[2] / pressed[1] == pytest.approx(2.0, rel=0.03)

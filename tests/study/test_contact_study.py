@@ -146,11 +146,17 @@ def test_a_pressure_on_a_tip_corner_is_left_out_with_its_reason(contact: xr.Data
     light = contact["base_pitch"]["edge_contact_share"].sel(temperature_difference=0.0).values
     assert np.all(np.diff(light) >= 0.0)
     state, load = np.unravel_index(shares.argmax(), shares.shape)
+    shares_of = {
+        gear: float(data["load_share"].values[flags == bit].max())
+        for gear, bit in (("wheel", 1), ("pinion", 2))
+    }
     assert coded(str(contact.attrs["notices"]))["edge_contact_at_most"] == [
         {
             "state": str(data["temperature"].values[state]),
             "share": shares.max(),
             "torque": data["load"].values[load],
+            "gear": "wheel" if shares_of["wheel"] > shares_of["pinion"] else "pinion",
+            "load": max(shares_of.values()),
         }
     ]
 

@@ -116,6 +116,16 @@ LIMITS: dict[str, Limit] = {
     "scuffing_safety": Limit(
         "", what="safety", least=2.0, source="ISO/TR 13989-2, ISO/TS 6336-21: low risk"
     ),
+    "effective_contact_ratio": Limit(
+        "", least=1.2, source="that of the contact ratio, held by what carries"
+    ),
+    "edge_contact": Limit(
+        "%",
+        what="load on a tip corner",
+        most=0.0,
+        source="ours: a corner has no Hertzian contact, it digs in and settles; tip relief keeps "
+        "it free",
+    ),
     "resonance": Limit(
         "%",
         what="own speeds off it by",

@@ -188,6 +188,8 @@ def _gear(table: GearTable, file: GearFile, prefix: str, known: Mapping[str, Mat
         profile_shift=table.profile_shift,
         face_width=width,
         tip_radius=tip,
+        tip_rounding=table.tip_rounding,
+        tip_chamfer=table.tip_chamfer,
         material=material,
         roughness=table.roughness,
         allow_undercut=table.allow_undercut,

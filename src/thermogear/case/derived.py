@@ -88,7 +88,12 @@ def _gear(name: str, gear: Gear, start: float) -> list[Fact]:
         Fact(name, "root radius", 1e3 * gear.root_radius, "mm"),
         Fact(name, "form radius", 1e3 * gear.form_radius, "mm"),
         Fact(name, "tip radius", 1e3 * gear.tip_radius, "mm"),
-        Fact(name, "tip thickness", 1e3 * gear.tip_thickness, "mm"),
+        *(
+            [Fact(name, "tip form radius", 1e3 * gear.tip_form_radius, "mm")]
+            if gear.tip_form_radius < gear.tip_radius
+            else []
+        ),
+        Fact(name, "tip thickness", 1e3 * gear.tip_land, "mm"),
         Fact(name, "least profile shift without undercut", gear.minimum_profile_shift),
         *([Fact(name, "undercut", cut)] if gear.undercut else []),
     ]

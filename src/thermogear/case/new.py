@@ -32,6 +32,8 @@ class NewCase:
     title: str | None = None
     profile_shift: tuple[float, float] | None = None
     centre_distance: str | None = None
+    tip_rounding: str | None = None
+    tip_chamfer: str | None = None
     material: tuple[str, str] | None = None
     oil: str | None = None
     oil_temperature: str | None = None
@@ -77,6 +79,8 @@ class NewCase:
                 f"gears.{name}",
                 line("teeth", self.teeth[place]),
                 line("profile_shift", shift and shift[place], "in modules"),
+                line("tip_rounding", self.tip_rounding, "radius of the tip's edges"),
+                line("tip_chamfer", self.tip_chamfer, "height that it takes off the tip"),
                 line("material", material and material[place]),
                 line("allow_undercut", self.allow_undercut or None, "may shorten the contact"),
             )

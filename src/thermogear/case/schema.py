@@ -312,6 +312,14 @@ class GearTable(Table):
         description="pitch diameter + 2 (addendum + profile shift) modules. Decides the "
         "contact ratio",
     )
+    tip_rounding: Annotated[float, measure("length", bounds.DEPTH, example="0.2 mm")] = Field(
+        default=0.0,
+        description="no rounding. Decides how far the path of contact is shortened and what a "
+        "tip corner carries beyond it",
+    )
+    tip_chamfer: Annotated[float, measure("length", bounds.DEPTH, example="0.3 mm")] = Field(
+        default=0.0, title="height of a chamfer of the tip in place of the rounding; none"
+    )
     material: Annotated[str, Words('"steel"')] = Field(
         default="steel",
         description="case-hardening gear steel. Decides stiffness, expansion and "

@@ -35,6 +35,8 @@ NEEDED = {
 @click.option(
     "--centre-distance", metavar="LENGTH", help="That of the shifts without backlash if left out."
 )
+@click.option("--tip-rounding", metavar="LENGTH", help="Radius of all tips' edges; sharp.")
+@click.option("--tip-chamfer", metavar="LENGTH", help="Height of a chamfer of all tips; none.")
 @click.option(
     "--material", nargs=2, metavar="NAME NAME", help="Materials of pinion and wheel; steel."
 )

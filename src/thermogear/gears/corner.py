@@ -1,17 +1,17 @@
-"""Where flanks meet off the path of contact: any point of one on the other, tip corners too.
+"""Where flanks meet off the path of contact: any point of one on the other, tip edges too.
 
 A pair whose involutes would meet off the path of contact cannot touch there; a loaded mesh
-lets the tip corner of one tooth touch the other's flank, early on the way in and late on the
-way out. The gap of a pair is how far the mesh must advance along the line of action before
-it touches. Plane kinematics, exact; the only approximation is that the elastic advance does
-not move the point of contact.
+lets the tip's edge of one tooth touch the other's flank, early on the way in and late on the
+way out. The gap of a pair is how far the pinion must turn, along its base circle, before it
+touches. Plane kinematics, exact; the only approximation is that the advance moves neither the
+point of contact nor its normal.
 
 Where undercut ends the path before a tip does, its edge on the undercut gear takes the place of
-that corner.
+that edge.
 
-Frame: origin at the pinion's centre, first axis to its tangent point N1, second along the
-line of action; as complex numbers an involute's string of length l that leaves the base
-circle at the angle psi from N1 ends at (r_b + i l) exp(i psi).
+Frame: origin at the centre of the gear whose edge it is, first axis to its tangent point, second
+along the line of action; as complex numbers an involute's string of length l that leaves the base
+circle at the angle psi from there ends at (r_b + i l) exp(i psi).
 """
 
 from __future__ import annotations
@@ -28,12 +28,37 @@ from thermogear.gears.pair import GearPair
 class ContactPoint(NamedTuple):
     """Where a tooth pair touches: string lengths rho_1, rho_2 [m] and the gap [m] to touching.
 
-    On the path rho_1 + rho_2 = N1N2 and the gap is 0; inf where the corner misses the flank.
+    On the path rho_1 + rho_2 = N1N2 and the gap is 0; inf where the edge misses the flank.
+    gap: advance of the pinion along its base circle, the wheel at rest; off the path that is what
+    is open along the mate's normal over the lever. lever: arm of the pair's force about the
+    pinion's axis over r_b1, 1 on the path and where the wheel's edge touches; angle [rad] >= 0:
+    from the normal of the flank that the edge ends to the mate's, along which the force acts,
+    towards that flank's root, 0 on the path; rounding [m]: reduced radius r* of the edge that
+    touches or is nearest and its mate's flank, 1/r* = 1/r_e + 1/rho; distance [m]: along the flank
+    to that edge, 0 off the path.
     """
 
     pinion: Floats
     wheel: Floats
     gap: Floats
+    lever: Floats
+    angle: Floats
+    rounding: Floats
+    distance: Floats
+
+
+class Meeting(NamedTuple):
+    """Where a point or an edge meets the mate's involute.
+
+    string [m] of the mate's point; gap [m] until then; angle theta [rad] from the normal of the
+    flank to the mate's; lever: arm of a force along the mate's normal about the gear's own axis
+    over its base radius.
+    """
+
+    string: Floats
+    gap: Floats
+    angle: Floats
+    lever: Floats
 
 
 def off_path(pair: GearPair, s: Floats) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
@@ -49,47 +74,66 @@ def off_path(pair: GearPair, s: Floats) -> tuple[NDArray[np.bool_], NDArray[np.b
     return s < pair.path.a - slack, s > pair.path.e + slack
 
 
-def pinion_point(pair: GearPair, s: ArrayLike, *, rho: ArrayLike) -> tuple[Floats, Floats]:
-    """Where a point of the pinion's flank meets the wheel's involute, and the advance till then.
+def pinion_point(
+    pair: GearPair, s: ArrayLike, *, rho: ArrayLike, rounding: ArrayLike = 0.0
+) -> Meeting:
+    """Where a point of the pinion's flank meets the wheel's involute, and the gap till then.
 
     s [m]: where the pair's involutes would meet; rho [m]: string length of the pinion's point,
-    whose string has turned by (s - rho)/r_b1. Returns (string length on the wheel, advance along
-    the line of action), both [m], any shape that broadcasts; the advance is 0 for rho = s and
-    grows with the square of the distance.
+    whose string has turned by (s - rho)/r_b1. ``rounding`` r_e [m]: radius of a circle that touches
+    the flank there from inside, its centre c at the string rho - r_e. Seen from the wheel c lies at
+    R = |c|, on the string q = sqrt(R^2 - r_b2^2) that has turned by psi; the wheel's involute ends
+    at q_i on the same string, which is its normal:
+
+        gap = q - q_i - r_e,   theta = (s - rho)/r_b1 + psi,
+        lever = cos(theta) - (rho - r_e)/r_b1 sin(theta)
+
+    (the arm of the wheel's normal through c about the pinion's centre). The gap is 0 for rho = s
+    and grows with the square of the distance; as the mesh moves on by ds it opens by
+    (1 - lever) ds. Any shapes that broadcast; r_e = 0: the point itself. Derived here.
 
     >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
-    >>> rho, advance = pinion_point(pair, pair.path.c, rho=pair.path.c)
-    >>> f"{1e3 * rho:.2f} mm, {1e6 * advance:.2f} um"
+    >>> met = pinion_point(pair, pair.path.c, rho=pair.path.c)
+    >>> f"{1e3 * met.string:.2f} mm, {1e6 * met.gap:.2f} um"
     '27.36 mm, 0.00 um'
     """
-    r1, r2, length = pair.pinion.base_radius, pair.wheel.base_radius, pair.line_of_action
-    s_, rho_ = np.asarray(s, dtype=float), np.asarray(rho, dtype=float)
-    point = (r1 + 1j * rho_) * np.exp(1j * (s_ - rho_) / r1)
-    # seen from the wheel's centre, with its axes turned to meet its own string
-    seen = np.conj((r1 + r2 + 1j * length) - point)
-    string = np.sqrt(np.maximum(np.abs(seen) ** 2 - r2**2, 0.0))
-    turned = seen / (r2 - 1j * string)
-    turn = np.arctan2(turned.imag, turned.real)
-    return string, s_ - (length - string + r2 * turn)
+    radii = pair.pinion.base_radius, pair.wheel.base_radius
+    return _meeting(radii, pair.line_of_action, np.asarray(s, dtype=float), rho, rounding)
 
 
-def wheel_point(pair: GearPair, s: ArrayLike, *, rho: ArrayLike) -> tuple[Floats, Floats]:
+def wheel_point(
+    pair: GearPair, s: ArrayLike, *, rho: ArrayLike, rounding: ArrayLike = 0.0
+) -> Meeting:
     """:func:`pinion_point` with the gears exchanged: a point of the wheel's flank.
-
-    Returns (string length on the pinion, advance), both [m].
 
     >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
     >>> s = pair.path.c
-    >>> rho, advance = wheel_point(pair, s, rho=pair.line_of_action - s)
-    >>> f"{1e3 * rho:.2f} mm, {1e6 * advance:.2f} um"
+    >>> met = wheel_point(pair, s, rho=pair.line_of_action - s)
+    >>> f"{1e3 * met.string:.2f} mm, {1e6 * met.gap:.2f} um"
     '13.68 mm, 0.00 um'
     """
-    r1, r2, length = pair.pinion.base_radius, pair.wheel.base_radius, pair.line_of_action
-    s_, rho_ = np.asarray(s, dtype=float), np.asarray(rho, dtype=float)
-    own = np.conj((r2 - 1j * rho_) * np.exp(1j * (s_ - (length - rho_)) / r2))
-    point = (r1 + r2 + 1j * length) - own
-    string = np.sqrt(np.maximum(np.abs(point) ** 2 - r1**2, 0.0))
-    return string, string + r1 * np.angle(point / (r1 + 1j * string)) - s_
+    radii, length = (pair.wheel.base_radius, pair.pinion.base_radius), pair.line_of_action
+    return _meeting(radii, length, length - np.asarray(s, dtype=float), rho, rounding)
+
+
+def _meeting(
+    radii: tuple[float, float], length: float, s: Floats, rho: ArrayLike, rounding: ArrayLike
+) -> Meeting:
+    """Base radii [m] of the gear with the edge and of its mate; s from the gear's tangent point."""
+    own, mate = radii
+    rho, rounding = np.asarray(rho, dtype=float), np.asarray(rounding, dtype=float)
+    string, turned = rho - rounding, (s - rho) / own
+    # seen from the mate's centre, with its axes turned to meet its own string
+    seen = np.conj((own + mate + 1j * length) - (own + 1j * string) * np.exp(1j * turned))
+    met = np.sqrt(np.maximum(np.abs(seen) ** 2 - mate**2, 0.0))
+    psi = np.angle(seen / (mate - 1j * met))
+    angle = turned + psi
+    return Meeting(
+        met - rounding,
+        s - (length - met + mate * psi) - rounding,
+        angle,
+        np.cos(angle) - string / own * np.sin(angle),
+    )
 
 
 def flank_ends(pair: GearPair) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -108,33 +152,47 @@ def flank_ends(pair: GearPair) -> tuple[tuple[float, float], tuple[float, float]
 def contact_point(pair: GearPair, s: ArrayLike, extended: bool = True) -> ContactPoint:
     """Contact of a pair whose involutes would meet at ``s`` [m] on the line of action.
 
-    A <= s <= E: the involutes themselves. s > E: the pinion's tip corner, at string length s_E
-    turned (s - s_E)/r_b1 further, on the wheel's flank; s < A: the wheel's tip corner on the
-    pinion's. The gap grows from 0 at the path's ends. ``extended`` False: inf off the path.
-    Any shape.
+    A <= s <= E: the involutes themselves. s > E: the pinion's tip edge, whose flank ends at the
+    string length s_E turned (s - s_E)/r_b1 further, on the wheel's flank; s < A: the wheel's tip
+    edge on the pinion's. The gap grows from 0 at the path's ends. ``extended`` False: inf off the
+    path. Any shape.
 
     >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
     >>> f"{1e6 * contact_point(pair, pair.path.e + 1e-3).gap:.1f} um"
-    '18.9 um'
+    '19.7 um'
     """
-    shape = np.shape(s)
+    shape, gears = np.shape(s), (pair.pinion, pair.wheel)
     s_ = np.atleast_1d(np.asarray(s, dtype=float))
-    length = pair.line_of_action
     early, late = off_path(pair, s_)
-    rho1, rho2, gap = s_.copy(), length - s_, np.where(early | late, np.inf, 0.0)
-    first, second = flank_ends(pair)
+    strings, ends = [s_.copy(), pair.line_of_action - s_], flank_ends(pair)
+    gap = np.where(early | late, np.inf, 0.0)
+    lever, angle, rounding = np.ones_like(gap), np.zeros_like(gap), np.zeros_like(gap)
+    distance = np.where(early | late, 0.0, np.inf)
     # whose edge it may be: a tip's, or that of the other gear's undercut
-    edges = (
-        (late, pinion_point, rho1, rho2, second, first[1]),
-        (early, wheel_point, rho2, rho1, first, second[1]),
-        (late, wheel_point, rho2, rho1, first, second[0]),
-        (early, pinion_point, rho1, rho2, second, first[0]),
-    )
-    count = (4 if pair.cut_short else 2) if extended else 0
-    for here, corner, own, other, (lowest, highest), edge in edges[:count]:
-        string, advance = corner(pair, s_[here], rho=edge)
-        advance[(string < lowest) | (string > highest)] = np.inf
-        nearer = advance <= gap[here]
+    edges = [(late, 0, 1, pair.pinion.tip_rounding), (early, 1, 1, pair.wheel.tip_rounding)]
+    edges += [(late, 1, 0, 0.0), (early, 0, 0, 0.0)] if pair.cut_short else []
+    for here, gear, end, radius in edges:
+        edge, mate = ends[gear][end], 1 - gear
+        if end == 1 or gears[gear].undercut:
+            along = abs(edge**2 - strings[gear] ** 2) / (2.0 * gears[gear].base_radius)
+            nearer = along < distance
+            distance[nearer] = along[nearer]
+            rounding[nearer] = _reduced(radius, strings[mate][nearer])
+        if not extended:
+            continue
+        met = (pinion_point, wheel_point)[gear](pair, s_[here], rho=edge, rounding=radius)
+        lowest, highest = ends[mate]
+        nearer = (met.string >= lowest) & (met.string <= highest) & (met.gap <= gap[here])
+        nearer &= met.lever > 0.0  # else it would turn the gear the other way
         at = tuple(axis[nearer] for axis in np.nonzero(here))
-        own[at], other[at], gap[at] = edge, string[nearer], advance[nearer]
-    return ContactPoint(rho1.reshape(shape), rho2.reshape(shape), gap.reshape(shape))
+        strings[gear][at], strings[mate][at] = edge, met.string[nearer]
+        rounding[at] = _reduced(radius, met.string[nearer])
+        # along the pinion's own normal a force has the arm r_b1
+        lever[at] = met.lever[nearer] if gear == 0 else 1.0
+        gap[at], angle[at] = met.gap[nearer] / lever[at], abs(met.angle[nearer])
+    fields = (*strings, gap, lever, angle, rounding, distance)
+    return ContactPoint(*(values.reshape(shape) for values in fields))
+
+
+def _reduced(rounding: float, string: Floats) -> Floats:
+    return rounding * string / np.maximum(rounding + string, np.finfo(float).tiny)

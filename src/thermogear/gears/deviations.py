@@ -296,7 +296,8 @@ class BasePitchDifference:
     """Two gears of different temperature: base pitches differ by strain x p_b.
 
     strain = lambda_1 t_1 - lambda_2 t_2, t_i the effective temperature rise u_b/(lambda r_b):
-    S = strain (s - s_C) [m], strain [-]. A number or an array over operating points.
+    S = strain (s - s_C) [m], strain [-], off the path that of its end, whose tip touches there. A
+    number or an array over operating points.
 
     >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
     >>> strain = 11.5e-6 * (80.0 - 60.0)  # pinion 80 K, wheel 60 K above the drawing
@@ -308,8 +309,8 @@ class BasePitchDifference:
 
     def gap(self, at: Contacts) -> Floats:
         """e = -strain (s - s_C)."""
-        strain = np.asarray(self.strain, dtype=float)[..., None, None]
-        return np.asarray(-strain * (at.s - at.pair.path.c))
+        strain, path = np.asarray(self.strain, dtype=float)[..., None, None], at.pair.path
+        return np.asarray(-strain * (np.clip(at.s, path.a, path.e) - path.c))
 
 
 def _table(kind: str, axis: str, knots: ArrayLike, added: ArrayLike) -> tuple[Floats, Floats]:

@@ -1,4 +1,4 @@
-"""The true outline of a tooth: root land, fillet trochoid, flanks as they deviate, tip land.
+"""The true outline of a tooth: root land, fillet, flanks as they deviate, edges, tip land.
 
 Tooth frame in polar form: the gear's centre is the origin, angles count from the tooth's axis
 towards its drive flank. One outline is one pitch of the gear, from the middle of the space behind
@@ -19,8 +19,8 @@ from thermogear.gears.deviations import Deviation, FlankShape
 from thermogear.gears.geometry import Gear
 from thermogear.gears.pair import GearPair
 
-FLANK, FILLET, LAND = 20, 10, 2
-"""Steps of one side's flank and fillet, and of half a land."""
+FLANK, FILLET, LAND, EDGE = 20, 10, 2, 4
+"""Steps of one side's flank and fillet, of half a land, and of the edge between flank and land."""
 _DENSE = 400
 
 
@@ -28,7 +28,7 @@ class Outline(NamedTuple):
     """One pitch of a gear, arrays of one shape (point,), back side first.
 
     ``radius`` [m] and ``angle`` [rad] from the tooth's axis; ``string`` rho [m] of the points of an
-    involute, nan elsewhere.
+    involute, along a tip's edge that of the flank's end, nan elsewhere.
     """
 
     radius: Floats
@@ -89,9 +89,10 @@ def outline(
 
 
 def _half(gear: Gear, fineness: int) -> _Side:
-    """Flank from the tip corner down, then the fillet to the root circle."""
+    """The tip's edge, the flank from there down, then the fillet to the root circle."""
     junction, lowest = gear.junction
-    tip = float(np.tan(gear.pressure_angle_at(gear.tip_radius)))
+    tip = float(np.tan(gear.pressure_angle_at(gear.tip_form_radius)))
+    edge = _edge(gear, fineness)
     t = np.linspace(tip, lowest, FLANK * fineness + 1)
     flank = gear.base_radius * np.hypot(1.0, t)
     gamma = np.linspace(junction, 0.5 * math.pi, _DENSE)
@@ -101,11 +102,27 @@ def _half(gear: Gear, fineness: int) -> _Side:
     wanted = np.linspace(0.0, run[-1], FILLET * fineness + 1)[1:]
     x, y = gear.fillet.point(np.interp(wanted, run, gamma))
     return _Side(
-        np.concatenate([flank, np.hypot(x, y)]),
-        np.concatenate([gear.half_thickness_angle(flank), np.arctan2(x, y)]),
-        np.concatenate([gear.base_radius * t, np.full(x.size, np.nan)]),
-        np.concatenate([np.ones(t.size), 1.0 - wanted / run[-1]]),
+        np.concatenate([np.abs(edge), flank, np.hypot(x, y)]),
+        np.concatenate([np.angle(edge), gear.half_thickness_angle(flank), np.arctan2(x, y)]),
+        np.concatenate(
+            [np.full(edge.size, gear.base_radius * tip), gear.base_radius * t, x * np.nan]
+        ),
+        np.concatenate([np.ones(edge.size + t.size), 1.0 - wanted / run[-1]]),
     )
+
+
+def _edge(gear: Gear, fineness: int) -> NDArray[np.complex128]:
+    """The edge from the tip circle down to the flank, which it does not hold [m]; none if sharp."""
+    if gear.tip_form_radius == gear.tip_radius:
+        return np.empty(0, dtype=np.complex128)
+    part = np.linspace(0.0, 1.0, EDGE * fineness + 1)[:-1]
+    land = np.exp(0.5j * gear.tip_land / gear.tip_radius)
+    end = gear.tip_form_radius * np.exp(1j * gear.half_thickness_angle(gear.tip_form_radius))
+    if gear.tip_chamfer > 0.0:
+        return np.asarray(gear.tip_radius * land + part * (end - gear.tip_radius * land))
+    centre = (gear.tip_radius - gear.tip_rounding) * land
+    turn = np.angle((end - centre) / land)
+    return np.asarray(centre + gear.tip_rounding * land * np.exp(1j * part * turn))
 
 
 def _with_lands(
@@ -175,7 +192,7 @@ def span_over_teeth(gear: Gear, set_back: float = 0.0, teeth: int | None = None)
     """
     thick = 2.0 * (gear.base_radius * gear.base_half_angle - set_back)
     if teeth is None:
-        low, high = gear.form_radius, gear.tip_radius
+        low, high = gear.form_radius, gear.tip_form_radius
         middle = 2.0 * float(gear.curvature_radius(0.5 * (low + high)))
         teeth = max(1, round(1.0 + (middle - thick) / gear.base_pitch))
     length = (teeth - 1) * gear.base_pitch + thick

@@ -137,7 +137,7 @@ class GearPair:
             ("wheel", self.wheel, self.pinion, "pinion"),
             ("pinion", self.pinion, self.wheel, "wheel"),
         ):
-            reach = float(mine.curvature_radius(mine.tip_radius))
+            reach = float(mine.curvature_radius(mine.tip_form_radius))
             lowest = other.base_radius * other.junction[1]
             # the tip may come down to the other's form circle, and never past its tangent point
             longest = length - lowest
@@ -150,12 +150,13 @@ class GearPair:
                     fix=f"use {self._accepted(mine, other)}allow_undercut (`new --allow-undercut`) "
                     "to have the rest of the path",
                 )
-            if too_long and not (other.undercut and self._clears(mine, other, reach)):
+            if too_long and not (other.undercut and self._clears(mine, other)):
                 where = "tangent point" if reach > length else "form circle"
+                edge = mine.tip_radius - mine.tip_form_radius
                 raise GeometryError(
                     f"{name}.tip_radius",
                     millimetres(mine.tip_radius),
-                    allowed=f"<= {millimetres(math.hypot(mine.base_radius, longest))}",
+                    allowed=f"<= {millimetres(math.hypot(mine.base_radius, longest) + edge)}",
                     why=f"interference: the tip reaches below the {other_name}'s {where}",
                     fix=f"lower the tip radius or raise {other_name}.profile_shift",
                 )
@@ -175,7 +176,7 @@ class GearPair:
         be too close, without backlash; in words, empty where neither does it.
         """
 
-        reach = float(mine.curvature_radius(mine.tip_radius))
+        reach = float(mine.curvature_radius(mine.tip_form_radius))
 
         def whole(teeth: int, shift: float) -> bool:
             higher = 0.5 * (teeth - other.teeth) + shift - other.profile_shift
@@ -200,12 +201,13 @@ class GearPair:
             ways
         )
 
-    def _clears(self, mine: Gear, other: Gear, reach: float) -> bool:
+    def _clears(self, mine: Gear, other: Gear) -> bool:
         """Whether the tip corner of ``mine`` stays out of the undercut tooth of ``other``.
 
-        ``reach`` [m]: string length of the corner. Its way past the tooth of ``other``, as
+        The sharp corner, inside of which any edge lies. Its way past the tooth of ``other``, as
         :mod:`thermogear.gears.corner` has it, is held against flank and fillet at 2001 places.
         """
+        reach = float(mine.curvature_radius(mine.tip_radius))
         r_1, r_2, a = other.base_radius, mine.base_radius, self.centre_distance
         # angle of the corner from the line of centres, as long as it is below the other's tip
         ends = (a**2 + mine.tip_radius**2 - other.tip_radius**2) / (2.0 * a * mine.tip_radius)
@@ -253,8 +255,8 @@ class GearPair:
 
     @cached_property
     def tip_ends(self) -> tuple[float, float]:
-        """Where the tips alone would have the path begin and end [m]."""
-        reach = [float(g.curvature_radius(g.tip_radius)) for g in (self.wheel, self.pinion)]
+        """Where the tips' flanks alone would have the path begin and end [m]."""
+        reach = [float(g.curvature_radius(g.tip_form_radius)) for g in (self.wheel, self.pinion)]
         return self.line_of_action - reach[0], reach[1]
 
     @cached_property
@@ -277,7 +279,7 @@ class GearPair:
     def start_radii(self) -> tuple[float, float]:
         """r_Nf [m] where the active profile begins: what the other gear's tip still touches.
 
-        r_Nf1 = sqrt((N1N2 - sqrt(r_a2^2 - r_b2^2))^2 + r_b1^2), and the wheel's alike. Above each
+        r_Nf1 = sqrt((N1N2 - sqrt(r_Fa2^2 - r_b2^2))^2 + r_b1^2), and the wheel's alike. Above each
         gear's form radius in every pair that can mesh. Source: ISO 21771-1.
         """
         return (

@@ -349,7 +349,7 @@ def heat_balance(
     >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
     >>> balance = heat_balance(pair, 100.0, 200.0, lubricant("FVA3"), 60e-6)
     >>> f"{balance.losses.mesh.item():.0f} W"
-    '168 W'
+    '166 W'
     """
     if not tolerance > 0.0:
         raise InputError("tolerance", f"{tolerance} K", allowed="> 0 K")

@@ -93,7 +93,10 @@ def contact_at(
     *,
     flank: str = "drive",
 ) -> LoadedMesh:
-    """The loaded contact of one operating point's moduli and heat under any ``loads`` [N]."""
+    """The loaded contact of one operating point's moduli and heat under any ``loads`` [N].
+
+    Shapes of the flanks are averaged over the half width of the point's own load at all of them.
+    """
     one = replace(hot, operating=hot.operating.point(operating))
     moduli = [
         Moduli(tooth=np.ravel(m.tooth)[0], body=np.ravel(m.body)[0]) for m in LoadedPair(one).moduli
@@ -107,6 +110,7 @@ def contact_at(
         deviations=(*deviations, ThermalDeviation(one)),
         model=hot.model.loaded,
         flank=flank,
+        mean_load=LoadedPair(one).force[0],
     )
 
 

@@ -22,15 +22,16 @@ POINTS = 61
 
 
 def profiles(pair: GearPair, operating: Operating, *, printed: bool) -> xr.Dataset:
-    """One flank of each gear, form circle to tip: coordinates [m], y the tooth's centre line.
+    """One flank of each gear, from form circle to tip form circle: coordinates [m].
 
-    The first operating point's temperatures hold. ``consistent`` is the hot profile; where it is
-    asked for, ``printed`` the one with the angle as printed (whose second term carries 1/K).
+    y is the tooth's centre line. The first operating point's temperatures hold. ``consistent`` is
+    the hot profile; where it is asked for, ``printed`` the one with the angle as printed (whose
+    second term carries 1/K).
     """
     hot = HotPair(pair, operating, MeshModel.consistent())
     columns: dict[str, list[NDArray[np.float64]]] = {}
     for gear in (pair.pinion, pair.wheel):
-        r = np.linspace(max(gear.form_radius, gear.base_radius), gear.tip_radius, POINTS)
+        r = np.linspace(max(gear.form_radius, gear.base_radius), gear.tip_form_radius, POINTS)
         psi = gear.half_thickness_angle(r)
         drawn = {"involute": (r, psi), "consistent": hot.grown(gear, r, psi)}
         if printed:

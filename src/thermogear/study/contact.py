@@ -16,14 +16,11 @@ from thermogear.case.case import GearCase
 from thermogear.case.thermal_state import HOT, UNDEFORMED, ThermalState
 from thermogear.gears.iso6336 import iso6336_stiffness
 from thermogear.gears.loaded import loaded_contact
-from thermogear.gears.stiffness import Moduli
-from thermogear.mesh.elastic import LoadedPair
-from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
-from thermogear.mesh.thermal import HotPair, ThermalDeviation
 from thermogear.results.result import Notice, Result
+from thermogear.study.corners import UNIFORM, HotContact
 from thermogear.study.declared import Contact, declared
-from thermogear.study.relief import Seen, one_point
+from thermogear.study.relief import one_point
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -69,8 +66,19 @@ def loaded_survey(
         state.require_settled(case, case.models[0])
     progress("loaded contact", 0, 2)
     ones = [one_point(s.operating(case, case.models[0]), float(moments[0])) for s in states]
-    contact = _solve(case, model, stacked(ones), moments)
-    contact = contact.assign_coords(
+    at = HotContact(case=case, model=model, operating=stacked(ones))
+    contact = _solve(at, moments)
+    onset = at.onset(float(moments.max()))
+    settles = bool(at.yields(at.solve(moments, UNIFORM)).any())
+    contact = contact.assign(
+        corner_onset_torque=dressed(
+            ("temperature", "gear"),
+            onset,
+            "N m",
+            "pinion torque from which a tip corner of this gear carries, 0 where it does at any; "
+            "nan where at no load here",
+        )
+    ).assign_coords(
         temperature=[state.words for state in states],
         gear_temperature=dressed(
             ("temperature",),
@@ -84,7 +92,7 @@ def loaded_survey(
     unequal = [apart(ones[1], difference) for difference in DIFFERENCES]
     reach = max(most, float(moments.max()))
     light = reach * np.asarray(LIGHT)
-    heated = _solve(case, model, stacked(unequal), light)
+    heated = _solve(HotContact(case=case, model=model, operating=stacked(unequal)), light)
     progress("loaded contact", 2, 2)
     error = heated["transmission_error"]
     base_pitch = label(
@@ -134,7 +142,7 @@ def loaded_survey(
         Contact.kind,
         f"Loaded contact: {case.title}",
         {"contact": contact, "base_pitch": base_pitch, "iso_6336": compared},
-        _notices(case, model.body, lost, contact["edge_contact_share"], compared),
+        _notices(at, lost, contact, compared, settles=settles),
         **case.provenance,
         body=model.body,
         base_pitch_length=case.pair.base_pitch,
@@ -142,26 +150,10 @@ def loaded_survey(
     )
 
 
-def _solve(
-    case: GearCase, model: MeshModel, operating: Operating, moments: NDArray[np.float64]
-) -> xr.Dataset:
+def _solve(at: HotContact, moments: NDArray[np.float64]) -> xr.Dataset:
     """The loaded contact over (temperature, load, mesh_phase)."""
-    hot = HotPair(case.pair, operating, model)
-    first, second = (
-        Moduli(tooth=np.reshape(m.tooth, (-1, 1)), body=np.reshape(m.body, (-1, 1)))
-        for m in LoadedPair(hot).moduli
-    )
-    force = moments / case.pair.pinion.base_radius
-    return loaded_contact(
-        case.pair,
-        np.broadcast_to(force, (hot.count, force.size)),
-        PHASES,
-        pinion=first,
-        wheel=second,
-        deviations=[*case.deviations, Seen(ThermalDeviation(hot), np.s_[:, None])],
-        model=model.loaded,
-        dimensions=("temperature", "load"),
-    )
+    pair, force = at.case.pair, at.force(moments)
+    return loaded_contact(pair, force, PHASES, **at.arguments, dimensions=("temperature", "load"))
 
 
 def stacked(points: Sequence[Operating]) -> Operating:
@@ -193,19 +185,25 @@ def apart(point: Operating, difference: float) -> Operating:
 
 
 def _notices(
-    case: GearCase, body: str, lost: int, edges: xr.DataArray, compared: xr.Dataset
+    at: HotContact, lost: int, contact: xr.Dataset, compared: xr.Dataset, *, settles: bool
 ) -> Iterator[Notice]:
+    case, body = at.case, at.model.body
+    edges, loads = contact["edge_contact_share"], contact["corner_load_share"]
     apart = (compared["iso_stiffness"] / compared["loaded_stiffness"] - 1.0).values
     yield Notice.of("loaded_contact_unchecked", body=body)
     yield Notice.of("iso_stiffness_apart", apart=[[apart.min(), apart.max()]])
     if bool((edges > 0.0).any()):
-        most = edges.isel(edges.argmax(...))
+        most, heaviest = edges.isel(edges.argmax(...)), loads.isel(loads.argmax(...))
         yield Notice.of(
             "edge_contact_at_most",
             share=most.item(),
             state=str(most["temperature"].values),
             torque=most["load"].item(),
+            gear=str(heaviest["gear"].values),
+            load=heaviest.item(),
         )
+    if settles:
+        yield Notice.of("edge_settles")
     if lost:
         yield Notice.of("positions_not_settled", lost=lost)
     if any(m.stiffness != "loaded" for m in case.models):

@@ -91,6 +91,8 @@ MEANINGS: dict[str, Meaning] = (
             "face_width",
             "common_face_width",
             "tip_diameter",
+            "tip_form_diameter",
+            "tooth_tip_chamfer",
             "root_diameter",
             "addendum_modification",
             "addendum_reference_profile",

@@ -155,6 +155,8 @@ class _Maker:
             arithmetic_average_roughness_flank=gear.roughness,
             helix_angle_reference_diameter=0.0,
         )
+        if gear.tip_form_radius < gear.tip_radius:
+            sizes += self.numbers(tip_form_diameter=2.0 * gear.tip_form_radius)
         self.add(ident, "cylindrical_gear", name, *sizes, number_of_teeth=int(gear.teeth), **grade)
         self._material(place, gear.material)
         rack = self.numbers(
@@ -166,6 +168,7 @@ class _Maker:
         involute = self.numbers(
             normal_pressure_angle=gear.pressure_angle,
             addendum_modification_coefficient=gear.profile_shift,
+            **({"tooth_tip_chamfer": gear.tip_chamfer} if gear.tip_chamfer > 0.0 else {}),
         )
         left, right = _FLANKS[place]
         self.relate("flank", gear=ident, left=left, right=right)

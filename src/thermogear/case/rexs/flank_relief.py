@@ -17,6 +17,7 @@ from thermogear.case.rexs.attributes import Reader, plain
 from thermogear.case.rexs.draft import Draft, tightest
 from thermogear.case.rexs.lines import DERIVED, Line
 from thermogear.case.rexs.model import Component
+from thermogear.case.units import read_quantity
 
 _SHAPES = {"linear": "linear", "parabolic": "parabolic", "circular": "parabolic"}
 """Shapes of REXS as a case has them: an arc that leaves the involute along its tangent is a
@@ -166,17 +167,17 @@ def _start(
 def _end(
     reader: Reader, made: Draft, name: str, gear: Component, end: str, basics: tuple[float, float]
 ) -> float:
-    """rho [m] where the relief is deepest: the tip, or the start of the active profile."""
+    """rho [m] where the relief is deepest: the tip form circle, or where the other's ends."""
     module, angle = basics
     values = {one.path: one.value for one in made.lines}
 
     def tip(of: str, component: Component) -> float:
         given = reader.number(component, "tip_diameter")
-        if given is not None:
-            return _rolled(reader, component, given.si, basics, component)
         teeth = reader.whole(component, "number_of_teeth") or 0
         shift = float(values.get(f"gears.{of}.profile_shift", 0.0))
-        return _rolled(reader, component, module * (teeth + 2.0 + 2.0 * shift), basics, component)
+        sharp = module * (teeth + 2.0 + 2.0 * shift) if given is None else given.si
+        chamfer = read_quantity(values.get(f"gears.{of}.tip_chamfer", "0 mm"), "length")
+        return _rolled(reader, component, sharp - 2.0 * chamfer, basics, component)
 
     if end == "tip":
         return tip(name, gear)

@@ -207,6 +207,7 @@ def _gear(
     tip = reader.number(gear, "tip_diameter")
     if tip is not None:
         made.read(f"{place}.tip_diameter", tip, "tip_diameter")
+    _edge(reader, made, place, gear, [*flanks.values()])
     _tool(reader, made, name, gear, (module, angle, shift))
     mean = reader.number(gear, "arithmetic_average_roughness_flank")
     depth = reader.number(gear, "averaged_peak_to_valley_height_flank")
@@ -215,6 +216,20 @@ def _gear(
     elif depth is not None:
         value = f"{plain(depth.number / 6.0)} {depth.unit}"
         made.put(f"{place}.roughness", value, DERIVED, "Ra = Rz/6, a usual ratio")
+
+
+def _edge(
+    reader: Reader, made: Draft, place: str, gear: Component, flanks: list[Component]
+) -> None:
+    """The chamfer of the tip, h = (d_a - d_Fa)/2; REXS has no word for a rounding."""
+    chamfer = _agreed(made, _all(reader, flanks, "tooth_tip_chamfer"), "tooth_tip_chamfer")
+    tip, form = (reader.number(gear, name) for name in ("tip_diameter", "tip_form_diameter"))
+    if chamfer and chamfer[1].si > 0.0:
+        made.read(f"{place}.tip_chamfer", chamfer[1], f"tooth_tip_chamfer of {chamfer[0].called}")
+    elif tip is not None and form is not None and form.si < tip.si:
+        height = _tidy(0.5e3 * (tip.si - form.si))
+        by = "(tip_diameter - tip_form_diameter)/2"
+        made.put(f"{place}.tip_chamfer", f"{plain(height)} mm", DERIVED, by)
 
 
 def _shift(

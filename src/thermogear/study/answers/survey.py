@@ -20,7 +20,7 @@ from thermogear.case.thermal_state import HOT, UNDEFORMED
 from thermogear.mesh.model import MeshModel
 from thermogear.results.answer import Answer
 from thermogear.results.result import Later, Notice, Result
-from thermogear.study.answers import moving, shafts, steady
+from thermogear.study.answers import moving, shafts, sharing, steady
 from thermogear.study.answers.asked import MOST_POINTS, MOVES, OF_COLD, OF_HOT, Asked
 from thermogear.study.declared import Answers
 from thermogear.study.speeds import Speeds
@@ -33,6 +33,7 @@ MAKERS = (
     steady.heat,
     steady.gap,
     steady.film,
+    sharing.answers,
     moving.speeds,
     moving.loads,
     moving.errors,

@@ -19,7 +19,7 @@ from thermogear.base.display import (
 )
 from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.results.result import Result
-from thermogear.views.columns import Column, by_name, declared, key, rows_along, units
+from thermogear.views.columns import Column, Row, by_name, declared, key, rows_along, units
 from thermogear.views.page import Page, Shown
 from thermogear.views.pages import survey_captions as captions
 from thermogear.views.pages.survey import survey
@@ -87,19 +87,36 @@ def page(result: Result) -> Page:
         secant_stiffness=data["secant_stiffness"].mean("mesh_phase"),
         mean_error=error.mean("mesh_phase"),
         error_swing=error.max("mesh_phase") - error.min("mesh_phase"),
-        wheel_corner=_corner_share(data, 1),
-        pinion_corner=_corner_share(data, 2),
         contact_pressure=data["contact_pressure"].max(
             set(data["contact_pressure"].dims) - {"load", "temperature"}
         ),
     )
+    for gear in ("wheel", "pinion"):
+        for name in ("period", "load"):
+            share = data[f"corner_{name}_share"].sel(gear=gear, drop=True)
+            of_period[f"{gear}_{name}"] = share
     table = declared(
-        "Loaded contact by load and temperature. Edge contact: share of the mesh period in which "
-        "the wheel's tip corner carries (before A) / the pinion's (beyond E). The Hertzian "
-        "pressure is not valid on a corner; the greatest one is that of the flanks alone.",
+        f"Loaded contact by load and temperature. The nominal contact ratio is "
+        f"{data.attrs['contact_ratio']:.3f}, the effective one the mean number of tooth pairs that "
+        "carry. Edge contact: share of the mesh period in which the wheel's tip corner carries "
+        "(before A, in approach) / the pinion's (beyond E, in recess), and what they carry of the "
+        "load at most. The Hertzian pressure is not valid on a corner; the greatest one is that of "
+        "the flanks alone.",
         COLUMNS,
         rows_along(of_period, "load", "temperature"),
         names=2,
+    )
+    begin = declared(
+        "Pinion torque from which a tip corner carries.",
+        ONSET,
+        [
+            {"temperature": name, **dict(zip(data["gear"].values.tolist(), torques, strict=True))}
+            for name, torques in zip(
+                data["temperature"].values.tolist(),
+                data["corner_onset_torque"].values.tolist(),
+                strict=True,
+            )
+        ],
     )
     against = declared(
         "Mean mesh stiffness, undeformed [10⁸ N/m].", AGAINST_ISO, rows_along(beside, "load")
@@ -115,7 +132,7 @@ def page(result: Result) -> Page:
         result,
         summary,
         pictures,
-        [against, table],
+        [against, table, begin],
         numbers=lambda: {**by_name(every, IN_JSON), "units": units(IN_JSON, every)},
     )
 
@@ -128,13 +145,15 @@ COLUMNS = (
     Column("δ mean", "mean_error", 3, MICROMETRE),
     Column("δ peak to peak", "error_swing", 3, MICROMETRE),
     Column("double contact", "double_contact_length", 3, MILLIMETRE),
-    Column(
-        "edge contact [%]",
-        lambda row: " / ".join(
-            number(PERCENT(row[f"{gear}_corner"]), 2) for gear in ("wheel", "pinion")
-        ),
-    ),
+    Column("effective contact ratio", "effective_contact_ratio", ".2f"),
+    Column("edge contact [%]", lambda row: _of_both(row, "period")),
+    Column("load on a corner [%]", lambda row: _of_both(row, "load")),
     Column("greatest pressure on the flanks", "contact_pressure", 3, MEGAPASCAL),
+)
+ONSET = (
+    Column("temperature", lambda row: prose(row["temperature"])),
+    Column("the wheel's, before A [N m]", lambda row: row["wheel"] or "any load"),
+    Column("the pinion's, beyond E [N m]", lambda row: row["pinion"] or "any load"),
 )
 AGAINST_ISO = (
     Column("torque [N m]", "load", exactly),
@@ -149,10 +168,9 @@ AGAINST_ISO = (
 )
 
 
-def _corner_share(data: xr.Dataset, bit: int) -> xr.DataArray:
-    """Share of the mesh period in which the tip corner with this flag carries load."""
-    carries = (data["edge_contact"].drop_attrs() & bit) > 0
-    return carries.any("pair").mean("mesh_phase")
+def _of_both(row: Row, name: str) -> str:
+    """Shares [%] of the wheel's and the pinion's corner."""
+    return " / ".join(number(PERCENT(row[f"{gear}_{name}"]), 2) for gear in ("wheel", "pinion"))
 
 
 IN_JSON = (
@@ -169,6 +187,12 @@ IN_JSON = (
     key("mean_stiffness"),
     key("double_contact_length_m", "double_contact_length"),
     key("edge_contact_share"),
+    key("contact_ratio", lambda data: data.attrs["contact_ratio"]),
+    key("effective_contact_ratio"),
+    key("gear", lambda data: data["gear"].values.tolist()),
+    key("corner_period_share"),
+    key("corner_load_share"),
+    key("corner_onset_torque"),
     key("iso_6336_stiffness"),
 )
 
