@@ -16,11 +16,16 @@ from thermogear.gears.pair import GearPair
 
 
 class MeshPoints(NamedTuple):
-    """The candidates for contact at each mesh position, arrays (position, pair)."""
+    """The candidates for contact at each mesh position, arrays (position, pair).
+
+    ``broken``: whose tooth ends below the place where its flank would touch, 1 the wheel's, 2 the
+    pinion's, as in :data:`~thermogear.base.vocabulary.EDGE_CONTACT`; None: no tooth does.
+    """
 
     s: NDArray[np.float64]
     point: ContactPoint
     contacts: Contacts
+    broken: NDArray[np.int8] | None = None
 
 
 def mesh_points(

@@ -22,6 +22,7 @@ from thermogear.gears.deviations import Deviation
 from thermogear.gears.mesh_system import BODIES, LoadedModel, MeshSystem, flat
 from thermogear.gears.pair import GearPair
 from thermogear.gears.stiffness import Moduli
+from thermogear.gears.tooth_damage import Damage
 from thermogear.gears.touch import first_touch
 
 if TYPE_CHECKING:
@@ -136,10 +137,12 @@ def solve_mesh(
     model: LoadedModel | None = None,
     flank: str = "drive",
     mean_load: ArrayLike | None = None,
+    damage: Damage | None = None,
 ) -> LoadedMesh:
     """The arrays behind :func:`loaded_contact`, which says what they mean.
 
-    mean_load [N]: that whose half width averages the shapes of the flanks, by default each load.
+    mean_load [N]: that whose half width averages the shapes of the flanks, by default each load;
+    damage: a crack or a chip of one tooth (:mod:`~thermogear.gears.tooth_damage`).
 
     >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
     >>> f"{solve_mesh(pair, 4e3, [0.0]).force.sum():.3f} N"
@@ -158,6 +161,7 @@ def solve_mesh(
         model=model or LoadedModel(),
         flank=flank,
         load=load if mean_load is None else mean_load,
+        damage=damage,
     )
     lead, width = system.lead, pair.face_width
     asked = flat(load, lead=lead)

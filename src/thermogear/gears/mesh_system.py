@@ -22,7 +22,7 @@ from thermogear.base.errors import InputError, nearest
 from thermogear.gears.candidates import MeshPoints, mesh_points
 from thermogear.gears.contact import pair_reduced_modulus, reduced_modulus
 from thermogear.gears.corner import flank_ends
-from thermogear.gears.deviations import Deviation, FlankShape
+from thermogear.gears.deviations import GEARS, Deviation, FlankShape
 from thermogear.gears.geometry import Gear
 from thermogear.gears.pair import GearPair
 from thermogear.gears.ring import body_matrices, foot_load
@@ -33,6 +33,7 @@ from thermogear.gears.stiffness import (
     yang_sun_stiffness,
 )
 from thermogear.gears.tooth import STARTS, flank_point, unit_compliance
+from thermogear.gears.tooth_damage import Damage
 from thermogear.gears.tooth_table import PLANES, tooth_table
 from thermogear.gears.touch import Touch, first_touch
 
@@ -116,12 +117,7 @@ def _solved(
     """The same from finite elements, split by where the energy sits."""
     table = tooth_table(gear, model.plane)
     # the mate's normal on an edge is turned from the flank's towards the root
-    tooth, body = (
-        plain + tip.turned(-angle) - tip.normal
-        for plain, tip in zip(
-            table.self_compliance(t), (table.tip_tooth, table.tip_body), strict=True
-        )
-    )
+    tooth, body = table.under(t, angle)
     out = np.zeros((*t.shape, t.shape[1]))
     for j, k in np.ndindex(out.shape[1:]):
         if j == k:
@@ -146,9 +142,13 @@ class Drawn(NamedTuple):
 
 
 @lru_cache(maxsize=32)
-def as_drawn(pair: GearPair, phases: bytes, flank: str, model: LoadedModel) -> Drawn:
+def as_drawn(
+    pair: GearPair, phases: bytes, flank: str, model: LoadedModel, damage: Damage | None = None
+) -> Drawn:
     """Remembered: a heat balance, a row of temperatures, a sweep ask for the same places."""
-    at = mesh_points(pair, np.frombuffer(phases), flank, model.extended).point
+    points = mesh_points(pair, np.frombuffer(phases), flank, model.extended)
+    points = points if damage is None else damage.touching(points, model.extended)
+    at = points.point
     gears, strings = (pair.pinion, pair.wheel), (at.pinion, at.wheel)
     # a candidate that misses the flank (it never carries) at its end
     parameters = [
@@ -162,13 +162,19 @@ def as_drawn(pair: GearPair, phases: bytes, flank: str, model: LoadedModel) -> D
     depths = [p.x / np.cos(p.beta) for p in flanks]
     places = np.stack([*depths, radius, at.rounding, at.angle, at.distance, at.lever], axis=-1)
     compliance = _solved if model.tooth == "solved" else _beam_on_ring
+    angles = [
+        np.where((rho == ends[1]) | (points.broken == edge), at.angle, 0.0)
+        for rho, ends, edge in zip(strings, flank_ends(pair), (2, 1), strict=True)
+    ]
     # the pinion's load points against its rotation, the wheel's along it
     parts = [
-        compliance(gear, t, np.where(rho == ends[1], at.angle, 0.0), sign, model)
-        for gear, t, rho, ends, sign in zip(
-            gears, parameters, strings, flank_ends(pair), (-1, 1), strict=True
-        )
+        compliance(gear, t, angle, sign, model)
+        for gear, t, angle, sign in zip(gears, parameters, angles, (-1, 1), strict=True)
     ]
+    if damage is not None:
+        i = GEARS.index(damage.gear)
+        more = damage.softer(points.contacts, parameters[i], angles[i], model.plane)
+        parts[i] = parts[i][0] + more[0], parts[i][1] + more[1]
     tooth, body = (np.stack(part) for part in zip(*parts, strict=True))
     lever = at.lever[..., None]
     return Drawn(tooth / at.lever**2, body / (lever * at.lever[..., None, :]), places)
@@ -207,13 +213,15 @@ class MeshSystem:
         model: LoadedModel,
         flank: str,
         load: ArrayLike = 0.0,
+        damage: Damage | None = None,
     ) -> MeshSystem:
         """Geometry, unit compliances and gaps; see :func:`loaded_contact` for the arguments.
 
         load [N]: its Hertzian half width averages the flanks' shapes.
         """
         points = mesh_points(pair, phase, flank, model.extended)
-        drawn = as_drawn(pair, np.asarray(phase, dtype=float).tobytes(), flank, model)
+        points = points if damage is None else damage.touching(points, model.extended)
+        drawn = as_drawn(pair, np.asarray(phase, dtype=float).tobytes(), flank, model, damage)
         positions, count = points.s.shape
         gap, edge = _pressed_touch(points, deviations, load)
         lead = np.broadcast_shapes(

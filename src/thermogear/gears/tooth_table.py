@@ -40,7 +40,7 @@ PATCH = 0.12
 STATIONS = 12
 """Chebyshev points of the loads along a flank; two more stand at its tip."""
 MESH = Density(growth=1.5)
-_COUPLED = 6
+COUPLED = 6
 """Degree, in both places, of the coupling's polynomial."""
 _PRESSURE = 40
 """Points of Gauss and Chebyshev's rule over an elliptic pressure."""
@@ -126,6 +126,14 @@ class ToothTable(Flank):
         place = self.place(t)
         return _cubic(place, self.stations, self.tooth), _cubic(place, self.stations, self.body)
 
+    def under(self, t: Floats, angle: Floats) -> tuple[Floats, Floats]:
+        """:meth:`self_compliance` of a load turned by ``angle`` [rad] >= 0 towards the root."""
+        tooth, body = self.self_compliance(t)
+        return (
+            tooth + self.tip_tooth.turned(-angle) - self.tip_tooth.normal,
+            body + self.tip_body.turned(-angle) - self.tip_body.normal,
+        )
+
     def coupled(self, t: Floats, *, loaded: Floats, lag: int) -> Floats:
         """Deflection at ``t`` of the tooth ``lag`` pitches ahead of one loaded at ``loaded``."""
         if abs(lag) > MATES:
@@ -172,11 +180,15 @@ class Shape:
         nu = self.gear.material.poisson_ratio
         return nu if self.plane == "stress" else nu / (1.0 - nu)
 
+    @property
+    def softness(self) -> float:
+        """What compliances are multiplied by, 1 - nu^2 in plane strain."""
+        return 1.0 if self.plane == "stress" else 1.0 - self.gear.material.poisson_ratio**2
+
 
 @lru_cache(maxsize=64)
 def _table(shape: Shape) -> ToothTable:
-    softness = 1.0 if shape.plane == "stress" else 1.0 - shape.gear.material.poisson_ratio**2
-    return Sector.of(shape.gear, shape.poisson).table(softness)
+    return Sector.of(shape.gear, shape.poisson).table(shape.softness)
 
 
 def _pressure_load(gear: Gear, tooth: Tooth, centre: float, half_width: float) -> Floats:
@@ -201,6 +213,25 @@ def _pressure_load(gear: Gear, tooth: Tooth, centre: float, half_width: float) -
     for node in range(3):
         np.add.at(out, tooth.flank[first + 2 * element + node], shape[node][:, None] * force)
     return out
+
+
+class Condensed(NamedTuple):
+    """A sector with its inner unknowns eliminated, under loads on its tooth.
+
+    Unknowns ``inner`` and at the ``sides``; ``own`` (inner, load) with the sides held, ``by_side``
+    (inner, side); ``frame`` turns radial and hoop motions of the sides into x and y; by these
+    motions ``stiffness`` (side, side) and ``pushed`` (load, side), the deflection at the loads;
+    ``held`` (load, load): that with the sides held.
+    """
+
+    inner: Integers
+    sides: Integers
+    own: Floats
+    by_side: Floats
+    frame: Floats
+    stiffness: Floats
+    pushed: Floats
+    held: Floats
 
 
 class Solved(NamedTuple):
@@ -252,10 +283,19 @@ class Sector:
         foot = foot_mesh(gear, across, density)
         arcs = np.linspace(low, high, density.count(rows) + 1)
         mesh = tooth_mesh(gear, across=across, arcs=arcs, density=density)
-        rest = np.setdiff1d(np.arange(mesh.patch.nodes.shape[0]), mesh.joint)
+        return cls.assembled(gear, foot, mesh, poisson)
+
+    @classmethod
+    def assembled(
+        cls, gear: Gear, foot: Foot, mesh: Tooth, poisson: float, opened: int = 0
+    ) -> Sector:
+        """Foot and tooth share the nodes of their joint but the last ``opened`` ones."""
+        kept = mesh.joint.size - opened
+        rest = np.setdiff1d(np.arange(mesh.patch.nodes.shape[0]), mesh.joint[:kept])
         below = foot.patch.nodes.shape[0]
         number = np.empty(mesh.patch.nodes.shape[0], dtype=np.int64)
-        number[mesh.joint], number[rest] = foot.joint, below + np.arange(rest.size)
+        number[mesh.joint[:kept]] = foot.joint[:kept]
+        number[rest] = below + np.arange(rest.size)
         nodes = np.concatenate([foot.patch.nodes, mesh.patch.nodes[rest]])
         cells = np.concatenate([foot.patch.cells, number[mesh.patch.cells]])
         above = replace(mesh, patch=replace(mesh.patch, poisson=poisson))
@@ -279,8 +319,8 @@ class Sector:
         arcs = 0.5 * (first + last) + 0.5 * (last - first) * chebyshev.chebpts2(count)
         return arcs, np.clip(np.minimum(arcs - low, high - arcs), 0.5 * patch, patch)
 
-    def solved(self, loads: Floats) -> Solved:
-        """Factorize and join the sectors, ``loads`` (unknown, load) between bore and sides."""
+    def condensed(self, loads: Floats) -> Condensed:
+        """Factorize; ``loads`` (unknown, load) between bore and sides."""
         from scipy.sparse.linalg import splu
 
         whole, foot = self.patch.stiffness(), self.foot
@@ -301,10 +341,16 @@ class Sector:
         frame = _polar_frame(foot)
         pushed = loads[inner].T @ by_side @ frame
         stiffness = frame.T @ (columns[sides].toarray() + coupling.T @ by_side) @ frame
-        shifted = _joined(stiffness, pushed, self.gear.teeth)
-        lags = pushed @ shifted
-        lags[MATES] += loads[inner].T @ own
-        return Solved(inner, sides, own, by_side, frame @ shifted, lags)
+        held = loads[inner].T @ own
+        return Condensed(inner, sides, own, by_side, frame, stiffness, pushed, held)
+
+    def solved(self, loads: Floats) -> Solved:
+        """Condense and join the sectors, ``loads`` as in :meth:`condensed`."""
+        part = self.condensed(loads)
+        shifted = joined(part.stiffness, part.pushed, self.gear.teeth)
+        lags = part.pushed @ shifted
+        lags[MATES] += part.held
+        return Solved(*part[:4], part.frame @ shifted, lags)
 
     def table(self, softness: float = 1.0) -> ToothTable:
         """Factorize, join the sectors, take the indentation off, and fit.
@@ -337,7 +383,7 @@ class Sector:
         tooth *= softness
         place = (2.0 * arcs - low - high) / (high - low)
         order = np.argsort(place)
-        fit = np.linalg.pinv(chebyshev.chebvander(place, _COUPLED))
+        fit = np.linalg.pinv(chebyshev.chebvander(place, COUPLED))
         return ToothTable(
             ends=(low / gear.module, high / gear.module),
             base=gear.base_radius / gear.module,
@@ -394,7 +440,7 @@ def _polar_frame(foot: Foot) -> Floats:
     return frame
 
 
-def _joined(stiffness: Floats, pushed: Floats, teeth: int) -> Floats:
+def joined(stiffness: Floats, pushed: Floats, teeth: int) -> Floats:
     """Motion of the sides of the sectors about the loaded one, (lag, side, load).
 
     stiffness (side, side), left before right: of the sector at its sides; pushed (load, side): the

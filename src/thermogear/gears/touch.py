@@ -91,6 +91,11 @@ def first_touch(
         gap, edge = solve(
             contacts.pair, tuple(shapes), contacts.s.shape, contacts.s.tobytes(), extended, spread
         )
+    if points.broken is not None:
+        # on the edge of the break, what is taken off counts where that edge is
+        there = sum((d.gap(contacts) for d in shapes), start=points.point.gap)
+        gap = np.where(points.broken, there, gap)
+        edge = np.where(points.broken, points.broken, edge)
     whole = np.asarray(sum(rest, start=gap))
     return Touch(whole, np.broadcast_to(edge, whole.shape))
 
