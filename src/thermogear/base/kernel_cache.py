@@ -63,5 +63,4 @@ def compiled(function: Function) -> Function:
 
     A division by zero gives inf or nan, as numpy's: to look for one costs time at every division.
     """
-    made = numba.njit(cache=True, error_model="numpy", no_cfunc_wrapper=True)(function)
-    return rebuilt(cast(Function, made))
+    return rebuilt(cast(Function, numba.njit(cache=True, error_model="numpy")(function)))
