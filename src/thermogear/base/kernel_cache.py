@@ -58,12 +58,9 @@ def rebuilt(kernel: Kernel) -> Kernel:
     return kernel
 
 
-_OPTIONS: dict[str, Any] = {"cache": True, "error_model": "numpy", "no_cfunc_wrapper": True}
-
-
 def compiled(function: Function) -> Function:
     """numba's decorator with a type; no fast math, so that results do not depend on the lane.
 
     A division by zero gives inf or nan, as numpy's: to look for one costs time at every division.
     """
-    return rebuilt(cast(Function, numba.njit(**_OPTIONS)(function)))
+    return rebuilt(cast(Function, numba.njit(cache=True, error_model="numpy")(function)))
