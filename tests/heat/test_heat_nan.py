@@ -30,17 +30,6 @@ def test_a_network_wants_numbers_everywhere() -> None:
         Losses(mesh=NAN)
 
 
-def test_a_warm_up_wants_numbers_everywhere() -> None:
-    network = ThermalNetwork((LINK,), {"body": 50.0}, AMBIENT, {"body": 900.0})
-    with pytest.raises(InputError, match=r"^initial temperature of body: got nan K; allowed > 0"):
-        network.transient([0.0, 1.0], {"body": NAN})
-    with pytest.raises(InputError, match=r"^times: got \[ 0\. nan\] s; allowed >= 0, finite$"):
-        network.transient([0.0, NAN], {"body": 293.15})
-    empty = ThermalNetwork((LINK,), {"body": 50.0}, AMBIENT, {"body": NAN})
-    with pytest.raises(InputError, match=r"^capacity: got \[nan\]; allowed > 0 J/K$"):
-        empty.transient([0.0, 1.0], {"body": 293.15})
-
-
 def test_an_unknown_film_is_in_no_regime() -> None:
     with pytest.raises(InputError, match=r"^film parameter: got nan; allowed a number, or inf"):
         regime([0.5, NAN])

@@ -1,13 +1,10 @@
-"""Lumped thermal networks: nodes, conductances, heat sources; steady state and warm-up.
+"""Lumped thermal networks: nodes, conductances, heat sources; their steady state and their flows.
 
 G T = q steadily and C dT/dt = q - G T in time, with given temperatures on some nodes. Every
 conductance, source and given temperature may be an array over operating points: one call
-solves them all. Within one call the network is linear, so that the time course is exact.
-
-Steady states are one linear solve for each operating point. In time the network goes by its modes
-(symmetric eigenvalue problem of G scaled by the root of C), so that a stiff network, a tooth beside
-a housing, costs no small steps. What depends on temperature is iterated by the caller.
-Checked by ``tests/heat/test_network.py``: closed forms of one and two nodes, energy balance.
+solves them all. Steady states are one linear solve for each operating point; time courses are
+those of :mod:`thermogear.heat.transient`. What depends on temperature is iterated by the caller.
+Checked by ``tests/heat/test_network.py``: closed forms, energy balance.
 """
 
 from __future__ import annotations
@@ -228,40 +225,3 @@ class ThermalNetwork:
         flow = heat - np.einsum("...ij,...j->...i", laplacian, at - datum)
         source = np.broadcast_to(heat.sum(axis=-1), shape)
         return flow[..., free], np.asarray(source), np.asarray(flow[..., held].sum(axis=-1))
-
-    def transient(self, times: ArrayLike, initial: Mapping[str, ArrayLike]) -> dict[str, Floats]:
-        """Temperatures [K] at ``times`` [s] from ``initial`` [K] by node, shape (..., times).
-
-        Exact for constant conductances: the modes of C^-1/2 G C^-1/2 decay as exp(-lambda t).
-        Raises when a free node has no capacity or no initial temperature.
-        """
-        names = self.nodes
-        free, held = self._indices()
-        for label, group in (("capacity", self.capacities), ("initial temperature", initial)):
-            missing = [names[i] for i in free if names[i] not in group]
-            if missing:
-                raise InputError(f"{label} of", ", ".join(missing), why="the warm-up needs it")
-        t = np.asarray(times, dtype=float)
-        if not np.all(np.isfinite(t) & (t >= 0.0)):
-            raise InputError("times", f"{t} s", allowed=">= 0, finite")
-        for name in (names[i] for i in free):
-            kelvin = np.asarray(initial[name], dtype=float)
-            if not np.all(np.isfinite(kelvin) & (kelvin > 0.0)):
-                raise InputError(
-                    f"initial temperature of {name}", f"{kelvin} K", allowed="> 0 K, finite"
-                )
-        inner, steady, _, _ = self._solve()
-        root = np.sqrt(np.array([self.capacities[names[i]] for i in free], dtype=float))
-        if not np.all(root > 0.0):
-            raise InputError("capacity", root**2, allowed="> 0 J/K")
-        rates, modes = np.linalg.eigh(inner / (root[:, None] * root[None, :]))
-        start = np.stack(
-            [np.broadcast_to(np.asarray(initial[names[i]], float), self.shape) for i in free], -1
-        )
-        away = np.einsum("...ji,...j->...i", modes, root * (start - steady[..., free]))
-        decay = np.exp(-rates[..., None] * t)
-        back = np.einsum("...ij,...j,...jt->...it", modes, away, decay) / root[:, None]
-        out = {names[i]: steady[..., i, None] + np.zeros(t.shape) for i in held}
-        for k, i in enumerate(free):
-            out[names[i]] = steady[..., i, None] + back[..., k, :]
-        return {name: out[name] for name in names}
