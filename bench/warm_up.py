@@ -2,10 +2,9 @@
 
 Run as ``python bench/warm_up.py OLD/src NEW/src``: printed are the medians [ms of user and system
 time] of one warm-up as ``answers`` asks for it (0.1 K) and as ``warmup`` does (1 mK), and of 100
-warm-ups of samples of speed, torque and ambient at 0.1 K, side by side where the tree can, with losses,
-worst moment, jams and margins and without; and the
-greatest difference of a temperature from the course of the first tree at 1e-6 K (of five of the
-samples, at 0.1 mK).
+warm-ups of samples of speed, torque and ambient at 0.1 K, side by side where the tree can, with
+losses, worst moment, jams and margins and without; and the greatest difference of a temperature
+from the course of the first tree at 1e-6 K (of five of the samples, at 0.1 mK).
 """
 
 from __future__ import annotations
@@ -65,10 +64,9 @@ def main(trees: list[str]) -> None:
                     apart = max(float(np.abs(states[node] - known[node]).max()) for node in known)
                     worst[tree] = max(worst[tree], apart)
         for tree in trees:
-            print(
-                f"{samples:3d} to {tolerance:g} K{'' if whole else ', courses alone'}: {median(took[tree]):8.1f} ms, "
-                f"off by {worst[tree]:.4f} K at most  {tree}"
-            )
+            row = f"{samples:3d} to {tolerance:g} K" + ("" if whole else ", courses alone")
+            off = f"off by {worst[tree]:.4f} K at most"
+            print(f"{row}: {median(took[tree]):8.1f} ms, {off}  {tree}")
 
 
 if __name__ == "__main__":
