@@ -238,6 +238,9 @@ def test_a_measured_node_is_held_from_the_start(rig: GearPair) -> None:
     found = run(rig, work, gearbox=Gearbox(measured={"oil": 343.15}))
     assert set(found.temperatures["oil"].tolist()) == {343.15}
     assert found.held == {"oil": 343.15}
+    # located between the moments, with a node that is no part of the course's state
+    assert found.worst.half_backlash <= found.half_backlash.min()
+    assert not found.jams.size
     assert found.course.imbalance.max() < 1e-6
     # the hot bath gives heat: what comes in through it leaves with a minus
     assert found.course.heat_out[-1] < 0.0

@@ -163,7 +163,7 @@ class WarmUp:
 
     def _at(self, state: State, piece: ArrayLike) -> State:
         """What the chain finds at temperatures of the course in ``piece`` of the duty."""
-        each = np.broadcast_to(piece, np.shape(state.get("oil", piece)))
+        each = np.broadcast_to(piece, np.shape(next(iter(state.values()))))
         found = {
             name: np.array([one[name] for one in self._given])[each] for name in self._given[0]
         }
@@ -522,7 +522,10 @@ class _Chain:
 
     def clearance(self, state: State) -> Clearance:
         """Over the mesh phase, of a state."""
-        hot = HotPair(self.pair, self.operating(state), self.model)
+        with warnings.catch_warnings():
+            # of the oil, which a gap does not feel
+            warnings.simplefilter("ignore", ValidityWarning)
+            hot = HotPair(self.pair, self.operating(state), self.model)
         return Clearance(hot, np.arange(PHASES) / PHASES, self.deviations)
 
     def losses_of(self, state: State) -> Losses:
