@@ -53,7 +53,7 @@ def test_a_pair_that_another_unloads_leaves_the_contact(run) -> None:  # type: i
         root = rng.normal(size=(4, 4))
         compliance = root @ root.T + 0.05 * np.eye(4)
         gap, linear = rng.uniform(0.0, 1.0, 4), np.full(4, 0.05)
-        force = np.empty(4)
+        force = np.zeros(4)
         springs = compliance + np.diag(linear)
         delta, _, settled = run(1.0, True, gap, springs, 1.0, np.ones((4, 7)), np.zeros(6), force)
         assert settled

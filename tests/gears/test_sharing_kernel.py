@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import itertools
+from typing import Any
 
 import numpy as np
 import pytest
 from scipy.optimize import minimize
 
+from thermogear.gears import sharing_kernel
 from thermogear.gears.contact import hertz_half_width
 from thermogear.gears.sharing_kernel import _approach, _half_width, _share_one, _solve_spd
 from thermogear.gears.stiffness import weber_approach
@@ -60,7 +62,7 @@ def test_linear_contact_is_the_only_contact_set_that_fits(run) -> None:  # type:
     for seed in range(40):
         compliance, gap, linear = random_mesh(seed)
         for load in (0.05, 1.0, 30.0):
-            force = np.empty(4)
+            force = np.zeros(4)
             springs = compliance + np.diag(linear)
             delta, stiffness, settled = run(load, True, gap, springs, 1.0, places(), LINEAR, force)
             exact, at, slope = by_enumeration(load, gap, springs)
@@ -150,7 +152,7 @@ def test_nonlinear_contact_has_the_least_energy() -> None:
                 )
             return float(0.5 * f @ c @ f + g @ f + work)
 
-        force = np.empty(4)
+        force = np.zeros(4)
         _, _, settled = _share_one(3.0, True, gap, compliance, 1.0, places(), CURVED, force)
         assert settled
         found = minimize(
@@ -168,13 +170,13 @@ def test_nonlinear_contact_has_the_least_energy() -> None:
 def test_a_given_deflection_gives_back_its_load() -> None:
     for seed in range(20):
         compliance, gap, _ = random_mesh(seed)
-        one, two = np.empty(4), np.empty(4)
+        one, two = np.zeros(4), np.zeros(4)
         delta, stiffness, _ = _share_one(2.0, True, gap, compliance, 1.0, places(), CURVED, one)
         same, slope, settled = _share_one(delta, False, gap, compliance, 1.0, places(), CURVED, two)
         assert settled
         assert two == pytest.approx(one, rel=1e-9, abs=1e-10)
         assert (same, slope) == pytest.approx((delta, stiffness), rel=1e-9)
-    force = np.empty(4)
+    force = np.zeros(4)
     assert _share_one(gap.min(), False, gap, compliance, 1.0, places(), LINEAR, force) == (
         gap.min(),
         0.0,
@@ -186,7 +188,7 @@ def test_a_given_deflection_gives_back_its_load() -> None:
 def test_pairs_that_cannot_touch_are_left_out() -> None:
     compliance, gap, _ = random_mesh(3)
     gap[1] = np.inf
-    force = np.empty(4)
+    force = np.zeros(4)
     _, _, settled = _share_one(50.0, True, gap, compliance, 1.0, places(), LINEAR, force)
     assert settled
     assert force[1] == 0.0
@@ -218,7 +220,7 @@ def test_nothing_settles_that_is_not_a_number(run, by_load: bool, place: int, wh
             near[place, 2] = NAN
         case "law":
             law[place] = NAN
-    force = np.empty(4)
+    force = np.zeros(4)
     delta, stiffness, settled = run(asked, by_load, gap, compliance, 1.0, near, law, force)
     assert not settled
     assert np.isnan([delta, stiffness, *force]).all()
@@ -231,3 +233,31 @@ def test_small_solver(run) -> None:  # type: ignore[no-untyped-def]
     exact = np.linalg.solve(compliance[:3, :3], right[:3])
     run(compliance.copy(), 3, right)
     assert right[:3] == pytest.approx(exact, rel=1e-12)
+
+
+def test_forces_to_begin_with_change_the_steps_and_not_the_answer(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The energy is convex: one answer from every start, and from itself in one step."""
+    asked: list[float] = []
+
+    def counted(force: float, *rest: Any) -> tuple[float, float]:
+        asked.append(force)
+        return _approach.py_func(force, *rest)
+
+    monkeypatch.setattr(sharing_kernel, "_approach", counted)
+    for seed in range(6):
+        compliance, gap, _ = random_mesh(seed)
+        begun = np.zeros(4)
+        delta, _, _ = _share_one(2.0, True, gap, compliance, 1.0, places(), CURVED, begun)
+        for start in (begun.copy(), np.full(4, 0.5), np.array([0.0, 9.0, 0.0, np.nan])):
+            force = start.copy()
+            asked.clear()
+            same, _, settled = _share_one.py_func(
+                2.0, True, gap, compliance, 1.0, places(), CURVED, force
+            )
+            assert settled
+            assert force == pytest.approx(begun, rel=1e-10, abs=1e-12)
+            assert same == pytest.approx(delta, rel=1e-12)
+            if np.array_equal(start, begun):
+                assert len(asked) == np.count_nonzero(begun)

@@ -8,6 +8,7 @@ import pytest
 from conftest import Compared
 from thermogear.base.errors import InputError
 from thermogear.heat.network import Link, ThermalNetwork
+from thermogear.heat.transient import Stretch, follow
 
 
 def two_nodes(power: object = 50.0) -> ThermalNetwork:
@@ -78,6 +79,17 @@ def test_batch_is_one_by_one() -> None:
     for at in np.ndindex(2, 2):
         single = two_nodes(float(powers[at])).steady()
         assert batch["body"][at] == pytest.approx(float(single["body"]), rel=1e-14)
+
+
+def test_single_node_warms_up_exponentially(compared: Compared) -> None:
+    network = ThermalNetwork(
+        (Link("body", "ambient", 5.0),), {"body": 100.0}, {"ambient": 300.0}, {"body": 1000.0}
+    )
+    times = np.array([0.0, 50.0, 200.0, 1e4])
+    stretch = Stretch(end=1e4, network=lambda state: network)
+    curve = follow([stretch], {"body": 300.0}, tolerance=1e-6).at(times)["body"]
+    exact = 300.0 + 20.0 * -np.expm1(-times / 200.0)
+    compared("warm-up of one node", "exponential in closed form", curve / exact - 1.0, 1e-8)
 
 
 def held_at(network: ThermalNetwork, **temperatures: float) -> ThermalNetwork:

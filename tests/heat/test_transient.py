@@ -9,7 +9,7 @@ from scipy.linalg import expm
 
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.heat.network import Link, ThermalNetwork
-from thermogear.heat.transient import HOTTEST, Course, State, Stretch, follow
+from thermogear.heat.transient import HOTTEST, Course, State, Stretch, follow, together
 
 C, G, Q, T0 = 1000.0, 2.0, 100.0, 293.15
 RATE = G / C
@@ -186,8 +186,8 @@ def test_a_falling_quantity_is_located() -> None:
     def left(state: State, place: int) -> np.ndarray:
         return T0 + 30.0 - state["body"] - 50.0 * place
 
-    found = run([(2000.0, one_node()), (4000.0, one_node(0.0))], events={"full": left})
-    assert found.events["full"].tolist() == pytest.approx([-np.log(0.4) / RATE], abs=0.3)
+    found = run([(2000.0, one_node()), (4000.0, one_node(0.0))])
+    assert found.falls(left).tolist() == pytest.approx([-np.log(0.4) / RATE], abs=0.3)
 
 
 def test_a_stretch_without_an_end_comes_to_rest() -> None:
@@ -240,3 +240,71 @@ def test_progress_rises_to_the_end() -> None:
     assert len(set(stages)) == 1
     assert set(total) == {1000}
     assert max(done) == 1000
+
+
+def lagging(end: float, rate: float, *, exactly: bool = False, asked: list[int]) -> Stretch:
+    """A node whose source falls with its temperature as exp(-(T - T0)/60 K): costly, or lagging."""
+
+    def heat(state: State) -> np.ndarray:
+        asked.append(state["body"].size)
+        return np.exp(-(state["body"] - T0) / 60.0)[:, None]
+
+    def network(state: State) -> ThermalNetwork:
+        source = rate * (heat(state) if exactly else state["lagging"])[:, 0]
+        return ThermalNetwork(
+            (Link("body", "ambient", G),), {"body": source}, {"ambient": T0}, {"body": C}
+        )
+
+    return Stretch(end=end, network=network, lagging=None if exactly else heat)
+
+
+def test_what_lags_is_asked_for_at_few_states_and_the_course_is_the_same() -> None:
+    for rate in (50.0, 200.0, 600.0):
+        few: list[int] = []
+        every: list[int] = []
+        course = follow([lagging(3000.0, rate, asked=few)], {"body": T0}, tolerance=1e-2)
+        exact = follow(
+            [lagging(3000.0, rate, exactly=True, asked=every)], {"body": T0}, tolerance=1e-5
+        )
+        apart = np.abs(course.at(exact.time)["body"] - exact.temperatures["body"]).max()
+        assert apart <= course.error <= 1e-2
+        assert sum(few) < 0.2 * sum(every)
+    # two counts of one course: what lags is asked for less often than the network
+    again: list[int] = []
+    follow([lagging(3000.0, rate, exactly=True, asked=again)], {"body": T0}, tolerance=1e-2)
+    assert sum(few) < sum(again)
+
+
+def test_courses_together_are_asked_for_at_once_and_are_those_alone() -> None:
+    """Each keeps its own steps; a law that refuses one of them is told alone."""
+    calls: list[int] = []
+
+    def network(state: State) -> ThermalNetwork:
+        calls.append(state["body"].size)
+        if np.any((state["sample"] == 7.0) & (state["body"] > T0 + 400.0)):
+            raise ConvergenceError("too hot a law")
+        heat = (20.0 + 10.0 * state["sample"]) * np.exp(-(state["body"] - T0) / 90.0)
+        return ThermalNetwork(
+            (Link("body", "ambient", G),), {"body": heat}, {"ambient": T0}, {"body": C}
+        )
+
+    def stretches(k: int) -> list[Stretch]:
+        given = {"sample": float(k)}
+        return [
+            Stretch(end=400.0 + 90.0 * k, network=network, given=given),
+            Stretch(end=np.inf, network=network, given=given),
+        ]
+
+    courses = together([(stretches(k), {"body": T0 + k}) for k in range(7)])
+    shared, counts = len(calls), []
+    for k, course in enumerate(courses):
+        calls.clear()
+        alone = follow(stretches(k), {"body": T0 + k})
+        counts.append(len(calls))
+        np.testing.assert_array_equal(course.time, alone.time)
+        np.testing.assert_allclose(
+            course.temperatures["body"], alone.temperatures["body"], rtol=1e-13
+        )
+    assert shared < 0.5 * sum(counts)
+    with pytest.raises(ConvergenceError, match=r"^too hot a law$"):
+        together([(stretches(k), {"body": T0 + (600.0 if k == 7 else 1.0)}) for k in (3, 7)])

@@ -9,6 +9,7 @@ import pytest
 
 from thermogear import GearPair, MeshModel, Operating, mesh_cycle
 from thermogear.base.materials import lubricant
+from thermogear.heat.contact_state import FILMS
 from thermogear.heat.expansion import RadialField, base_circle_growth
 from thermogear.heat.gearbox import (
     body_conductances,
@@ -48,6 +49,21 @@ def test_equal_shares_lose_what_ohlendorfs_factor_says(rig: GearPair, hot_rig: O
     expected = DRY.dry_coefficient * hot_rig.speed * hot_rig.torque * factor
     np.testing.assert_allclose(found.power, expected, rtol=1e-12)
     assert found.beyond.tolist() == [0.0, 0.0, 0.0]
+
+
+def test_a_friction_law_is_given_the_films_that_it_asks_for(
+    rig: GearPair, hot_rig: Operating
+) -> None:
+    """No other film is computed; what is told of the whole state is the same to the last bit."""
+    for name, films in (("lambda-blend", {"central_film_parameter"}), ("xu-kahraman", set())):
+        model = MeshModel.consistent().override(friction=name)
+        path = FrictionPath(
+            elastic_pair(HotPair(rig, hot_rig, model)),
+            np.linspace(rig.path.a, rig.path.e, 9),
+        )
+        friction = path.friction
+        assert {one for one in FILMS if one in vars(path)} == films
+        np.testing.assert_array_equal(friction, model.law(path.state))
 
 
 def test_a_share_that_is_known_already_gives_the_very_heat_and_near_by_nearly_so(

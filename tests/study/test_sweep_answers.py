@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -12,6 +14,7 @@ from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import STATUS
 from thermogear.case.case import GearCase, gear_case, load_case
 from thermogear.case.family import GearFamily
+from thermogear.mesh import elastic
 from thermogear.study.answers import moving, steady
 from thermogear.study.answers.asked import Asked, undecided
 from thermogear.study.answers.points import NUMBERS, answer_numbers
@@ -187,9 +190,21 @@ def test_motion_and_answers_of_a_sweep_share_one_heat_balance(
         return solve(self, *given, **how)  # type: ignore[arg-type]
 
     monkeypatch.setattr(GearCase, "balance_of", counted)
+    meshed: list[int] = []
+    contact = elastic.solve_mesh
+
+    def solved_mesh(pair: object, force: object, phase: Any, **how: Any) -> Any:
+        meshed.append(np.size(phase))
+        return contact(pair, force, phase, **how)
+
+    monkeypatch.setattr(elastic, "solve_mesh", solved_mesh)
     want = ("oil_temperature", "mean_stiffness")
     both = GearFamily(case, ("pinion_torque",))
-    moving_points, still_points = both(rows), both.quasi_static(rows, want)
+    moving_points = both(rows)
+    meshed.clear()
+    still_points = both.quasi_static(rows, want, path_positions=case.path_positions)
+    # the mesh of the motion is the mesh of the answers
+    assert not meshed
     assert len(solved) == 1
     alone = GearFamily(case, ("pinion_torque",)).quasi_static(rows, want)
     assert len(solved) == 2

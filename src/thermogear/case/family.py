@@ -346,7 +346,7 @@ class GearFamily:
 
     def _meshed(self, group: _Group) -> Excitations:
         """Springs, backlash and load of a group, without the kinematic error."""
-        found = self._cycled(group, EXCITES)
+        found = self._cycled(group, EXCITES, group.case.path_positions)
         return excitations(replace(group.case, transmission_error=NO_ERROR), found)
 
     def _cycled(

@@ -8,7 +8,7 @@ finish, moduli, expansion, damping and error may be a column.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import KW_ONLY, dataclass, replace
+from dataclasses import KW_ONLY, dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -31,8 +31,8 @@ from thermogear.case.thermal_state import UNDEFORMED, ThermalState, unknown_wher
 from thermogear.gears.contact import path_of_contact
 from thermogear.gears.geometry import Gear
 from thermogear.heat.lubrication import grade
-from thermogear.mesh.cycle import quantities
-from thermogear.mesh.excite import excitations
+from thermogear.mesh.cycle import Cycle
+from thermogear.mesh.excite import EXCITES, excitations
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating, Varied
 from thermogear.mesh.thermal import HotPair
@@ -71,7 +71,7 @@ class Samples:
     """``case`` with its operating points in columns, and what else vibration needs.
 
     ``damping_ratio`` [-] and ``error`` (times the case's own), (sample,); ``inertias`` [kg m^2],
-    (sample, 2).
+    (sample, 2). ``cycles``: those that the motion was made of, for the answers that follow.
     """
 
     _: KW_ONLY
@@ -79,6 +79,7 @@ class Samples:
     damping_ratio: Floats
     error: Floats
     inertias: Floats
+    cycles: dict[object, Cycle] = field(default_factory=dict)
 
     def excited(self, found: Mapping[str, NDArray[Any]]) -> Excitations:
         """What excites the samples whose :func:`quasi_static` is ``found``, at their speeds."""
@@ -216,9 +217,9 @@ def _varied(case: GearCase, columns: Columns, widths: tuple[Floats, ...]) -> Var
     grown = f"materials.{case.housing.name}.thermal_expansion"
     if grown in columns:
         found["housing_expansion"] = columns[grown]
-    for field, share in (("cold_half_backlash", 1.0), ("cold_backlash", 0.5)):
-        if field in columns:
-            found["half_backlash"] = share * columns[field]
+    for column, share in (("cold_half_backlash", 1.0), ("cold_backlash", 0.5)):
+        if column in columns:
+            found["half_backlash"] = share * columns[column]
     if "backlash.value" in columns:
         found["half_backlash"] = _cold(case, columns["backlash.value"])
     return Varied(**found)
@@ -325,7 +326,7 @@ def quasi_static(
         alive()
         some = {name: values[places] for name, values in columns.items()}
         try:
-            here = sample(case, some, places.size).case
+            here = sample(case, some, places.size)
             return [(places, _cycle(here, some, model, state, want, path_positions))]
         except ThermogearError as error:
             if places.size == 1:
@@ -349,14 +350,14 @@ def quasi_static(
 
 
 def _cycle(
-    case: GearCase,
+    samples: Samples,
     columns: Columns,
     model: MeshModel,
     state: ThermalState,
     want: Sequence[str],
     path_positions: int,
 ) -> dict[str, NDArray[Any]]:
-    temperature = columns.get(GEARS_AT)
+    temperature, case = columns.get(GEARS_AT), samples.case
     if temperature is None:
         balance = (
             state.balance(case, model, from_hot=False)
@@ -376,11 +377,13 @@ def _cycle(
     hot = HotPair(case.pair, replace(operating, housing=case.housing), model)
     s = path_of_contact(case.pair, path_positions)
     phase = np.arange(case.mesh_positions) / case.mesh_positions
+    # what is asked after the motion takes the same mesh, and ends its keeping
+    key = (model, state, path_positions)
+    cycle = samples.cycles.pop(key, None) or Cycle(hot, tuple(case.deviations), s, phase)
+    if want == EXCITES:
+        samples.cycles[key] = cycle
     cyclic = [name for name in want if name not in BODIES_OF]
-    found = {
-        name: np.asarray(values)
-        for name, values in quantities(hot, case.deviations, s, phase, cyclic).items()
-    }
+    found = {name: np.asarray(values) for name, values in cycle.quantities(cyclic).items()}
     for name in want:
         if name in BODIES_OF:
             found[name] = np.broadcast_to(BODIES_OF[name](operating), hot.count).copy()

@@ -20,7 +20,7 @@ from thermogear.case.units import read_quantity
 from thermogear.gears.contact import path_of_contact
 from thermogear.mesh.balance import HeatBalance
 from thermogear.mesh.balance_table import OF_OIL, STATED, blanked
-from thermogear.mesh.cycle import quantities, warn_of_pitch
+from thermogear.mesh.cycle import Cycle, warn_of_pitch
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair
@@ -171,7 +171,7 @@ class ThermalState:
         s = path_of_contact(case.pair, case.path_positions)
         phase = np.arange(case.mesh_positions) / case.mesh_positions
         hot = HotPair(case.pair, at, model)
-        made = quantities(hot, case.deviations, s, phase, want)
+        made = Cycle(hot, tuple(case.deviations), s, phase).quantities(want)
         found = {name: np.asarray(values) for name, values in made.items()}
         found |= {"pinion_speed": at.speed, "pinion_torque": at.torque}
         balance = self.balance(case, model)

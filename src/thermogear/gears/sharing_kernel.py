@@ -110,7 +110,8 @@ def _approach(
             eta = places[j, i] / half
             root = np.sqrt(1.0 + eta * eta)
             narrow = 1.0 / (root + eta)
-            bracket = np.arcsinh(eta) - law[2 + i] * eta * narrow
+            # asinh(eta)
+            bracket = np.log(eta + root) - law[2 + i] * eta * narrow
             mean += law[i] * bracket
             # eta falls as the half width rises
             slope += law[i] * (bracket - power * eta * (1.0 - law[2 + i] * narrow * narrow) / root)
@@ -138,15 +139,15 @@ def _share_one(
     """Forces of one position into ``force``; returns (delta, tangent stiffness, settled).
 
     ``asked`` is the load F_n > 0, or delta where ``by_load`` is false; ``soft``, ``places``
-    [pair, 7] and ``law`` as :func:`_approach` takes them. A gap of inf never closes. nan everywhere
-    and not settled where a gap is nan or the steps find no balance of finite numbers.
+    [pair, 7] and ``law`` as :func:`_approach` takes them. ``force`` holds forces to begin with,
+    whose sum is the load, or nothing above 0: then the nearest pair begins alone. A gap of inf
+    never closes. nan everywhere and not settled where a gap is nan or the steps find no balance of
+    finite numbers.
     """
     count = gap.size
-    force[:] = 0.0
-    active = np.zeros(count, dtype=np.bool_)
     index = np.empty(count, dtype=np.int64)
-    matrix = np.empty((count, count))
-    right = np.empty((count, 2))
+    room = np.empty((count, count + 2))
+    matrix, right = room[:, 2:], room[:, :2]
     first = 0
     for j in range(count):
         if np.isnan(gap[j]):
@@ -165,13 +166,19 @@ def _share_one(
         load = delta / compliance[first, first]
         contact, _ = _approach(load, soft, places, first, law)
         load = delta / (compliance[first, first] + contact / load)
-    active[first] = True
-    force[first] = load
     least = 1e-14 * load
+    carried = 0.0
+    for j in range(count):
+        # a pair carries where its force is not 0
+        if not (by_load and force[j] > least and gap[j] < np.inf):
+            force[j] = 0.0
+        carried += force[j]
+    if carried == 0.0:
+        force[first] = load
     for _ in range(MOST_STEPS):
         size = NOUGHT
         for j in range(count):
-            if active[j]:
+            if force[j] != 0.0:  # or no number
                 index[size] = j
                 size += 1
         total, compliant = 0.0, 0.0
@@ -208,7 +215,6 @@ def _share_one(
         for a in range(size):
             force[index[a]] += step * right[a, 0]
         if leaving >= 0:
-            active[leaving] = False
             force[leaving] = 0.0
             continue
         if not at_rest:
@@ -216,7 +222,7 @@ def _share_one(
         # settled on these pairs: does one of the others overlap?
         worst, entering = _TOLERANCE * load * compliant, -1
         for j in range(count):
-            if not active[j] and gap[j] < np.inf:
+            if force[j] == 0.0 and gap[j] < np.inf:
                 overlap = delta - (gap[j] - origin)
                 for a in range(size):
                     overlap -= compliance[j, index[a]] * force[index[a]]
@@ -224,7 +230,6 @@ def _share_one(
                     worst, entering = overlap, j
         if entering < 0:
             return delta + origin, stiffness, True
-        active[entering] = True
         # enough to give the contact a finite slope, too little to matter
         force[entering] = min(1e-3 * load, 0.5 * worst / compliant)
     return _unsettled(force)
@@ -270,6 +275,10 @@ def share_many(
                 compliance[j, j] += (
                     tooth[0, p, j] * tooth_softness[c, 0] + tooth[1, p, j] * tooth_softness[c, 1]
                 )
+                # from the positions before: forces change slowly along the path
+                before = force[c, p - 1, j] if p > 0 else 0.0
+                gained = before - force[c, p - 2, j] if p > 1 else 0.0
+                force[c, p, j] = max(before + gained, 0.0) if before > 0.0 else 0.0
             delta[c, p], stiffness[c, p], settled[c, p] = _share_one(
                 asked[c],
                 by_load,

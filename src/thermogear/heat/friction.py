@@ -318,6 +318,7 @@ class LambdaBlend(Bounded):
     ranges: ClassVar[Mapping[str, tuple[float, float]]] = MappingProxyType(
         {"viscosity": (1e-3, np.inf)}
     )
+    films: ClassVar[tuple[str, ...]] = ("central_film_parameter",)
 
     def __call__(self, state: ContactState) -> Floats:
         share = doleschel_share(state.needed("central_film_parameter", self.name))

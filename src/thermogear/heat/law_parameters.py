@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass, replace
-from typing import Annotated, Any, TypeVar, get_type_hints
+from typing import Annotated, Any, ClassVar, TypeVar, get_type_hints
 
 from thermogear.base.bounds import Bounds
 from thermogear.base.errors import InputError, nearest
@@ -24,7 +24,12 @@ _Law = TypeVar("_Law")
 
 
 class Bounded:
-    """A dataclass that refuses a field out of the range in its annotation."""
+    """A dataclass that refuses a field out of the range in its annotation.
+
+    ``films``: what a law of friction asks of the films of a contact, none if not said otherwise.
+    """
+
+    films: ClassVar[tuple[str, ...]] = ()
 
     def __post_init__(self) -> None:
         for name, allowed in ranges(type(self)).items():

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,7 +17,12 @@ from thermogear.base.progress import Progress, silent
 from thermogear.heat.network import ThermalNetwork
 
 State = Mapping[str, Floats]
-"""Temperatures [K] of the free nodes by name, arrays of one shape."""
+"""Temperatures [K] of the free nodes by name, arrays (count,), and what else a law finds there."""
+Ask = tuple[Callable[[Any, State], tuple[Floats, ...]], Any, State]
+"""A reading of a law at states: arrays (count, ...)."""
+Found = TypeVar("Found")
+Steps = Generator[Ask, tuple[Floats, ...], Found]
+"""What asks on its way and finds something: many such are answered together."""
 
 HOTTEST = 700.0
 """A node [K] that gets there ends the course: no gear lives there, and no law was made for it."""
@@ -29,10 +35,12 @@ _WINDOW = 12.0
 """Time constants that a stretch without end is first solved over: exp(-12) of 700 K is 4 mK."""
 _LEAP = 60.0
 """Newton's corrections [K] are held below it."""
-_TURNS, _ROUNDS = 12, 6
+_TURNS, _ROUNDS = 20, 6
 """Newton's corrections at most, and meshes at most, before a window is made smaller."""
-_SOLVED = 1e-3
+_SOLVED = 0.01
 """Part of the tolerance that Newton's next correction would have."""
+_LAGS = 10.0
+"""So much more may be left by what lags."""
 _BEND = 5.0
 """Part of a step [K] that is cubic: a step that leaps to another steady state has more."""
 _PROBED = 7
@@ -45,6 +53,8 @@ _ROUGH = 0.01
 """What Newton's next correction [K] may be where only the steps are to be drawn."""
 _PROBE = 0.01
 """Change of a node [K] by which the law's own slopes are found."""
+_TOGETHER = 1000
+"""States that a law is asked at together: memory, not the result."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,7 +62,10 @@ class Stretch:
     """A stretch of time up to ``end`` [s] in which one law holds; inf: until it is steady.
 
     ``network``: temperatures of the free nodes, arrays (count,), to the network at them. The free
-    nodes and their capacities are the same throughout; given temperatures may differ.
+    nodes and their capacities are the same throughout; given temperatures may differ. ``lagging``:
+    quantities of the state (count, any) that cost much and are smooth; they are asked for at the
+    ends of every second step, and between them the network finds under "lagging" what they and
+    their slopes say. ``given``: numbers by name that both laws find beside the temperatures.
 
     >>> from thermogear.heat.network import Link
     >>> network = ThermalNetwork(
@@ -66,6 +79,8 @@ class Stretch:
 
     end: float
     network: Callable[[State], ThermalNetwork]
+    lagging: Callable[[State], Floats] | None = None
+    given: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,10 +126,9 @@ class Course:
     ``stretch``: place of the stretch each moment belongs to; ``temperatures`` [K] of the free
     nodes; ``heat_in`` set free by the sources, ``heat_out`` left through the given nodes and
     ``kept`` in the capacities, since the start [J]; ``imbalance`` = |kept - in + out| over the
-    heat turned over; ``events`` [s]: when each watched quantity falls through 0; ``settled``:
-    whether a last stretch without end came to rest; ``too_hot``: a node reached 700 K, which ends
-    the course; ``evaluations`` of the network, each at many moments together; ``error`` [K]:
-    greatest one of a temperature, as estimated.
+    heat turned over; ``settled``: whether a last stretch without end came to rest; ``too_hot``: a
+    node reached 700 K, which ends the course; ``evaluations`` of the laws, each at many moments
+    together; ``error`` [K]: greatest one of a temperature, as estimated.
     """
 
     time: Floats
@@ -124,19 +138,29 @@ class Course:
     heat_out: Floats
     kept: Floats
     imbalance: Floats
-    events: dict[str, Floats]
     settled: bool
     too_hot: bool
     evaluations: int
     error: float
-    _windows: Sequence[_Window] = field(repr=False)
+    _windows: Sequence[tuple[int, _Window]] = field(repr=False)
+
+    def falls(self, value: Callable[[State, int], Floats]) -> Floats:
+        """When [s] a ``value`` of states (count,) and their stretch falls through 0."""
+        found: list[float] = []
+        for place, window in self._windows:
+
+            def over(t: Floats, window: _Window = window, place: int = place) -> Floats:
+                return value(dict(zip(self.temperatures, window.at(t).T, strict=False)), place)
+
+            found += _falls(window.time, over)
+        return np.array([t for t in found if t <= self.time[-1]])
 
     def at(self, times: ArrayLike) -> dict[str, Floats]:
         """Temperatures [K] of the free nodes at any ``times`` [s] of the course, their shape."""
         t = np.asarray(times, dtype=float)
         if not np.all((t >= 0.0) & (t <= self.time[-1])):
             raise InputError("times", f"{t} s", allowed=f"0..{self.time[-1]:g} s")
-        y = _states(self._windows, t.ravel())
+        y = _states([window for _, window in self._windows], t.ravel())
         return {name: y[:, i].reshape(t.shape) for i, name in enumerate(self.temperatures)}
 
 
@@ -149,73 +173,169 @@ def _states(windows: Sequence[_Window], t: Floats) -> Floats:
     return y
 
 
+def _flows(network: Callable[[State], ThermalNetwork], state: State) -> tuple[Floats, ...]:
+    """Heat that free nodes keep, in and out [W], (count, nodes + 2); G [W/K] among the nodes."""
+    found, y = network(state), state["as computed"]
+    kept, source, out = found.flows(dict(zip(found.free, y.T, strict=True)))
+    free = [found.nodes.index(name) for name in found.free]
+    inner = found.laplacian()[..., free, :][..., :, free]
+    return np.column_stack([kept, source, out]), np.broadcast_to(inner, (*y.shape, y.shape[1]))
+
+
+def _lagging(law: Callable[[State], Floats], state: State) -> tuple[Floats, ...]:
+    """What lags, (count, quantities)."""
+    return (law(state),)
+
+
 @dataclass
 class _Law:
     """Rates of the free nodes [K/s], then of heat in and out [W], and how they change.
 
-    ``bent`` (places, nodes, nodes) [1/s] at ``places`` [s]: what the law's dependence on the
-    temperatures adds to -G/C, kept from one solution to the next.
+    ``bent``: places [s], and there (places, nodes, nodes) [1/s] what the law's dependence on the
+    temperatures adds to -G/C, kept from one solution to the next; ``steep``: places, and there
+    (places, quantities, nodes) the slopes of what lags. ``seen``: times, the way [K] that the
+    temperatures had gone by then, the ways at which it was asked for last, and the states and
+    values there (asked, nodes + quantities); empty before.
     """
 
     stretch: Stretch
     nodes: tuple[str, ...]
     capacity: Floats
     calls: int = 0
-    places: Floats = field(default_factory=lambda: np.zeros(0))
-    bent: Floats = field(default_factory=lambda: np.zeros(0))
+    seen: tuple[Floats, ...] = field(init=False)
 
-    def rates(self, y: Floats) -> tuple[Floats, Floats]:
-        """(rates, (count, nodes + 2); G/C [1/s], (count, nodes, nodes)) at ``y`` (count, nodes)."""
+    def __post_init__(self) -> None:
+        self.forget()
+
+    def forget(self) -> None:
+        """No slopes but those of the network."""
+        count = self.capacity.size
+        self.probed, self.seen = False, ()
+        self.bent = np.zeros(1), np.zeros((1, count, count))
+        self.steep = np.zeros(1), np.zeros((1, 1, count))
+
+    def _state(self, y: Floats) -> dict[str, Floats]:
+        """What the laws find: temperatures in which bodies can be, and what is given."""
         self.calls += 1
         held = np.clip(y, BODY.least, BODY.most)
-        network = self.stretch.network(dict(zip(self.nodes, held.T, strict=True)))
-        kept, source, out = network.flows(dict(zip(self.nodes, y.T, strict=True)))
-        free = [network.nodes.index(name) for name in self.nodes]
-        inner = network.laplacian()[..., free, :][..., :, free] / self.capacity[:, None]
-        relaxing = np.broadcast_to(inner, (*y.shape, y.shape[1]))
-        return np.column_stack([kept / self.capacity, source, out]), relaxing
+        given = {name: np.full(len(y), value) for name, value in self.stretch.given.items()}
+        return dict(zip(self.nodes, held.T, strict=True)) | given | {"as computed": y}
 
-    def probe(self, t: Floats, y: Floats) -> None:
-        """Find ``bent`` at the states ``y`` (count, nodes) of the times ``t``."""
-        count = self.capacity.size
-        moved = y[:, None] + _PROBE * np.vstack([np.zeros(count), np.eye(count)])
-        rates, relaxing = self.rates(moved.reshape(-1, count))
-        each = rates[:, :count].reshape(moved.shape)
-        slopes = np.swapaxes(each[:, 1:] - each[:, :1], 1, 2) / _PROBE
-        self.places, self.bent = t, slopes + relaxing[:: count + 1]
+    def renew(self, t: Floats, y: Floats) -> Steps[None]:
+        """Ask for what lags at every fourth and the last of the states ``y`` (count, nodes)."""
+        some = np.unique(np.append(np.arange(0, len(t), 4), len(t) - 1))
+        (values,) = yield _lagging, self.stretch.lagging, self._state(y[some])
+        self._see(t, y, some, values)
+
+    def _see(self, t: Floats, y: Floats, some: NDArray[np.int64], values: Floats) -> None:
+        """Keep ``values`` (some, quantities) over the way [K] that the temperatures have gone."""
+        moved = np.abs(np.diff(y, axis=0)).max(axis=1).cumsum()
+        # rising where nothing changes, too
+        way = np.append(0.0, moved) + 1e-6 * (t - t[0])
+        self.seen = t, way, way[some], np.hstack([y[some], values])
+
+    def _lagging(self, t: Floats, y: Floats) -> Floats:
+        """What lags at the states ``y`` of the times ``t``, from the values seen before.
+
+        Cubic in the way that the temperatures went then, and by its slopes off that way.
+        """
+        when, way, at, seen = self.seen
+        place, weight = _cubic(at, np.interp(t, when, way))
+        along = np.einsum("ik,ikj->ij", weight, seen[place])
+        beside = y - along[:, : self.capacity.size]
+        off = np.einsum("ijk,ik->ij", _between(*self.steep, t), beside)
+        return np.asarray(along[:, self.capacity.size :] + off)
+
+    def rates(
+        self, t: Floats, y: Floats, lagging: Floats | None = None
+    ) -> Steps[tuple[Floats, Floats]]:
+        """(rates, (count, nodes + 2); G/C [1/s], (count, nodes, nodes)) at ``y`` (count, nodes)."""
+        state = self._state(y)
+        if self.seen:
+            state["lagging"] = self._lagging(t, y) if lagging is None else lagging
+        flows, inner = yield _flows, self.stretch.network, state
+        return flows / np.append(self.capacity, [1.0, 1.0]), inner / self.capacity[:, None]
+
+    def probe(self, t: Floats, y: Floats) -> Steps[None]:
+        """Find the slopes at the states ``y`` (count, nodes) of the times ``t``.
+
+        Those of what lags once: what differs from them is asked for anew.
+        """
+        count, found = self.capacity.size, None
+        steps = _PROBE * np.vstack([np.zeros(count), np.eye(count)])
+        moved = (y[:, None] + steps).reshape(-1, count)
+        if self.stretch.lagging is not None and not self.probed:
+            (found,) = yield _lagging, self.stretch.lagging, self._state(moved)
+            self.steep = t, _slopes(found, count)
+            self._see(t, y, np.arange(t.size), found[:: count + 1])
+        elif self.seen:
+            beside = np.einsum("ijk,lk->ilj", _between(*self.steep, t), steps)
+            found = (self._lagging(t, y)[:, None] + beside).reshape(len(moved), -1)
+        rates, relaxing = yield from self.rates(t, moved, found)
+        self.probed = True
+        self.bent = t, _slopes(rates[:, :count], count) + relaxing[:: count + 1]
 
     def slopes(self, t: Floats, relaxing: Floats) -> Floats:
         """d(rates)/dT [1/s] at the times ``t``, (count, nodes, nodes)."""
-        if not self.places.size:
-            return -relaxing
-        place = np.clip(np.searchsorted(self.places, t) - 1, 0, self.places.size - 2)
-        part = (t - self.places[place]) / np.diff(self.places)[place]
-        part = np.clip(part, 0.0, 1.0)[:, None, None]
-        return np.asarray((1.0 - part) * self.bent[place] + part * self.bent[place + 1] - relaxing)
+        return np.asarray(_between(*self.bent, t) - relaxing)
+
+
+def _slopes(values: Floats, nodes: int) -> Floats:
+    """Slopes (places, values, nodes) of ``values`` (places (nodes + 1), any) found by probing."""
+    each = values.reshape(-1, nodes + 1, values.shape[1])
+    return np.asarray(np.swapaxes(each[:, 1:] - each[:, :1], 1, 2) / _PROBE)
+
+
+def _between(at: Floats, values: Floats, t: Floats) -> Floats:
+    """``values`` (places, ...) at the times ``at``, straight between them and level outside."""
+    if at.size == 1:
+        return np.broadcast_to(values, (t.size, *values.shape[1:]))
+    place = np.clip(np.searchsorted(at, t) - 1, 0, at.size - 2)
+    part = np.clip((t - at[place]) / np.diff(at)[place], 0.0, 1.0)
+    part = part.reshape(-1, *[1] * (values.ndim - 1))
+    return np.asarray((1.0 - part) * values[place] + part * values[place + 1])
+
+
+def _cubic(at: Floats, x: Floats) -> tuple[NDArray[np.int64], Floats]:
+    """Places among ``at`` and their weights for a cubic at each ``x``, (count, 4) at most."""
+    width = min(4, at.size)
+    first = np.clip(np.searchsorted(at, x) - width // 2, 0, at.size - width)
+    place, own = first[:, None] + np.arange(width), np.eye(width, dtype=np.bool_)
+    apart = np.where(own, 1.0, at[place][:, :, None] - at[place][:, None])
+    reach = np.where(own, 1.0, np.clip(x, at[0], at[-1])[:, None, None] - at[place][:, None])
+    return place, (reach / apart).prod(axis=2)
 
 
 def _solved(
     law: _Law, begin: Floats, time: Floats, guess: Floats, *, goal: float, most: float
-) -> _Window:
+) -> Steps[_Window]:
     """The steps between ``time`` from the state ``begin`` (nodes + 2,), all at once.
 
     Unknown are the temperatures at both stages of every step, ``guess`` (2 steps, nodes). Ended
-    where Newton's next correction would be below ``goal`` [K], or after all turns where the last
-    was below ``most`` [K]: a law that jumps lets it get no nearer.
+    where Newton's next correction would be below ``goal`` [K], and the next one by what lags too,
+    or after all turns where the last was below ``most`` [K]: a law that jumps lets it get no
+    nearer.
     """
     count, h = law.capacity.size, np.diff(time)
     when, known = _stages(time), begin[None, :count]
-    y, size, probed = guess, np.inf, 0
+    lags = law.stretch.lagging is not None
+    first = 2 if lags else 0
+    y, seen, size, left, probed, by_lag = guess, guess, np.inf, np.inf, 0, np.inf if lags else 0.0
     for turn in range(_TURNS):
-        rates, relaxing = law.rates(np.concatenate([known, y]))
+        fresh = lags and (not law.seen or not law.probed or left <= goal)
+        if fresh:
+            size, seen = float(np.abs(y - seen).max()), y
+            yield from law.renew(np.append(time[0], when), np.concatenate([known, y]))
+        rates, relaxing = yield from law.rates(np.append(time[0], when), np.concatenate([known, y]))
         gains = np.einsum("k,ij,kjn->kin", h, _RADAU, rates[1:].reshape(h.size, 2, -1))
         starts = np.concatenate([known, y[1:-1:2]])
         residual = (starts[:, None] + gains[..., :count]).reshape(y.shape) - y
         move = _correction(h, residual, law.slopes(when, relaxing[1:]))
         last, size = size, float(np.abs(move).max())
         y = y + np.clip(move, -_LEAP, _LEAP)
-        left = min(size / last if turn else 1.0, 1.0) * size
-        if left <= goal or (turn == _TURNS - 1 and size <= most):
+        left = size * (size / last if turn and size < last else 1.0)
+        by_lag = left if fresh else by_lag
+        if max(left, by_lag / _LAGS) <= goal or (turn == _TURNS - 1 and size <= most):
             heat = np.vstack([begin[count:], gains[:, 1, count:]]).cumsum(axis=0)
             # a rate slower than any course: the system has a solution where nothing leads back, too
             slopes = law.slopes(time, relaxing[::2]) - 1e-15 * np.eye(count)
@@ -226,12 +346,14 @@ def _solved(
                 first=np.hstack([y[::2], heat[:-1] + gains[:, 0, count:]]),
                 slopes=rates[::2],
                 ahead=np.abs(ahead).max(axis=(1, 2)),
-                left=left if left <= goal else size,
+                left=max(left if left <= goal else size, by_lag),
             )
-        if (turn == 0 and not law.places.size) or (turn - probed > 1 and size > _SLOW * last):
+        slow = not fresh and turn - probed > 1 and size > _SLOW * last
+        if slow or (turn >= first and not law.probed):
             probed = turn
-            chosen = np.unique(np.linspace(0, h.size - 1, _PROBED).round().astype(int))
-            law.probe(when[1::2][chosen], y[1::2][chosen])
+            places = h.size if lags and law.probed else _PROBED
+            chosen = np.unique(np.linspace(0, h.size - 1, places).round().astype(int))
+            yield from law.probe(when[1::2][chosen], y[1::2][chosen])
     raise ConvergenceError(
         f"thermal network at {time[0]:.6g} s: Newton's last correction was {size:.3g} K"
     )
@@ -262,7 +384,9 @@ def _correction(h: Floats, residual: Floats, slopes: Floats) -> Floats:
     return step.reshape(residual.shape)
 
 
-def _window(law: _Law, begin: Floats, time: Floats, tolerance: float) -> tuple[_Window, float]:
+def _window(
+    law: _Law, begin: Floats, time: Floats, tolerance: float
+) -> Steps[tuple[_Window, float]]:
     """The steps from ``begin`` on a mesh that keeps the ``tolerance`` [K], and the error [K].
 
     Every mesh is halved: for a method of order 3 the finer solution errs by a seventh of the
@@ -273,12 +397,12 @@ def _window(law: _Law, begin: Floats, time: Floats, tolerance: float) -> tuple[_
     error, steps, count = np.inf, time.size - 1, law.capacity.size
     solved = partial(_solved, law, begin, goal=_SOLVED * tolerance, most=tolerance)
     guess = np.broadcast_to(begin[:count], (2 * steps, count))
-    found = solved(time, guess, goal=max(_ROUGH, _SOLVED * tolerance))
+    found = yield from solved(time, guess, goal=max(_ROUGH, _SOLVED * tolerance))
     for _ in range(_ROUNDS):
         coarse_time = _drawn(found.time, found.bend(), steps)
         time = np.sort(np.append(coarse_time, 0.5 * (coarse_time[1:] + coarse_time[:-1])))
-        coarse = solved(coarse_time, found.at(_stages(coarse_time))[:, :count])
-        found = solved(time, coarse.at(_stages(time))[:, :count])
+        coarse = yield from solved(coarse_time, found.at(_stages(coarse_time))[:, :count])
+        found = yield from solved(time, coarse.at(_stages(time))[:, :count])
         error = float(np.abs(coarse.at(time) - found.ends)[:, :count].max()) / 3.0 + found.left
         if error <= tolerance and found.bend().max() <= _BEND:
             return found, error
@@ -308,34 +432,46 @@ def _first_mesh(begun: float, end: float, relaxing: Floats) -> Floats:
     return np.asarray(begun * (1.0 - grown) + end * grown)
 
 
-def _windows(
-    law: _Law, y: Floats, begun: float, tolerance: float, progress: Progress
-) -> Iterator[tuple[_Window, float]]:
-    """The windows of a stretch one after the other, each with its error [K], from the state ``y``.
+_Followed = tuple[list[_Window], float, float, bool, bool]
+"""Windows of a stretch, when [s] it is left, greatest error [K], whether settled, or too hot."""
+
+
+def _stretch(
+    law: _Law, y: Floats, begun: float, tolerance: float, within: float, progress: Progress
+) -> Steps[_Followed]:
+    """The windows of a stretch one after the other, from the state ``y``.
 
     The whole stretch first; a quarter of it where that fails.
     """
     end = law.stretch.end
-    relaxing = law.rates(y[None, :-2])[1]
+    if law.stretch.lagging is not None:
+        yield from law.renew(np.array([begun]), y[None, :-2])
+    _, relaxing = yield from law.rates(np.array([begun]), y[None, :-2])
     length = end - begun
     if not np.isfinite(end):
         # similar to a symmetric matrix
         slowest = 1.0 / float(np.linalg.eigvals(relaxing).real.min())
         end, length = begun + _SLOWEST * slowest, _WINDOW * slowest
-    first, shortest = begun, _SHORTEST * length
-    while begun < end:
+    windows: list[_Window] = []
+    first, shortest, worst = begun, _SHORTEST * length, 0.0
+    settled = too_hot = False
+    while begun < end and not (settled or too_hot):
         progress("course in time", int(1000.0 * (begun - first) / (end - first)), 1000)
         stop = begun + length if begun + (1.0 + 1e-9) * length < end else end
         try:
-            window, error = _window(law, y, _first_mesh(begun, stop, relaxing), tolerance)
+            mesh = _first_mesh(begun, stop, relaxing)
+            law.forget()
+            window, error = yield from _window(law, y, mesh, tolerance)
         except ThermogearError:
             if length <= shortest:
                 raise
-            length, law.places = 0.25 * length, np.zeros(0)
+            length = 0.25 * length
             continue
-        yield window, error
-        begun, y, length = stop, window.ends[-1], 4.0 * length
+        windows.append(window)
+        begun, settled, too_hot = _stop(window, law.stretch.end, within)
+        y, length, worst = window.ends[-1], 4.0 * length, max(worst, error)
     progress("course in time", 1000, 1000)
+    return windows, begun, worst, settled, too_hot
 
 
 def follow(
@@ -346,7 +482,6 @@ def follow(
     moments: int = 60,
     tolerance: float = 1e-3,
     settled_within: float = 0.01,
-    events: Mapping[str, Callable[[State, int], Floats]] | None = None,
     progress: Progress = silent,
 ) -> Course:
     """Temperatures of a network whose conductances and sources depend on them, over time.
@@ -359,41 +494,125 @@ def follow(
 
     ``stretches`` one after the other from time 0; ``start`` [K] of every free node; ``times`` [s]
     to be stored with some ``moments`` of each stretch; a stretch without end runs until its steady
-    state is no more than ``settled_within`` [K] away; ``events`` [K or m, any] of states (count,)
-    and the place of their stretch that are located where they fall through 0. Raises InputError
-    for stretches that do not follow each other, and ConvergenceError where the steps fail.
+    state is no more than ``settled_within`` [K] away. Raises InputError for stretches that do not
+    follow each other, and ConvergenceError where the steps fail.
     """
-    ends = np.array([one.end for one in stretches])
-    if not ends.size or not np.all(np.diff(np.concatenate([[0.0], ends])) > 0.0):
-        raise InputError("stretches", f"ends {ends} s", allowed="one or more, rising from 0 s")
+    return together(
+        [(stretches, start)],
+        times=times,
+        moments=moments,
+        tolerance=tolerance,
+        settled_within=settled_within,
+        progress=progress,
+    )[0]
+
+
+def together(
+    courses: Sequence[tuple[Sequence[Stretch], Mapping[str, float]]],
+    *,
+    times: ArrayLike = (),
+    moments: int = 60,
+    tolerance: float = 1e-3,
+    settled_within: float = 0.01,
+    progress: Progress = silent,
+) -> list[Course]:
+    """:func:`follow` for many stretches and starts of the same nodes and capacities.
+
+    Each goes its own way; what they ask of one and the same law, they ask at once. Raises what is
+    wrong with the first course that fails.
+    """
     if not tolerance > 0.0:
         raise InputError("tolerance", f"{tolerance} K", allowed="> 0 K")
-    known = {name: np.atleast_1d(np.asarray(t, dtype=float)) for name, t in start.items()}
-    first = stretches[0].network(known)
-    nodes, capacity = first.free, _capacities(first)
-    y = np.array([*(float(start[name]) for name in nodes), 0.0, 0.0])
-    wanted = np.unique(np.asarray(times, dtype=float))
-    happened: dict[str, list[float]] = {name: [] for name in events or {}}
-    windows: list[_Window] = []
+    for stretches, _ in courses:
+        ends = np.array([one.end for one in stretches])
+        if not ends.size or not np.all(np.diff(np.concatenate([[0.0], ends])) > 0.0):
+            raise InputError("stretches", f"ends {ends} s", allowed="one or more, rising from 0 s")
+    stretches, start = courses[0]
+    at = {name: np.array([float(t)]) for name, t in start.items()}
+    at |= {name: np.array([value]) for name, value in stretches[0].given.items()}
+    if stretches[0].lagging is not None:
+        at["lagging"] = stretches[0].lagging(at)
+    first = stretches[0].network(at)
+    runs = [
+        _course(
+            parts,
+            np.array([*(float(begin[name]) for name in first.free), 0.0, 0.0]),
+            first.free,
+            _capacities(first),
+            moments=lambda begun, end: _moments(
+                begun, end, moments, np.unique(np.asarray(times, dtype=float))
+            ),
+            followed=partial(
+                _stretch, tolerance=tolerance, within=settled_within, progress=progress
+            ),
+        )
+        for parts, begin in courses
+    ]
+    return _answered(runs)
+
+
+def _answered(runs: Sequence[Steps[Course]]) -> list[Course]:
+    """What ``runs`` find in the end; what they ask for meanwhile is answered together."""
+    found: dict[int, Course] = {}
+    replies: dict[int, Any] = dict.fromkeys(range(len(runs)))
+    asked: dict[int, Ask] = {}
+    while replies:
+        for place, reply in replies.items():
+            try:
+                failed = isinstance(reply, ThermogearError)
+                asked[place] = runs[place].throw(reply) if failed else runs[place].send(reply)
+            except StopIteration as end:
+                found[place] = end.value
+        # what costs most waits until all that go on ask for it
+        due = [k for k, ask in asked.items() if ask[0] is _flows] or list(asked)
+        replies = dict(zip(due, _answers([asked.pop(k) for k in due]), strict=True))
+    return [found[place] for place in range(len(runs))]
+
+
+def _answers(asks: Sequence[Ask]) -> list[Any]:
+    """The answer of each or what refuses it, those of one law found at all their states at once."""
+    if not asks:
+        return []
+    (reading, law, state), sizes = asks[0], [len(ask[2]["as computed"]) for ask in asks]
+    alike = [k for k, ask in enumerate(asks) if ask[:2] == (reading, law)]
+    alike = alike[: max(1, _TOGETHER // max(sizes))]
+    try:
+        whole = {name: np.concatenate([asks[k][2][name] for k in alike]) for name in state}
+        cuts = np.cumsum([sizes[k] for k in alike])[:-1]
+        parts = zip(*(np.split(one, cuts) for one in reading(law, whole)), strict=True)
+        replies: dict[int, Any] = dict(zip(alike, parts, strict=True))
+    except ThermogearError as error:
+        # who is refused is found alone
+        replies = {k: error if len(alike) == 1 else _answers([asks[k]])[0] for k in alike}
+    rest = [k for k in range(len(asks)) if k not in replies]
+    replies |= dict(zip(rest, _answers([asks[k] for k in rest]), strict=True))
+    return [replies[k] for k in range(len(asks))]
+
+
+def _course(
+    stretches: Sequence[Stretch],
+    y: Floats,
+    nodes: tuple[str, ...],
+    capacity: Floats,
+    *,
+    moments: Callable[[float, float], Floats],
+    followed: Callable[..., Steps[_Followed]],
+) -> Steps[Course]:
+    """One course from the state ``y`` (nodes + 2,)."""
+    windows: list[tuple[int, _Window]] = []
     stored: list[tuple[int, Floats]] = []
-    stop, calls, error, settled, too_hot = 0.0, 1, 0.0, False, False
+    stop, calls, error = 0.0, 1, 0.0
     for place, stretch in enumerate(stretches):
         law, begun = _Law(stretch, nodes, capacity), stop
-        for window, here in _windows(law, y, begun, tolerance, progress):
-            windows.append(window)
-            y, error = window.ends[-1], max(error, here)
-            stop, settled, too_hot = _stop(window, stretch.end, settled_within)
-            for name, event in (events or {}).items():
-                value = _value(window, nodes, event, place)
-                happened[name] += [t for t in _falls(window.time, value) if t <= stop]
-            if settled or too_hot:
-                break
+        parts, stop, worst, settled, too_hot = yield from followed(law, y, begun)
+        windows += [(place, window) for window in parts]
+        y, error = parts[-1].ends[-1], max(error, worst)
         calls += law.calls
-        stored.append((place, _moments(begun, stop, moments, wanted)))
+        stored.append((place, moments(begun, stop)))
         if too_hot:
             break
     time = np.concatenate([t for _, t in stored])
-    states = _states(windows, time)
+    states = _states([window for _, window in windows], time)
     heat_in, heat_out = states[:, -2], states[:, -1]
     kept = (states[:, :-2] - states[0, :-2]) @ capacity
     turned = heat_in + np.abs(heat_out) + np.abs(kept)
@@ -406,20 +625,12 @@ def follow(
         heat_out=heat_out,
         kept=kept,
         imbalance=np.divide(left, turned, out=np.zeros_like(left), where=turned > 0.0),
-        events={name: np.asarray(found) for name, found in happened.items()},
         settled=settled,
         too_hot=too_hot,
         evaluations=calls,
         error=error,
         _windows=windows,
     )
-
-
-def _value(
-    window: _Window, nodes: tuple[str, ...], event: Callable[[State, int], Floats], place: int
-) -> Callable[[Floats], Floats]:
-    """An event over time [s]."""
-    return lambda t: event(dict(zip(nodes, window.at(t).T, strict=False)), place)
 
 
 def _stop(window: _Window, end: float, within: float) -> tuple[float, bool, bool]:

@@ -105,7 +105,7 @@ def mesh_cycle(
     phase = np.arange(mesh_positions) / mesh_positions
     variables = {
         name: (POINT if name == "status" else TABLE[name][0], values)
-        for name, values in quantities(hot, deviations, s, phase, want).items()
+        for name, values in Cycle(hot, tuple(deviations), s, phase).quantities(want).items()
     }
     coordinates: dict[str, tuple[tuple[str, ...], ArrayLike]] = {
         "pinion_speed": (POINT, operating.speed),
@@ -141,32 +141,6 @@ def warn_of_pitch(deviations: Sequence[Deviation]) -> None:
         )
 
 
-def quantities(
-    hot: HotPair,
-    deviations: Sequence[Deviation],
-    s: Floats,
-    phase: Floats,
-    want: Collection[str] = (),
-) -> dict[str, ArrayLike]:
-    """The bare arrays of :func:`mesh_cycle` at path positions ``s`` [m] and mesh ``phase``, SI.
-
-    In the order of :data:`TABLE`, then ``status``.
-    """
-    names = _asked(want)
-    computed = _Cycle(hot, tuple(deviations), s, phase)
-    springs = computed.parts if any(name in SPRINGS for name in names) else {}
-    for name in want:
-        if name in SPRINGS and name not in springs:
-            why = f"model.tooth = {hot.model.tooth} has other springs"
-            raise InputError("want", repr(name), allowed=" | ".join(springs), why=why)
-    values = {
-        name: of(computed)
-        for name, (_, of) in TABLE.items()
-        if name in names and (name in springs or name not in SPRINGS)
-    }
-    return values | {"status": computed.status(names)}
-
-
 def _asked(want: Collection[str]) -> Collection[str]:
     """The names to compute; all without any."""
     for name in want:
@@ -176,8 +150,11 @@ def _asked(want: Collection[str]) -> Collection[str]:
 
 
 @dataclass(frozen=True, eq=False)
-class _Cycle:
-    """What the quantities of one cycle are made of, each computed when first asked for."""
+class Cycle:
+    """What the quantities of one cycle are made of, each computed when first asked for.
+
+    At path positions ``s`` [m] and mesh ``phase``.
+    """
 
     hot: HotPair
     deviations: tuple[Deviation, ...]
@@ -187,6 +164,21 @@ class _Cycle:
     @cached_property
     def elastic(self) -> ElasticPair:
         return elastic_pair(self.hot, self.deviations)
+
+    def quantities(self, want: Collection[str] = ()) -> dict[str, ArrayLike]:
+        """The bare arrays of :func:`mesh_cycle`, SI, in the order of :data:`TABLE`, then status."""
+        names = _asked(want)
+        springs = self.parts if any(name in SPRINGS for name in names) else {}
+        for name in want:
+            if name in SPRINGS and name not in springs:
+                why = f"model.tooth = {self.hot.model.tooth} has other springs"
+                raise InputError("want", repr(name), allowed=" | ".join(springs), why=why)
+        values = {
+            name: of(self)
+            for name, (_, of) in TABLE.items()
+            if name in names and (name in springs or name not in SPRINGS)
+        }
+        return values | {"status": self.status(names)}
 
     # --- along the path ---------------------------------------------------------------------
     @cached_property
@@ -285,21 +277,21 @@ class _Cycle:
         return np.broadcast_to(power * np.ravel(self.hot.widened), (self.hot.count,))
 
 
-Made = Callable[[_Cycle], ArrayLike]
+Made = Callable[[Cycle], ArrayLike]
 
 
-def _of_contact(of: Made, c: _Cycle) -> Floats:
+def _of_contact(of: Made, c: Cycle) -> Floats:
     """Over the path of contact; nan where the loaded contact is not known."""
     values = np.broadcast_to(np.asarray(of(c)), (c.hot.count, c.s.size))
     return np.where(c.path.settled[:, None], values, np.nan)
 
 
-def _of_heat(name: str, c: _Cycle) -> Floats:
+def _of_heat(name: str, c: Cycle) -> Floats:
     """A time mean over the mesh; nan where the loaded contact is not known."""
     return np.where(c.heat.settled, getattr(c.heat, name), np.nan)
 
 
-def _kinematic(law: Callable[..., Floats], c: _Cycle) -> Floats:
+def _kinematic(law: Callable[..., Floats], c: Cycle) -> Floats:
     return law(c.hot.pair, c.hot.operating.speed[:, None], c.s)
 
 
@@ -345,7 +337,7 @@ SPRINGS = (
 """The springs of one tooth pair, in the order of storage; each model of the teeth has some."""
 
 
-def _one_of(of: Callable[[_Cycle], dict[str, Floats]], name: str, c: _Cycle) -> Floats:
+def _one_of(of: Callable[[Cycle], dict[str, Floats]], name: str, c: Cycle) -> Floats:
     return of(c)[name]
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -22,7 +23,7 @@ from thermogear.gears.contact import (
     rolling_velocities,
 )
 from thermogear.gears.sharing import equal_share
-from thermogear.heat.contact_state import ContactState, PitchPoint
+from thermogear.heat.contact_state import FILMS, ContactState, PitchPoint
 from thermogear.heat.film import (
     film_parameter,
     film_thickness,
@@ -256,6 +257,10 @@ class FrictionPath:
     @cached_property
     def state(self) -> ContactState:
         """All that a friction law may ask for."""
+        return self._state(FILMS)
+
+    def _state(self, films: Sequence[str]) -> ContactState:
+        """The same with some of the films alone: they cost as much as all the rest."""
         pair, oil = self.hot.pair, self.hot.operating.lubricant
         v1, v2 = self.velocities
         pitch = np.array([pair.path.c])
@@ -269,8 +274,7 @@ class FrictionPath:
             viscosity=self.viscosity,
             roughness=0.5 * (self.hot.roughness(pair.pinion) + self.hot.roughness(pair.wheel)),
             kinematic_viscosity=self.inlet_oil.kinematic,
-            film_parameter=self.film_parameter,
-            central_film_parameter=self.central_film_parameter,
+            **{name: getattr(self, name) for name in films},
             bath_viscosity=self.bath_viscosity,
             pressure_viscosity=self.inlet_oil.pressure,
             pitch_point=PitchPoint(
@@ -303,7 +307,9 @@ class FrictionPath:
     def friction(self) -> Floats:
         """|mu| by the model's law."""
         law = self.hot.model.law
-        return self.dry if isinstance(law, ConstantDry) else law(self.state)
+        if isinstance(law, ConstantDry):
+            return self.dry
+        return law(self._state(getattr(law, "films", FILMS)))
 
     @cached_property
     def band(self) -> tuple[Floats, Floats]:

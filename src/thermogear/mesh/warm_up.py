@@ -6,8 +6,9 @@ Gears warm before their housing: the backlash is often least on the way and not 
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,13 +23,14 @@ from thermogear.gears.pair import GearPair
 from thermogear.heat.free_convection import with_free_convection
 from thermogear.heat.gearbox import Losses, Surroundings, joined, thermal_network
 from thermogear.heat.network import ThermalNetwork
-from thermogear.heat.transient import Course, State, Stretch, follow
+from thermogear.heat.transient import Course, State, Stretch, together
 from thermogear.mesh.balance import Gearbox, node_temperatures, pair_losses
 from thermogear.mesh.clearance import Clearance
 from thermogear.mesh.cycle import mesh_cycle
-from thermogear.mesh.elastic import elastic_pair
+from thermogear.mesh.elastic import ElasticPair, elastic_pair
+from thermogear.mesh.mesh_heat import MeshHeat, mesh_heat
 from thermogear.mesh.model import MeshModel
-from thermogear.mesh.operating import Operating
+from thermogear.mesh.operating import ALIKE, Operating, Varied
 from thermogear.mesh.thermal import HotPair
 
 FACTORS = {
@@ -124,21 +126,102 @@ class WarmUp:
     ``time`` [s] and ``piece`` of the duty; ``temperatures`` [K] of all nodes, given ones too;
     ``losses`` [W]; ``half_backlash`` least over the mesh phase [m]; ``margin`` to the jam [K];
     ``operating``: the state at every moment; ``course``: heat in, out and kept, and any moment
-    between; ``worst`` moment; ``jams`` [s] when the backlash is used up; ``held`` nodes [K].
+    between; ``worst`` moment; ``jams`` [s] when the backlash is used up; ``held`` nodes [K]. What
+    the temperatures lead to is computed when it is first asked for; ``losses`` warn once where the
+    oil leaves its viscosity line.
     """
 
     duty: Duty
-    time: Floats
-    piece: NDArray[np.int64]
-    temperatures: dict[str, Floats]
-    losses: Losses
-    half_backlash: Floats
-    margin: Floats
-    operating: Operating
     course: Course
-    worst: Worst
-    jams: Floats
-    held: Mapping[str, float]
+    _chain: _Chain = field(repr=False)
+    _given: Sequence[Mapping[str, float]] = field(repr=False)
+
+    @property
+    def time(self) -> Floats:
+        return self.course.time
+
+    @property
+    def piece(self) -> NDArray[np.int64]:
+        return self.course.stretch
+
+    @property
+    def held(self) -> Mapping[str, float]:
+        return self._chain.held
+
+    @property
+    def temperatures(self) -> dict[str, Floats]:
+        held = {name: np.full(self.time.size, t) for name, t in self.held.items()}
+        return {**self.course.temperatures, **held, "ambient": self.duty.ambient[self.piece]}
+
+    @cached_property
+    def operating(self) -> Operating:
+        return self._chain.operating(self._state)
+
+    @property
+    def _state(self) -> State:
+        return self._at(self.course.temperatures, self.piece)
+
+    def _at(self, state: State, piece: ArrayLike) -> State:
+        """What the chain finds at temperatures of the course in ``piece`` of the duty."""
+        each = np.broadcast_to(piece, np.shape(next(iter(state.values()))))
+        found = {
+            name: np.array([one[name] for one in self._given])[each] for name in self._given[0]
+        }
+        return {**state, **found}
+
+    @cached_property
+    def losses(self) -> Losses:
+        return self._chain.losses_of(self._state)
+
+    @cached_property
+    def _clearance(self) -> Clearance:
+        return self._chain.clearance(self._state)
+
+    @cached_property
+    def half_backlash(self) -> Floats:
+        return np.asarray(self._clearance.half_backlash.min(axis=1))
+
+    @property
+    def margin(self) -> Floats:
+        teeth = self.temperatures["pinion_tooth"]
+        return np.asarray(self._clearance.jam_temperature - teeth)
+
+    def _gap(self, state: State, piece: ArrayLike) -> Floats:
+        """Least half backlash [m] of states (count,) in ``piece`` of the duty."""
+        left = self._chain.clearance(self._at(state, piece)).half_backlash
+        return np.asarray(left.min(axis=1))
+
+    @cached_property
+    def jams(self) -> Floats:
+        left, still = self.half_backlash, np.diff(self.time) == 0.0
+        # a leap of the speed may use up the backlash at once
+        leaps = np.flatnonzero((left[1:] <= 0.0) & (left[:-1] > 0.0) & still)
+        return np.sort(np.concatenate([self.course.falls(self._gap), self.time[leaps]]))
+
+    @cached_property
+    def worst(self) -> Worst:
+        """Located between the stored moments."""
+        left, place = self.half_backlash, int(np.argmin(self.half_backlash))
+        when, piece = float(self.time[place]), int(self.piece[place])
+        ends = self.time[max(place - 1, 0)], self.time[min(place + 1, left.size - 1)]
+        if ends[0] < when < ends[1]:
+            for _ in range(3):
+                near = np.linspace(*ends, 17)
+                gaps = self._gap(self.course.at(near), piece)
+                place = int(np.argmin(gaps))
+                ends = near[max(place - 1, 0)], near[min(place + 1, near.size - 1)]
+            when = float(near[place]) if gaps[place] <= left.min() else when
+        state = {name: np.atleast_1d(t) for name, t in self.course.at(when).items()}
+        here = self._chain.clearance(self._at(state, [piece]))
+        return Worst(
+            time=when,
+            half_backlash=float(here.half_backlash.min()),
+            margin=float(
+                here.jam_temperature[0] - np.ravel(here.hot.temperatures.pinion_addendum)[0]
+            ),
+            temperatures={name: float(t[0]) for name, t in state.items()},
+            piece=piece,
+        )
 
 
 def warm_up(
@@ -164,7 +247,8 @@ def warm_up(
     C dT/dt = q(T) - G(T) T with the losses of the mesh, churning and bearings and every conductance
     at the present temperatures, as :func:`heat_balance` has them; see
     :func:`~thermogear.heat.transient.follow`. At rest free convection remains between gears and
-    oil (:func:`~thermogear.heat.free_convection.with_free_convection`).
+    oil (:func:`~thermogear.heat.free_convection.with_free_convection`). The friction of the mesh
+    and the conductance of its contact are computed at some moments and interpolated between.
 
     ``lubricant``, ``half_backlash`` [m] cold, ``model``, ``gearbox`` (its measured nodes held from
     the start; its ambient is the duty's), ``reference`` [K], ``housing`` and ``deviations`` as
@@ -173,7 +257,7 @@ def warm_up(
     with some ``moments`` of each piece; ``tolerance`` [K] of the temperatures' error.
 
     A jam does not end the course; a node of 700 K does. Raises ConvergenceError where the loaded
-    contact does not settle. Warns once where the oil leaves its viscosity line.
+    contact does not settle.
 
     >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
     >>> duty = Duty(time=[0.0, 600.0], speed=[100.0], torque=[200.0], ambient=[293.15])
@@ -181,56 +265,95 @@ def warm_up(
     >>> f"{course.temperatures['oil'][-1] - 273.15:.1f} C"
     '24.1 C'
     """
-    box = Gearbox() if gearbox is None else gearbox
-    chosen = _Chain(
+    return warm_ups(
+        pair,
+        [duty],
+        lubricant,
+        half_backlash,
+        model,
+        gearbox=gearbox,
+        start=start,
+        reference=reference,
+        housing=housing,
+        deviations=deviations,
+        factors=factors,
+        times=times,
+        moments=moments,
+        tolerance=tolerance,
+        progress=progress,
+    )[0]
+
+
+def warm_ups(
+    pair: GearPair,
+    duties: Sequence[Duty],
+    lubricant: Lubricant,
+    half_backlash: float,
+    model: MeshModel | None = None,
+    *,
+    varied: Varied = ALIKE,
+    gearbox: Gearbox | None = None,
+    start: float | Mapping[str, float] | None = None,
+    reference: float = 293.15,
+    housing: Material = MATERIALS["steel"],
+    deviations: Sequence[Deviation] = (),
+    factors: Mapping[str, float] | None = None,
+    times: ArrayLike = (),
+    moments: int = 60,
+    tolerance: float = 1e-3,
+    progress: Progress = silent,
+) -> list[WarmUp]:
+    """:func:`warm_up` of many samples side by side, each over its own duty of ``duties``.
+
+    ``lubricant``: one for all, or of one viscosity line a sample; ``varied``: what of the pair
+    differs between the samples, one width for all. Every sample goes its own way, with its own
+    steps; the laws are asked for all of them at once.
+    """
+    begins = np.cumsum([0, *(duty.pieces for duty in duties)])
+    chain = _Chain(
         pair=pair,
-        duty=duty,
+        speed=np.concatenate([duty.speed for duty in duties]),
+        torque=np.concatenate([duty.torque for duty in duties]),
+        ambient=np.concatenate([duty.ambient for duty in duties]),
         lubricant=lubricant,
         half_backlash=half_backlash,
+        varied=varied,
         model=MeshModel.consistent() if model is None else model,
-        box=box,
+        box=Gearbox() if gearbox is None else gearbox,
         reference=reference,
         housing=housing,
         deviations=deviations,
         factors=_known(factors or {}),
     )
+    given = [
+        [{"sample": k, "row": begin + piece} for piece in range(duty.pieces)]
+        for k, (duty, begin) in enumerate(zip(duties, begins, strict=False))
+    ]
     with warnings.catch_warnings():
-        # told once, at the stored moments
+        # told once, by the losses
         warnings.simplefilter("ignore", ValidityWarning)
-        begin = chosen.start(start)
-        course = follow(
+        courses = together(
             [
-                Stretch(end=float(end), network=chosen.network_of(piece))
-                for piece, end in enumerate(duty.time[1:])
+                (
+                    [
+                        Stretch(
+                            end=float(end), network=chain.network, lagging=chain.mesh, given=where
+                        )
+                        for end, where in zip(duty.time[1:], rows, strict=True)
+                    ],
+                    chain.start(start, float(duty.ambient[0])),
+                )
+                for duty, rows in zip(duties, given, strict=True)
             ],
-            begin,
             times=times,
             moments=moments,
             tolerance=tolerance,
-            events={"jam": chosen.gap},
             progress=progress,
         )
-        left, margin = chosen.clearance_of(course.temperatures, course.stretch)
-        worst = chosen.worst(course, left)
-    # a leap of the speed may use up the backlash at once
-    leaps = np.flatnonzero((left[1:] <= 0.0) & (left[:-1] > 0.0) & (np.diff(course.time) == 0.0))
-    losses = chosen.losses_of(course)
-    held = {name: np.full(course.time.size, t) for name, t in chosen.held.items()}
-    ambient = duty.ambient[course.stretch]
-    return WarmUp(
-        duty=duty,
-        time=course.time,
-        piece=course.stretch,
-        temperatures={**course.temperatures, **held, "ambient": ambient},
-        losses=losses,
-        half_backlash=left,
-        margin=margin,
-        operating=chosen.operating(course.temperatures, course.stretch),
-        course=course,
-        worst=worst,
-        jams=np.sort(np.concatenate([course.events["jam"], course.time[leaps]])),
-        held=chosen.held,
-    )
+    return [
+        WarmUp(duty=duty, course=course, _chain=chain, _given=rows)
+        for duty, course, rows in zip(duties, courses, given, strict=True)
+    ]
 
 
 def with_factors(surroundings: Surroundings, factors: Mapping[str, float]) -> Surroundings:
@@ -283,12 +406,19 @@ def _group(first: str, second: str) -> str | None:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class _Chain:
-    """From temperatures to losses, conductances and clearance of one pair in one duty."""
+    """From temperatures to losses, conductances and clearance of one pair in its duties.
+
+    States hold temperatures [K] of the free nodes, the ``sample`` and the ``row`` of its duty's
+    piece in ``speed``, ``torque`` and ``ambient``, arrays (count,).
+    """
 
     pair: GearPair
-    duty: Duty
+    speed: Floats
+    torque: Floats
+    ambient: Floats
     lubricant: Lubricant
     half_backlash: float
+    varied: Varied
     model: MeshModel
     box: Gearbox
     reference: float
@@ -301,13 +431,12 @@ class _Chain:
         held = {name: float(np.ravel(t)[0]) for name, t in self.box.measured.items()}
         object.__setattr__(self, "held", held)
 
-    def start(self, given: float | Mapping[str, float] | None) -> dict[str, float]:
-        """Temperatures [K] of the free nodes at time 0."""
-        cold = float(self.duty.ambient[0])
+    def start(self, given: float | Mapping[str, float] | None, cold: float) -> dict[str, float]:
+        """Temperatures [K] of the free nodes at time 0, of an ambient of ``cold`` [K]."""
         named = given if isinstance(given, Mapping) else {}
         whole = cold if given is None or isinstance(given, Mapping) else float(given)
         bounds.BODY.require("start", [whole, *named.values()])
-        free = self.network_of(0)({name: np.array([whole]) for name in self.box.nodes}).free
+        free = [name for name in self.box.nodes if name not in self.held]
         for name in named:
             if name not in free:
                 raise InputError("start", repr(name), allowed=" | ".join(free))
@@ -315,60 +444,68 @@ class _Chain:
 
     def nodes(self, state: State) -> dict[str, Floats]:
         """Temperatures [K] of all nodes, held ones too, (count,)."""
-        whole = np.broadcast_shapes(*(np.shape(t) for t in state.values()))
+        whole = np.shape(state["row"])
         return {
             n: np.full(whole, self.held[n]) if n in self.held else state[n] for n in self.box.nodes
         }
 
-    def operating(self, state: State, piece: ArrayLike) -> Operating:
-        """The operating points of temperatures (count,) in ``piece`` of the duty."""
-        whole = np.broadcast_shapes(*(np.shape(t) for t in state.values()))
-        at = self.nodes(state)
-        place = np.broadcast_to(np.asarray(piece, dtype=int), whole)
+    def operating(self, state: State) -> Operating:
+        """The operating points of a state."""
+        at, row, sample = (
+            self.nodes(state), *(np.asarray(state[name], dtype=int) for name in ("row", "sample"))
+        )  # fmt: skip
         return Operating(
-            self.duty.speed[place],
-            self.duty.torque[place],
-            self.lubricant,
+            self.speed[row],
+            self.torque[row],
+            self.lubricant.part(sample),
             at["oil"],
             node_temperatures(at, self.reference),
             self.half_backlash,
             self.housing,
+            varied=self.varied.part(sample),
         )
 
-    def losses(self, state: State, at: Operating) -> Losses:
-        """Of the whole chain at the operating points of a state, no interpolation."""
-        elastic = elastic_pair(HotPair(self.pair, at, self.model), self.deviations)
-        losses, known = pair_losses(self.pair, at, elastic, self.box, self.nodes(state))
-        if not known.all():
-            count = int(np.count_nonzero(~known))
+    def _elastic(self, at: Operating) -> ElasticPair:
+        return elastic_pair(HotPair(self.pair, at, self.model), self.deviations)
+
+    def mesh(self, state: State) -> Floats:
+        """Friction power [W], its share into the pinion and conductance [W/K], (count, 3)."""
+        means = mesh_heat(self._elastic(self.operating(state)))
+        if not means.settled.all():
+            count = int(np.count_nonzero(~means.settled))
             raise ConvergenceError(
-                f"loaded contact: {count} of {known.size} operating points did not settle"
+                f"loaded contact: {count} of {means.settled.size} operating points did not settle"
             )
+        return np.stack([means.power, means.partition, means.conductance], axis=1)
+
+    def losses(self, state: State, at: Operating) -> Losses:
+        """Of the whole chain at the operating points of a state, its mesh as it lags there."""
+        power, first, between = np.clip(state["lagging"], 0.0, [np.inf, 1.0, np.inf]).T
+        means = MeshHeat(power, first, between, 0.0 * power, power >= 0.0, 0.0 * power)
+        losses, _ = pair_losses(
+            self.pair, at, self._elastic(at), self.box, self.nodes(state), means
+        )
         return losses
 
-    def network_of(self, piece: int) -> Callable[[State], ThermalNetwork]:
-        """The law of one piece."""
-        around = replace(self.box.surroundings, ambient=float(self.duty.ambient[piece]))
+    def network(self, state: State) -> ThermalNetwork:
+        """The law of every piece."""
+        at, row = self.operating(state), np.asarray(state["row"], dtype=int)
+        around = replace(self.box.surroundings, ambient=self.ambient[row])
+        bare = thermal_network(
+            self.pair.pinion,
+            self.pair.wheel,
+            at.speed,
+            self.losses(state, at),
+            at.lubricant,
+            at.oil_temperature,
+            around,
+            dict(self.held),
+            self.nodes(state)["housing"],
+        )
         gears = {"pinion": self.pair.pinion, "wheel": self.pair.wheel}
-
-        def network(state: State) -> ThermalNetwork:
-            at = self.operating(state, piece)
-            bare = thermal_network(
-                self.pair.pinion,
-                self.pair.wheel,
-                at.speed,
-                self.losses(state, at),
-                self.lubricant,
-                at.oil_temperature,
-                around,
-                dict(self.held),
-                self.nodes(state)["housing"],
-            )
-            known = {name: np.asarray(t) for name, t in bare.fixed.items()} | dict(state)
-            full = {name: known.get(name, np.asarray(around.ambient)) for name in bare.nodes}
-            return self._scaled(with_free_convection(bare, gears, self.lubricant, around, full))
-
-        return network
+        known = {name: np.asarray(t) for name, t in bare.fixed.items()} | dict(state)
+        full = {name: known.get(name, np.asarray(around.ambient)) for name in bare.nodes}
+        return self._scaled(with_free_convection(bare, gears, at.lubricant, around, full))
 
     def _scaled(self, network: ThermalNetwork) -> ThermalNetwork:
         if not self.factors:
@@ -383,56 +520,27 @@ class _Chain:
         )
         return replace(network, links=links)
 
-    def clearance_of(self, state: State, piece: ArrayLike) -> tuple[Floats, Floats]:
-        """(least half backlash [m], margin to the jam [K]) of temperatures (count,)."""
-        at = self.operating(state, piece)
-        found = self._clearance(at)
-        margin = found.jam_temperature - np.asarray(at.temperatures.pinion_addendum)
-        return found.half_backlash.min(axis=1), margin
-
-    def _clearance(self, at: Operating) -> Clearance:
-        hot = HotPair(self.pair, at, self.model)
+    def clearance(self, state: State) -> Clearance:
+        """Over the mesh phase, of a state."""
+        with warnings.catch_warnings():
+            # of the oil, which a gap does not feel
+            warnings.simplefilter("ignore", ValidityWarning)
+            hot = HotPair(self.pair, self.operating(state), self.model)
         return Clearance(hot, np.arange(PHASES) / PHASES, self.deviations)
 
-    def gap(self, state: State, piece: int) -> Floats:
-        """Least half backlash [m] of states (count,) in ``piece`` of the duty."""
-        left = self._clearance(self.operating(state, piece)).half_backlash
-        return np.asarray(left.min(axis=1))
-
-    def worst(self, course: Course, left: Floats) -> Worst:
-        """The least half backlash of the course, located between the moments that have ``left``."""
-        place = int(np.argmin(left))
-        when, piece = float(course.time[place]), int(course.stretch[place])
-        ends = course.time[max(place - 1, 0)], course.time[min(place + 1, left.size - 1)]
-        if ends[0] < when < ends[1]:
-            for _ in range(3):
-                near = np.linspace(*ends, 17)
-                gaps = self.gap(course.at(near), piece)
-                place = int(np.argmin(gaps))
-                ends = near[max(place - 1, 0)], near[min(place + 1, near.size - 1)]
-            when = float(near[place]) if gaps[place] <= left.min() else when
-        state = {name: np.atleast_1d(t) for name, t in course.at(when).items()}
-        gap, margin = self.clearance_of(state, piece)
-        return Worst(
-            time=when,
-            half_backlash=float(gap[0]),
-            margin=float(margin[0]),
-            temperatures={name: float(t[0]) for name, t in state.items()},
-            piece=piece,
-        )
-
-    def losses_of(self, course: Course) -> Losses:
-        """At the stored moments; warns once where the oil leaves its line."""
+    def losses_of(self, state: State) -> Losses:
+        """At many moments; warns once where the oil leaves its line."""
         parts: list[Losses] = []
+        count = np.size(state["row"])
         with warnings.catch_warnings(record=True) as told:
             warnings.simplefilter("always", ValidityWarning)
-            for first in range(0, course.time.size, BLOCK):
-                here = slice(first, first + BLOCK)
-                state = {name: t[here] for name, t in course.temperatures.items()}
-                parts.append(self.losses(state, self.operating(state, course.stretch[here])))
+            for first in range(0, count, BLOCK):
+                here = {name: t[first : first + BLOCK] for name, t in state.items()}
+                full = {**here, "lagging": self.mesh(here)}
+                parts.append(self.losses(full, self.operating(here)))
         for text in dict.fromkeys(str(one.message) for one in told):
             warnings.warn(text, ValidityWarning, stacklevel=3)
-        return joined(parts, [min(BLOCK, course.time.size - BLOCK * k) for k in range(len(parts))])
+        return joined(parts, [min(BLOCK, count - BLOCK * k) for k in range(len(parts))])
 
 
 MESHING = {
