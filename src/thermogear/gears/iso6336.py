@@ -200,6 +200,10 @@ def single_contact(pair: GearPair) -> tuple[float, float]:
 
     A base pitch from where the contact begins at the gear's root: D of the path for the pinion, B
     for the wheel. Above a contact ratio of 2 the pair is not alone there.
+
+    >>> pinion, wheel = single_contact(GearPair(Gear(25, 5e-3), Gear(75, 5e-3)))
+    >>> f"{pinion:.3f} {wheel:.3f}"
+    '0.387 0.380'
     """
     path, length = pair.path, pair.line_of_action
     return path.d / pair.pinion.base_radius, (length - path.b) / pair.wheel.base_radius

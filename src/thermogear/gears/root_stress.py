@@ -67,6 +67,9 @@ def root_table(gear: Gear, plane: str = "stress") -> RootTable:
     """The stresses of ``gear``, remembered by its shape in modules and its Poisson's ratio.
 
     plane: a key of :data:`~thermogear.gears.tooth_table.PLANES`.
+
+    >>> root_table(Gear(25, 5e-3)).slope.size
+    18
     """
     return _table(Shape.of(gear, plane))
 
@@ -77,7 +80,12 @@ def _table(shape: Shape) -> RootTable:
 
 
 def table_of(sector: Sector) -> RootTable:
-    """The stresses of one mesh of a gear."""
+    """The stresses of one mesh of a gear.
+
+    >>> coarse = Sector.of(Gear(25, 5e-3), 0.3)
+    >>> f"{table_of(coarse).stress(np.tan(np.radians(20))).max():.2f}"
+    '2.38'
+    """
     gear, m = sector.gear, sector.gear.module
     arcs, widths = sector.stations(STATIONS)
     strain, along = sector.patch.edge_strains(sector.foot.fillet)

@@ -98,6 +98,9 @@ def section_angle(gear: Gear, slope: float) -> float:
 
     Where the involute begins on a tooth whose tangent is past that slope there already: a deeply
     undercut one, or one of large profile shift.
+
+    >>> f"{math.degrees(section_angle(Gear(20, 4e-3), math.radians(10))):.1f} deg"
+    '24.9 deg'
     """
     gamma = gear.junction[0]
     if gamma - float(gear.fillet.roll(gamma)) >= slope:
