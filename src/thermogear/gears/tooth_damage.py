@@ -51,7 +51,7 @@ MESH = Density(growth=1.5, below=6)
 FINEST = 0.04
 """Elements at a crack's tip, in half lengths of the line from fillet to fillet through it: a crack
 of 0.3 modules adds 3 to 4 % less than on a mesh a quarter as large, one of 0.9 modules 0.8 %."""
-DEEPEST = 0.85
+DEEPEST = 0.6
 """Part of the way across the tooth, and half of it of that down to the bore, that a crack goes."""
 
 
@@ -146,9 +146,9 @@ class Damage(ABC):
 class Crack(Damage):
     """A straight, open crack from the 30-degree point of the drive flank's fillet into the gear.
 
-    depth: its length [m] >= 0; angle [rad] to the tooth's axis, 30 to 90 degrees, by default 45:
+    depth: its length [m] >= 0; angle [rad] to the tooth's axis, 45 to 90 degrees, by default 45:
     90 goes straight across the tooth. Under a load on the back flank it is shut and does nothing.
-    Refused beyond 0.85 of the way across the tooth or 0.425 of that down to the bore.
+    Refused beyond 0.6 of the way across the tooth or 0.3 of that down to the bore.
 
     >>> gear = Gear(20, 4e-3)
     >>> t = math.tan(gear.pressure_angle)
