@@ -41,7 +41,6 @@ WITHOUT = {
     "base.excitation.Excitation": "made by excitation(), which has an example",
     "dynamics.models.from_excitation": "needs the excitation that excitation() makes",
     "gears.mesh_system.as_drawn": "its phases are packed bytes, made by MeshSystem",
-    "heat.expansion.annulus_displacement": "radial_displacement calls it up to the root circle",
     "heat.free_convection.with_free_convection": "takes six objects; heat_balance calls it",
     "heat.friction.outside_range": "takes a whole ContactState; laws_together calls it",
     "heat.friction.beyond": "takes a whole ContactState; laws_together calls it",

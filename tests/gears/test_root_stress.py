@@ -225,4 +225,4 @@ def test_a_gear_bears_the_same_driving_and_driven() -> None:
         for pair in (RIG, GearPair(RIG.wheel, RIG.pinion))
     )
     for gear, other in ((0, 1), (1, 0)):
-        assert there[gear].stress == pytest.approx(back[other].stress, rel=2e-3)
+        assert there[gear].stress == pytest.approx(back[other].stress, rel=4e-3)

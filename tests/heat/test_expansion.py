@@ -13,7 +13,6 @@ from thermogear.base.materials import ZERO_CELSIUS
 from thermogear.gears.geometry import Gear
 from thermogear.heat.expansion import (
     RadialField,
-    annulus_displacement,
     base_circle_growth,
     centre_distance_growth,
     flank_growth,
@@ -67,8 +66,8 @@ def test_annulus_against_a_boundary_value_solver(bore: str, plane: str, compared
     solved = solve_bvp(slope, ends, mesh, np.zeros((2, 60)), tol=1e-9, max_nodes=20000)
     assert solved.success
     probe = np.linspace(edge, 1.0, 17)
-    ours = annulus_displacement(
-        field, probe * outer, outer_radius=outer, expansion=LAM, poisson=NU, bore=bore, plane=plane
+    ours = radial_displacement(
+        field, probe * outer, root_radius=outer, expansion=LAM, poisson=NU, bore=bore, plane=plane
     )
     compared(
         "displacement of the ring, three bores, both plane states",
@@ -99,14 +98,14 @@ def literal(field: RadialField, r: np.ndarray, outer: float, bore: str) -> np.nd
 def test_annulus_is_the_textbook_form(bore: str) -> None:
     field, outer = field_of(WHEEL, 140.0), WHEEL.root_radius
     r = np.linspace(field.bore_radius, outer, 9)
-    ours = annulus_displacement(field, r, outer_radius=outer, expansion=LAM, poisson=NU, bore=bore)
+    ours = radial_displacement(field, r, root_radius=outer, expansion=LAM, poisson=NU, bore=bore)
     assert ours == pytest.approx(literal(field, r, outer, bore), abs=1e-17)
 
 
 def test_outer_edge_moves_by_the_area_mean() -> None:
     field, outer = field_of(PINION, 130.0, 35.0), PINION.root_radius
     mean = float(field.area_mean(outer)) - COLD
-    edge = annulus_displacement(field, outer, outer_radius=outer, expansion=LAM, poisson=NU)
+    edge = radial_displacement(field, outer, root_radius=outer, expansion=LAM, poisson=NU)
     assert edge == pytest.approx(LAM * outer * mean, rel=1e-13)
 
 
@@ -429,8 +428,8 @@ def test_scaling_the_gear_scales_the_growth() -> None:
             "bore: got 'fre'; allowed free | rigid | shaft; did you mean 'free'?",
         ),
         (
-            lambda: annulus_displacement(
-                field_of(PINION, 90.0), 0.03, outer_radius=0.02, expansion=LAM, poisson=NU
+            lambda: radial_displacement(
+                field_of(PINION, 90.0), 0.03, root_radius=0.02, expansion=LAM, poisson=NU
             ),
             "bore_radius: got 0.025 m with root radius 0.02 m",
         ),

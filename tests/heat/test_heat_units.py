@@ -359,14 +359,6 @@ GROWTHS = {
     "radial_displacement": lambda g, f, r: expansion.radial_displacement(
         f, r, root_radius=g.root_radius, expansion=g.material.thermal_expansion, poisson=0.3
     ),
-    "annulus_displacement": lambda g, f, r: expansion.annulus_displacement(
-        f,
-        0.8 * g.root_radius,
-        outer_radius=g.root_radius,
-        expansion=g.material.thermal_expansion,
-        poisson=0.3,
-        bore="rigid",
-    ),
     "thesis_flank_growth": lambda g, f, r: thesis_profile.thesis_flank_growth(g, f, r),
     "deformed_profile": lambda g, f, r: thesis_profile.deformed_profile(g, f, r)[0],
     "deformed_points": lambda g, f, r: thesis_profile.deformed_points(g, f, r, 0.01)[0],

@@ -6,6 +6,7 @@ from test_gearbox import fzg_test
 from test_losses import factor_of, fzg_c
 
 from conftest import Compared
+from fzg import FZG_STAGES
 from thermogear.base.errors import InputError
 from thermogear.base.materials import ZERO_CELSIUS, lubricant
 from thermogear.gears.contact import (
@@ -20,7 +21,6 @@ from thermogear.heat.laws import iso_13989_1, iso_13989_2
 from thermogear.heat.losses import mesh_loss
 from thermogear.heat.lubrication import dynamic_viscosity
 from thermogear.heat.scuffing import (
-    FZG_STAGES,
     STRUCTURE_FACTORS,
     angle_factor,
     approach_factor,

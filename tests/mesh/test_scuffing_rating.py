@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from conftest import Compared
+from fzg import FZG_STAGES
 from thermogear.base.errors import InputError
 from thermogear.base.materials import ZERO_CELSIUS, lubricant
 from thermogear.base.units import RPM
 from thermogear.gears.geometry import Gear
 from thermogear.gears.pair import GearPair
-from thermogear.heat.scuffing import FZG_STAGES
 from thermogear.mesh.scuffing_rating import Scuffing, flash_rating, integral_rating
 
 OIL = lubricant("M100")

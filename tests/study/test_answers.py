@@ -282,11 +282,12 @@ def test_sentences_hold_their_values(name: str) -> None:
 
 UNITS = {
     "µm": "deviations speed heat nominal least steady cold hot made load greatest relief before "
-          "after undeformed left",
+          "after undeformed left flat",
     "°C": "wetter carried_at hottest_bath borne jam start hottest contact limit integral",
     "N m": "pinion_onset wheel_onset",
     "MPa": "hot undeformed standard", "°": "slope",
-    "K": "flash off margin", "kW": "made carried", "min": "after end", "kHz": "natural",
+    "K": "flash off margin", "kW": "made carried", "min": "after end begin finish",
+    "kHz": "natural",
     "rpm": "main there own strong looked ranges",
     "%": "off most pinion_load wheel_load pinion_part wheel_part",
     "": "wetted more_wetted top limit motions factor own ratio grade drawings points of more stage "

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from thermogear.case.thermal_state import UNDEFORMED
 from thermogear.gears.loaded import LoadedModel, loaded_contact
 from thermogear.study.contact import loaded_survey
 from thermogear.study.relief import UNIFORM, relief_survey
+from thermogear.views.pages.relief import page
 
 
 def rig(*changes: str) -> GearCase:
@@ -159,6 +161,17 @@ def test_a_pressure_on_a_tip_corner_is_left_out_with_its_reason(contact: xr.Data
             "load": max(shares_of.values()),
         }
     ]
+
+
+def test_where_no_relief_helps_none_is_proposed(relief: xr.DataTree) -> None:
+    result: Any = relief
+    plain = json.loads(relief.attrs["reliefs"])
+    none = {gear: row | {"amount_m": 0.0} for gear, row in plain.items()}
+    told = "\n".join(page(result.with_(reliefs=none)).lines())
+    assert "No tip relief makes it more even: none is proposed." in told
+    assert "0.000" not in told
+    assert "tip_relief" not in told
+    assert "tip_relief" in "\n".join(page(result).lines())
 
 
 def test_relief_takes_load_off_the_corners(relief: xr.DataTree) -> None:

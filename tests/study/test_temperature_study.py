@@ -25,6 +25,7 @@ from thermogear.study.notices import heat_notices
 from thermogear.study.scuffing import load_stage, not_steel
 from thermogear.study.temperature import MESH_POSITIONS, PATH_POSITIONS, thermal_map
 from thermogear.views.pages.temperature import page
+from thermogear.views.pages.temperature import thermal_map as drawn
 
 RPM = np.pi / 30.0
 STEEL = MATERIALS["steel"]
@@ -94,6 +95,16 @@ def test_without_a_load_stage_the_margin_is_that_of_the_stage_the_answers_assume
     assert load_stage(other).assumed
     assert not_steel(other) == STEEL.name
     assert not_steel(case) == ""
+
+
+def test_a_map_without_a_margin_keeps_its_axes(tree: xr.DataTree) -> None:
+    """They run over the speeds and torques of the map, as those of the other panels do."""
+    data = tree["map"].to_dataset()
+    empty = drawn(data.assign(scuffing_margin=data["scuffing_margin"] * np.nan)).panels[1][1]
+    assert empty.title == "scuffing margin [K]"
+    speed, torque = data["pinion_speed"].values / RPM, data["pinion_torque"].values
+    assert (empty.x.low, empty.x.high) == pytest.approx((speed.min(), speed.max()))
+    assert (empty.y.low, empty.y.high) == (torque.min(), torque.max())
 
 
 def test_conclusion_one_on_the_rig(tree: xr.DataTree) -> None:

@@ -287,6 +287,17 @@ def test_rows_after_the_end_are_left_out_with_a_word() -> None:
         warm_up_survey(rig(), short, measured=late)
 
 
+def test_the_least_lies_between_the_moments_that_are_told(tree: xr.DataTree) -> None:
+    worst, data = json.loads(tree.attrs["worst"]), tree["course"].to_dataset()
+    begin, end = worst["between_s"]
+    assert begin <= worst["time_s"] <= end
+    time, left = data["time"].values, data["half_backlash"].values
+    inside = (time >= begin) & (time <= end)
+    assert np.all(left[inside] <= worst["half_backlash_m"] + worst["flat_m"])
+    for edge in (time[time < begin].max(initial=-1.0), time[time > end].min(initial=np.inf)):
+        assert np.all(left[time == edge] > worst["half_backlash_m"] + worst["flat_m"])
+
+
 def test_a_pair_without_backlash_jams_from_the_start() -> None:
     """Text, data and JSON tell one moment, 0."""
     duty = replace(WORK, time=np.array([0.0, 30.0, 60.0, 90.0]))
@@ -340,12 +351,14 @@ def test_the_page_of_another_pair_speaks_of_it() -> None:
 def test_answers_in_words() -> None:
     known = {
         "half_backlash_m": 60e-6, "time_s": 1020.0, "margin_K": 61.0,
+        "between_s": [960.0, 1140.0], "flat_m": 5e-8,
         "steady_half_backlash_m": 70e-6, "below_steady_m": 10e-6, "loss_above_steady": 0.25,
         "pinion_speed_rpm": 3000.0, "pinion_torque_Nm": 100.0,
         "at_the_end": False, "at_the_start": False,
     }  # fmt: skip
-    said = [17.0, 3000.0, 100.0, 60.0, 110.0, 10.0, 70.0, 25.0, 61.0]
-    assert numbers(answer(known, 110e-6)) == said
+    said = [3000.0, 100.0, 60.0, 110.0, 10.0, 70.0, 25.0, 61.0]
+    assert numbers(answer(known, 110e-6)) == [16.0, 19.0, 0.05, *said]
+    assert numbers(answer(known | {"between_s": [1020.0, 1020.0]}, 110e-6)) == [17.0, *said]
     jammed = answer(known | {"half_backlash_m": -1e-6, "margin_K": -2.0}, 110e-6)
     assert "jammed" in jammed
     assert "hotter" not in jammed

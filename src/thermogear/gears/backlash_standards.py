@@ -42,16 +42,6 @@ _TOLERANCES = (  # row of numbers and its first place, of the six steps of diame
     (_BETWEEN, 1),
     (_COMMON, 3),
 )
-USES: dict[str, tuple[str, ...]] = {
-    "general": ("b26",),
-    "reversing": ("c25", "cd25", "d25", "e25"),
-    "turbo": ("ab25",),
-    "polymer": ("c25", "cd25"),
-    "cars": ("d26",),
-    "machine tools": ("f24", "f25"),
-    "instruments": ("g22",),
-}
-"""Tolerances usual for a use (Niemann, by a public tool); of a span of series all its members."""
 
 _UNIT_GRADES = {6: 10.0, 7: 16.0, 8: 25.0}
 _SIZES = (3, 6, 10, 18, 30, 50, 80, 120, 180, 250, 315, 400, 500)  # mm, ISO 286-1

@@ -234,42 +234,6 @@ def _annulus_excess(
     return np.asarray(excess + shift * spread * (rx / r))
 
 
-def annulus_displacement(
-    field: RadialField,
-    radius: ArrayLike,
-    *,
-    outer_radius: float,
-    expansion: float,
-    poisson: float,
-    bore: str = "free",
-    plane: str = "stress",
-) -> Floats:
-    """Radial displacement u(r) of an annulus with the field's temperature [m].
-
-    Free bore (A1):
-
-    u = (lambda/r) { (1+nu) J(r) + [(1-nu) r^2 + (1+nu) r_x^2] J(R)/(R^2 - r_x^2) },
-    J(r) = int_{r_x}^r tau s ds.
-
-    Bore moved by u_a (A2), which is 0 (``bore`` "rigid") or lambda t_x r_x ("shaft"):
-
-    u = (1+nu) lambda J/r + C1 r + C2/r,
-    C1 = [(1-nu) r_x u_a + (1-nu^2) lambda J(R)]/[(1-nu) r_x^2 + (1+nu) R^2],
-    C2 = r_x u_a - C1 r_x^2.
-
-    ``field`` the temperature, ``radius`` r [m], ``outer_radius`` R [m] of the free edge (the
-    root circle), ``expansion`` lambda [1/K], ``poisson`` nu, ``plane`` "stress" or "strain"
-    (nu -> nu/(1-nu), lambda -> lambda (1+nu), the shaft's too). Shape of field and radius.
-    Identity for the free bore: u(R) = lambda R times the area mean of tau. Raises for unknown
-    names and for R <= r_x. Source: plane thermoelasticity of the annulus; both forms agree
-    with a boundary-value solver.
-    """
-    lam, nu = _support(bore, plane, expansion, poisson)
-    r = np.asarray(radius, dtype=float)
-    excess = _annulus_excess(field, r, outer_radius, lam, nu, bore)
-    return np.asarray(lam * field.rise(r) * r + excess)
-
-
 def _excess(
     field: RadialField,
     radius: ArrayLike,
@@ -300,11 +264,25 @@ def radial_displacement(
 ) -> Floats:
     """Radial displacement u_r(r) of ring and tooth [m].
 
-    r <= r_f: :func:`annulus_displacement` with R = r_f; above it the tooth grows freely,
-    u_r(r) = u(r_f) + lambda int_{r_f}^r tau dr.
+    Up to the root circle R an annulus, with free bore (A1):
 
-    Arguments as :func:`annulus_displacement`, ``root_radius`` r_f [m]. At the base circle it is
-    the u_b that printed formulas leave undefined. Continuous at r_f.
+    u = (lambda/r) { (1+nu) J(r) + [(1-nu) r^2 + (1+nu) r_x^2] J(R)/(R^2 - r_x^2) },
+    J(r) = int_{r_x}^r tau s ds.
+
+    Bore moved by u_a (A2), which is 0 (``bore`` "rigid") or lambda t_x r_x ("shaft"):
+
+    u = (1+nu) lambda J/r + C1 r + C2/r,
+    C1 = [(1-nu) r_x u_a + (1-nu^2) lambda J(R)]/[(1-nu) r_x^2 + (1+nu) R^2],
+    C2 = r_x u_a - C1 r_x^2.
+
+    Above it the tooth grows freely, u_r(r) = u(R) + lambda int_R^r tau dr.
+
+    ``field`` the temperature, ``radius`` r [m], ``root_radius`` R [m], ``expansion`` lambda [1/K],
+    ``poisson`` nu, ``plane`` "stress" or "strain" (nu -> nu/(1-nu), lambda -> lambda (1+nu), the
+    shaft's too). Shape of field and radius. Identity for the free bore: u(R) = lambda R times the
+    area mean of tau. Raises for unknown names and for R <= r_x. At the base circle it is the u_b
+    that printed formulas leave undefined. Continuous at R. Source: plane thermoelasticity of the
+    annulus; both forms agree with a boundary-value solver.
 
     >>> field = RadialField.uniform(
     ...     bore_radius=16e-3, tip_radius=44e-3, temperature=393.15, reference=293.15
@@ -356,7 +334,7 @@ def flank_normal_growth(
     cos(alpha_k) = r_b/r.
 
     ``radius`` r [m] >= r_b, ``half_thickness_angle`` psi(r) [rad], ``base_radius``,
-    ``root_radius`` [m], the rest as :func:`annulus_displacement`. ``strain_taken_off`` eps [-]
+    ``root_radius`` [m], the rest as :func:`radial_displacement`. ``strain_taken_off`` eps [-]
     returns delta_n - eps rho_k instead, rho_k the curvature radius: the growth beyond a body
     that swells uniformly by eps, exactly 0 for lambda tau = eps. Uniform tau: lambda tau rho_k.
     Shape of field and radius. Raises for r < r_b. Agrees with a plane-stress finite-element

@@ -328,15 +328,15 @@ def _proportions(through: Passed) -> None:
         moving = float(np.std(straight))
         mean = float(np.mean(values))
         span = abs(float(np.polyfit(np.linspace(-0.5, 0.5, values.size), values, 1)[0]))
-        for name, size in (("mean", abs(mean)), ("trend", span)):
-            if size > _PROPORTION * moving > 0.0:
-                through.findings.append(
-                    Notice.of(
-                        "mean_taken_away" if name == "mean" else "trend_taken_away",
-                        channel=channel.name,
-                        ratio=size / moving,
-                    )
-                )
+        through.findings += [
+            Notice.of(
+                "mean_taken_away" if name == "mean" else "trend_taken_away",
+                channel=channel.name,
+                ratio=size / moving,
+            )
+            for name, size in (("mean", abs(mean)), ("trend", span))
+            if size > _PROPORTION * moving > 0.0
+        ]
         through.table[place] = straight if span > moving else values - mean
 
 

@@ -63,6 +63,10 @@ class Row:
         return float(np.sqrt(self.u_num**2 + self.u_input**2 + self.u_data**2))
 
 
+WITH_OR_WITHOUT = ("with heat", "without heat")
+"""Verdicts on heat that decide."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Heat:
     """Whether a ``bundle`` is nearer to what is measured with heat, over all of its ``rows``.
@@ -84,7 +88,7 @@ class Heat:
     def words(self) -> str:
         """One sentence."""
         named = f"{self.bundle}: " if self.bundle else ""
-        told = self.verdict if self.verdict.startswith("undecided") else f"{self.verdict} is nearer"
+        told = f"{self.verdict} is nearer" if self.verdict in WITH_OR_WITHOUT else self.verdict
         if not self.rows:
             return f"{named}{told}"
         return (
@@ -130,7 +134,7 @@ def _heat(rows: Sequence[Row], bundle: str, cold: int, hot: int) -> Heat:
     gains = [abs(row.errors[cold]) - abs(row.errors[hot]) for row in known]
     gain, u_val = (float(np.mean(one)) if known else 0.0
                    for one in (gains, [row.u_val for row in known]))  # fmt: skip
-    word = "with heat" if gain > 0.0 else "without heat"
+    word = WITH_OR_WITHOUT[gain <= 0.0]
     if not near:
         word = "undecided: all are more than 100 % away"
     elif not known:

@@ -123,15 +123,15 @@ def _require(asked: Field[Any], value: Any) -> None:
     Texts without such words name files, which a study reads or refuses itself.
     """
     allowed, kind = asked.metadata["allowed"], str(asked.type).removesuffix(" | None")
+    words = f"{allowed[0]}..{allowed[-1]}" if isinstance(allowed, range) else " | ".join(allowed)
     if kind == "int" and (isinstance(value, bool) or not isinstance(value, Integral)):
-        words = f"{allowed[0]}..{allowed[-1]}, " if allowed else ""
-        raise InputError(asked.name, repr(value), allowed=f"{words}a whole number")
-    if allowed and value not in list(allowed):
-        whole = isinstance(allowed, range)
-        words = f"{allowed[0]}..{allowed[-1]}" if whole else " | ".join(allowed)
+        words = f"{words}, a whole number".removeprefix(", ")
+    elif kind == "Sequence[str]" and not isinstance(value, list | tuple):
+        words = "a list of names"
+    elif not allowed or value in list(allowed):
+        words = ""
+    if words:
         raise InputError(asked.name, repr(value), allowed=words)
-    if kind == "Sequence[str]" and not isinstance(value, list | tuple):
-        raise InputError(asked.name, repr(value), allowed="a list of names")
     if not asked.metadata["bounds"]:
         return
     from thermogear.base import bounds

@@ -294,11 +294,12 @@ def lyapunov_results(
     ran = discard + values.size * batch_periods
     chaos = label_words("chaotic", followed=ran, starts=1)
     sure = value > 4.0 * error and values[:half].mean() > 0.0 and values[half:].mean() > 0.0
-    verdict = chaos if sure else "not chaotic" if value < -4.0 * error else "undecided"
+    calm = value < -4.0 * error
+    verdict = chaos if sure else "not chaotic" if calm else "undecided"
     notices = []
     # a positive mean says nothing of how long chaos lasts
     end = label(point.points, initial_state=state, discard=128, cap=512, starts=2, follow=1)
-    if end.orbit is not None and not verdict.startswith("not"):
+    if end.orbit is not None and not calm:
         verdict = f"not chaotic at its end: period {end.period} after {ran} periods"
         notices.append(Notice.of("exponent_of_transient"))
     data = labelled(

@@ -9,6 +9,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from scipy.optimize import brentq
 
 from thermogear.base.arrays import Floats
 from thermogear.base.bounds import whole
@@ -31,8 +32,10 @@ from thermogear.study.declared import WarmUpSurvey, declared
 
 if TYPE_CHECKING:
     import xarray as xr
-from scipy.optimize import brentq
 
+FLAT = 5e-8
+"""Half backlash [m] above its least within which no moment is told as that of the least: a tenth of
+a micrometre of backlash, below what flanks and centres are known to (ours)."""
 LEAST_LOSS = 5e-9
 """A steady loss of backlash [m] below which another one is no share of it."""
 MOMENTS = 400
@@ -302,6 +305,8 @@ def _worst(case: GearCase, course: WarmUp, steady: xr.Dataset) -> dict[str, Any]
     ratio = lost / lost_for_good - 1.0 if lost_for_good > LEAST_LOSS else np.nan
     return {
         "time_s": one.time,
+        "between_s": least_between(course),
+        "flat_m": FLAT,
         "half_backlash_m": one.half_backlash,
         "undeformed_half_backlash_m": cold,
         "margin_K": one.margin,
@@ -402,6 +407,15 @@ def _fit_words(found: Fit | None) -> dict[str, Any]:
 
 
 # --- in words -----------------------------------------------------------------------------------
+
+
+def least_between(course: WarmUp) -> tuple[float, float]:
+    """Times [s] around the worst moment between which half backlash stays within FLAT of it."""
+    worst, time = course.worst, course.time
+    above = time[course.half_backlash > worst.half_backlash + FLAT]
+    first, last = above[above < worst.time].max(initial=-1.0), above[above > worst.time]
+    inside = time[(time > first) & (time < last.min(initial=np.inf))]
+    return min(inside.min(initial=np.inf), worst.time), max(inside.max(initial=0.0), worst.time)
 
 
 def jams_of(course: WarmUp) -> list[float]:

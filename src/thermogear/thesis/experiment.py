@@ -173,8 +173,7 @@ def header() -> list[str]:
     """Names of the columns of the stored table."""
     found = [*(one.name for one in ASSUMED), *(f"label_{rpm:.0f}" for rpm in SPEEDS)]
     for place in SEEN:
-        found.append(f"{place}_channel")
-        found += [f"{place}_{rpm:.0f}" for rpm in SPEEDS]
+        found += [f"{place}_channel", *(f"{place}_{rpm:.0f}" for rpm in SPEEDS)]
         found += [f"{place}_most_{rpm:.0f}" for rpm in SPEEDS]
     return found
 

@@ -19,7 +19,8 @@ from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.base.parameters import long_name
 from thermogear.base.vocabulary import label
-from thermogear.case.case import DimensionlessCase, Point
+from thermogear.case.case import DimensionlessCase
+from thermogear.case.one_point import rows_of
 from thermogear.dynamics.integrate import simulate
 from thermogear.dynamics.models import TorsionalModel
 
@@ -57,7 +58,7 @@ class Rows:
 
 def rows(table: DimensionlessCase, section: DimensionlessCase) -> Rows:
     """What the two ready-made cases say; heat is that of the temperature row at 140 °C."""
-    by_row = _by_row(table)
+    by_row = rows_of(table)
     ends: dict[str, tuple[float, float]] = {}
     base: dict[str, float] = {}
     for name, parameter in SWEPT.items():
@@ -68,7 +69,7 @@ def rows(table: DimensionlessCase, section: DimensionlessCase) -> Rows:
         given = points[0].model_arguments()
         # each row holds the others' parameters at the base set
         base |= {key: value for key, value in given.items() if key not in (parameter, *HEATED)}
-    warm = {name: points[-2] for name, points in _by_row(section).items()}
+    warm = {name: points[-2] for name, points in rows_of(section).items()}
     temperature = warm["thesis"].value
     heat = {
         "none": (1.0, 0.0),
@@ -79,16 +80,9 @@ def rows(table: DimensionlessCase, section: DimensionlessCase) -> Rows:
     return Rows(base, ends, heat, temperature)
 
 
-def _by_row(case: DimensionlessCase) -> dict[str, list[Point]]:
-    found: dict[str, list[Point]] = {}
-    for point in case.points:
-        found.setdefault(point.row, []).append(point)
-    return found
-
-
 def hottest(section: DimensionlessCase, row: str) -> TorsionalModel:
     """The model at the last temperature of a row of the ready-made temperature case."""
-    return TorsionalModel(**_by_row(section)[row][-1].model_arguments())
+    return TorsionalModel(**rows_of(section)[row][-1].model_arguments())
 
 
 def diagrams(base: Rows, values: int = 241) -> dict[str, xr.Dataset]:
@@ -158,7 +152,7 @@ def warming(section: DimensionlessCase) -> xr.Dataset:
     Over (row, temperature); ``flip`` [K] per row, nan where the whole range has none. Between the
     row's temperatures b' and eps_T run linearly.
     """
-    by_row = _by_row(section)
+    by_row = rows_of(section)
     names = list(by_row)
     temperatures = np.array([p.value for p in by_row[names[0]]])
     shape = (len(names), temperatures.size)

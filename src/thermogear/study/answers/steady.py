@@ -36,7 +36,7 @@ from thermogear.study.answers.asked import (
     undecided,
 )
 from thermogear.study.scuffing import load_stage, not_steel, steel
-from thermogear.study.warm_up import no_bath_from
+from thermogear.study.warm_up import FLAT, least_between, no_bath_from
 
 MESH, HEAT, GAP = "Does it mesh?", "How hot does it run?", "What is left of the backlash?"
 FILM, ROOT = "Is there a film, does it scuff?", "How much does the root carry?"
@@ -297,15 +297,18 @@ def _worst_moment(asked: Asked) -> Answer:
             figures={"least": least, **figures},
         )  # fmt: skip
     sentence = f"{words} never less than when steady, {least:.0f} µm."
+    between = least_between(course)
     if least < steady - 0.005 * abs(steady) - 0.05:
         sentence = (
-            f"{words} least after {{after:.3g min}}: {least:.0f} µm, {{steady:.0f µm}} when steady."
+            f"{words} least from {{begin:.3g}} to {{finish:.3g min}}, within {{flat:g µm}}: "
+            f"{least:.0f} µm, {{steady:.0f µm}} when steady."
         )
     return answer(
         GAP, "warm_up_backlash", sentence, least,
         limit="backlash", at=at, verdict=FINE if least > 0.0 else LOOK,
-        figures={"steady": steady, "start": start, "after": worst.time / 60.0},
-        units={"steady": "µm", "after": "min"},
+        figures={"steady": steady, "start": start, "after": worst.time / 60.0,
+                 "begin": between[0] / 60.0, "finish": between[1] / 60.0, "flat": 2e6 * FLAT},
+        units={"steady": "µm", "after": "min", "begin": "min", "finish": "min", "flat": "µm"},
     )  # fmt: skip
 
 

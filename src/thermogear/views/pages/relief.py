@@ -63,11 +63,14 @@ def page(result: Result) -> Page:
     )
     rows = [{"gear": gear, **row} for gear, row in result.table("reliefs").items()]
     table = declared("Tip relief; lengths along the line of action.", columns, rows)
+    helps = any(row["amount_m"] > 0.0 for row in rows)
+    if not helps:
+        summary += " No tip relief makes it more even: none is proposed."
     return survey(
         result,
         summary,
         pictures,
-        [table],
+        [table] * helps,
         numbers=lambda: {
             "torque_Nm": torque,
             **{f"{name}_m": float(result.text(name)) for name in ("unrelieved", "relieved")},
@@ -80,8 +83,9 @@ def page(result: Result) -> Page:
             table,
             Text("# for the case file, in place of tip reliefs it has already"),
             Code(paste),
-        ],
-        code=paste,
+        ]
+        * helps,
+        code=paste * helps,
     )
 
 

@@ -229,8 +229,8 @@ def thermal_map(data: xr.Dataset) -> Picture:
                 margin.line(y=level, colour=INK, width=0.9, dash=(2, 2))
         _lines(margin, data, values, [0.0, SAFE], ["0 K", f"{SAFE:.0f} K"])
     else:
-        margin = Panel(Axis(AXES[0]), Axis(AXES[1])) if min(values.shape) > 1 else Panel()
-        margin.note("no scuffing margin: the load stage of the oil is not known")
+        why = "no scuffing margin: the load stage of the oil is not known"
+        margin = _panel(data, values, words, "RdYlGn", empty=why)
     mean = kept(data["mean_friction"].values)
     friction = _panel(data, mean, "mean friction coefficient [–]", "PuBu")
     panels = [[boundary, flash, body], [left, margin, friction]]
@@ -251,14 +251,20 @@ def _panel(
     title: str,
     colours: str,
     ends: tuple[float, float] | None = None,
+    empty: str = "no point has a steady state",
 ) -> Panel:
-    """Filled contours over speed and torque; a grid of one line is drawn as that line."""
+    """Filled contours over speed and torque; a grid of one line is drawn as that line.
+
+    Without a value the axes stand as in the other panels, with the words ``empty``.
+    """
     speed, torque = _grid(data)
     line = min(values.shape) < 2
     along, words = (speed, AXES[0]) if speed.size >= torque.size else (torque, AXES[1])
     panel = Panel(Axis(words), Axis(title)) if line else Panel(Axis(AXES[0]), Axis(AXES[1]), title)
     if not np.isfinite(values).any():
-        panel.note("no point has a steady state")
+        panel.note(empty)
+        for axis, of in ((panel.x, along),) if line else ((panel.x, speed), (panel.y, torque)):
+            axis.low, axis.high = float(of.min()), float(of.max())
     elif line:
         panel.curve(along, values.ravel(), marker="circle", size=3.5, colour=OKABE_ITO[1])
     else:

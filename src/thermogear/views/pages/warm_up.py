@@ -89,7 +89,10 @@ def answer(worst: Mapping[str, Any], cold: float) -> str:
     elif worst["at_the_end"]:
         when = f"at the end, after {number(minutes)} min"
     else:
-        when = f"{number(minutes)} min after the start, at {point}"
+        begin, end = (number(MINUTE(float(time))) for time in worst["between_s"])
+        flat = f" (within {number(MICROMETRE(worst['flat_m']))} um)" * (begin != end)
+        span = begin if begin == end else f"from {begin} to {end}"
+        when = f"{span} min after the start{flat}, at {point}"
     text = f"The half backlash is least {when}: {number(least, 4)} um of "
     text += f"{number(MICROMETRE(cold), 4)} um"
     text += " undeformed." if least > 0.0 else " undeformed: the pair is jammed."
