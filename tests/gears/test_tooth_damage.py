@@ -72,7 +72,7 @@ def test_the_energy_a_crack_adds_is_none_or_more_and_reciprocal() -> None:
 
 @pytest.mark.parametrize("percent", [0.5, 1.0])
 def test_a_short_crack_is_that_of_a_half_plane(percent: float) -> None:
-    """E b C = 1.1215^2 pi (sigma b m/F)^2 (q/m)^2, from K = 1.1215 sigma sqrt(pi q), dC/dq = 2 (K b/F)^2/E.
+    """E b C = 1.1215^2 pi (sigma b m/F)^2 (q/m)^2: K = 1.1215 sigma sqrt(pi q), dC/dq = 2 (K b)^2/E.
 
     At right angles to the fillet, 60 degrees to the tooth's axis; sigma of the sound tooth there.
     Source: Tada, Paris and Irwin, edge crack; Irwin's energy release rate.
@@ -97,7 +97,7 @@ def test_a_short_crack_is_that_of_a_half_plane(percent: float) -> None:
     ],
 )
 def test_other_finite_elements(percent: float, degrees: float, mm2_per_n: float) -> None:
-    """Added compliance [1e-6 mm^2/N] at the pitch point, a thin notch in a whole gear, E 206 GPa."""
+    """Added compliance [1e-6 mm^2/N] at the pitch point, thin notch in a whole gear, E 206 GPa."""
     t = math.tan(PINION.pressure_angle)
     table = crack(percent, degrees).table(PINION)
     more = sum(table.self_compliance(t)) - sum(tooth_table(PINION).self_compliance(t))
