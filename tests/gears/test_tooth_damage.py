@@ -72,7 +72,7 @@ def test_the_energy_a_crack_adds_is_none_or_more_and_reciprocal() -> None:
 
 @pytest.mark.parametrize("percent", [0.5, 1.0])
 def test_a_short_crack_is_that_of_a_half_plane(percent: float) -> None:
-    """E b C = 1.1215^2 pi (sigma b m/F)^2 (q/m)^2: K = 1.1215 sigma sqrt(pi q), dC/dq = 2 (K b)^2/E.
+    """E b C = 1.1215^2 pi (sigma b m/F)^2 (q/m)^2; K = 1.1215 sigma sqrt(pi q), dC/dq = 2 K^2/E.
 
     At right angles to the fillet, 60 degrees to the tooth's axis; sigma of the sound tooth there.
     Source: Tada, Paris and Irwin, edge crack; Irwin's energy release rate.
