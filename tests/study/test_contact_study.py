@@ -168,7 +168,6 @@ def test_where_no_relief_helps_none_is_proposed(relief: xr.DataTree) -> None:
     plain = json.loads(relief.attrs["reliefs"])
     none = {gear: row | {"amount_m": 0.0} for gear, row in plain.items()}
     told = "\n".join(page(result.with_(reliefs=none)).lines())
-    assert "No tip relief makes it more even: none is proposed." in told
     assert "0.000" not in told
     assert "tip_relief" not in told
     assert "tip_relief" in "\n".join(page(result).lines())

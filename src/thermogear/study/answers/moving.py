@@ -92,15 +92,15 @@ def speeds(asked: Asked) -> Iterator[Answer]:
         sentence += "; two or more at {points} of {of} operating points"
         figures |= {"points": int(several.sum()), "of": several.size}
     # what does not settle may be another motion, which a jump ends on
-    value = 2.0 if several.any() else 1.0
-    if not several.any() and (asked.motion["undecided"] == 1.0).any():
-        value = float("nan")
-        sentence += "; at its own speeds another motion does not settle"
+    waits = bool(not several.any() and (asked.motion["undecided"] == 1.0).any())
+    value = 2.0 if several.any() else float("nan") if waits else 1.0
+    sentence += "; at its own speeds another motion does not settle" * waits
     if not moves.any():
         sentence, value = _faster(asked, sentence), float("nan")
-    if found.open:
-        sentence += "; at {open} of {speeds} speeds a motion does not settle, which may be another"
-        figures |= {"open": found.open, "speeds": found.grid.size}
+    sentence += "; at {open} of {speeds} speeds a motion does not settle, which may be another" * (
+        found.open > 0
+    )
+    figures |= {"open": found.open, "speeds": found.grid.size}
     yield answer(SPEEDS, "coexisting", f"{sentence}.", value, figures=figures, units=OF_SPEEDS)
 
 
