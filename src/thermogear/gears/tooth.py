@@ -100,7 +100,7 @@ def section_angle(gear: Gear, slope: float) -> float:
     undercut one, or one of large profile shift.
 
     >>> f"{math.degrees(section_angle(Gear(20, 4e-3), math.radians(10))):.1f} deg"
-    '24.9 deg'
+    '28.0 deg'
     """
     gamma = gear.junction[0]
     if gamma - float(gear.fillet.roll(gamma)) >= slope:
