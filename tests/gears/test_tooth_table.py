@@ -167,3 +167,12 @@ def test_a_softer_tooth_on_the_same_body(
     exact = tooth / modulus + body
     assert whole(soft, t) / exact == pytest.approx(np.ones(t.size), abs=apart)
     assert np.abs(whole(soft, t) / whole(split, t) - 1.0).min() > 3.0 * apart
+
+
+def test_a_chamfered_tooth_is_one_whose_flank_ends_lower() -> None:
+    """What the chamfer takes off carries nothing: the table is that of the lower tip."""
+    gear = Gear(25, 5e-3)
+    chamfered = dataclasses.replace(gear, tip_chamfer=0.5e-3)
+    lower = dataclasses.replace(gear, tip_radius=gear.tip_radius - 0.5e-3)
+    assert tooth_table(chamfered) is tooth_table(lower)
+    assert tooth_table(chamfered) is not tooth_table(gear)

@@ -280,7 +280,7 @@ def _meshed(gear: Gear, poisson: float, depth: float, angle: float) -> _Cracked:
     grids = []
     for patch, start, row, end in (
         (foot.patch, first, foot.bore.size, r - reach),
-        (tooth.patch, 0, place.size, gear.tip_radius),
+        (tooth.patch, 0, place.size, gear.tip_radius - gear.tip_chamfer),
     ):
         nodes = patch.nodes.reshape(-1, row, 2).copy()
         bent = nodes[:, start : start + place.size]

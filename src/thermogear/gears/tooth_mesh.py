@@ -146,7 +146,7 @@ class Profile:
     def ends(self) -> tuple[float, float]:
         """Lengths of the involute at the form circle and at the tip."""
         gear = self.gear
-        tip = float(np.tan(gear.pressure_angle_at(gear.tip_radius)))
+        tip = float(np.tan(gear.pressure_angle_at(gear.tip_radius - gear.tip_chamfer)))
         return self.arc(gear.junction[1]), self.arc(tip)
 
     def bottom(self, part: Floats) -> tuple[Floats, Floats]:

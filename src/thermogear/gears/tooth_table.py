@@ -170,7 +170,8 @@ class Shape:
     def of(cls, gear: Gear, plane: str) -> Shape:
         """In modules, to the digits in which modules of the same drawing agree."""
         m, rack = gear.module, gear.rack
-        key = (gear.tip_radius / m, gear.bore_radius / m, rack.dedendum, rack.fillet_radius)
+        top = gear.tip_radius - gear.tip_chamfer
+        key = (top / m, gear.bore_radius / m, rack.dedendum, rack.fillet_radius)
         numbers = (gear.pressure_angle, gear.profile_shift, *key, gear.material.poisson_ratio)
         return cls(gear.teeth, plane, tuple(float(f"{n:.12g}") for n in numbers), gear)
 
