@@ -71,7 +71,7 @@ def test_the_energy_a_crack_adds_is_none_or_more_and_reciprocal() -> None:
 
 
 def test_a_short_crack_opens_less_than_in_a_half_plane() -> None:
-    """E b C = 1.1215^2 pi (sigma b m/F)^2 (q/m)^2, from K = 1.1215 sigma sqrt(pi q), is not reached.
+    """E b C = 1.1215^2 pi (sigma b m/F)^2 (q/m)^2 of K = 1.1215 sigma sqrt(pi q) is not reached.
 
     At right angles to the fillet, sigma of the sound tooth there, which falls off into the tooth.
     Source: Tada, Paris and Irwin, edge crack; dC/dq = 2 K^2/E.
@@ -153,7 +153,9 @@ def test_neighbours_of_a_chipped_tooth_feel_no_difference() -> None:
     chip = Chip("pinion", height=2e-3)
     short, sound = tooth_table(chip.left(PINION)), tooth_table(PINION)
     t = T[1:4]
-    assert short.coupled(t, t, 1) == pytest.approx(sound.coupled(t, t, 1), rel=2e-3)
+    assert short.coupled(t, loaded=t, lag=1) == pytest.approx(
+        sound.coupled(t, loaded=t, lag=1), rel=2e-3
+    )
 
 
 def test_refusals() -> None:
