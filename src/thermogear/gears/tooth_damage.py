@@ -218,7 +218,7 @@ class Chip(Damage):
         gears = [contacts.gear(name) for name in GEARS]
         i = GEARS.index(self.gear)
         gears[i] = self.left(gears[i])
-        broken = _Meshing(*gears, contacts.pair.centre_distance)
+        broken = _Meshing(gears[0], gears[1], contacts.pair.centre_distance)
         there = contact_point(broken, contacts.s, extended)
         here = self._pitches(contacts) == 0
         point = type(there)(
