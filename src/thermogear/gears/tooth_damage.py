@@ -88,7 +88,7 @@ class DamagedTable:
         there = np.asarray(t, dtype=float)[..., None]
         return tooth, body + self.more(there, np.zeros(there.shape, dtype=np.int64))[..., 0, 0]
 
-    def coupled(self, t: Floats, loaded: Floats, lag: int) -> Floats:
+    def coupled(self, t: Floats, *, loaded: Floats, lag: int) -> Floats:
         """Deflection at ``t`` of the tooth ``lag`` pitches ahead of the damaged, loaded one.
 
         By reciprocity that of the damaged tooth at ``loaded`` under a load on its neighbour.
@@ -283,7 +283,7 @@ def _meshed(gear: Gear, poisson: float, depth: float, angle: float) -> tuple[Sec
     below, above = replace(foot, patch=grids[0]), replace(tooth, patch=grids[1])
     opened = int(np.count_nonzero(place > middle))
     shut = Sector.assembled(gear, below, above, poisson)
-    return shut, Sector.assembled(gear, below, above, poisson, opened)
+    return shut, Sector.assembled(gear, below, above, poisson, opened=opened)
 
 
 @lru_cache(maxsize=64)
