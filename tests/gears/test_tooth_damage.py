@@ -169,3 +169,6 @@ def test_refusals() -> None:
         crack(80.0).table(PINION)
     with pytest.raises(GeometryError, match=r"chip\.height: got 12 mm; allowed <= 7\.54354 mm"):
         Chip("pinion", height=12e-3).table(PINION)
+    narrow = Gear(9, 3e-3, allow_undercut=True)
+    with pytest.raises(GeometryError, match=r"crack\.depth: got 1\.7 mm; no sound mesh follows it"):
+        Crack("pinion", depth=1.7e-3).table(narrow)

@@ -147,7 +147,8 @@ class Crack(Damage):
 
     depth: its length [m] >= 0; angle [rad] to the tooth's axis, 45 to 90 degrees, by default 45:
     90 goes straight across the tooth. Under a load on the back flank it is shut and does nothing.
-    Refused beyond 0.51 of the way across the tooth or 0.255 of that down to the bore.
+    Refused beyond 0.51 of the way across the tooth or 0.255 of that down to the bore,
+    and where no sound mesh follows it (long ones at 45 degrees below about 20 teeth).
 
     >>> gear = Gear(20, 4e-3)
     >>> t = math.tan(gear.pressure_angle)
@@ -292,7 +293,15 @@ def _added(shape: Shape, depth: float, angle: float) -> Floats:
     gear = shape.gear
     meshes = _meshed(gear, shape.poisson, depth * gear.module, angle)
     arcs, widths = meshes[0].stations(STATIONS)
-    shut, cracked = (mesh.condensed(mesh.loads(arcs, widths)) for mesh in meshes)
+    try:
+        shut, cracked = (mesh.condensed(mesh.loads(arcs, widths)) for mesh in meshes)
+    except ValueError as error:
+        raise GeometryError(
+            "crack.depth",
+            millimetres(depth * gear.module),
+            why="no sound mesh follows it in this tooth",
+            fix="take a shorter crack or one at a larger angle to the tooth's axis",
+        ) from error
     # the forces on the sides that loads on the teeth about this one come to
     moved = joined(shut.stiffness, shut.pushed, gear.teeth)[::-1].transpose(1, 0, 2)
     ring = joined(shut.stiffness, np.eye(len(shut.stiffness)), gear.teeth)[MATES]
