@@ -288,7 +288,7 @@ class Sector:
 
     @classmethod
     def assembled(
-        cls, gear: Gear, foot: Foot, mesh: Tooth, poisson: float, opened: int = 0
+        cls, gear: Gear, foot: Foot, mesh: Tooth, poisson: float, *, opened: int = 0
     ) -> Sector:
         """Foot and tooth share the nodes of their joint but the last ``opened`` ones."""
         kept = mesh.joint.size - opened
