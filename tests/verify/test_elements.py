@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -19,15 +20,9 @@ from thermogear.gears.tooth_mesh import (
     plain_arcs,
     tooth_mesh,
 )
-from thermogear.verify.compliance import (
-    Condensed,
-    ElasticGear,
-    chain,
-    eliminate,
-    open_sector,
-    unknowns_of,
-)
+from thermogear.verify import gear_compliance
 from thermogear.verify.elements import ReferencePatch, library
+from thermogear.verify.sector import FlankSector
 
 pytestmark = pytest.mark.slow
 
@@ -111,15 +106,6 @@ def test_pressure_has_the_base_circle_as_its_lever(gear: Gear) -> None:
     assert force == pytest.approx([-np.cos(beta), -np.sin(beta)], abs=3e-4)
 
 
-@pytest.mark.parametrize(("near", "factor"), [("stress", 1.0), ("strain", 1.0 - 0.3**2)])
-def test_indentation_follows_the_half_plane(near: str, factor: float) -> None:
-    """Halving the width of the pressure adds 2 (1 - nu^2)/(pi E) ln 2 (plane stress: nu = 0)."""
-    gear = ElasticGear(PINION, 1, A, Density(refinement=2), near)
-    tooth = [gear.tooth(pitch_point(PINION))]
-    wide, narrow = (float(gear.compliance(tooth, [a])[0, 0]) for a in (A, 0.5 * A))
-    assert narrow - wide == pytest.approx(2.0 * factor / np.pi * np.log(2.0), rel=4e-3)
-
-
 def test_torsion_of_a_clamped_ring_is_in_balance() -> None:
     """v = r (1/r_x^2 - 1/r^2) solves the plane problem: it needs forces at the edges alone."""
     foot = foot_mesh(WHEEL, plain_across(Density()), Density(refinement=2))
@@ -133,59 +119,6 @@ def test_torsion_of_a_clamped_ring_is_in_balance() -> None:
     assert abs(force[inside]).max() < 2e-4 * abs(force).max()
 
 
-def test_condensation_keeps_compliances() -> None:
-    foot = foot_mesh(PINION, plain_across(Density()), Density())
-    kept, held = unknowns_of(foot.joint), unknowns_of(foot.bore)
-    few = Condensed(foot.patch, kept, held)
-    load = np.zeros(foot.patch.unknowns)
-    load[kept[3]] = 1.0
-    reduced, own = few.load(load)
-    assert own == 0.0
-    free = np.setdiff1d(np.arange(foot.patch.unknowns), held)
-    whole = ReferencePatch.of(foot.patch).stiffness()[free][:, free].toarray()
-    direct = np.linalg.solve(whole, load[free])[np.searchsorted(free, kept)]
-    condensed = np.linalg.solve(few.stiffness, reduced)
-    assert np.allclose(condensed, direct, rtol=0, atol=1e-9 * abs(direct).max())
-
-
-def test_doubling_is_joining_one_by_one() -> None:
-    foot = foot_mesh(SMALL, plain_across(Density()), Density())
-    n = 2 * foot.left.size
-    sector = open_sector(foot)
-    sector = eliminate(sector, np.arange(2 * n, sector.shape[0]))
-    row = np.zeros((4 * n, 4 * n))
-    for i in range(3):
-        row[i * n : (i + 2) * n, i * n : (i + 2) * n] += sector
-    direct = eliminate(row, np.arange(n, 3 * n))
-    assert np.allclose(chain(sector, 3), direct, rtol=0, atol=1e-10 * direct.max())
-
-
-def test_spectators_change_nothing_and_neighbours_are_reciprocal() -> None:
-    t = pitch_point(PINION)
-    alone = ElasticGear(PINION, 1, A)
-    three = ElasticGear(PINION, 3, A)
-    own = alone.compliance([alone.tooth(t)], [A])[0, 0]
-    first, second = three.tooth(1.02 * t), three.tooth(0.9 * t)
-    both = three.compliance([first, second, None], [A, A, 0.0])
-    assert np.allclose(both, both.T, rtol=1e-10, atol=0)
-    assert np.all(both[2] == 0.0)
-    assert 0.0 < both[0, 1] < min(both[0, 0], both[1, 1])
-    # idle teeth of the same gear, meshed otherwise
-    middle = three.compliance([None, three.tooth(t), None], [0.0, A, 0.0])
-    assert middle[1, 1] == pytest.approx(own, rel=2e-4)
-
-
-@pytest.mark.parametrize("gear", GEARS, ids=lambda g: f"z{g.teeth}")
-def test_splitting_every_element_changes_little(gear: Gear) -> None:
-    t = 0.5 * (gear.junction[1] + float(np.tan(gear.pressure_angle_at(gear.tip_radius))))
-    a = 0.02 * gear.module
-    coarse, fine = (
-        ElasticGear(gear, 1, a, Density(refinement=refinement)) for refinement in (1, 2)
-    )
-    values = [float(g.compliance([g.tooth(t)], [a])[0, 0]) for g in (coarse, fine)]
-    assert values[0] == pytest.approx(values[1], rel=2e-3)
-
-
 def test_grading_keeps_ends_core_and_growth() -> None:
     nodes = graded(low=-1.0, high=3.0, centre=0.5, core=0.1, fine=0.02, rate=1.5, coarse=0.5)
     steps = np.diff(nodes)
@@ -195,23 +128,85 @@ def test_grading_keeps_ends_core_and_growth() -> None:
     assert np.max(steps) <= 0.6
 
 
+@pytest.mark.parametrize(("near", "factor"), [("stress", 1.0), ("strain", 1.0 - 0.3**2)])
+def test_indentation_follows_the_half_plane(near: str, factor: float) -> None:
+    """Halving the width of the pressure adds 2 (1 - nu^2)/(pi E) ln 2 (plane stress: nu = 0)."""
+    unit = PINION.material.youngs_modulus * PINION.face_width
+    wide, narrow = (
+        unit * float(gear_compliance(PINION, [pitch_point(PINION)], a, near=near)[0])
+        for a in (A, 0.5 * A)
+    )
+    assert narrow - wide == pytest.approx(2.0 * factor / np.pi * np.log(2.0), rel=4e-3)
+
+
+def load_at(sector: FlankSector, part: float) -> tuple[np.ndarray, np.ndarray]:
+    low, high = sector.ends
+    case = sector.pressed(low + part * (high - low), 0.5 * A)
+    return case, sector.felt(case)
+
+
+def test_neighbours_are_reciprocal() -> None:
+    """C_k(t, t') = C_-k(t', t), and a farther tooth moves less."""
+    sector = FlankSector(SMALL, 0.1e-3)
+    first, second = load_at(sector, 0.3), load_at(sector, 0.7)
+    for lag in (1, 2):
+        ahead, behind = (
+            sector.compliance(first, second, lag),
+            sector.compliance(second, first, -lag),
+        )
+        assert ahead == pytest.approx(behind.T, rel=1e-9)
+    own = sector.compliance(first, first, 0)
+    assert own > sector.compliance(first, first, 1) > 0.0
+
+
+def test_all_teeth_loaded_alike_wind_the_ring_up() -> None:
+    """A smaller bore adds z r_b^2 (1 + nu)/(2 pi) (1/r_x^2 - 1/r_x'^2) to the sum of lags."""
+    gear = Gear(11, 5e-3, profile_shift=0.4, bore_radius=14e-3)
+    sums = []
+    for bore in (14e-3, 10e-3):
+        sector = FlankSector(replace(gear, bore_radius=bore), 0.4e-3, 2)
+        load = load_at(sector, 0.5)
+        sums.append(sum(float(sector.compliance(load, load, lag)[0, 0]) for lag in range(-5, 6)))
+    wound = gear.base_radius**2 * 1.3 / (2.0 * np.pi) * (10e-3**-2 - 14e-3**-2)
+    assert sums[1] - sums[0] == pytest.approx(gear.teeth * wound, rel=1e-3)
+
+
+@pytest.mark.parametrize("gear", GEARS, ids=lambda g: f"z{g.teeth}")
+def test_splitting_every_element_changes_little(gear: Gear) -> None:
+    t = 0.5 * (gear.junction[1] + float(np.tan(gear.pressure_angle_at(gear.tip_radius))))
+    coarse, fine = (
+        gear_compliance(gear, [t], 0.06 * gear.module, Density(refinement=n)) for n in (1, 2)
+    )
+    assert coarse == pytest.approx(fine, rel=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("gear", "string", "factor"),
+    [
+        (PINION, 22.725e-3, 2.490),
+        (Gear(25, 4e-3, profile_shift=0.8, bore_radius=20e-3), 26.599e-3, 2.085),
+    ],
+)
+def test_stress_at_the_root(gear: Gear, string: float, factor: float) -> None:
+    """sigma b m/F_n loaded at the outer point of single contact, finite elements done apart."""
+    sector = FlankSector(gear, 0.05 * gear.module, 3)
+    arc = string**2 / (2.0 * gear.base_radius)
+    stress, places = sector.root_stress(sector.pressed(arc, 0.12 * gear.module))
+    assert gear.module * stress.max() == pytest.approx(factor, rel=0.01)
+    # in the fillet, between the root circle and half a module above it
+    radius = float(np.hypot(*places[np.argmax(stress[0])]))
+    assert gear.root_radius < radius < gear.root_radius + 0.5 * gear.module
+
+
 class TestRefusals:
     def test_contact_over_the_end_of_the_flank(self) -> None:
-        gear = ElasticGear(PINION, 1, A)
         tip = float(np.tan(PINION.pressure_angle_at(PINION.tip_radius)))
-        tooth = gear.tooth(tip - 1e-3)
         with pytest.raises(InputError, match=r"from the end of the flank; allowed > 0\.1 mm"):
-            tooth.pressed(A)
+            gear_compliance(PINION, [tip - 1e-3], A)
 
-    def test_wrong_counts_and_names(self) -> None:
-        with pytest.raises(InputError, match=r"loaded: got 25; allowed 1\.\.24 teeth"):
-            ElasticGear(PINION, 25, A)
-        with pytest.raises(InputError, match=r"half_width: got 0\.0 m; allowed > 0"):
-            ElasticGear(PINION, 1, 0.0)
+    def test_plane_state(self) -> None:
         with pytest.raises(InputError, match=r"near: got 'stres'; .* did you mean 'stress'"):
-            ElasticGear(PINION, 1, A, near="stres")
-        with pytest.raises(InputError, match="teeth: got 2; allowed 1"):
-            ElasticGear(PINION, 1, A).assembled([None, None])
+            gear_compliance(PINION, [0.3], A, near="stres")
 
     def test_without_the_library(self, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setitem(sys.modules, "skfem", None)
