@@ -160,15 +160,18 @@ def test_neighbours_are_reciprocal() -> None:
 
 
 def test_all_teeth_loaded_alike_wind_the_ring_up() -> None:
-    """A smaller bore adds z r_b^2 (1 + nu)/(2 pi) (1/r_x^2 - 1/r_x'^2) to the sum of lags."""
-    gear = Gear(11, 5e-3, profile_shift=0.4, bore_radius=14e-3)
+    """A smaller bore adds z r_b^2 (1 + nu)/(2 pi) (1/r_x^2 - 1/r_x'^2) to the sum of lags.
+
+    The force's radial part, 0.2 % of it here, is not in the closed form.
+    """
+    gear = Gear(11, 5e-3, profile_shift=0.4, bore_radius=10e-3)
     sums = []
-    for bore in (14e-3, 10e-3):
-        sector = FlankSector(replace(gear, bore_radius=bore), 0.4e-3, 2)
+    for bore in (10e-3, 8e-3):
+        sector = FlankSector(replace(gear, bore_radius=bore), 0.6e-3, 2)
         load = load_at(sector, 0.5)
         sums.append(sum(float(sector.compliance(load, load, lag)[0, 0]) for lag in range(-5, 6)))
-    wound = gear.base_radius**2 * 1.3 / (2.0 * np.pi) * (10e-3**-2 - 14e-3**-2)
-    assert sums[1] - sums[0] == pytest.approx(gear.teeth * wound, rel=1e-3)
+    wound = gear.base_radius**2 * 1.3 / (2.0 * np.pi) * (8e-3**-2 - 10e-3**-2)
+    assert sums[1] - sums[0] == pytest.approx(gear.teeth * wound, rel=3e-3)
 
 
 @pytest.mark.parametrize("gear", GEARS, ids=lambda g: f"z{g.teeth}")
@@ -189,7 +192,7 @@ def test_splitting_every_element_changes_little(gear: Gear) -> None:
 )
 def test_stress_at_the_root(gear: Gear, string: float, factor: float) -> None:
     """sigma b m/F_n loaded at the outer point of single contact, finite elements done apart."""
-    sector = FlankSector(gear, 0.05 * gear.module, 3)
+    sector = FlankSector(gear, 0.05 * gear.module, 2)
     arc = string**2 / (2.0 * gear.base_radius)
     stress, places = sector.root_stress(sector.pressed(arc, 0.12 * gear.module))
     assert gear.module * stress.max() == pytest.approx(factor, rel=0.01)

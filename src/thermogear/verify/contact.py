@@ -289,7 +289,7 @@ def _only(touch: ToothContact, keep: Floats) -> ToothContact:
 def _half_width(touch: ToothContact, force: Floats) -> float:
     """Half width of the elliptic pressure with the same spread: a^2 = 4 <x^2>."""
     total = float(force.sum())
-    least = 0.5 * float(touch.area.max())
+    least = 0.5 * float(touch.area.min())
     if total <= 0.0:
         return least
     place = touch.arc - force @ touch.arc / total

@@ -41,12 +41,14 @@ class FlankSector:
     Elements of the length ``step`` [m] along the involute, shorter at the tip; degrees of
     freedom: forces into the flank along its normal at all nodes, then forces along the flank
     towards the tip at the last ``turned`` nodes; last the strain along the edge of the fillet of
-    the loaded flank, at its elements' Gauss points. ``foot``: refinement below the tooth.
+    the loaded flank, at its elements' Gauss points. ``foot``: refinement below the tooth;
+    ``core``: arc and half length [m] of the only stretch with elements so short, by default all.
     """
 
     gear: Gear
     step: float
     foot: int = 1
+    core: tuple[float, float] | None = None
 
     @cached_property
     def ends(self) -> tuple[float, float]:
@@ -57,14 +59,16 @@ class FlankSector:
     def arcs(self) -> Floats:
         """Arcs [m] of the elements' vertices, upward."""
         low, high = self.ends
+        centre, core = (high, 0.0) if self.core is None else self.core
+        at_tip = self.core is None
         return graded(
             low=low,
             high=high,
-            centre=high,
-            core=0.0,
-            fine=self.step / FINER,
-            rate=1.15,
-            coarse=self.step,
+            centre=centre,
+            core=core,
+            fine=self.step / FINER if at_tip else self.step,
+            rate=1.15 if at_tip else 1.5,
+            coarse=self.step if at_tip else 0.15 * self.gear.module,
         )
 
     @property

@@ -50,14 +50,13 @@ def _sectors(pair: GearPair, line_load: float, density: Density) -> tuple[FlankS
     modulus = 1.0 / sum((1.0 - m.poisson_ratio**2) / m.youngs_modulus for m in materials)
     rho = pair.path.c * (1.0 - pair.path.c / pair.line_of_action)
     half_width = float(hertz_half_width(0.5 * line_load, rho, modulus))
-    first, second = (_sector(gear, half_width, density) for gear in (pair.pinion, pair.wheel))
-    return first, second
-
-
-def _sector(gear: Gear, half_width: float, density: Density) -> FlankSector:
     step = half_width / (density.per_half_width * density.refinement)
-    low, high = FlankSector(gear, step).ends
-    return FlankSector(gear, min(max(step, (high - low) / _MOST_ROWS), (high - low) / 20))
+
+    def sector(gear: Gear) -> FlankSector:
+        low, high = FlankSector(gear, step).ends
+        return FlankSector(gear, min(max(step, (high - low) / _MOST_ROWS), (high - low) / 20))
+
+    return sector(pair.pinion), sector(pair.wheel)
 
 
 def gear_compliance(
@@ -76,10 +75,12 @@ def gear_compliance(
     contact nearer than a to an end of the flank, and when scikit-fem is missing.
     """
     require_choice("near", near, tuple(NEAR))
-    sector = _sector(gear, half_width, density or Density())
+    mesh = density or Density()
+    step = half_width / (mesh.per_half_width * mesh.refinement)
     values = []
     for at in np.atleast_1d(t):
         arc = 0.5 * gear.base_radius * float(at) ** 2
+        sector = FlankSector(gear, step, mesh.refinement, (arc, 1.25 * half_width))
         room = min(arc - sector.ends[0], sector.ends[1] - arc)
         if not half_width <= room:
             raise InputError(
