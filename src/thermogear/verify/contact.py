@@ -125,10 +125,13 @@ class FlankContact:
         into = np.stack([vertex, vertex + 1])
 
         def summed(values: Floats) -> Floats:
-            return np.bincount(into.ravel(), (hats * values).ravel(), minlength=slave.rows + 1)
+            parts = (hats * values).ravel()
+            return np.bincount(into.ravel(), parts, minlength=slave.rows + 1).astype(float)
 
         area = summed(np.ones_like(part))
-        gap = np.where(summed(~points.valid) == 0.0, summed(points.gap) / area, np.inf)
+        gap = np.where(
+            summed((~points.valid).astype(float)) == 0.0, summed(points.gap) / area, np.inf
+        )
         use = np.flatnonzero(gap < np.min(gap) + _WINDOW)
         # the load cases of the hats in use alone
         row = np.full(slave.rows + 1, -1)
@@ -275,10 +278,13 @@ def held_in(gear: Gear, t: float, in_stress: float, in_strain: float) -> float:
     return float(strain - indentation(depth / in_stress, nu))
 
 
-def _only(touch: ToothContact, keep: Floats) -> ToothContact:
+def _only(touch: ToothContact, keep: NDArray[np.bool_]) -> ToothContact:
     """The hats ``keep`` of a pair of teeth."""
     return touch._replace(
-        cases=tuple((case[keep], felt[keep]) for case, felt in touch.cases),
+        cases=(
+            (touch.cases[0][0][keep], touch.cases[0][1][keep]),
+            (touch.cases[1][0][keep], touch.cases[1][1][keep]),
+        ),
         gap=touch.gap[keep],
         area=touch.area[keep],
         lever=touch.lever[keep],
