@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from thermogear.verify import Density, pair_stiffness
+from thermogear.verify import pair_stiffness
 from thermogear.verify.contact import FlankContact, closed
 from thermogear.verify.pairs import corner_pairs, drawn_pairs
 from thermogear.verify.sector import FlankSector
@@ -51,7 +51,6 @@ def test_finite_elements_done_apart(
         checked.pair,
         force,
         phase,
-        Density(per_half_width=2.0),
         deviations=checked.deviations,
         corners=True,
     )

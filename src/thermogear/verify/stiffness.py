@@ -45,11 +45,11 @@ class FinitePair:
 
 
 def _sectors(pair: GearPair, line_load: float, density: Density) -> tuple[FlankSector, FlankSector]:
-    """Meshes whose elements are a part of the half width that half of the load makes at C."""
+    """Meshes whose elements are a part of the half width of one pair at the pitch point."""
     materials = (pair.pinion.material, pair.wheel.material)
     modulus = 1.0 / sum((1.0 - m.poisson_ratio**2) / m.youngs_modulus for m in materials)
     rho = pair.path.c * (1.0 - pair.path.c / pair.line_of_action)
-    half_width = float(hertz_half_width(0.5 * line_load, rho, modulus))
+    half_width = float(hertz_half_width(line_load, rho, modulus))
     step = half_width / (density.per_half_width * density.refinement)
 
     def sector(gear: Gear) -> FlankSector:
