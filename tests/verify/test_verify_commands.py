@@ -63,8 +63,11 @@ def test_the_fixed_pairs(monkeypatch: pytest.MonkeyPatch) -> None:
 
     # the whole list is computed in the tests of the checks; here its printing
     published, far = pairs.published_pair(), pairs.far_pairs()
+    pairs_drawn = pairs.drawn_pairs()
     monkeypatch.setattr(pairs, "own_pairs", lambda: far[:1])
     monkeypatch.setattr(pairs, "far_pairs", lambda: (published,))
+    monkeypatch.setattr(pairs, "corner_pairs", lambda: (published,))
+    monkeypatch.setattr(pairs, "drawn_pairs", lambda: pairs_drawn[-3:-2])
     done = call("pairs")
     assert done.exit_code == 0, done.output
     assert [4.0, 20.0, 35.0, 25.0] in [numbers(line)[:4] for line in done.output.splitlines()]

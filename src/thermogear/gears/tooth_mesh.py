@@ -25,17 +25,15 @@ _FINE_SAMPLES = 2001
 class Density:
     """How fine the mesh is: counts are multiplied by ``refinement``.
 
-    ``per_half_width`` elements along the Hertzian half width, from where they grow by
-    ``growth`` from one to the next up to a ``coarsest`` part of a module. ``sides`` elements along
-    a fillet with half of the gap, ``below`` from the root half a module down,
-    each ``inward`` times as thick as the last. ``joint``: angle
-    [rad] of the fillet's tangent to the tooth's axis where tooth and foot meet.
+    ``per_half_width`` elements along the Hertzian half width; into the body they grow by
+    ``growth`` from one to the next. ``sides`` elements along a fillet with half of the gap,
+    ``below`` from the root half a module down, each ``inward`` times as thick as the last.
+    ``joint``: angle [rad] of the fillet's tangent to the tooth's axis where tooth and foot meet.
     """
 
     refinement: int = 1
     per_half_width: float = 3.0
     growth: float = 1.6
-    coarsest: float = 0.4
     sides: int = 5
     below: int = 3
     inward: float = 1.0
@@ -273,7 +271,7 @@ def tooth_mesh(gear: Gear, *, across: Floats, arcs: Floats, density: Density) ->
     ``arcs`` ascend from the form circle to the tip.
 
     >>> gear, density = Gear(20, 4e-3), Density()
-    >>> across, arcs = plain_across(density), plain_arcs(gear, density)
+    >>> across, arcs = plain_across(density), np.linspace(0.1e-3, 6.9e-3, 5)
     >>> tooth_mesh(gear, across=across, arcs=arcs, density=density).patch.cells.shape
     (28, 3, 3)
     """
@@ -290,52 +288,6 @@ def tooth_mesh(gear: Gear, *, across: Floats, arcs: Floats, density: Density) ->
     cells = cells_of(rows=(r.size - 1) // 2, columns=(columns.size - 1) // 2)
     return Tooth(
         Patch(nodes, cells, gear.material.poisson_ratio), number[0], number[:, -1], arcs.size - 1
-    )
-
-
-def plain_arcs(gear: Gear, density: Density) -> Floats:
-    """Involute lengths of a tooth that nothing touches.
-
-    >>> [f"{1e3 * arc:.2f} mm" for arc in plain_arcs(Gear(20, 4e-3), Density())[[0, -1]]]
-    ['0.05 mm', '6.96 mm']
-    """
-    low, high = Profile(gear).ends
-    return np.linspace(low, high, density.count(4) + 1)
-
-
-def contact_arcs(gear: Gear, t: float, half_width: float, density: Density) -> Floats:
-    """Involute lengths graded towards a contact of ``half_width`` [m] at t = tan(alpha_k).
-
-    >>> arcs = contact_arcs(Gear(20, 4e-3), 0.36, 0.1e-3, Density())
-    >>> f"{1e3 * np.diff(arcs).min():.3f} mm"
-    '0.031 mm'
-    """
-    profile = Profile(gear)
-    low, high = profile.ends
-    fine = half_width / (density.per_half_width * density.refinement)
-    return graded(
-        low=low,
-        high=high,
-        centre=profile.arc(t),
-        core=1.25 * half_width,
-        fine=fine,
-        rate=density.rate,
-        coarse=density.coarsest * gear.module / density.refinement,
-    )
-
-
-def contact_across(gear: Gear, half_width: float, density: Density) -> Floats:
-    """The joint's corners in -1 .. 1, graded towards the loaded flank at 1.
-
-    >>> corners = contact_across(Gear(20, 4e-3), 0.1e-3, Density())
-    >>> bool(np.diff(corners)[-1] < 0.2 * np.diff(corners)[0])
-    True
-    """
-    thickness = gear.module * 0.5 * np.pi
-    fine = 2.0 * half_width / thickness / (density.per_half_width * density.refinement)
-    coarse = 2.0 * density.coarsest * gear.module / thickness / density.refinement
-    return graded(
-        low=-1.0, high=1.0, centre=1.0, core=0.0, fine=fine, rate=density.rate, coarse=coarse
     )
 
 

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
+from thermogear.gears.deviations import FlankShape
 from thermogear.gears.geometry import Gear
 from thermogear.gears.loaded import LoadedModel, loaded_contact
 from thermogear.gears.pair import GearPair
@@ -21,8 +23,7 @@ from thermogear.verify.stiffness import pair_stiffness
 def inner_phases(pair: GearPair, each: int = 3) -> Floats:
     """Mesh phases in the middles of ``each`` equal parts of both kinds of contact.
 
-    First where one pair more than floor(contact ratio) touches, then where not; never on the
-    path's ends, where a contact would overhang the flank.
+    First where one pair more than floor(contact ratio) touches, then where not.
     """
     if each < 1:
         raise InputError("positions", each, allowed=">= 1 in each kind of contact")
@@ -33,19 +34,29 @@ def inner_phases(pair: GearPair, each: int = 3) -> Floats:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class StiffnessCheck:
-    """Secant stiffness [N/m] and shares of the model and of the finite elements.
+    """Deflection [m], secant stiffness [N/m] and shares of the model and of the finite elements.
 
-    Arrays (position,) and (position, pair), pair 0 the last to enter; ``phase`` in periods
-    from A.
+    Arrays (position,) and (position, pair), pair 0 not yet entered, pair 1 the last that did;
+    ``phase`` in periods from A; deflections from the touch of perfect involutes.
     """
 
     phase: Floats
-    model: Floats
-    finite: Floats
+    model_deflection: Floats
+    finite_deflection: Floats
     model_share: Floats
     finite_share: Floats
     face_width: float
     line_load: float
+
+    @property
+    def model(self) -> Floats:
+        """Secant stiffness [N/m] of the model, (position,)."""
+        return self.line_load * self.face_width / self.model_deflection
+
+    @property
+    def finite(self) -> Floats:
+        """Secant stiffness [N/m] of the finite elements, (position,)."""
+        return self.line_load * self.face_width / self.finite_deflection
 
     @property
     def pairs(self) -> Floats:
@@ -54,13 +65,18 @@ class StiffnessCheck:
 
     @property
     def difference(self) -> Floats:
-        """Model over finite elements minus 1, (position,)."""
+        """Model over finite elements minus 1, of the stiffness, (position,)."""
         return self.model / self.finite - 1.0
 
     @property
     def share_difference(self) -> Floats:
         """Model's share minus the finite elements', (position, pair)."""
         return self.model_share - self.finite_share
+
+    @property
+    def peak_to_peak(self) -> tuple[float, float]:
+        """Greatest minus least deflection [m] of the model and of the finite elements."""
+        return float(np.ptp(self.model_deflection)), float(np.ptp(self.finite_deflection))
 
     @property
     def worst(self) -> int:
@@ -79,25 +95,29 @@ def check_stiffness(
     phase: ArrayLike | None = None,
     density: Density | None = None,
     near: str = "strain",
+    *,
+    deviations: Sequence[FlankShape] = (),
+    corners: bool = False,
+    model: LoadedModel | None = None,
 ) -> StiffnessCheck:
-    """The loaded contact (bores clamped) beside finite elements of the same pair, both cold.
+    """The loaded contact (bores clamped) beside finite elements of the same pair.
 
     normal_force: F_n [N] > 0; phase: positions in periods from A, by default
-    :func:`inner_phases`; density, near: of the finite elements. Perfect flanks; corner contact,
-    which the finite elements leave out, is switched off in the model too. Raises as
-    :func:`~thermogear.verify.stiffness.pair_stiffness`.
+    :func:`inner_phases`; density, near: of the finite elements; deviations: of the flanks;
+    corners: sharp tip corners touch beyond A and E, in both; model: other choices of the loaded
+    contact. Raises as :func:`~thermogear.verify.stiffness.pair_stiffness`.
     """
     phi = inner_phases(pair) if phase is None else np.atleast_1d(np.asarray(phase, dtype=float))
-    finite = pair_stiffness(pair, normal_force, phi, density, near)
-    clamped = LoadedModel(body="bore_clamped", extended=False)
-    model = loaded_contact(pair, normal_force, phi, model=clamped)
-    most = finite.share.shape[1]
+    finite = pair_stiffness(
+        pair, normal_force, phi, density, near, deviations=deviations, corners=corners
+    )
+    clamped = replace(model or LoadedModel(), body="bore_clamped", extended=corners)
+    loaded = loaded_contact(pair, normal_force, phi, deviations=deviations, model=clamped)
     return StiffnessCheck(
         phase=phi,
-        model=model.secant_stiffness.to_numpy(),
-        finite=finite.secant,
-        # the model's first candidate is the pair that has not yet entered
-        model_share=model.load_share.to_numpy()[:, 1 : 1 + most],
+        model_deflection=loaded.transmission_error.to_numpy(),
+        finite_deflection=finite.deflection,
+        model_share=loaded.load_share.to_numpy(),
         finite_share=finite.share,
         face_width=pair.face_width,
         line_load=normal_force / pair.face_width,

@@ -53,7 +53,7 @@ def _arcs(gear: Gear, radius: Floats, density: Density) -> tuple[Floats, Integer
     return arcs, np.argmin(np.abs(arcs - asked[:, None]), axis=-1)
 
 
-def _united(foot: Foot, tooth: Tooth) -> tuple[ReferencePatch, Integers]:
+def united(foot: Foot, tooth: Tooth) -> tuple[ReferencePatch, Integers]:
     """Foot and tooth as one patch, and the numbers of the tooth's nodes in it."""
     below = foot.patch.nodes.shape[0]
     rest = np.setdiff1d(np.arange(tooth.patch.nodes.shape[0]), tooth.joint)
@@ -97,7 +97,7 @@ def finite_flank_growth(
     foot = foot_mesh(gear, across, mesh)
     arcs, asked = _arcs(gear, r.ravel(), mesh)
     tooth = tooth_mesh(gear, across=across, arcs=arcs, density=mesh)
-    patch, of_tooth = _united(foot, tooth)
+    patch, of_tooth = united(foot, tooth)
     expansion = gear.material.thermal_expansion
     moved = _displacement(patch, foot, field, expansion, bore)
 
