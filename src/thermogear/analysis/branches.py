@@ -5,9 +5,9 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.analysis.bifurcations import (
@@ -28,10 +28,6 @@ from thermogear.base.arrays import Floats
 from thermogear.base.errors import ConvergenceError
 from thermogear.dynamics.plane import plane_of
 from thermogear.dynamics.return_map import return_map
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 KINDS = (FOLD, FLIP, GRAZING, BIRTH, PITCHFORK, TORUS)
 """Meaning of the codes 0, 1, ... of ``bifurcation_kind``."""

@@ -460,12 +460,6 @@ class Cascade:
     branches: tuple[Branch, ...]
     lost: str = ""
 
-    @property
-    def ratios(self) -> Floats:
-        """(p_k - p_k-1)/(p_k+1 - p_k); they tend to Feigenbaum's 4.669."""
-        gaps = np.diff([b.value for b in self.flips])
-        return np.asarray(gaps[:-1] / gaps[1:])
-
 
 def cascade(
     orbit: Orbit,

@@ -32,9 +32,11 @@ def _keep_printable(thing: object, *names: str) -> None:
 class Samples(Protocol):
     """What a channel needs of its store: an array in memory, a memory map, a stored data set."""
 
-    def __len__(self) -> int: ...
+    def __len__(self) -> int:
+        """How many samples."""
 
-    def __getitem__(self, key: slice, /) -> Any: ...
+    def __getitem__(self, key: slice, /) -> Any:
+        """Some of them."""
 
 
 @dataclass(frozen=True)

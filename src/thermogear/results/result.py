@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING, Any
 import thermogear
 from thermogear.base.errors import InputError, nearest
 from thermogear.base.files import SCHEMA
-from thermogear.base.netcdf import read_tree, write_tree
 from thermogear.base.notice import Notice as Notice
 from thermogear.base.notice import stored_notices
 from thermogear.base.stores import RESULT as STORE
@@ -266,6 +265,8 @@ class Result:
 
     def put(self, folder: Path) -> Path:
         """The file alone, into a folder that is ours already."""
+        from thermogear.base.netcdf import write_tree
+
         return write_tree(self.tree, folder / self.file)
 
     @classmethod
@@ -274,6 +275,8 @@ class Result:
 
         Raises InputError, in one line with ``fix``, where it is missing, damaged or not ours.
         """
+        from thermogear.base.netcdf import read_tree
+
         found = result_of(read_tree(Path(path), fix))
         if not found.kind or "thermogear" not in found.provenance:
             raise InputError("results", str(path), why="it was not written by thermogear", fix=fix)
