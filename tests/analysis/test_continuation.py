@@ -63,13 +63,13 @@ def agrees(found, case):
     assert np.sort_complex(found.multipliers) == pytest.approx(expected, abs=1e-5)
 
 
-@pytest.mark.parametrize("parameter", ROWS)
 def feigenbaum(found):
     """The last (p_k - p_k-1)/(p_k+1 - p_k) of a cascade; they tend to 4.669."""
     gaps = np.diff([flip.value for flip in found.flips])
     return gaps[-2] / gaps[-1]
 
 
+@pytest.mark.parametrize("parameter", ROWS)
 def test_cascade_of_table_4_2(parameter, compared):
     first, last, name = ROWS[parameter]
     orbit = periodic_orbit(BASE.replace(**{parameter: first}), 1, (1.08, -0.25))

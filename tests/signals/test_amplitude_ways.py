@@ -203,25 +203,6 @@ def test_line_within_five_hundredths_per_cent_and_two_hundredths_bin(
         )
 
 
-def test_stated_errors_of_a_line_are_those_of_many_records() -> None:
-    rate, count, amplitude, noise = 1000.0, 4096, 1.0, 0.5
-    t = np.arange(count) / rate
-    found = []
-    records = 150
-    # a standard deviation from n records is itself known to 1/sqrt(2 (n - 1))
-    three_sigma = 3.0 / np.sqrt(2.0 * (records - 1))
-    for seed in range(records):
-        rng = np.random.default_rng(seed)
-        x = amplitude * np.cos(2 * np.pi * 203.37 * t + 1.0) + noise * rng.standard_normal(count)
-        found.append(line_in(line_spectrum(x, rate), near=203.0, half_width=2.0))
-    spread = np.std([line.amplitude for line in found])
-    assert spread == pytest.approx(np.mean([line.amplitude_error for line in found]), rel=0.15)
-    wander = np.std([line.frequency for line in found])
-    assert wander == pytest.approx(
-        np.mean([line.frequency_error for line in found]), rel=three_sigma
-    )
-
-
 def test_a_line_is_looked_for_within_the_spectrum_alone() -> None:
     t = np.arange(5000) / 1000.0
     with pytest.raises(InputError, match=r"no bin of the spectrum lies there$"):

@@ -366,8 +366,5 @@ def birth_of(curve: Curve, a: Point, kind: str) -> Bifurcation | None:
 
 
 def _grazed(before: tuple[int, int], after: tuple[int, int]) -> str:
-    parts = []
-    for name, old, new in zip(("contact losses", "back-side impacts"), before, after, strict=True):
-        if old != new:
-            parts.append(f"{name} per orbit {old} -> {new}")
-    return ", ".join(parts)
+    counts = zip(("contact losses", "back-side impacts"), before, after, strict=True)
+    return ", ".join(f"{name} per orbit {old} -> {new}" for name, old, new in counts if old != new)

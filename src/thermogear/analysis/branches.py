@@ -157,14 +157,11 @@ def _line(orbit: Orbit, value: float, family: Family, parameter: str, values: Fl
     def single(at: float) -> object:
         return model_at(family, at)
 
-    arms: list[Branch] = []
-    for end in (float(values[0]), float(values[-1])):
-        if end != value:
-            arms.append(
-                continuation(
-                    orbit, parameter, end, family=single, start=value, most_points=MOST_POINTS
-                )
-            )
+    arms = [
+        continuation(orbit, parameter, end, family=single, start=value, most_points=MOST_POINTS)
+        for end in (float(values[0]), float(values[-1]))
+        if end != value
+    ]
     if len(arms) == 1:
         only = arms[0]
         return _Line(

@@ -29,7 +29,7 @@ from thermogear.dynamics.lanes import Lanes
 
 LABELS = ("undecided", "periodic", "chaotic", "diverged", *STILL)
 """Meaning of the label codes 0, 1, 2, ...; the last ones have no motion."""
-UNDECIDED, PERIODIC, CHAOTIC, DIVERGED = range(4)
+UNDECIDED, PERIODIC, CHAOTIC, DIVERGED, JAMMED = range(5)
 TRIES = 4
 WATCHED = 128
 """Mesh periods after its label over which the contact of a chaotic motion is told."""

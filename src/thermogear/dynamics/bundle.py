@@ -7,6 +7,7 @@ Lanes of one mass with clearance run in compiled blocks
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from typing import Protocol
@@ -181,10 +182,8 @@ class InTurnCrowd:
         sections = np.full((periods, *self.state.T.shape), np.nan)
         for lane, one in enumerate(self.bundle.maps):
             if np.all(np.isfinite(self.state[lane])):
-                try:
+                with suppress(ConvergenceError):
                     sections[:, :, lane] = one.carry(self.state[lane], periods)
-                except ConvergenceError:
-                    sections[:, :, lane] = np.nan
         if periods:
             self.state = sections[-1].T.copy()
         return sections

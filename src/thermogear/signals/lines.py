@@ -22,16 +22,13 @@ from thermogear.signals import windows
 from thermogear.signals.spectra import finite_record, positive_rate
 from thermogear.signals.windows import Window
 
-_RAYLEIGH_MEDIAN = float(np.sqrt(2.0 * np.log(2.0)))  # median of |noise line| over one component
-
 
 @dataclass(frozen=True, kw_only=True)
 class Line:
-    """One line: ``frequency`` (unit of the rate), peak ``amplitude``, ``phase`` at sample 0 [rad].
+    """One line: ``frequency`` (unit of the rate), peak ``amplitude``.
 
     ``bin_offset``: distance from the nearest bin's centre, -0.5..0.5. ``floor``: median amplitude
-    of the spectrum near the line (same window); ``amplitude_error``: standard deviation of the
-    amplitude that this floor, taken as Gaussian noise, makes; ``frequency_error`` likewise.
+    of the spectrum near the line (same window).
 
     >>> t = np.arange(1000) / 1000.0
     >>> spectrum = line_spectrum(2.0 * np.cos(2 * np.pi * 50.3 * t), 1000.0)
@@ -42,11 +39,8 @@ class Line:
 
     frequency: float
     amplitude: float
-    phase: float
     bin_offset: float
     floor: float
-    amplitude_error: float
-    frequency_error: float
 
     @property
     def prominence(self) -> float:
@@ -189,17 +183,9 @@ def line_in(
     hann_floor = floor_around(amplitudes, peak, lobe=4)
     # noise of a line grows with the root of the window's noise bandwidth
     floor = hann_floor * float(np.sqrt(chosen.noise_bandwidth / 1.5))
-    # left and right bin carry noise of correlation 1/6 (Hann weights -1/4, 1/2, -1/4), so that
-    # d = 2 (right - left)/(3 A) near a bin's centre scatters by (2/3) sqrt(2 (1 - 1/6)) noise/A
-    scatter = (2.0 / 3.0) * np.sqrt(5.0 / 3.0) * hann_floor / _RAYLEIGH_MEDIAN
-    # seen from the bin, a line d bins off turns by half a turn per bin over the record
-    phase = float(np.angle(value)) - np.pi * offset * (1.0 - 1.0 / spectrum.samples)
     return Line(
         frequency=(peak + offset) * width,
         amplitude=abs(value),
-        phase=float(np.angle(np.exp(1j * phase))),
         bin_offset=float(offset),
         floor=floor,
-        amplitude_error=floor / _RAYLEIGH_MEDIAN,
-        frequency_error=float(scatter / max(abs(value), 1e-300) * width),
     )
