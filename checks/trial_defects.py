@@ -23,7 +23,7 @@ from thermogear.measured.readers import read_record
 from thermogear.measured.record import Channel, Record
 from thermogear.measured.reduction import Measurement, measure
 from thermogear.signals.filters import without_trend
-from thermogear.signals.lines import find_line
+from thermogear.signals.lines import line_in, line_spectrum
 
 Floats = NDArray[np.float64]
 Random = np.random.Generator
@@ -128,7 +128,9 @@ def before(x: Floats, mesh: float) -> float:
     if x.size < 256:
         return float("nan")
     width = 3.0 * RATE / x.size
-    return find_line(without_trend(x), RATE, near=mesh, half_width=width).amplitude - 1.0
+    return (
+        line_in(line_spectrum(without_trend(x), RATE), near=mesh, half_width=width).amplitude - 1.0
+    )
 
 
 def measured(x: Floats, mesh: float) -> Measurement:

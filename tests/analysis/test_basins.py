@@ -24,7 +24,6 @@ from thermogear.analysis.basins import (
     border_distances,
 )
 from thermogear.analysis.orbits import periodic_orbit
-from thermogear.analysis.settle import close_orbits
 from thermogear.base.excitation import Periodic
 from thermogear.base.vocabulary import STATUS
 from thermogear.dynamics.models import DeadZoneModel, TorsionalModel
@@ -122,12 +121,12 @@ def rattling(scale, damping=0.1):
 def test_a_chaotic_set_is_known_by_its_own_points_and_by_no_others(scale):
     field = Field(rattling(scale).lanes(), width=4)
     start = scale * np.array([0.0, 0.0])
-    settled = close_orbits(field.one, start[None], 300).points[0, -1]
-    cloud = close_orbits(field.one, settled[None], 2048).points[0]
+    settled = field.one.visit(start[None], 300).points[0, -1]
+    cloud = field.one.visit(settled[None], 2048).points[0]
     own = Attractor(period=0, points=cloud, multiplier=complex("nan"), lyapunov=0.05, trap=0.0)
     mirror = replace(own, points=-cloud)
     periodic = replace(own, period=1)
-    later = close_orbits(field.one, cloud[-1][None], 777).points[0, -1]
+    later = field.one.visit(cloud[-1][None], 777).points[0, -1]
     for state in (settled, later):
         assert chaotic_index([own], field, state) == 0
         assert chaotic_index([periodic, mirror, own], field, state) == 2
@@ -166,7 +165,7 @@ def test_a_trap_holds_what_falls_into_it_however_slowly_the_orbit_draws():
         field = Field(model.lanes(), width=8)
         rng = np.random.default_rng(3)
         starts = found.points[0] + found.trap * field.unit * rng.uniform(-1.0, 1.0, (40, 2))
-        ends = close_orbits(field.of(40), starts, 2000).points[:, -1]
+        ends = field.of(40).visit(starts, 2000).points[:, -1]
         assert np.max(np.abs(ends - found.points[0]) / field.unit) < 0.1 * found.trap
     assert size > 0.99
     # about the unstable orbit beyond the flip no radius holds
@@ -195,7 +194,7 @@ def test_company_and_stride_change_no_trapped_start():
     # the last state is where that many periods lead, inside the trap and not four periods sooner
     field = Field(lanes, width=1)
     for n in (0, 17, 60):
-        path = close_orbits(field.one, starts[n][None], int(used[n])).points[0]
+        path = field.one.visit(starts[n][None], int(used[n])).points[0]
         assert last[n] == pytest.approx(path[-1], abs=1e-12)
         mine = known[where[n]]
 

@@ -22,7 +22,9 @@ ORBITS = [case for case in TRUTH["cases"] if "poincare_points" in case]
 def contact_multipliers(model):
     """Multipliers of one period in lasting drive contact: Hill's x'' + c x' + k(t) x = 0."""
     section = lanes_of(model).return_map()
-    steps = [np.array([[one[0], one[2]], [one[1], one[3]]]) for one in section.maps.maps[:, :4, 0]]
+    steps = [
+        np.array([[one[0], one[2]], [one[1], one[3]]]) for one in section.maps.steps[:, 0, :4, 0]
+    ]
     product = reduce(lambda before, step: step @ before, steps, np.eye(2))
     return multipliers(product, section.determinant(1))
 

@@ -19,7 +19,9 @@ def test_a_cosine_is_one_harmonic() -> None:
 
 def test_the_series_passes_through_an_odd_number_of_samples() -> None:
     samples = np.random.default_rng(1).normal(size=31)
-    np.testing.assert_allclose(Periodic.from_samples(samples).samples(31), samples, atol=1e-13)
+    np.testing.assert_allclose(
+        Periodic.from_samples(samples)(np.arange(31) / 31), samples, atol=1e-13
+    )
 
 
 def test_derivatives_against_differences_and_closed_form() -> None:
@@ -65,8 +67,12 @@ def test_columns_hold_what_single_ones_hold() -> None:
         again = both.one(place)
         assert again is not None
         assert both.natural_frequency[place] == single.natural_frequency
-        assert again.stiffness.samples(16) == pytest.approx(single.stiffness.samples(16), rel=1e-15)
-        assert again.error.samples(16) == pytest.approx(single.error.samples(16), abs=1e-21)
+        assert again.stiffness(np.arange(16) / 16) == pytest.approx(
+            single.stiffness(np.arange(16) / 16), rel=1e-15
+        )
+        assert again.error(np.arange(16) / 16) == pytest.approx(
+            single.error(np.arange(16) / 16), abs=1e-21
+        )
         assert (again.torques, again.inertias) == (single.torques, single.inertias)
     twice = Excitations.joined([both, Excitations.of([one])])
     assert len(twice) == 3

@@ -116,13 +116,15 @@ def test_friction_of_the_teeth_as_truth_h1(compared: Compared) -> None:
 def test_friction_that_jumps_is_stopped_at() -> None:
     """Pieces, and the same pieces with one more border where nothing jumps."""
     case = TRUTH["H1"]["params"]
-    steps = [
-        Pieces.constant(starts=[0.0, 0.3, 0.7], values=[0.05, -0.03, 0.02]),
-        Pieces.constant(starts=[0.0, 0.3, 0.5, 0.7], values=[0.05, -0.03, -0.03, 0.02]),
-    ]
+    starts, values = [0.0, 0.3, 0.7], np.array([0.05, -0.03, 0.02])
     ends = []
-    for one in steps:
-        p = six(case, friction_at_pitch=one, friction_per_metre=one.scaled(1e-3))
+    for own, there in ((starts, values), ([0.0, 0.3, 0.5, 0.7], values[[0, 1, 1, 2]])):
+        pitch = Pieces.constant(starts=own, values=there)
+        p = six(
+            case,
+            friction_at_pitch=pitch,
+            friction_per_metre=Pieces.constant(starts=own, values=1e-3 * there),
+        )
         rest = np.linalg.lstsq(p.drive[None], [4.5e-5], rcond=None)[0]
         ends.append(Reference(p).after(np.r_[rest, np.zeros(5)], 3))
     assert ends[1] == pytest.approx(ends[0], rel=1e-9, abs=1e-15)

@@ -24,6 +24,7 @@ from thermogear.front import cli as command_line
 from thermogear.front.cli import main
 from thermogear.front.lines import one_line, system_error
 from thermogear.front.progress import progress
+from thermogear.results.files import MARK
 from thermogear.results.result import Result
 
 HEAVY = (
@@ -350,7 +351,7 @@ def test_results_of_ours_are_written_over(
     rig: Path, tmp_path: Path, pretended: dict[str, Any]
 ) -> None:
     (tmp_path / "results").mkdir()
-    (tmp_path / "results" / "summary.json").write_text('{"thermogear": "0"}', encoding="utf-8")
+    (tmp_path / "results" / MARK).write_text("results of thermogear\n", encoding="utf-8")
     assert main(["run", str(rig), "-o", str(tmp_path / "results")]) == 0
     assert "reported" in pretended
 

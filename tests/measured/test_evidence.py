@@ -132,7 +132,7 @@ def test_impacts_are_no_gear() -> None:
         x += height * np.cos(2 * np.pi * rank * step * n + rank**2)
     found = weigh(sharp_peaks(x[None, :]))
     assert found.teeth == ()
-    assert not found.hypotheses[0].teeth
+    assert not any(one.teeth for one in found.hypotheses[0].gears)
 
 
 def test_what_is_stated_is_evidence_and_no_more() -> None:
@@ -149,7 +149,7 @@ def test_what_is_stated_is_evidence_and_no_more() -> None:
 def test_no_line_no_gear() -> None:
     found = weigh(peaks_of(np.random.default_rng(3).normal(size=(1, 2048))))
     assert found.teeth == ()
-    assert not found.hypotheses[0].teeth
+    assert not any(one.teeth for one in found.hypotheses[0].gears)
 
 
 def test_rounding_that_repeats_each_turn_is_no_comb() -> None:

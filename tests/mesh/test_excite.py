@@ -70,11 +70,11 @@ def test_perfect_gears_at_equal_uniform_temperature_have_no_error(
     cycle = mesh_cycle(rig, cold, secant)
     first = excitation(cycle, rig, damping_ratio=0.07)[0]
     assert first is not None
-    assert np.all(first.error.samples(64) == 0.0)
+    assert np.all(first.error(np.arange(64) / 64) == 0.0)
     given = Periodic(0.0, (5e-6,))
     first = excitation(cycle, rig, damping_ratio=0.07, transmission_error=given)[0]
     assert first is not None
-    assert first.error.samples(4) == pytest.approx([5e-6, 0.0, -5e-6, 0.0], abs=1e-20)
+    assert first.error(np.arange(4) / 4) == pytest.approx([5e-6, 0.0, -5e-6, 0.0], abs=1e-20)
 
 
 def test_motion_without_speed_is_refused(rig: GearPair, hot_rig: Operating) -> None:
@@ -108,11 +108,11 @@ def test_error_and_stiffness_are_the_curves_of_their_own_point(
     for point in (0, 2):
         one = found[point]
         assert one is not None
-        assert one.stiffness.samples(65) == pytest.approx(
+        assert one.stiffness(np.arange(65) / 65) == pytest.approx(
             cycle["mesh_stiffness"].values[point], rel=1e-12
         )
-        assert one.error.samples(65) == pytest.approx(
-            given.samples(65) + cycle["spring_error"].values[point], abs=1e-15
+        assert one.error(np.arange(65) / 65) == pytest.approx(
+            given(np.arange(65) / 65) + cycle["spring_error"].values[point], abs=1e-15
         )
         assert (one.inertias, one.damping_ratio) == ((1.0, 2.0), 0.05)
         assert one.half_backlash == float(cycle["half_backlash"][point])

@@ -15,7 +15,7 @@ from thermogear.signals.integration import (
     integrate_twice_trapezoid,
     trapezoid_factor,
 )
-from thermogear.signals.lines import find_line
+from thermogear.signals.lines import line_in, line_spectrum
 from thermogear.signals.spectra import amplitude_spectrum
 
 G = 9.80665
@@ -37,7 +37,11 @@ def rig(rate: float, seconds: float = 4.0, seed: int = 7) -> Floats:
 def errors(displacement: Floats, rate: float) -> list[float]:
     """Error of each line in per cent, read with a flat-top window."""
     return [
-        100 * (find_line(displacement, rate, near=f, half_width=4.0).amplitude / amplitude - 1)
+        100
+        * (
+            line_in(line_spectrum(displacement, rate), near=f, half_width=4.0).amplitude / amplitude
+            - 1
+        )
         for f, amplitude in LINES
     ]
 
@@ -97,7 +101,7 @@ def test_division_by_omega_squared_reads_every_line(rate: float, compared: Compa
 def test_flat_top_line_over_omega_squared(rate: float, limit: float, compared: Compared) -> None:
     x = without_trend(rig(rate))
     for frequency, amplitude in LINES:
-        line = find_line(x, rate, near=frequency, half_width=4.0)
+        line = line_in(line_spectrum(x, rate), near=frequency, half_width=4.0)
         read = line.amplitude / (2 * np.pi * line.frequency) ** 2
         compared(
             "displacement of a flat-top line over ω²",
@@ -186,7 +190,7 @@ def test_line_within_five_hundredths_per_cent_and_two_hundredths_bin(
 ) -> None:
     x = without_trend(rig(rate, 4.0, seed))
     for frequency, amplitude in LINES:
-        line = find_line(x, rate, near=frequency, half_width=4.0)
+        line = line_in(line_spectrum(x, rate), near=frequency, half_width=4.0)
         compared(
             "frequency of a noisy line, in bins",
             "the line put in",
@@ -199,29 +203,10 @@ def test_line_within_five_hundredths_per_cent_and_two_hundredths_bin(
         )
 
 
-def test_stated_errors_of_a_line_are_those_of_many_records() -> None:
-    rate, count, amplitude, noise = 1000.0, 4096, 1.0, 0.5
-    t = np.arange(count) / rate
-    found = []
-    records = 150
-    # a standard deviation from n records is itself known to 1/sqrt(2 (n - 1))
-    three_sigma = 3.0 / np.sqrt(2.0 * (records - 1))
-    for seed in range(records):
-        rng = np.random.default_rng(seed)
-        x = amplitude * np.cos(2 * np.pi * 203.37 * t + 1.0) + noise * rng.standard_normal(count)
-        found.append(find_line(x, rate, near=203.0, half_width=2.0))
-    spread = np.std([line.amplitude for line in found])
-    assert spread == pytest.approx(np.mean([line.amplitude_error for line in found]), rel=0.15)
-    wander = np.std([line.frequency for line in found])
-    assert wander == pytest.approx(
-        np.mean([line.frequency_error for line in found]), rel=three_sigma
-    )
-
-
 def test_a_line_is_looked_for_within_the_spectrum_alone() -> None:
     t = np.arange(5000) / 1000.0
     with pytest.raises(InputError, match=r"no bin of the spectrum lies there$"):
-        find_line(t, 1000.0, near=700.0, half_width=1.0)
+        line_in(line_spectrum(t, 1000.0), near=700.0, half_width=1.0)
 
 
 def _band(rate: float) -> BandPass:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.signals.lines import find_line
+from thermogear.signals.lines import line_in, line_spectrum
 from thermogear.signals.quality import coarse, damages
 
 Floats = NDArray[np.float64]
@@ -51,7 +51,9 @@ def test_coarse_levels_falsify_a_line_by_no_more_than_is_told() -> None:
         x = np.cos(2 * np.pi * pace * np.arange(8192)) + random.uniform(-1.0, 1.0)
         x += step * float(10 ** random.uniform(-3.0, -0.5)) * random.normal(size=x.size)
         y = np.round(x / step) * step
-        true, read = (find_line(v - v.mean(), 1.0, near=pace, half_width=1e-3) for v in (x, y))
+        true, read = (
+            line_in(line_spectrum(v - v.mean(), 1.0), near=pace, half_width=1e-3) for v in (x, y)
+        )
         share = coarse(y, everywhere(y))
         assert abs(read.amplitude / true.amplitude - 1.0) <= share + 0.01
         told += share > 0.01

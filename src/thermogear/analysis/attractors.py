@@ -12,7 +12,6 @@ from thermogear.analysis.settle import (
     CHAOTIC,
     DIVERGED,
     Rule,
-    close_orbits,
     settle,
 )
 from thermogear.base.arrays import Floats, Whole
@@ -87,7 +86,7 @@ def attractors_from(
         elif code == CHAOTIC:
             where[i] = chaotic_index(found, field, settled.state[i])
             if where[i] < 0:
-                cloud = close_orbits(field.one, settled.state[i][None], CLOUD).points[0]
+                cloud = field.one.visit(settled.state[i][None], CLOUD).points[0]
                 where[i] = len(found)
                 found.append(
                     Attractor(
@@ -125,7 +124,7 @@ def chaotic_index(known: Sequence[Attractor], field: Field, state: Floats) -> in
     clouds = [(number, one) for number, one in enumerate(known) if one.chaotic]
     if not clouds:
         return -1
-    path = close_orbits(field.one, state[None], 256).points[0, 1:] / field.unit
+    path = field.one.visit(state[None], 256).points[0, 1:] / field.unit
     for number, one in clouds:
         tree = cKDTree(one.points / field.unit)
         own = np.percentile(tree.query(one.points / field.unit, k=2)[0][:, 1], 99.0)
@@ -135,7 +134,7 @@ def chaotic_index(known: Sequence[Attractor], field: Field, state: Floats) -> in
 
 
 def _orbit(field: Field, point: Floats, period: int, multiplier: complex) -> Attractor:
-    run = close_orbits(field.one, point[None], period)
+    run = field.one.visit(point[None], period)
     points = run.points[0, :-1]
     exponent = float(np.log(abs(multiplier)) / (period * field.period))
     trap = _trap(field, points, multiplier, period)

@@ -244,9 +244,11 @@ class BasinPlan:
 
 def _spread(x: Sequence[float], v: Sequence[float], side: int) -> Floats:
     """About ``side`` x ``side`` starts of the grid."""
-    xs = np.array(x)[np.unique(np.linspace(0, len(x) - 1, min(side, len(x))).round().astype(int))]
-    vs = np.array(v)[np.unique(np.linspace(0, len(v) - 1, min(side, len(v))).round().astype(int))]
-    return np.stack(np.meshgrid(xs, vs, indexing="ij"), axis=-1).reshape(-1, 2)
+    some = (
+        np.array(axis)[np.unique(np.linspace(0, size - 1, min(side, size)).round().astype(int))]
+        for axis, size in ((x, len(x)), (v, len(v)))
+    )
+    return np.stack(np.meshgrid(*some, indexing="ij"), axis=-1).reshape(-1, 2)
 
 
 def _late(

@@ -11,9 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import root_scalar
 
-from thermogear.analysis.curve import Curve, Family, Point, Stretch, Tests
-from thermogear.analysis.nearby import zero_near
-from thermogear.analysis.orbits import Orbit, closed
+from thermogear.analysis.curve import Curve, Family, Point, Stretch
+from thermogear.analysis.orbits import Orbit
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.dynamics.return_map import MovedMap, is_moved
@@ -29,7 +28,6 @@ Also of a drive train with alike halves left and right of its gears.
 """
 TORUS = "torus"
 """A complex pair of multipliers leaves or enters the unit circle (Neimark-Sacker)."""
-TESTS = {FOLD: "fold", TORUS: "torus"}
 SUPERCRITICAL = "supercritical"
 SUBCRITICAL = "subcritical"
 VERTICAL = "vertical: linear until the contact changes"
@@ -37,15 +35,8 @@ VERTICAL = "vertical: linear until the contact changes"
 LONGEST_STEP = 0.05
 LOOK_CLOSER = 1e-3
 """Between points nearer than this no second event of a kind is looked for."""
-PROBE = 1e-6
-"""Scaled step of differences that Newton's method onto a bifurcation takes; rough ones do."""
-FARTHEST = 0.25
-"""Half backlashes, or shares of the parameter, in which it looks around."""
-HIDDEN = ("fold", "flip", "margin", "spiral")
+HIDDEN = ("tests.fold", "tests.flip", "margin", "tests.spiral")
 """What of a point may dip to 0 and back within a step."""
-MOST_STEPS = 8
-CARRIED = 1e-8
-"""It has settled where a step is shorter: the next would be shorter than rounding."""
 SILENT = 1e-11
 """A test function below this is rounding: of orbits that float in the gap it is 0 all along."""
 DOUBLED = (1e-4, 3e-5, 1e-3, 1e-5, 3e-4, 3e-3, 1e-2)
@@ -105,12 +96,13 @@ def locate(curve: Curve, a: Point, b: Point) -> list[Bifurcation]:
             step = stretch.zero(_ahead, low=low, high=high)
             events.append((step, _bifurcation(curve, stretch.at(step), PITCHFORK)))
         for name, kind in (("fold", FOLD), ("flip", broken), *_tori(stretch)):
-            test = attrgetter(name)
+            test = attrgetter(f"tests.{name}")
             one, other = test(stretch.at(low)), test(stretch.at(high))
             if one * other < 0.0 and min(abs(one), abs(other)) > SILENT:
                 step = stretch.zero(test, low=low, high=high)
-                if kind == FOLD and _straight_on(stretch.at(low), stretch.at(high)):
-                    kind = PITCHFORK
+                ahead = _ahead(stretch.at(low)) * _ahead(stretch.at(high))
+                if kind == FOLD and curve.dimension > 2 and ahead > 0.0:
+                    kind = PITCHFORK  # a multiplier passes +1 although the branch does not turn
                 if kind == TORUS and not _complex_pair(stretch.at(step)):
                     continue  # mu and 1/mu, both real
                 events.append((step, _bifurcation(curve, stretch.at(step), kind)))
@@ -130,12 +122,7 @@ def crossed(a: Point, b: Point) -> bool:
     other meet in one that does not change by it.
     """
     long = a.scaled.size > 3
-    return long and _ahead(a) * _ahead(b) < 0.0 and a.fold * b.fold > 0.0
-
-
-def _straight_on(a: Point, b: Point) -> bool:
-    """Whether a multiplier of a long state passes +1 although the branch does not turn."""
-    return a.scaled.size > 3 and _ahead(a) * _ahead(b) > 0.0
+    return long and _ahead(a) * _ahead(b) < 0.0 and a.tests.fold * b.tests.fold > 0.0
 
 
 def _tori(stretch: Stretch) -> tuple[tuple[str, str], ...]:
@@ -198,77 +185,6 @@ def _bifurcation(curve: Curve, point: Point, kind: str, note: str = "") -> Bifur
     return found
 
 
-def carried(bifurcation: Bifurcation, family: Family) -> Bifurcation:
-    """The same fold, period doubling, pitchfork or torus of another ``family``, from where it was.
-
-    Newton on state (d,) and parameter at once, in the family's units: the orbit closes and
-    (1 - mu_1)(1 - mu_2) is 0 (of a period doubling (1 + mu_1)(1 + mu_2); a pitchfork is one of
-    the half orbit mirrored). Near a grazing, where that fails, the branch is searched nearby.
-    ``family``, value -> model as :func:`~thermogear.analysis.continuation.continuation` takes
-    it, must be a near one. The value is good to 1e-10 of itself.
-
-    Raises InputError for a grazing or a birth, which have no multiplier of their own;
-    ConvergenceError where there is none nearby.
-    """
-    kind = bifurcation.kind
-    if kind not in (FOLD, FLIP, PITCHFORK, TORUS):
-        allowed = f"{FOLD} | {FLIP} | {PITCHFORK} | {TORUS}"
-        raise InputError("bifurcation", kind, allowed=allowed)
-    curve = Curve(
-        family,
-        bifurcation.parameter,
-        bifurcation.period,
-        start=bifurcation.value,
-        span=max(abs(bifurcation.value), 1e-3),
-        mirrors=kind == PITCHFORK,
-        symmetric=kind == PITCHFORK,
-    )
-
-    scaled = _settled(curve, kind, np.append(bifurcation.state, bifurcation.value) / curve.unit)
-    if scaled is None:
-        raise ConvergenceError(
-            f"the {kind} at {curve.parameter} = {bifurcation.value!r} was not found again near "
-            "it; follow the branch instead"
-        )
-    state, value = scaled[:-1] * curve.unit[:-1], float(scaled[-1] * curve.span)
-    orbit = closed(curve.map_at(value), state, curve.period, model=family(value))
-    found = Bifurcation(kind, curve.parameter, value, orbit)
-    return found if kind in (FOLD, TORUS) else replace(found, note=criticality(found, family))
-
-
-def _settled(curve: Curve, kind: str, guess: Floats) -> Floats | None:
-    """Newton onto the bifurcation; where it wanders, a search along the branch beside ``guess``."""
-
-    def apart(scaled: Floats) -> Floats:
-        gap, jacobian, section = curve.residual(scaled)
-        whole = section.determinant(curve.period)
-        closing = float(np.sqrt(whole)) if curve.symmetric else whole
-        if gap.size == 2 and not np.isnan(closing):
-            trace = float(jacobian[0, 0] + jacobian[1, 1])
-            return np.append(gap, 1.0 + closing + (-trace if kind == FOLD else trace))
-        return np.append(gap, getattr(Tests.of(jacobian, closing), test))
-
-    test = TESTS.get(kind, "flip")
-    scaled = guess
-    for _ in range(MOST_STEPS):
-        here = apart(scaled)
-        columns = [
-            (apart(scaled + one) - here) / PROBE for one in PROBE * np.eye(curve.dimension + 1)
-        ]
-        matrix = np.array(columns).T
-        if not np.all(np.isfinite(matrix)) or np.linalg.matrix_rank(matrix) < len(here):
-            break
-        step = np.linalg.solve(matrix, -here)
-        length = float(np.max(np.abs(step)))
-        scaled = scaled + step
-        if length < CARRIED:
-            return scaled
-        if not length < FARTHEST:
-            break
-    found = zero_near(curve, attrgetter(test), guess, farthest=FARTHEST)
-    return None if found is None else found.scaled
-
-
 def looked_closer(curve: Curve, before: Point | None, a: Point, b: Point) -> list[Point]:
     """The points from ``a`` (left out) to ``b``, so near that no pair of events hides between.
 
@@ -291,13 +207,14 @@ def looked_closer(curve: Curve, before: Point | None, a: Point, b: Point) -> lis
 def _may_hide(beside: Point | None, a: Point, b: Point) -> bool:
     if beside is None:
         # the first step of a walk is short; only next to a zero anything may hide in it
-        pairs = [(abs(getattr(a, n)), abs(getattr(b, n))) for n in HIDDEN]
+        values = attrgetter(*HIDDEN)
+        pairs = zip(map(abs, values(a)), map(abs, values(b)), strict=True)
         return any(min(one, other) < 4.0 * abs(one - other) + LOOK_CLOSER for one, other in pairs)
     width = float(np.linalg.norm(b.scaled - a.scaled))
     near, far = (float(np.linalg.norm(p.scaled - beside.scaled)) for p in (a, b))
     along = -near if near < far else width + far
     for name in HIDDEN:
-        one, other, third = (float(getattr(p, name)) for p in (a, b, beside))
+        one, other, third = (float(attrgetter(name)(p)) for p in (a, b, beside))
         if name != "margin" and one * other < 0.0:
             continue
         if not np.isfinite(one + other + third):
@@ -331,7 +248,7 @@ def criticality(bifurcation: Bifurcation, family: Family) -> str:
     except ConvergenceError:
         return ""
     if curve.dimension == 2:
-        return SUPERCRITICAL if point.fold > 0.0 else SUBCRITICAL
+        return SUPERCRITICAL if point.tests.fold > 0.0 else SUBCRITICAL
     mu = np.linalg.eigvals(point.visit.jacobian)
     nearest = mu[np.argmin(np.abs(mu - 1.0))].real
     return SUPERCRITICAL if nearest < 1.0 else SUBCRITICAL
@@ -435,7 +352,7 @@ def birth_of(curve: Curve, a: Point, kind: str) -> Bifurcation | None:
 
     def flip(value: float) -> float:
         point = there(value)
-        return np.nan if point is None else point.flip
+        return np.nan if point is None else point.tests.flip
 
     near = max(1e-13, 4.0 * float(np.spacing(abs(start))))
     found = root_scalar(flip, method="secant", x0=start, x1=start + 1e-4 * curve.span, xtol=near)
@@ -449,8 +366,5 @@ def birth_of(curve: Curve, a: Point, kind: str) -> Bifurcation | None:
 
 
 def _grazed(before: tuple[int, int], after: tuple[int, int]) -> str:
-    parts = []
-    for name, old, new in zip(("contact losses", "back-side impacts"), before, after, strict=True):
-        if old != new:
-            parts.append(f"{name} per orbit {old} -> {new}")
-    return ", ".join(parts)
+    counts = zip(("contact losses", "back-side impacts"), before, after, strict=True)
+    return ", ".join(f"{name} per orbit {old} -> {new}" for name, old, new in counts if old != new)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.analysis.bifurcations import (
@@ -28,10 +28,6 @@ from thermogear.base.arrays import Floats
 from thermogear.base.errors import ConvergenceError
 from thermogear.dynamics.plane import plane_of
 from thermogear.dynamics.return_map import return_map
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 KINDS = (FOLD, FLIP, GRAZING, BIRTH, PITCHFORK, TORUS)
 """Meaning of the codes 0, 1, ... of ``bifurcation_kind``."""
@@ -161,14 +157,11 @@ def _line(orbit: Orbit, value: float, family: Family, parameter: str, values: Fl
     def single(at: float) -> object:
         return model_at(family, at)
 
-    arms: list[Branch] = []
-    for end in (float(values[0]), float(values[-1])):
-        if end != value:
-            arms.append(
-                continuation(
-                    orbit, parameter, end, family=single, start=value, most_points=MOST_POINTS
-                )
-            )
+    arms = [
+        continuation(orbit, parameter, end, family=single, start=value, most_points=MOST_POINTS)
+        for end in (float(values[0]), float(values[-1]))
+        if end != value
+    ]
     if len(arms) == 1:
         only = arms[0]
         return _Line(

@@ -455,16 +455,9 @@ def switch_branch(bifurcation: Bifurcation, family: Family | None = None) -> Dou
 class Cascade:
     """Period doublings of one branch, the branches walked, and why the next was ``lost``, if so."""
 
-    parameter: str
     flips: tuple[Bifurcation, ...]
     branches: tuple[Branch, ...]
     lost: str = ""
-
-    @property
-    def ratios(self) -> Floats:
-        """(p_k - p_k-1)/(p_k+1 - p_k); they tend to Feigenbaum's 4.669."""
-        gaps = np.diff([b.value for b in self.flips])
-        return np.asarray(gaps[:-1] / gaps[1:])
 
 
 def cascade(
@@ -501,6 +494,6 @@ def cascade(
                 back_to=begin, stop_at=FLIP, direction=doubled.direction, progress=progress,
             )  # fmt: skip
         except ConvergenceError as error:
-            return Cascade(parameter, tuple(found), tuple(branches), str(error))
+            return Cascade(tuple(found), tuple(branches), str(error))
         branches.append(branch)
-    return Cascade(parameter, tuple(found), tuple(branches))
+    return Cascade(tuple(found), tuple(branches))

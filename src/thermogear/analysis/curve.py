@@ -60,6 +60,8 @@ tangent a little: points slip along the branch, by 1e-13, and not off it.
 class Tests:
     """What vanishes where a multiplier is +1, -1, or the product of two multipliers is 1.
 
+    ``fold`` is (1 - mu_1)(1 - mu_2)..., ``flip`` (1 + mu_1)(1 + mu_2)..., ``torus`` the product of
+    1 - mu_i mu_j over all pairs.
     Of two multipliers with a known product the products of all factors themselves, of more the
     smallest factor with the sign of their product.
 
@@ -117,26 +119,6 @@ class Point:
     tests: Tests
     margin: float
     slope: Floats
-
-    @property
-    def fold(self) -> float:
-        """(1 - mu_1)(1 - mu_2)..."""
-        return self.tests.fold
-
-    @property
-    def flip(self) -> float:
-        """(1 + mu_1)(1 + mu_2)..."""
-        return self.tests.flip
-
-    @property
-    def torus(self) -> float:
-        """The product of 1 - mu_i mu_j over all pairs."""
-        return self.tests.torus
-
-    @property
-    def spiral(self) -> float:
-        """1 less the largest modulus of a complex pair."""
-        return self.tests.spiral
 
     @property
     def contacts(self) -> tuple[int, int]:

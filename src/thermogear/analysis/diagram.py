@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.branches import with_branches
@@ -49,10 +50,6 @@ from thermogear.base.plan import (
     ranges_of,
     stretches,
 )
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 DIRECTIONS = (1, -1)
 """Up and down."""

@@ -36,14 +36,18 @@ class Family(Protocol):
     """
 
     @property
-    def names(self) -> tuple[str, ...]: ...
+    def names(self) -> tuple[str, ...]:
+        """Of the parameters."""
 
     @property
-    def units(self) -> tuple[str, ...]: ...
+    def units(self) -> tuple[str, ...]:
+        """Of the parameters; "1": a pure number."""
 
-    def inputs(self) -> dict[str, Any]: ...
+    def inputs(self) -> dict[str, Any]:
+        """What defines the family, as plain numbers and texts."""
 
-    def __call__(self, points: Floats) -> Any: ...
+    def __call__(self, points: Floats) -> Any:
+        """One lane of every row of ``points`` (point, parameter)."""
 
 
 @runtime_checkable
@@ -54,19 +58,17 @@ class Watching(Protocol):
     """
 
     @property
-    def kinds(self) -> tuple[str, ...]: ...
+    def kinds(self) -> tuple[str, ...]:
+        """Of its variables those that tell kinds of motion apart."""
 
     def watched(self, dims: tuple[str, ...]) -> dict[str, Variable]:
         """The stored variables over ``dims``, some over axes of their own behind them."""
-        ...
 
     def watched_coordinates(self) -> dict[str, Coordinate]:
         """Those axes."""
-        ...
 
     def watch(self, points: Floats, found: Settled) -> Arrays:
         """The values at ``points`` (point, parameter), whose motions are ``found``."""
-        ...
 
 
 def watched_variables(family: Family, dims: tuple[str, ...]) -> dict[str, Variable]:

@@ -112,7 +112,7 @@ def follow(
             branch = _walked(family, parameter, start, to, stand)
         except ConvergenceError:
             break
-        event = _end_of_life(branch)
+        event = next((b for b in branch.bifurcations if b.kind in (FOLD, FLIP, TORUS)), None)
         if event is None and branch.ended == REACHED:
             return Followed(to, branch.states[-1], stand.period, tuple(leaps))
         if event is None:
@@ -180,11 +180,6 @@ def _leap(event: Bifurcation, settle: Settle, start: float, to: float) -> Leap:
     )
 
 
-def _end_of_life(branch: Branch) -> Bifurcation | None:
-    """Where the motion leaves the branch, if it does."""
-    return next((b for b in branch.bifurcations if b.kind in (FOLD, FLIP, TORUS)), None)
-
-
 def _behind(value: float, *, start: float, to: float) -> float:
     """A little further on the way to ``to``, not beyond it."""
     there = value + float(np.sign(to - start)) * BEYOND * abs(value)
@@ -244,9 +239,9 @@ def _straight(
                 there is not None
                 and _even(point, there)
                 and float(np.max(np.abs(there.scaled - guess))) <= BEND
-                and there.fold > 0.0
-                and there.flip > 0.0
-                and there.fold > 0.2 * point.fold
+                and there.tests.fold > 0.0
+                and there.tests.flip > 0.0
+                and there.tests.fold > 0.2 * point.tests.fold
             ):
                 break
             step *= 0.5

@@ -356,10 +356,3 @@ def _follow(
         yield mine.size - waiting.size
     for row in waiting.tolist():
         ends[owner[row]].append(End(None, elapsed, bool(lively[row])))
-
-
-def counts(found: Sequence[Label]) -> dict[str, int]:
-    """How many lanes carry each name, in descending number."""
-    names, numbers = np.unique([one.name for one in found], return_counts=True)
-    order = np.argsort(-numbers, kind="stable")
-    return {str(names[i]): int(numbers[i]) for i in order}

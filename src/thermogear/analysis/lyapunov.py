@@ -173,8 +173,11 @@ def lyapunov_exponent(
     >>> f"{exponent.value:.3f}"
     '-0.050'
     """
+    lanes = _many(model)
+    if len(lanes) != 1:
+        raise InputError("model", f"{len(lanes)} lanes", allowed="one lane; use the plural form")
     return lyapunov_exponents(
-        _one(model),
+        lanes,
         initial_state=initial_state,
         discard=discard,
         batches=batches,
@@ -193,10 +196,3 @@ def _many(model: object) -> Lanes | Sequence[object]:
     ):
         return [model]
     return lanes_of(model)
-
-
-def _one(model: object) -> Lanes | Sequence[object]:
-    lanes = _many(model)
-    if len(lanes) != 1:
-        raise InputError("model", f"{len(lanes)} lanes", allowed="one lane; use the plural form")
-    return lanes

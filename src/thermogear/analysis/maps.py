@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.ndimage import binary_dilation
 
 from thermogear.analysis.family import (
     Family,
@@ -85,11 +86,8 @@ class MapPlan:
 
     @property
     def cuts(self) -> dict[str, int]:
-        return {n: min(self.tile, len(v)) for n, v in self._axes.items()}
-
-    @property
-    def _axes(self) -> dict[str, tuple[float, ...]]:
-        return dict(zip(self.family.names, self.axes, strict=True))
+        named = zip(self.family.names, self.axes, strict=True)
+        return {name: min(self.tile, len(values)) for name, values in named}
 
     @property
     def _kinds(self) -> tuple[str, ...]:
@@ -237,12 +235,7 @@ def _refined(
     same = (first == corner[1:, :-1]) & (first == corner[:-1, 1:]) & (first == corner[1:, 1:])
     label = found["label"][np.ix_(rows, columns)][:-1, :-1]
     same &= (label == PERIODIC) | (label == CHAOTIC) | (label > CHAOTIC)
-    active = ~same
-    wide = np.pad(active, 1)
-    near = np.zeros_like(active)
-    for di in (0, 1, 2):
-        for dj in (0, 1, 2):
-            near |= wide[di : di + active.shape[0], dj : dj + active.shape[1]]
+    near = binary_dilation(~same, np.ones((3, 3), bool))
     wanted = np.zeros(shape, bool)
     for i, j in np.argwhere(near):
         wanted[rows[i] : rows[i + 1] + 1, columns[j] : columns[j + 1] + 1] = True

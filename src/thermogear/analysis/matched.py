@@ -18,9 +18,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+import xarray as xr
 
 from thermogear.analysis.bifurcations import BIRTH, FLIP, GRAZING, Bifurcation
 from thermogear.analysis.branches import KINDS
@@ -32,9 +33,6 @@ from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.base.vocabulary import moves
 from thermogear.dynamics.lanes import mixed
 from thermogear.dynamics.return_map import return_map
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 MATCHED, JOINED, BEYOND, UNKNOWN = "matched", "meets another", "leaves the range", "not followed"
 """What becomes of a bifurcation on the way to the other diagram."""

@@ -24,7 +24,7 @@ from thermogear.base.bounds import require_share, whole
 from thermogear.base.errors import InputError
 from thermogear.base.plan import Alive, keep_going
 from thermogear.base.vocabulary import STILL
-from thermogear.dynamics.bundle import Bundle, Visits, bundles
+from thermogear.dynamics.bundle import Bundle, bundles
 from thermogear.dynamics.lanes import Lanes
 
 LABELS = ("undecided", "periodic", "chaotic", "diverged", *STILL)
@@ -136,11 +136,6 @@ class Settled:
             getattr(self, field.name)[index] = getattr(other, field.name)
 
 
-def close_orbits(maps: Bundle, start: Floats, n: int) -> Visits:
-    """Run ``n`` periods from ``start`` (lane, d) with the variational equations."""
-    return maps.visit(start, n)
-
-
 def polish(
     maps: Bundle, guess: Floats, n: int, unit: Floats, most: int = 10
 ) -> tuple[Floats, Floats]:
@@ -155,7 +150,7 @@ def polish(
     working = np.arange(len(z))
     here = maps
     for _ in range(most):
-        run = close_orbits(here, z[working], n)
+        run = here.visit(z[working], n)
         gap = run.residual
         size = np.max(np.abs(gap) / unit[working], axis=1)
         better = size < least[working]
@@ -340,7 +335,7 @@ def _verdicts(block: _Block, window: Floats, stretch: Floats, last: bool) -> Fla
         rows = np.flatnonzero(chaotic)
         # more masses take too long with their variational equations: their families watch them
         if rows.size and window.shape[2] == 2:
-            run = close_orbits(block.maps.take(rows), window[rows, -1], WATCHED)
+            run = block.maps.take(rows).visit(window[rows, -1], WATCHED)
             lanes = active[rows]
             result.shares[lanes] = run.spent / (WATCHED * block.period[lanes])[:, None]
     if block.keep:
@@ -375,7 +370,7 @@ def _periodic(block: _Block, rows: Whole, n: int, window: Floats, scaled: Floats
     good = np.flatnonzero(residual < 1e-9)
     if good.size == 0:
         return done
-    run = close_orbits(maps.take(good), point[good], n)
+    run = maps.take(good).visit(point[good], n)
     minimal = np.full(good.size, n)
     for shorter in range(n - 1, 0, -1):
         if n % shorter == 0:
@@ -398,7 +393,7 @@ def _accept(
 ) -> Flags:
     """Whether the lanes ``rows`` converge to their stable orbits of ``n`` periods; stores them."""
     maps = block.maps.take(rows)
-    run = close_orbits(maps, point, n)
+    run = maps.visit(point, n)
     lanes = block.active[rows]
     mu = multipliers_of(run.jacobian, determinant=maps.determinant(n))
     size = np.abs(mu[:, 0])

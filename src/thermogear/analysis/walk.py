@@ -144,7 +144,8 @@ class Walk:
             return None
         if known.reached(self.state, self.discarded):
             return _proven(section, known.orbit, known.away, self.discarded, how)
-        self._length = known.next_round(how.first)
+        period = known.orbit.period
+        self._length = period * -(-how.first // period)
         if known.lost:
             self._known = None
         return None
@@ -177,10 +178,6 @@ class _Approach:
         self._right = 0
         self._before: tuple[int, NDArray[np.complex128]] | None = None
         self._bases: dict[int, tuple[NDArray[np.complex128], NDArray[np.complex128]]] = {}
-
-    def next_round(self, first: int) -> int:
-        """Periods of the next round: about ``first``, whole orbits."""
-        return self.orbit.period * -(-first // self.orbit.period)
 
     def reached(self, state: Floats, used: int) -> bool:
         """Whether the motion, in ``state`` after ``used`` periods, comes to the orbit."""

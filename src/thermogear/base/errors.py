@@ -44,14 +44,8 @@ class InputError(ThermogearError, ValueError):
         self.allowed = allowed
         self.why = why
         self.fix = fix
-        parts = [f"{field}: got {got}"]
-        if allowed:
-            parts.append(f"allowed {allowed}")
-        if why:
-            parts.append(why)
-        if fix:
-            parts.append(fix)
-        super().__init__("; ".join(parts).replace("\n", " "))
+        parts = (f"{field}: got {got}", f"allowed {allowed}" if allowed else "", why, fix)
+        super().__init__("; ".join(part for part in parts if part).replace("\n", " "))
 
     @property
     def told(self) -> str:

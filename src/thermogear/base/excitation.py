@@ -87,10 +87,6 @@ class Periodic:
         value: Floats = np.asarray(total)[()]
         return value
 
-    def samples(self, count: int) -> Floats:
-        """``count`` uniform samples over one period, phase 0 first."""
-        return self(np.arange(count) / count)
-
     def derivative(self, order: int = 1) -> Periodic:
         """d^order p/d phi^order, phase in periods."""
         ranks = np.arange(1, len(self.harmonics) + 1)

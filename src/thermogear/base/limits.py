@@ -9,7 +9,6 @@ from thermogear.base.materials import POLYMER_LIMITS
 from thermogear.base.units import ZERO_CELSIUS
 
 FINE, LOOK, OPEN = "fine", "look here", "not decided"
-VERDICTS = (FINE, LOOK, OPEN)
 """What an answer may come to."""
 
 

@@ -7,16 +7,15 @@ import warnings
 from collections.abc import Iterator, Mapping
 from itertools import count
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO
+from typing import Any, BinaryIO
 
+import h5py
 import numpy as np
+import xarray as xr
+from xarray.conventions import cf_encoder, encode_dataset_coordinates
 
 from thermogear.base.errors import InputError, UnsealedWarning
 from thermogear.base.files import open_sealed, put_sealed, seal_of
-
-if TYPE_CHECKING:
-    import h5py
-    import xarray as xr
 
 _NO_VARIABLE = b"This is a netCDF dimension but not a netCDF variable."
 _LAYOUT = {
@@ -40,8 +39,6 @@ def write_tree(tree: xr.DataTree, path: Path) -> Path:
     is stored as by ``tree.to_netcdf(engine="h5netcdf")``, which opens every group and dimension
     anew for each variable and takes ten times as long.
     """
-    import h5py
-
     made, numbers = io.BytesIO(), count()
     with h5py.File(made, "w", track_order=True) as file:
         versions = f"version=2,h5py={h5py.__version__},hdf5={h5py.version.hdf5_version}"
@@ -63,9 +60,6 @@ def _write_group(
     A dimension's scale is the variable of its name, or an empty data set; those of the groups
     ``above`` serve too. ``numbers`` counts the dimensions of the file.
     """
-    import h5py
-    from xarray.conventions import cf_encoder, encode_dataset_coordinates
-
     variables, attributes = cf_encoder(*encode_dataset_coordinates(data))
     _write_attributes(group, attributes)
     sizes = {dim: n for one in variables.values() for dim, n in one.sizes.items()}
@@ -131,9 +125,6 @@ def _read(file: BinaryIO) -> xr.DataTree:
 
     Files of :func:`write_tree` and of h5netcdf: every variable names its dimensions by number.
     """
-    import h5py
-    import xarray as xr
-
     with h5py.File(file, "r") as opened:
         groups: list[h5py.Group] = [opened]
         for group in groups:
@@ -148,9 +139,6 @@ def _read(file: BinaryIO) -> xr.DataTree:
 
 
 def _read_group(group: h5py.Group, dimensions: Mapping[int, str]) -> xr.Dataset:
-    import h5py
-    import xarray as xr
-
     variables, counts = {}, {}
     for name, one in group.items():
         if isinstance(one, h5py.Group) or bytes(one.attrs.get("NAME", b"")).startswith(

@@ -78,11 +78,6 @@ class PairSprings:
             direction=direction,
         )
 
-    @property
-    def pairs(self) -> int:
-        """Number of tooth pairs that may carry at once."""
-        return int(self.stiffness.shape[0])
-
     def at(self, phase: ArrayLike) -> tuple[Floats, Floats]:
         """k_j and S_j at ``phase`` (mesh periods, any shape): arrays (pair, phase...)."""
         psi = np.mod(self.offset + self.direction * np.asarray(phase, dtype=float), 1.0)

@@ -84,10 +84,3 @@ class Pieces:
         """
         rows = (tuple(m * c for m, c in enumerate(row))[1:] or (0.0,) for row in self.coefficients)
         return Pieces(starts=self.starts, coefficients=tuple(rows))
-
-    def scaled(self, factor: float) -> Pieces:
-        """The same function times ``factor``."""
-        return Pieces(
-            starts=self.starts,
-            coefficients=tuple(tuple(c * factor for c in row) for row in self.coefficients),
-        )

@@ -63,39 +63,43 @@ def keep_going() -> None:
 
 
 class Plan(Protocol):
-    """Work cut into chunks; ``kind`` names it.
-
-    ``sizes`` of the dimensions and ``cuts``, the chunk length along those that are cut; every
-    variable has all cut dimensions. ``needs`` names the chunk that must be there first.
-    """
+    """Work cut into chunks; every variable has all cut dimensions."""
 
     @property
-    def kind(self) -> str: ...
+    def kind(self) -> str:
+        """Its name."""
 
     @property
-    def sizes(self) -> dict[str, int]: ...
+    def sizes(self) -> dict[str, int]:
+        """Of the dimensions."""
 
     @property
-    def cuts(self) -> dict[str, int]: ...
+    def cuts(self) -> dict[str, int]:
+        """The chunk length along the dimensions that are cut."""
 
-    def inputs(self) -> dict[str, Any]: ...
+    def inputs(self) -> dict[str, Any]:
+        """What defines it, as plain numbers and texts."""
 
-    def variables(self) -> dict[str, Variable]: ...
+    def variables(self) -> dict[str, Variable]:
+        """What is stored."""
 
-    def coordinates(self) -> dict[str, Coordinate]: ...
+    def coordinates(self) -> dict[str, Coordinate]:
+        """The axes of what is stored."""
 
-    def needs(self, key: Key) -> Key | None: ...
+    def needs(self, key: Key) -> Key | None:
+        """The chunk that must be there first."""
 
-    def compute(self, key: Key, before: Arrays | None, alive: Alive) -> Arrays: ...
+    def compute(self, key: Key, before: Arrays | None, alive: Alive) -> Arrays:
+        """The arrays of a chunk; ``before``: those of the chunk it needs."""
 
-    def finish(self, data: xr.Dataset) -> xr.Dataset: ...
+    def finish(self, data: xr.Dataset) -> xr.Dataset:
+        """Add what follows from the whole."""
 
     def pilot(self, share: float, *, turn: int) -> float:
         """Do about a ``share`` of the work, spread over it, at least one point of it.
 
         Returns what share it was. Each ``turn`` 0, 1, 2, ... takes other points.
         """
-        ...
 
 
 def keys_of(plan: Plan) -> list[Key]:
@@ -163,14 +167,12 @@ def dataset_of(plan: Plan, arrays: Arrays) -> xr.Dataset:
 
 
 def bytes_of(plan: Plan) -> int:
-    """Bytes of the whole result, as whole Python integers."""
-    total = 0
-    for variable in plan.variables().values():
-        count = np.dtype(variable.dtype).itemsize
-        for name in variable.dims:
-            count *= int(plan.sizes[name])
-        total += count
-    return total
+    """Size of all variables, as a whole Python integer."""
+    sizes = plan.sizes
+    return sum(
+        np.dtype(one.dtype).itemsize * math.prod(int(sizes[name]) for name in one.dims)
+        for one in plan.variables().values()
+    )
 
 
 class Queue:

@@ -7,6 +7,7 @@ Lanes of one mass with clearance run in compiled blocks
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from typing import Protocol
@@ -48,63 +49,55 @@ class Crowd(Protocol):
     @property
     def bundle(self) -> Bundle:
         """The maps they are on."""
-        ...
 
     @property
     def state(self) -> Floats:
         """Where they are: (lane, d); nan where a state has left every bound."""
-        ...
 
     def run(self, periods: int) -> Floats:
         """Advance; the sections (period, d, lane)."""
-        ...
 
     def aim(self, direction: Floats | None = None) -> None:
         """Give every lane a tangent ``direction`` (lane, d), else one of the bundle's own."""
-        ...
 
     def stretch(self, periods: int) -> tuple[Floats, Floats]:
         """Advance with the tangents, made unit after every period.
 
         The sections (period, d, lane), and ln of how much each period stretched (period, lane).
         """
-        ...
 
     def take(self, index: Whole) -> Crowd:
         """Go on with some lanes only."""
-        ...
 
     def seat(self, seats: Whole, start: Floats) -> None:
         """Put new states ``start`` (seat, d) in the place of some."""
-        ...
 
 
 class Bundle(Protocol):
     """Return maps side by side: ``period`` (lane,) and ``unit`` (lane, d) as of each of them."""
 
-    def __len__(self) -> int: ...
+    def __len__(self) -> int:
+        """How many lanes."""
 
     @property
-    def period(self) -> Floats: ...
+    def period(self) -> Floats:
+        """Time of one return of every lane (lane,)."""
 
     @property
-    def unit(self) -> Floats: ...
+    def unit(self) -> Floats:
+        """Scales of every lane's states (lane, d)."""
 
     def determinant(self, periods: int) -> Floats:
         """det D P^n of every lane, nan where it is not known: (lane,)."""
-        ...
 
     def take(self, index: Whole) -> Bundle:
         """The maps of some lanes, in the order of ``index``; a lane may be taken many times."""
-        ...
 
     def crowd(self, start: Floats) -> Crowd:
         """States at ``start`` (lane, d), phase 0."""
-        ...
 
     def visit(self, start: Floats, periods: int) -> Visits:
         """Run ``periods`` periods from ``start`` (lane, d) with the variational equations."""
-        ...
 
 
 Prepared = tuple[Whole, Callable[[], Bundle]]
@@ -189,10 +182,8 @@ class InTurnCrowd:
         sections = np.full((periods, *self.state.T.shape), np.nan)
         for lane, one in enumerate(self.bundle.maps):
             if np.all(np.isfinite(self.state[lane])):
-                try:
+                with suppress(ConvergenceError):
                     sections[:, :, lane] = one.carry(self.state[lane], periods)
-                except ConvergenceError:
-                    sections[:, :, lane] = np.nan
         if periods:
             self.state = sections[-1].T.copy()
         return sections

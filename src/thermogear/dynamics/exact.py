@@ -98,13 +98,6 @@ class ExactMaps:
     order: int
 
     @property
-    def maps(self) -> Floats:
-        """Values and rates at the end of every sub-step (N, 10, lane)."""
-        count, groups = self.steps.shape[:2]
-        rows = self.steps[:, :, :10].transpose(0, 2, 1, 3).reshape(count, 10, 8 * groups)
-        return rows[:, :, : self.backlash.size]
-
-    @property
     def polys(self) -> Floats:
         """Coefficients of phi, psi, nu and of the free psi, nu (N, lane, 5, order + 1)."""
         width = self.order + 1

@@ -181,18 +181,15 @@ class GearedEquation:
         columns = [self.drive, self.back]
         if self.friction is not None:
             columns += [*self.friction]
-        for one in self.bearings:
-            columns += [*one.directions.T]
+        columns += [column for one in self.bearings for column in one.directions.T]
         columns += [one.vector for one in self.outer]
         return np.stack(columns, axis=1)
 
     @property
     def outputs(self) -> Floats:
         """What the contacts feel, (outputs, n): both flanks' deflections, (x, y) of bearings."""
-        rows = [self.drive, self.back]
-        for one in self.bearings:
-            rows += [*one.directions.T]
-        return np.stack(rows)
+        bearings = (row for one in self.bearings for row in one.directions.T)
+        return np.stack([self.drive, self.back, *bearings])
 
     def determinant(self, periods: int = 1) -> float:
         """det of the Jacobian of ``periods`` mesh periods: exp(T tr A), with any contacts."""

@@ -147,13 +147,14 @@ def _adaptive_lane(
     y = np.array(start[lane], dtype=float)
     total = run.discard + periods
     rate = adaptive.lane_rate(one)
+    gap = adaptive.Gap(lambda _, y: float(y[0]), lambda _, y: float(y[1]), backlash)
     result.sections[lane, :, 0] = y
     for turn in range(total):
         for _ in pace.chunks(1, lanes=1):
             kept = turn - run.discard
             sections, path, _crossings = adaptive.follow(
                 rate,
-                adaptive.Gap(_displacement, _velocity, backlash),
+                gap,
                 float(one.period[0]),
                 y,
                 periods=1,
@@ -169,14 +170,6 @@ def _adaptive_lane(
                 result.sections[lane, :, kept + 1] = y
             if kept >= 0 and samples:
                 result.samples[lane, :, kept * samples : (kept + 1) * samples] = path.T
-
-
-def _displacement(_t: float, y: Floats) -> float:
-    return float(y[0])
-
-
-def _velocity(_t: float, y: Floats) -> float:
-    return float(y[1])
 
 
 def simulate(

@@ -40,7 +40,6 @@ class ClearanceModel(Protocol):
 
     def lanes(self) -> Lanes:
         """Flat parameter arrays, one entry per lane."""
-        ...
 
 
 def _checked(owner: object, name: str, *, positive: bool = False, floor: bool = False) -> None:

@@ -56,33 +56,31 @@ class ReturnMap(Protocol):
     """
 
     @property
-    def dimension(self) -> int: ...
+    def dimension(self) -> int:
+        """Length d of a state."""
 
     @property
-    def period(self) -> float: ...
+    def period(self) -> float:
+        """Time of one return [model's unit of time]."""
 
     @property
-    def unit(self) -> Floats: ...
+    def unit(self) -> Floats:
+        """Scales of a state (d,)."""
 
     def determinant(self, periods: int) -> float:
         """det D P^n where every trajectory has the same, else nan."""
-        ...
 
     def distance(self, one: Floats, other: Floats) -> Floats:
         """Largest component of the difference in units of ``unit``, over leading axes."""
-        ...
 
     def carry(self, start: Floats, periods: int) -> Floats:
         """The states (periods, d) after 1, 2, ... periods from ``start``, nothing else."""
-        ...
 
     def stretch(self, start: Floats, *, direction: Floats, periods: int) -> Stretch:
         """Carry ``start`` and a tangent vector ``direction``, made unit after every period."""
-        ...
 
     def visit(self, start: Floats, periods: int = 1, *, sampled: bool = False) -> Visit:
         """Run ``periods`` periods from ``start`` with the variational equations."""
-        ...
 
 
 @runtime_checkable
@@ -94,15 +92,12 @@ class MovedMap(ReturnMap, Protocol):
 
     def flow(self, start: Floats, halves: int) -> tuple[Floats, Floats]:
         """State (d,) and Jacobian (d, d) ``halves`` half periods later."""
-        ...
 
     def rates(self, around: Sequence[tuple[float, object]]) -> object:
         """How the maps change at the rate sum(weight * model) over ``around``."""
-        ...
 
     def moved(self, start: Floats, halves: int, rates: Any) -> tuple[Floats, float]:
         """How the end (d,) moves with the parameter, and the margin [units] of the contacts."""
-        ...
 
 
 _KNOWN: dict[str, set[type]] = {"visit": set(), "moved": set()}

@@ -54,11 +54,8 @@ class LaneTables:
 
     def jumps(self, lane: int) -> tuple[float, ...]:
         """Phases in (0, 1) where a table of this lane may jump."""
-        found: set[float] = set()
-        for piece in (self.stiffness_pieces[lane], self.force_pieces[lane]):
-            if piece is not None:
-                found.update(piece.starts[1:])
-        return tuple(sorted(found))
+        pieces = (self.stiffness_pieces[lane], self.force_pieces[lane])
+        return tuple(sorted({s for one in pieces if one is not None for s in one.starts[1:]}))
 
     def values(self, name: str, phase: ArrayLike) -> Floats:
         """Stiffness or force of every lane at ``phase``: shape (phase..., lane)."""

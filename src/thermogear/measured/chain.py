@@ -95,13 +95,11 @@ class Turning:
 class Reduced:
     """One channel through the chain: what lines are read from.
 
-    ``displacement`` is None where the record is no acceleration or no rate is known. ``axis`` is
-    the frequency [Hz or cycles/sample] of one unit of the spectra's own frequency.
+    ``displacement_spectrum`` is None where the record is no acceleration or no rate is known.
+    ``axis`` is the frequency [Hz or cycles/sample] of one unit of the spectra's own frequency.
     """
 
     rate: float
-    acceleration: Floats
-    displacement: Floats | None
     chain: Chain
     spectrum: LineSpectrum
     displacement_spectrum: LineSpectrum | None
@@ -120,7 +118,7 @@ class Reduced:
             window=self.chain.window,
         )
         frequency = line.frequency * self.axis
-        real = replace(line, frequency=frequency, frequency_error=line.frequency_error * self.axis)
+        real = replace(line, frequency=frequency)
         if self.chain.method == "line":
             return real, line.amplitude / (2.0 * np.pi * frequency) ** 2
         if self.displacement_spectrum is None:
@@ -164,8 +162,6 @@ def reduced(
         own, axis = float(turning.per_cycle), turning.mean * rate
     return Reduced(
         rate=rate,
-        acceleration=centred,
-        displacement=displacement,
         chain=chain,
         spectrum=line_spectrum(centred, own),
         displacement_spectrum=None if displacement is None else line_spectrum(displacement, own),

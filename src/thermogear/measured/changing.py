@@ -18,7 +18,7 @@ from thermogear.measured.lines import MeasuredLine, Wanted, jittered, wanted_lin
 from thermogear.measured.order_angle import MESHES, OrderAngle, order_angle
 from thermogear.measured.quantities import quantities
 from thermogear.measured.record import Notice, Record
-from thermogear.measured.resonances import Resonance, resonances_of
+from thermogear.measured.resonances import OrderMap, OrderSlices, resonances_of
 from thermogear.measured.shaft import VARIES, Shaft, given_shaft, locked, tracked_shaft
 from thermogear.measured.turns import MeshTurns
 from thermogear.measured.units import kind_of
@@ -30,19 +30,6 @@ from thermogear.signals.tracking import samples_per_turn
 
 _TURNS = 12  # of one row's window
 _ROWS, _COLUMNS = 160, 480
-
-
-@dataclass(frozen=True, kw_only=True)
-class OrderMap:
-    """``amplitude`` (row, order), peak in the file's unit, of the first channel, Hann window over
-    ``turns``; of each run of orders the highest. ``order`` of the first shaft (of the mesh line
-    where no shaft is known), ``speed`` (row) [rad/s], ``time`` (row) [s] in the stretch."""
-
-    order: Floats
-    speed: Floats
-    time: Floats
-    amplitude: Floats
-    turns: int
 
 
 def order_map(
@@ -95,36 +82,6 @@ def order_map(
 _NORMAL = 1.959964
 _NEIGHBOUR = 0.35  # orders: nearer than this a line beside is the line itself, changing
 _HIGHEST = 1.0 / 2.56
-
-
-@dataclass(frozen=True, kw_only=True)
-class OrderSlices:
-    """Amplitudes of orders over speed, of a run whose speed changes.
-
-    ``channels``, ``names`` of the lines and their ``orders`` of the first shaft (of the mesh line
-    where ``of_mesh``); over steps ``time`` [s], ``speed`` [rad/s] of what ``orders`` count and
-    ``acceleration`` [rad/s^2] of it, ``frequency`` (order, step) [Hz]; ``reading`` (channel,
-    order, step) peak amplitude in the file's unit, ``half_width`` of its 95 % interval, ``phase``
-    [rad] against the angle, ``block`` the turns it is read over. ``si``: SI units in one of a
-    channel's, nan where unknown; ``kinds`` of quantity, "" where unknown.
-    """
-
-    channels: tuple[str, ...]
-    names: tuple[str, ...]
-    orders: Floats
-    of_mesh: bool
-    time: Floats
-    speed: Floats
-    acceleration: Floats
-    frequency: Floats
-    reading: Floats
-    half_width: Floats
-    phase: Floats
-    block: Floats
-    si: Floats
-    kinds: tuple[str, ...]
-    map: OrderMap
-    resonances: tuple[Resonance, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)

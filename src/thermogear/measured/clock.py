@@ -48,10 +48,12 @@ def is_stamp_name(name: str) -> bool:
 
 def comment_column(table: Sequence[Sequence[str]]) -> tuple[int, int] | None:
     """(line, column) of a heading "Comment" that ends a line of names: LabVIEW's LVM has it."""
-    for number, cells in enumerate(table):
-        if len(cells) > 1 and cells[-1].strip().lower() == "comment":
-            return number, len(cells) - 1
-    return None
+    places = (
+        (number, len(cells) - 1)
+        for number, cells in enumerate(table)
+        if len(cells) > 1 and cells[-1].strip().lower() == "comment"
+    )
+    return next(places, None)
 
 
 def labelled(above: Sequence[str], separator: str | None = "\t") -> list[str]:

@@ -8,11 +8,11 @@ import numpy as np
 
 from thermogear.base.arrays import Floats
 from thermogear.base.vocabulary import label
-from thermogear.measured.changing import OrderSlices
 from thermogear.measured.figures import evidence, figures
 from thermogear.measured.lines import MeasuredLine
 from thermogear.measured.quantities import quantities
 from thermogear.measured.reduction import Measurement
+from thermogear.measured.resonances import OrderSlices
 from thermogear.results.result import Result, now
 from thermogear.signals.spectra import amplitude_spectrum
 

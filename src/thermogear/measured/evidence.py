@@ -11,7 +11,9 @@ common, so that their odds count as they are.
 
 from __future__ import annotations
 
+from collections.abc import Hashable, Iterable
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 from scipy import special
@@ -45,6 +47,9 @@ class Gear:
         return f"{self.teeth} teeth on mesh line {self.mesh:.6f} cycles/sample"
 
 
+_Weighed = TypeVar("_Weighed", Gear, Hypothesis)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Named:
     """A mesh line [cycles/sample] and the teeth decided on it, each with its weight."""
@@ -75,7 +80,7 @@ class Evidence:
         """Mesh line [cycles/sample] of the gears named, else of the heaviest; nan: none."""
         if self.named or self.gears:
             return self.named[0].mesh if self.named else self.gears[0].mesh
-        return next((one.mesh for one in self.hypotheses if one.gears), float("nan"))
+        return next((one.gears[0].mesh for one in self.hypotheses if one.gears), float("nan"))
 
     @property
     def teeth(self) -> tuple[int, ...]:
@@ -124,25 +129,18 @@ class Evidence:
     def gears(self) -> tuple[Gear, ...]:
         """Every gear with the weight of all hypotheses that have it, the heaviest first; two gears
         can both be there, so that these weights add up to more than one."""
-        found: dict[tuple[int, int], Gear] = {}
-        for one in self.hypotheses:
-            for mesh, z in dict.fromkeys((g.mesh, z) for g in one.gears for z in g.teeth):
-                key = round(np.log(mesh) / _ALIKE), z
-                before = found.get(key, Gear(mesh=mesh, teeth=z, weight=0.0))
-                found[key] = replace(before, weight=before.weight + one.weight)
-        heavy = sorted(found.values(), key=lambda gear: -gear.weight)
-        return tuple(gear for gear in heavy[:_MOST_TOLD] if gear.weight >= _TOLD)
+        found = [
+            ((round(np.log(mesh) / _ALIKE), z), Gear(mesh=mesh, teeth=z, weight=one.weight))
+            for one in self.hypotheses
+            for mesh, z in dict.fromkeys((g.mesh, z) for g in one.gears for z in g.teeth)
+        ]
+        return tuple(gear for gear in _together(found)[:_MOST_TOLD] if gear.weight >= _TOLD)
 
     @property
     def told(self) -> tuple[Hypothesis, ...]:
         """The readings that carry any weight, of which one at most is true, best first: of the
         hypotheses of one reading (the same gears, or none) the best, with the weight of all."""
-        found: dict[str, Hypothesis] = {}
-        for one in self.hypotheses:
-            key = one.words if one.gears else one.kind
-            best = found.get(key, replace(one, weight=0.0))
-            found[key] = replace(best, weight=best.weight + one.weight)
-        heavy = sorted(found.values(), key=lambda one: -one.weight)
+        heavy = _together((one.words if one.gears else one.kind, one) for one in self.hypotheses)
         return tuple(one for one in heavy[:_MOST_TOLD] if one.weight >= _TOLD)
 
     @property
@@ -249,14 +247,22 @@ def _or_free(
 def _untold(weighed: list[Hypothesis]) -> tuple[Hypothesis, ...]:
     """The hypotheses where no tooth number has a tenth of the weight: numbers that the lines do not
     tell are put together as teeth that are not seen, any number."""
-    found: dict[tuple[str, tuple[int, ...]], Hypothesis] = {}
+    found: list[tuple[Hashable, Hypothesis]] = []
     for one in weighed:
         gears = tuple(replace(own, teeth=(), sides=(), free=()) for own in one.gears)
         places = tuple(round(np.log(own.mesh) / _ALIKE) for own in gears)
-        key = "" if gears else one.words, places
-        best = found.get(key, replace(one, gears=gears, weight=0.0))
-        found[key] = replace(best, weight=best.weight + one.weight)
-    return tuple(sorted(found.values(), key=lambda one: -one.weight))
+        found.append((("" if gears else one.words, places), replace(one, gears=gears)))
+    return tuple(_together(found))
+
+
+def _together(parts: Iterable[tuple[Hashable, _Weighed]]) -> list[_Weighed]:
+    """Of the parts with one key the first, with the weight of all, the heaviest first."""
+    found: dict[Hashable, _Weighed] = {}
+    for key, one in parts:
+        before = found.get(key)
+        more = one.weight if before is None else before.weight + one.weight
+        found[key] = replace(before or one, weight=more)
+    return sorted(found.values(), key=lambda one: -one.weight)
 
 
 def _on(one: Hypothesis, mesh: float) -> bool:

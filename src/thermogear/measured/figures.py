@@ -9,11 +9,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from thermogear.measured.changing import OrderSlices
 from thermogear.measured.gearing import Gearing
 from thermogear.measured.lines import MeasuredLine
 from thermogear.measured.record import Record
 from thermogear.measured.reduction import Measurement
+from thermogear.measured.resonances import OrderSlices
 from thermogear.signals.slices import greatest
 
 _PLAIN = (

@@ -109,8 +109,6 @@ def passed(channels: Sequence[Channel], longest: int) -> Passed:
     Up to FILLED of a channel's samples (missing, sentinels, zeros, held, spikes, clipped)
     are filled in by the channel's own strong lines. More missing: the longest whole stretch of all
     channels. More clipped or held: amplitudes are withheld. Copies are left out.
-
-    Raises InputError where fewer than 256 samples are left.
     """
     count = len(channels[0])
     table = np.stack([c.values(0, stop=min(count, longest)) for c in channels])
@@ -129,11 +127,6 @@ def passed(channels: Sequence[Channel], longest: int) -> Passed:
         whole.repair((first, stop) if cut else None)
     if cut:
         through.cut(first, stop=stop)
-    if through.table.shape[-1] < _SHORTEST:
-        size = through.table.shape[-1]
-        fix = "record it anew, or name the channels that are whole by --channel"
-        got = f"{size} samples without a gap"
-        raise InputError("record", got, allowed=f">= {_SHORTEST}", fix=fix)
     _proportions(through)
     return through
 
@@ -229,28 +222,23 @@ class _Channel:
         self.through.table[self.place] = values
         if withhold:
             self.through.withheld[self.channel.name] = withhold
-            self.more(total)
+            self.add(self.through.extra, total)
 
     def coarse(self, one: Damage) -> None:
         """Coarse levels widen intervals, up to COARSE; above, amplitudes are withheld."""
         own = one.value or 0.0
-        self.more_of_strongest(own)
-        self.more(own)
+        self.add(self.through.clipped, own)
+        self.add(self.through.extra, own)
         if own > COARSE:
             self.through.withheld.setdefault(self.channel.name, "coarse levels")
             self.through.findings.append(Notice.of("levels_too_coarse", **self.where(one)))
         else:
             self.through.findings.append(Notice.of("levels_coarse", adds=own, **self.where(one)))
 
-    def more(self, own: float) -> None:
-        """Add to the relative half width of the channel's amplitudes."""
-        extra = self.through.extra
-        extra[self.channel.name] = extra.get(self.channel.name, 0.0) + own
-
-    def more_of_strongest(self, own: float) -> None:
-        """Count a part of it in the channel's strongest line."""
-        clipped = self.through.clipped
-        clipped[self.channel.name] = clipped.get(self.channel.name, 0.0) + own
+    def add(self, shares: dict[str, float], own: float) -> None:
+        """Add to the relative half width of the channel's amplitudes (``extra``), or to the part of
+        it that counts in its strongest line (``clipped``)."""
+        shares[self.channel.name] = shares.get(self.channel.name, 0.0) + own
 
     def filled_in(self, kept: Sequence[tuple[Damage, int]], size: int, explained: float) -> None:
         """What filled samples may do: the share that the channel's lines do not explain, and how
@@ -266,7 +254,7 @@ class _Channel:
             extra += own
             clipped = one.kind == "clipping"
             if clipped:
-                self.more_of_strongest(own)
+                self.add(self.through.clipped, own)
             self.through.findings.append(
                 Notice.of(
                     "clipping_filled_in" if clipped else "damage_filled_in",
@@ -275,7 +263,7 @@ class _Channel:
                     **self.where(one),
                 )
             )
-        self.more(extra)
+        self.add(self.through.extra, extra)
 
     def where(self, one: Damage) -> dict[str, Any]:
         """Which damage of which samples of the channel."""

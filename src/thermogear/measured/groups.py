@@ -109,10 +109,6 @@ class _Looked:
 
     @classmethod
     def at(cls, peaks: Peaks, used: Flags, position: Floats, error: Floats | float) -> _Looked:
-        shape = position.shape
-        if peaks.size == 0:
-            none = np.zeros(shape)
-            return cls(there=none, missing=none, height=none, gain=none, lines=np.full(shape, -1))
         index, off = peaks.nearest(position)
         close = np.hypot(peaks.error[index], error) / peaks.bin_width
         deviation = np.hypot(close, _ASTRAY)

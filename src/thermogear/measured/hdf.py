@@ -6,8 +6,7 @@ import math
 from pathlib import Path
 from typing import Any
 
-from thermogear.base.errors import InputError
-from thermogear.measured.options import ReadOptions, refused, too_large
+from thermogear.measured.options import ReadOptions, refused, refusing, too_large
 from thermogear.measured.record import Record
 from thermogear.measured.tables import MOST_CHANNELS, Named, record_of
 
@@ -40,11 +39,10 @@ def read_hdf(path: Path, options: ReadOptions) -> Record:
             return
         if item.dtype.kind not in "iuf" or item.dtype.names or len(arrays) >= _MOST_SETS:
             return
-        if item.external or item.is_virtual:  # data of other files are not fetched
+        # data of other files are not fetched
+        if item.external or item.is_virtual or "MATLAB_empty" in item.attrs:
             return
         data: Any = item
-        if "MATLAB_empty" in item.attrs:
-            return
         shape = tuple(int(n) for n in item.shape or ())
         size, chunk = _size(item, shape)
         # what stands in the file byte by byte cannot be a mere claim
@@ -52,21 +50,16 @@ def read_hdf(path: Path, options: ReadOptions) -> Record:
         if claimed > options.limit:
             raise too_large(path, becomes=claimed, limit=options.limit)
         table = len(shape) == 2 and 1 < min(shape) <= MOST_CHANNELS
-        if size <= _WHOLE and (table or chunk > _CHUNK):
-            data = item[()]  # a column of a chunked table would read all of it each time
-        elif math.prod(shape) == 1:
+        # a column of a chunked table would read all of it each time
+        if math.prod(shape) == 1 or (size <= _WHOLE and (table or chunk > _CHUNK)):
             data = item[()]
         arrays.append(Named(name, data, shape, dict(item.attrs)))
 
-    try:
+    with refusing(path, "HDF5", OSError, RuntimeError, KeyError, ValueError, TypeError):
         file = h5py.File(path, "r", locking=False)
         common = dict(file.attrs)
         file.visititems(visit)
         return record_of(path, "HDF5", arrays, options, common)
-    except InputError:
-        raise
-    except (OSError, RuntimeError, KeyError, ValueError, TypeError) as error:
-        raise refused(path, "HDF5", error) from error
 
 
 def _size(item: Any, shape: tuple[int, ...]) -> tuple[int, int]:

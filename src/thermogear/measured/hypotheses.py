@@ -75,16 +75,6 @@ class Hypothesis:
         return "gear" if self.gears else "no gear"
 
     @property
-    def mesh(self) -> float:
-        """The first mesh line [cycles/sample]; nan: none."""
-        return self.gears[0].mesh if self.gears else float("nan")
-
-    @property
-    def teeth(self) -> tuple[int, ...]:
-        """Teeth on the first mesh line."""
-        return self.gears[0].teeth if self.gears else ()
-
-    @property
     def words(self) -> str:
         """In words."""
         if self.gears:

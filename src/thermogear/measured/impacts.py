@@ -247,8 +247,6 @@ def _distance(peaks: Peaks, used: Flags, centre: Floats, start: float) -> tuple[
         own, _ = peaks.nearest(centre[near])
         weights.append(1.0 / (peaks.error[index[near]] ** 2 + peaks.error[own] ** 2))
     value, weight = np.concatenate(values), np.concatenate(weights)
-    if value.size == 0:
-        return start, _NEAR * peaks.bin_width
     middle = float(np.average(value, weights=weight))
     misfit = float(np.sum(weight * (value - middle) ** 2)) / max(1, value.size - 1)
     return middle, float(np.sqrt(max(1.0, misfit) / np.sum(weight)))

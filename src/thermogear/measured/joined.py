@@ -13,6 +13,7 @@ from thermogear.base.errors import InputError, nearest
 from thermogear.measured.options import place_of
 from thermogear.measured.parts import Joined, Part
 from thermogear.measured.record import Channel, Notice, Record, Samples
+from thermogear.measured.traps import same_samples
 from thermogear.measured.units import counts_turns
 
 JOINS = ("channels", "time")
@@ -167,7 +168,8 @@ def _pieces(records: Sequence[Record], files: Sequence[str], rate: float | None)
     for place, (file, one) in enumerate(zip(files, records, strict=True)):
         _require_alike(first, one, files[0], file)
         for other, before in zip(files[:place], records[:place], strict=True):
-            if _same(before, one, first.names):
+            alike = (same_samples(before.channel(name), one.channel(name)) for name in first.names)
+            if before.samples == one.samples and all(alike):
                 why = f"it holds the same samples as {other}"
                 raise InputError("file", file, why=why, fix="name every piece once")
     gaps, notes = _gaps(records, files, rate)
@@ -204,16 +206,6 @@ def _require_alike(first: Record, one: Record, leading: str, file: str) -> None:
                 f"{c.unit or 'no known unit'}",
                 fix="leave it out, or give --unit for all",
             )
-
-
-def _same(one: Record, other: Record, names: Sequence[str]) -> bool:
-    if one.samples != other.samples:
-        return False
-    return all(
-        np.array_equal(a, b, equal_nan=True)
-        for name in names
-        for a, b in zip(one.channel(name).blocks(), other.channel(name).blocks(), strict=True)
-    )
 
 
 def _gaps(

@@ -97,8 +97,14 @@ class Doubts:
         """The line without what is withheld."""
         nan = float("nan")
         if self.withheld:
-            line = replace(line, reading=nan, acceleration=nan, displacement=nan, uncertainty=nan)
-            line = replace(line, half_width=nan)
+            line = replace(
+                line,
+                reading=nan,
+                acceleration=nan,
+                displacement=nan,
+                uncertainty=nan,
+                half_width=nan,
+            )
         if self.rate:
             line = replace(line, frequency=nan, frequency_half_width=nan, displacement=nan)
         if self.rate or self.speed:

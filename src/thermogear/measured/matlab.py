@@ -17,8 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from thermogear.base.errors import InputError
-from thermogear.measured.options import ReadOptions, refused, too_large
+from thermogear.measured.options import ReadOptions, refused, refusing, too_large
 from thermogear.measured.record import Record
 from thermogear.measured.tables import Named, record_of
 from thermogear.measured.traps import is_time_name
@@ -83,16 +82,16 @@ class _Buffer:
 def read_mat(path: Path, options: ReadOptions) -> Record:
     """A record from a MAT file of version 5 to 7 (7.3 is HDF5 and read as such)."""
     with path.open("rb") as file:
-        if path.stat().st_size < 136:
-            raise refused(path, "MAT", "no version 5 header (save it with -v7 or -v7.3)")
+        whole = path.stat().st_size >= 136
         # numbers that are not packed stay in the file
-        raw = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
-    if len(raw) < 136 or raw[126:128] not in (b"IM", b"MI"):
+        raw = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) if whole else b""
+    if raw[126:128] not in (b"IM", b"MI"):
         raise refused(path, "MAT", "no version 5 header (save it with -v7 or -v7.3)")
     order = "<" if raw[126:128] == b"IM" else ">"
     arrays: list[Named] = []
     left = options.limit
-    try:
+    damages = _Malformed, zlib.error, struct.error, ValueError, OverflowError
+    with refusing(path, "MAT", *damages):
         for kind, body in _Buffer(memoryview(raw)[128:], order).elements():
             if kind == _COMPRESSED:
                 packed, left = _unpacked(body, order, left, path, options)
@@ -101,10 +100,6 @@ def read_mat(path: Path, options: ReadOptions) -> Record:
                         arrays += _matrix(content, order, "", 0)
             elif kind == _MATRIX:
                 arrays += _matrix(body, order, "", 0)
-    except InputError:
-        raise
-    except (_Malformed, zlib.error, struct.error, ValueError, OverflowError) as error:
-        raise refused(path, "MAT", error) from error
     return record_of(path, "MAT", arrays, options, {})
 
 

@@ -233,13 +233,12 @@ def whole(
     (a choice, checked on drawn records). With lines that tell the ratio r to +-s the odds of the
     gear are 10/(s sqrt(2 pi)) exp(-(r - teeth)^2/(2 s^2)).
     """
-    others = [replace(one, teeth=tuple(z for z in one.teeth if z != teeth)) for one in gears[:1]]
-    draft: Draft | None = None
-    for one in (*others, *gears[1:]):
+    first, *further = gears
+    others = tuple(z for z in first.teeth if z != teeth)
+    draft = mesh_of(peaks, first.mesh, others, Stated())
+    for one in further:
         draft = mesh_of(peaks, one.mesh, one.teeth, Stated(), draft)
-    if draft is None:
-        raise ValueError("no mesh")
-    carriers = _carriers(peaks, gears[0].mesh, bytes(peaks.size))
+    carriers = _carriers(peaks, first.mesh, bytes(peaks.size))
     mesh = carriers.mesh
     distance = mesh / teeth + peaks.bin_width * _OFF
     ratio = mesh / distance

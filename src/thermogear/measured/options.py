@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -62,11 +63,26 @@ def place_of(key: str, count: int) -> int | None:
     return int(key) - 1 if 1 <= int(key) <= count else None
 
 
-def no_channel(key: str, names: Sequence[str], field: str = "channel") -> InputError:
+def places_of(keys: Iterable[str], names: Sequence[str]) -> list[int]:
+    """The places, from 0, of the channels that ``keys`` mean: their names, or numbers from 1.
+
+    >>> places_of(["b", "1"], ["a", "b"])
+    [1, 0]
+    """
+    found = []
+    for key in keys:
+        place = names.index(key) if key in names else place_of(key, len(names))
+        if place is None:
+            raise _no_channel(key, names)
+        found.append(place)
+    return found
+
+
+def _no_channel(key: str, names: Sequence[str]) -> InputError:
     """The refusal of a channel ``key`` that none of ``names`` is, with the nearest of them."""
     shown = ", ".join(sorted(names)[:_NAMED]) + (", ..." if len(names) > _NAMED else "")
     return InputError(
-        field,
+        "channel",
         repr(key[:_NAMED_LETTERS]),
         allowed=f"1..{len(names)} or a name",
         why=f"known: {shown}",
@@ -85,6 +101,17 @@ def refused(path: Path, as_what: str, reason: object, fix: str | None = None) ->
     text = " ".join(str(reason).split())[:200] or type(reason).__name__
     why = f"cannot be read as {as_what}: {text}"
     return InputError("file", path.name, why=why, fix=fix)
+
+
+@contextmanager
+def refusing(path: Path, as_what: str, *errors: type[Exception]) -> Iterator[None]:
+    """What is ``refused`` where reading a damaged file fails by one of these ``errors``."""
+    try:
+        yield
+    except InputError:
+        raise
+    except errors as error:
+        raise refused(path, as_what, error) from error
 
 
 def too_large(path: Path, *, becomes: int, limit: int) -> InputError:

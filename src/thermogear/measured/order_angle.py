@@ -63,10 +63,9 @@ def order_angle(
     told_as = per_turn * mean
     at, stated = None if near is None else near / per_turn, Stated(teeth=teeth)
     gearing = _found(straight, at, stated, shaft.width, told_as)
-    mesh = None if gearing is None else gearing.mesh_frequency * per_turn
     if near is not None and gearing is None:
         gearing = _found(straight, None, stated, 0.0, told_as)
-        mesh = None if gearing is None else gearing.mesh_frequency * per_turn
+    mesh = None if gearing is None else gearing.mesh_frequency * per_turn
     if mesh is None and teeth and not shaft.line:
         mesh = float(teeth)
     z = _teeth_of(shaft, gearing, mesh, teeth, (speed, rate), told_as, notices)

@@ -13,8 +13,7 @@ from typing import IO
 import numpy as np
 from numpy.lib import format as npy
 
-from thermogear.base.errors import InputError
-from thermogear.measured.options import ReadOptions, refused, too_large
+from thermogear.measured.options import ReadOptions, refused, refusing, too_large
 from thermogear.measured.record import Record
 from thermogear.measured.tables import Named, record_of
 
@@ -23,36 +22,31 @@ _MOST_MEMBERS = 4096
 
 def read_npz(path: Path, options: ReadOptions) -> Record:
     """A record from an NPZ file; stored (not compressed) members would still be copied once."""
-    try:
-        with zipfile.ZipFile(path) as file:
-            members = [m for m in file.infolist() if m.filename.endswith(".npy")]
-            if len(members) > _MOST_MEMBERS:
-                raise refused(path, "NPZ", f"it holds {len(members)} arrays")
-            total = sum(m.file_size for m in members)
-            if total > options.limit:
-                raise too_large(path, becomes=total, limit=options.limit)
-            arrays = []
-            for member in members:
-                if member.flag_bits & 0x1:
-                    raise refused(path, "NPZ", f"{member.filename} is encrypted")
-                with file.open(member) as stream:
-                    array = _array(stream, member.file_size, path)
-                if array is not None:
-                    name = member.filename.removesuffix(".npy")
-                    arrays.append(Named(name, array, array.shape))
-    except (zipfile.BadZipFile, zlib.error, OSError, EOFError) as error:
-        raise refused(path, "NPZ", error) from error
-    except InputError:
-        raise
     # zipfile raises a RuntimeError for encrypted members and for compressions it does not know
-    except (ValueError, KeyError, RuntimeError) as error:
-        raise refused(path, "NPZ", error) from error
+    damages = zipfile.BadZipFile, zlib.error, OSError, EOFError, ValueError, KeyError, RuntimeError
+    with refusing(path, "NPZ", *damages), zipfile.ZipFile(path) as file:
+        members = [m for m in file.infolist() if m.filename.endswith(".npy")]
+        if len(members) > _MOST_MEMBERS:
+            raise refused(path, "NPZ", f"it holds {len(members)} arrays")
+        total = sum(m.file_size for m in members)
+        if total > options.limit:
+            raise too_large(path, becomes=total, limit=options.limit)
+        arrays = []
+        for member in members:
+            if member.flag_bits & 0x1:
+                raise refused(path, "NPZ", f"{member.filename} is encrypted")
+            with file.open(member) as stream:
+                array = _array(stream, member.file_size, path)
+            if array is not None:
+                name = member.filename.removesuffix(".npy")
+                arrays.append(Named(name, array, array.shape))
     return record_of(path, "NPZ", arrays, options, {})
 
 
 def read_npy(path: Path, options: ReadOptions) -> Record:
     """A record from one NPY file, kept on disk as a memory map."""
-    try:
+    damages = OSError, ValueError, EOFError, OverflowError, SyntaxError, TypeError
+    with refusing(path, "NPY", *damages):
         with path.open("rb") as stream:
             shape, fortran, dtype = _header(stream, path)
             offset = stream.tell()
@@ -61,27 +55,21 @@ def read_npy(path: Path, options: ReadOptions) -> Record:
         data = np.memmap(
             path, dtype, "r", offset=offset, shape=shape, order="F" if fortran else "C"
         )
-    except InputError:
-        raise
-    except (OSError, ValueError, EOFError, OverflowError, SyntaxError, TypeError) as error:
-        raise refused(path, "NPY", error) from error
     return record_of(path, "NPY", [Named(path.stem, data, shape)], options, {})
 
 
 def _header(stream: IO[bytes], path: Path) -> tuple[tuple[int, ...], bool, np.dtype[np.generic]]:
-    try:
+    damages = TokenError, SyntaxError, TypeError, EOFError, OverflowError
+    with refusing(path, "NPY", *damages), warnings.catch_warnings():
+        # numpy's remark on headers of Python 2 is not for the user
+        warnings.simplefilter("ignore", UserWarning)
         version = npy.read_magic(stream)
-        with warnings.catch_warnings():
-            # numpy's remark on headers of Python 2 is not for the user
-            warnings.simplefilter("ignore", UserWarning)
-            if version == (1, 0):
-                shape, fortran, dtype = npy.read_array_header_1_0(stream)
-            elif version == (2, 0):
-                shape, fortran, dtype = npy.read_array_header_2_0(stream)
-            else:
-                raise refused(path, "NPY", f"version {version}")
-    except (TokenError, SyntaxError, TypeError, EOFError, OverflowError) as error:
-        raise refused(path, "NPY", error) from error
+        if version == (1, 0):
+            shape, fortran, dtype = npy.read_array_header_1_0(stream)
+        elif version == (2, 0):
+            shape, fortran, dtype = npy.read_array_header_2_0(stream)
+        else:
+            raise refused(path, "NPY", f"version {version}")
     if any(n < 0 for n in shape):
         raise refused(path, "NPY", f"shape {shape}")
     return shape, fortran, dtype

@@ -60,8 +60,6 @@ class Peaks:
 
     def nearest(self, position: Floats) -> tuple[NDArray[np.int64], Floats]:
         """Index of the line nearest to each position, and how far it is off [bins]."""
-        if self.size == 0:
-            return np.zeros(position.shape, dtype=np.int64), np.full(position.shape, np.inf)
         after = np.searchsorted(self.place, position)
         after = np.minimum(np.maximum(after, 1), max(1, self.size - 1))
         before = after - 1
@@ -79,12 +77,6 @@ class Peaks:
         kept = (off > width * rank * line) | (off < _ITSELF * self.bin_width)
         parts = {name: getattr(self, name)[kept] for name in ("place", "error", "level", "density")}
         return replace(self, **parts)
-
-    def hidden(self, position: Floats) -> NDArray[np.bool_]:
-        """Whether a line at each position could not be told, beside a line or outside."""
-        _, off = self.nearest(position)
-        edge = (position < _LOBE * self.bin_width) | (position > 0.47)
-        return np.asarray((np.abs(off) < _LOBE) | edge)
 
 
 def peaks_of(channels: Floats, rate: float = 1.0, *, resolution: Floats | None = None) -> Peaks:

@@ -193,8 +193,7 @@ def read_lines(path: Path, teeth: int | None = None) -> LineTable:
     separator = next((c for c in ";\t," if c in rows[0]), None)
     names = [cell.lower().replace("[%]", "").strip() for cell in cells_of(rows[0], separator)]
     columns = {split_unit(name)[0]: (i, split_unit(name)[1]) for i, name in enumerate(names)}
-    kinds = {"speed": "speed", "frequency": "frequency", "displacement": "displacement"}
-    for name, kind in kinds.items():
+    for name in ("speed", "frequency", "displacement"):
         if name not in columns:
             raise InputError(
                 "table",
@@ -203,7 +202,7 @@ def read_lines(path: Path, teeth: int | None = None) -> LineTable:
                 fix="speed [rpm], frequency [Hz], displacement [um]",
             )
         said = columns[name][1]
-        if said is None or kind_of(said) != kind:
+        if said is None or kind_of(said) != name:
             raise InputError(f"table.{name}", said or "no unit", fix=f"state it: {name} [...]")
     lines = []
     for number, row in enumerate(rows[1:], start=2):

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from thermogear.base.bounds import FULL_SCALE, RATE
 from thermogear.base.errors import InputError, printable
 from thermogear.base.notice import Notice as Notice
-from thermogear.measured.options import no_channel, no_tacho, place_of
+from thermogear.measured.options import no_tacho, places_of
 from thermogear.measured.units import UNITS, factor_of, kind_of, known_unit
 
 OTHER = {"time", "speed", "torque", "temperature", "angle", "frequency"}
@@ -32,9 +32,11 @@ def _keep_printable(thing: object, *names: str) -> None:
 class Samples(Protocol):
     """What a channel needs of its store: an array in memory, a memory map, a stored data set."""
 
-    def __len__(self) -> int: ...
+    def __len__(self) -> int:
+        """How many samples."""
 
-    def __getitem__(self, key: slice, /) -> Any: ...
+    def __getitem__(self, key: slice, /) -> Any:
+        """Some of them."""
 
 
 @dataclass(frozen=True)
@@ -142,19 +144,10 @@ class Record:
         """Channel names in the file's order."""
         return tuple(c.name for c in self.channels)
 
-    @property
-    def duration(self) -> float | None:
-        """Length [s], None while the rate is unknown."""
-        return None if self.rate is None else self.samples / self.rate
-
     def channel(self, name: str | int) -> Channel:
         """A channel by name, or by its number counted from 1."""
-        if isinstance(name, str) and name in self.names:
-            return self.channels[self.names.index(name)]
-        place = place_of(str(name), len(self.channels))
-        if place is not None:
-            return self.channels[place]
-        raise no_channel(str(name), self.names)
+        (place,) = places_of([str(name)], self.names)
+        return self.channels[place]
 
     def vibrating(self) -> tuple[Channel, ...]:
         """The channels that are not the tacho, time, speed, torque or temperature; may be none."""
@@ -192,9 +185,7 @@ class Record:
     ) -> Record:
         """The record with what the file lacks. What the file states and the user contradicts is
         kept as the user says, with an important notice."""
-        record = self
-        if tacho is not None:
-            record = record._with_tacho(tacho)
+        record = self if tacho is None else self._with_tacho(tacho)
         if rate is not None:
             RATE.require("rate", rate)
             if self.rate is not None and abs(rate / self.rate - 1.0) > 1e-3 + self.rate_share:
@@ -209,8 +200,9 @@ class Record:
                 )
                 text = f"{rate:g}/s is given, the file says {self.rate:g}/s"
                 record = replace(record, rate_doubt=text)
-            record = replace(record, rate=float(rate), rate_origin="given")
-            record = replace(record, rate_half_width=0.0, rate_note="")
+            record = replace(
+                record, rate=float(rate), rate_origin="given", rate_half_width=0.0, rate_note=""
+            )
         if unit is not None or scale is not None:
             name = None if unit is None else known_unit(unit)
             if name is not None and kind_of(name) in OTHER:

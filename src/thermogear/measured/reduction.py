@@ -14,7 +14,6 @@ from thermogear.base.errors import InputError, short
 from thermogear.measured.chain import METHODS, Chain
 from thermogear.measured.changing import (
     Changing,
-    OrderSlices,
     harmonics_told,
     order_lines,
     read_in_angle,
@@ -41,6 +40,7 @@ from thermogear.measured.quantities import of_velocity
 from thermogear.measured.rate_check import check_rate
 from thermogear.measured.readers import read_record
 from thermogear.measured.record import Channel, Notice, Record
+from thermogear.measured.resonances import OrderSlices
 from thermogear.measured.stated import (
     expected_mesh,
     settled_teeth,

@@ -1,9 +1,9 @@
-"""Resonances in hertz told from orders: peaks of several orders at one frequency or speed."""
+"""Orders over the speed of a run, and resonances in hertz told from peaks of several orders at one
+frequency or speed."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 import numpy as np
 
@@ -13,23 +13,6 @@ _ABOVE = 1.4  # times the valleys beside it a peak must be
 _SAME = 0.03  # peaks nearer than this, relative, are of one frequency, or of one speed
 _VAGUE = 0.1  # of its frequency: a peak no surer than this is none
 _SHOULDER = 0.6  # of a peak: what is fitted
-
-
-class _Slices(Protocol):
-    @property
-    def channels(self) -> tuple[str, ...]: ...
-    @property
-    def names(self) -> tuple[str, ...]: ...
-    @property
-    def time(self) -> Floats: ...
-    @property
-    def speed(self) -> Floats: ...
-    @property
-    def frequency(self) -> Floats: ...
-    @property
-    def reading(self) -> Floats: ...
-    @property
-    def half_width(self) -> Floats: ...
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,6 +35,49 @@ class Resonance:
 
 
 @dataclass(frozen=True, kw_only=True)
+class OrderMap:
+    """``amplitude`` (row, order), peak in the file's unit, of the first channel, Hann window over
+    ``turns``; of each run of orders the highest. ``order`` of the first shaft (of the mesh line
+    where no shaft is known), ``speed`` (row) [rad/s], ``time`` (row) [s] in the stretch."""
+
+    order: Floats
+    speed: Floats
+    time: Floats
+    amplitude: Floats
+    turns: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class OrderSlices:
+    """Amplitudes of orders over speed, of a run whose speed changes.
+
+    ``channels``, ``names`` of the lines and their ``orders`` of the first shaft (of the mesh line
+    where ``of_mesh``); over steps ``time`` [s], ``speed`` [rad/s] of what ``orders`` count and
+    ``acceleration`` [rad/s^2] of it, ``frequency`` (order, step) [Hz]; ``reading`` (channel,
+    order, step) peak amplitude in the file's unit, ``half_width`` of its 95 % interval, ``phase``
+    [rad] against the angle, ``block`` the turns it is read over. ``si``: SI units in one of a
+    channel's, nan where unknown; ``kinds`` of quantity, "" where unknown.
+    """
+
+    channels: tuple[str, ...]
+    names: tuple[str, ...]
+    orders: Floats
+    of_mesh: bool
+    time: Floats
+    speed: Floats
+    acceleration: Floats
+    frequency: Floats
+    reading: Floats
+    half_width: Floats
+    phase: Floats
+    block: Floats
+    si: Floats
+    kinds: tuple[str, ...]
+    map: OrderMap
+    resonances: tuple[Resonance, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
 class _Peak:
     name: str
     frequency: float
@@ -61,7 +87,7 @@ class _Peak:
     height: float
 
 
-def resonances_of(slices: _Slices, rate_share: float = 0.0) -> tuple[Resonance, ...]:
+def resonances_of(slices: OrderSlices, rate_share: float = 0.0) -> tuple[Resonance, ...]:
     """Peaks of all orders and channels, sorted into resonances, speeds and single peaks.
 
     A peak is 1.4 times the valleys on both sides, intervals counted off. Around it, down

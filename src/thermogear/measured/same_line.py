@@ -88,9 +88,8 @@ def _others(gearing: Gearing) -> tuple[float, ...]:
     first = gearing.mesh_frequency / gearing.shafts[0].teeth if gearing.shafts else 0.0
     places = [mesh.order * first for mesh in gearing.meshes]
     places += [named.mesh for named in gearing.weighed.named]
-    for one in gearing.weighed.hypotheses:
-        if one.weight >= _WEIGHT:
-            places += [*(own.mesh for own in one.gears), *one.combs]
+    likely = [one for one in gearing.weighed.hypotheses if one.weight >= _WEIGHT]
+    places += [place for one in likely for place in (*(own.mesh for own in one.gears), *one.combs)]
     return tuple(place for place in dict.fromkeys(places) if place > 0.0)
 
 
@@ -135,17 +134,13 @@ def speed_ratio(own: Turns, base: Turns) -> tuple[float, dict[str, Any] | None]:
         if abs(ratio / by_tacho - 1.0) <= ALIKE:
             return by_tacho, None
         return float("nan"), {"by_tacho": by_tacho}
-    if _two_meshes(own.teeth, base.teeth):
+    both = len(own.teeth) > 1 and len(base.teeth) > 1
+    if both and not set(own.teeth) & set(base.teeth):  # both gears of two meshes
         return float("nan"), {"teeth": own.teeth, "base_teeth": base.teeth}
     known = own.is_stated() and base.is_stated()
     if abs(ratio - 1.0) <= ALIKE or known or _by_teeth(own, base, scale):
         return ratio, None
     return float("nan"), {}
-
-
-def _two_meshes(own: tuple[int, ...], base: tuple[int, ...]) -> bool:
-    """Whether the teeth decided are of two meshes: both gears of each, and none in common."""
-    return len(own) > 1 and len(base) > 1 and not set(own) & set(base)
 
 
 def _by_teeth(own: Turns, base: Turns, scale: float) -> bool:

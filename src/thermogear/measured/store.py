@@ -23,26 +23,16 @@ class FileTable:
     """Frames of ``columns`` numbers each, in a file, one after another from ``offset`` on.
 
     Read by plain reads and not mapped: memory holds the slice asked for and nothing else,
-    however much of the file has been gone through.
+    however much of the file has been gone through. The file stays open as long as the table lives.
     """
 
     def __init__(
-        self, file: IO[bytes], dtype: DTypeLike, *, offset: int, frames: int, columns: int = 1
+        self, path: Path, dtype: DTypeLike, *, offset: int, frames: int, columns: int
     ) -> None:
-        self._file, self._dtype, self._offset = file, np.dtype(dtype), offset
+        self._file, self._dtype, self._offset = path.open("rb"), np.dtype(dtype), offset
         self.shape = (frames, columns)
         # not __del__: among garbage in a ring the file itself may be found open first
-        weakref.finalize(self, file.close)
-
-    @classmethod
-    def of(
-        cls, path: Path, dtype: DTypeLike, *, offset: int, frames: int, columns: int = 1
-    ) -> FileTable:
-        """The table in a file that stays open as long as the table lives."""
-        return cls(path.open("rb"), dtype, offset=offset, frames=frames, columns=columns)
-
-    def __len__(self) -> int:
-        return self.shape[0]
+        weakref.finalize(self, self._file.close)
 
     def frames(self, key: slice) -> NDArray[Any]:
         """The frames of a slice of step 1, shape (frames, columns)."""
@@ -54,11 +44,8 @@ class FileTable:
         whole = len(data) // size // self.shape[1]
         return np.frombuffer(data, self._dtype, whole * self.shape[1]).reshape(whole, -1)
 
-    def __getitem__(self, key: Any) -> Any:
-        if isinstance(key, slice):
-            return self.frames(key)[:, 0]
-        rows, column = key
-        return self.frames(rows)[:, column]
+    def __getitem__(self, key: tuple[slice, int]) -> Any:
+        return self.frames(key[0])[:, key[1]]
 
 
 class UnnamedFile:
@@ -126,8 +113,6 @@ class ColumnStore:
 
     def columns(self) -> Sequence[Floats | StoredColumn]:
         """The columns; the store is empty afterwards."""
-        if self.rows == 0:
-            return []
         if self._where is not None:
             if self._firsts[-1] < self.rows:
                 self._spill()

@@ -134,8 +134,6 @@ def _clearest(size: Floats, place: float) -> int:
 def _references(peaks: Peaks) -> list[float]:
     """High and clear lines: their phase tells time best."""
     found: list[float] = []
-    if peaks.size == 0:
-        return found
     for place in peaks.place[np.argsort(-(peaks.level + np.log(peaks.place)))]:
         if place < 0.45 and all(abs(place / other - 1.0) > 0.01 for other in found):
             found.append(float(place))

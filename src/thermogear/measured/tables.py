@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from thermogear.measured.choosing import is_time_column, time_column
-from thermogear.measured.options import ReadOptions, no_channel, place_of, refused
+from thermogear.measured.options import ReadOptions, places_of, refused
 from thermogear.measured.parts import with_gaps
 from thermogear.measured.record import Channel, Notice, Record, Samples
 from thermogear.measured.traps import (
@@ -260,13 +260,6 @@ def _flat(array: Named) -> Samples:
 
 def _kept(channels: list[Channel], keep: tuple[str, ...]) -> list[Channel]:
     names = [c.name for c in channels]
-    wanted = set()
-    for key in keep:
-        if key in names:
-            wanted.add(names.index(key))
-        elif (place := place_of(key, len(names))) is not None:
-            wanted.add(place)
-        else:
-            raise no_channel(key, names)
+    wanted = set(places_of(keep, names))
     special = {i for i, c in enumerate(channels) if is_tacho_name(c.name) or counts_turns(c.unit)}
     return [channels[i] for i in sorted(wanted | special)]

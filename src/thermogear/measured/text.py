@@ -22,9 +22,9 @@ from thermogear.measured.layout import Layout, find_layout
 from thermogear.measured.options import (
     A_TEXT,
     ReadOptions,
-    no_channel,
-    place_of,
+    places_of,
     refused,
+    refusing,
     too_large,
 )
 from thermogear.measured.parts import with_gaps
@@ -70,10 +70,9 @@ def read_text(path: Path, options: ReadOptions) -> Record:
             next(lines, None)
         for table in _tables(lines, layout, path):
             store.append(table[:, keep])
-    columns = store.columns()
     if store.rows == 0:
         raise refused(path, "text", "it holds no row of numbers", A_TEXT)
-    return _record(path, layout, keep, columns)
+    return _record(path, layout, keep, store.columns())
 
 
 # --- opening -------------------------------------------------------------------------------------
@@ -89,10 +88,8 @@ class _Counted(io.RawIOBase):
         return True
 
     def readinto(self, buffer: memoryview) -> int:  # type: ignore[override]
-        try:
+        with refusing(self._path, "text", OSError, EOFError, zlib.error):
             data = self._stream.read(len(buffer))
-        except (OSError, EOFError, zlib.error) as error:
-            raise refused(self._path, "text", error) from error
         self._count += len(data)
         if self._count > self._limit:
             raise too_large(self._path, becomes=self._count, limit=self._limit)
@@ -125,11 +122,8 @@ def _open(path: Path, encoding: str, options: ReadOptions) -> io.TextIOWrapper:
 
 
 def _encoding(path: Path) -> tuple[str, list[Notice]]:
-    try:
-        with _bytes(path) as stream:
-            head = stream.read(_HEAD)
-    except (OSError, EOFError, zlib.error) as error:
-        raise refused(path, "text", error) from error
+    with refusing(path, "text", OSError, EOFError, zlib.error), _bytes(path) as stream:
+        head = stream.read(_HEAD)
     if head.startswith((b"\xff\xfe", b"\xfe\xff")):
         return "utf-16", [Notice.of("text_utf_16")]
     if head.startswith(b"\xef\xbb\xbf"):
@@ -154,15 +148,20 @@ def _encoding(path: Path) -> tuple[str, list[Notice]]:
 
 
 def _head(lines: io.TextIOWrapper) -> list[str]:
+    return [line.rstrip("\r\n") for line in _some(lines, 400, 4 * _HEAD)[0]]
+
+
+def _some(lines: io.TextIOWrapper, most: int, characters: int) -> tuple[list[str], bool]:
+    """The next lines, up to so many of them or of ``characters``, and whether the file ends."""
     found: list[str] = []
     size = 0
-    while len(found) < 400 and size < 4 * _HEAD:
+    while len(found) < most and size < characters:
         line = lines.readline(_LONGEST)
         if not line:
-            break
-        found.append(line.rstrip("\r\n"))
+            return found, True
+        found.append(line)
         size += len(line)
-    return found
+    return found, False
 
 
 def _kept(layout: Layout, options: ReadOptions) -> list[int]:
@@ -173,14 +172,7 @@ def _kept(layout: Layout, options: ReadOptions) -> list[int]:
     waves = layout.waves.columns if layout.waves is not None else {}
     channels = [i for i in range(layout.columns) if i not in times]
     names = [layout.names[i] for i in channels]
-    wanted = set()
-    for key in options.keep:
-        if key in names:
-            wanted.add(channels[names.index(key)])
-        elif (place := place_of(key, len(channels))) is not None:
-            wanted.add(channels[place])
-        else:
-            raise no_channel(key, names)
+    wanted = {channels[place] for place in places_of(options.keep, names)}
     special = {
         i for i, (name, unit) in enumerate(columns) if is_tacho_name(name) or counts_turns(unit)
     }
@@ -212,19 +204,11 @@ def _tables(lines: io.TextIOWrapper, layout: Layout, path: Path) -> Iterator[Flo
 
 def _block(lines: io.TextIOWrapper, path: Path, number: int) -> tuple[list[str], bool]:
     """The next rows, and whether the file ends with them."""
-    block: list[str] = []
-    size = 0
-    while len(block) < _LINES and size < _CHARACTERS:
-        line = lines.readline(_LONGEST)
-        if not line:
-            return block, True
+    block, last = _some(lines, _LINES, _CHARACTERS)
+    for place, line in enumerate(block, start=number + 1):
         if len(line) == _LONGEST and not line.endswith("\n"):
-            raise refused(
-                path, "text", f"line {number + len(block) + 1} is longer than {_LONGEST} characters"
-            )
-        block.append(line)
-        size += len(line)
-    return block, False
+            raise refused(path, "text", f"line {place} is longer than {_LONGEST} characters")
+    return block, last
 
 
 def _cut_end(block: list[str], layout: Layout) -> None:

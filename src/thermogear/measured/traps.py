@@ -401,7 +401,7 @@ def without_doubles(
         if (zeros := health(first).zeros) or health(channel).zeros:
             kept[place] = channel if zeros else first
             notes.append(Notice.of("twin_zero", channel=channel.name))
-        elif len(first) == len(channel) and _same(first, channel):
+        elif len(first) == len(channel) and same_samples(first, channel):
             notes.append(Notice.of("twin_same", channel=channel.name))
         else:
             number = numbers[channel.name] = numbers.get(channel.name, 1) + 1
@@ -416,7 +416,8 @@ def without_doubles(
     return kept, tuple(notes)
 
 
-def _same(one: Channel, other: Channel) -> bool:
+def same_samples(one: Channel, other: Channel) -> bool:
+    """Whether two channels of one length hold the same."""
     return all(
         np.array_equal(a, b, equal_nan=True)
         for a, b in zip(one.blocks(), other.blocks(), strict=True)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from thermogear.measured.options import ReadOptions, no_channel, place_of, refused
+from thermogear.measured.options import ReadOptions, places_of, refused
 from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.store import FileTable
 from thermogear.measured.tables import MOST_CHANNELS, Column
@@ -56,13 +56,11 @@ def read_wave(path: Path, options: ReadOptions) -> Record:
         raise refused(path, "WAV", "it holds no samples")
     data, scale, shift, integer = _samples(path, code, bits, offset, frames, channels)
     names = [f"channel {i + 1}" for i in range(channels)]
-    for key in options.keep:
-        if key not in names and place_of(key, channels) is None:
-            raise no_channel(key, names)
+    kept = set(places_of(options.keep or names, names))
     found = tuple(
         Channel(name, Column(data, i, axis=0), None, scale=scale, offset=shift, needs_scale=integer)
         for i, name in enumerate(names)
-        if not options.keep or name in options.keep or str(i + 1) in options.keep
+        if i in kept
     )
     return Record(found, path.name, float(rate), "WAV header", 0.0, None, tuple(notes))
 
@@ -104,14 +102,14 @@ def _samples(
     if code == _FLOAT and bits in (32, 64):
         kind = "<f4" if bits == 32 else "<f8"
         return (
-            FileTable.of(path, kind, offset=offset, frames=frames, columns=channels),
+            FileTable(path, kind, offset=offset, frames=frames, columns=channels),
             1.0,
             0.0,
             False,
         )
     if code == _PCM and bits == 8:  # unsigned, 128 is zero
         return (
-            FileTable.of(path, "u1", offset=offset, frames=frames, columns=channels),
+            FileTable(path, "u1", offset=offset, frames=frames, columns=channels),
             1 / 128,
             -1.0,
             True,
@@ -119,12 +117,12 @@ def _samples(
     if code == _PCM and bits in (16, 32):
         kind = "<i2" if bits == 16 else "<i4"
         return (
-            FileTable.of(path, kind, offset=offset, frames=frames, columns=channels),
+            FileTable(path, kind, offset=offset, frames=frames, columns=channels),
             2.0 ** (1 - bits),
             0.0,
             True,
         )
     if code == _PCM and bits == 24:
-        raw = FileTable.of(path, "u1", offset=offset, frames=frames, columns=3 * channels)
+        raw = FileTable(path, "u1", offset=offset, frames=frames, columns=3 * channels)
         return _Packed24(raw, channels), 2.0**-23, 0.0, True
     raise refused(path, "WAV", f"format {code} with {bits} bits is not supported")

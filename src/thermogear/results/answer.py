@@ -14,8 +14,8 @@ class Answer:
     """What one question comes to at one operating point, or for the case as a whole.
 
     ``name`` of the figure and its ``question``; ``sentence`` for a reader; ``value`` in ``unit``
-    as shown, None where there is none; ``limit`` in words and its ``source``; ``verdict`` one of
-    :data:`~thermogear.base.limits.VERDICTS`; ``operating`` "3000 rpm, 80 N m", empty where it is
+    as shown, None where there is none; ``limit`` in words and its ``source``; ``verdict`` as
+    :mod:`~thermogear.base.limits` names them; ``operating`` "3000 rpm, 80 N m", empty where it is
     not of one point. ``figures``: the numbers in the sentence by name, in whole precision, a list
     where they are several of a kind; ``units`` of them as shown.
     """

@@ -83,14 +83,8 @@ def claimed(directory: Path) -> Iterator[Path]:
 
 
 def is_ours(directory: Path) -> bool:
-    """Whether a run wrote here: its mark or its summary is there."""
+    """Whether a run wrote here: its mark is there."""
     try:
-        if (directory / MARK).read_bytes().startswith(_MARKED.strip().encode()):
-            return True
+        return (directory / MARK).read_bytes().startswith(_MARKED.strip().encode())
     except OSError:
-        pass  # results of older versions carry no mark
-    try:
-        summary = json.loads((directory / SUMMARY).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
         return False
-    return isinstance(summary, dict) and "thermogear" in summary

@@ -12,12 +12,11 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import thermogear
 from thermogear.base.errors import InputError, nearest
 from thermogear.base.files import SCHEMA
-from thermogear.base.netcdf import read_tree, write_tree
 from thermogear.base.notice import Notice as Notice
 from thermogear.base.notice import stored_notices
 from thermogear.base.stores import RESULT as STORE
@@ -122,10 +121,7 @@ class Result:
 
     def values(self, name: str) -> list[Any]:
         """An entry that holds a list; empty where it is absent."""
-        found = self._json(name, "[]")
-        if not isinstance(found, list):
-            raise InputError(f"results attribute {name}", "no list", fix=FIX)
-        return found
+        return _decoded(self.provenance, name, [])
 
     def rows(self, name: str) -> list[dict[str, Any]]:
         """An entry that holds a list of tables; empty where it is absent."""
@@ -136,18 +132,7 @@ class Result:
 
     def table(self, name: str) -> dict[str, Any]:
         """An entry that holds a table; empty where it is absent."""
-        found = self._json(name, "{}")
-        if not isinstance(found, dict):
-            raise InputError(f"results attribute {name}", "no table", fix=FIX)
-        return found
-
-    def _json(self, name: str, absent: str) -> Any:
-        try:
-            return json.loads(str(self.provenance.get(name, absent)))
-        except ValueError as error:
-            raise InputError(
-                f"results attribute {name}", "text that is not JSON", fix=FIX
-            ) from error
+        return _decoded(self.provenance, name, {})
 
     @property
     def summary(self) -> dict[str, Any]:
@@ -266,6 +251,8 @@ class Result:
 
     def put(self, folder: Path) -> Path:
         """The file alone, into a folder that is ours already."""
+        from thermogear.base.netcdf import write_tree
+
         return write_tree(self.tree, folder / self.file)
 
     @classmethod
@@ -274,6 +261,8 @@ class Result:
 
         Raises InputError, in one line with ``fix``, where it is missing, damaged or not ours.
         """
+        from thermogear.base.netcdf import read_tree
+
         found = result_of(read_tree(Path(path), fix))
         if not found.kind or "thermogear" not in found.provenance:
             raise InputError("results", str(path), why="it was not written by thermogear", fix=fix)
@@ -300,14 +289,27 @@ def _from_attributes(attrs: Mapping[Any, Any], groups: Mapping[str, xr.Dataset])
     version = str(about.get("thermogear", ""))
     require_schema(about.pop("schema", 0), newest=SCHEMA, what="results", version=version)
     kind, title = str(about.pop("kind", "")), str(about.pop("title", ""))
-    try:
-        told = json.loads(str(about.pop("notices", "[]")))
-    except ValueError as error:
-        raise InputError("results attribute notices", "text that is not JSON", fix=FIX) from error
-    if not isinstance(told, list) or not all(isinstance(one, str | dict) for one in told):
+    told = _decoded(about, "notices", [])
+    about.pop("notices", None)
+    if not all(isinstance(one, str | dict) for one in told):
         raise InputError("results attribute notices", "no list of notices", fix=FIX)
     notices = tuple(Notice.stored(one) for one in told)
     return Result(kind, title, groups, notices, about)
+
+
+_Json = TypeVar("_Json", list[Any], dict[str, Any])
+
+
+def _decoded(about: Mapping[str, Plain], name: str, absent: _Json) -> _Json:
+    """An entry that holds JSON of the kind of ``absent``, which stands for one that is absent."""
+    field = f"results attribute {name}"
+    try:
+        found = json.loads(str(about[name])) if name in about else absent
+    except ValueError as error:
+        raise InputError(field, "text that is not JSON", fix=FIX) from error
+    if not isinstance(found, type(absent)):
+        raise InputError(field, f"no {'list' if absent == [] else 'table'}", fix=FIX)
+    return found
 
 
 def open_results(directory: str | Path, kind: str = "") -> Result:

@@ -152,10 +152,11 @@ def _frame(data: xr.Dataset, units: str) -> pd.DataFrame:
 
 def in_words(data: xr.Dataset) -> xr.Dataset:
     """The same with the words of its flags in place of their numbers."""
-    words: dict[Any, Any] = {}
-    for name, variable in data.coords.items():
-        if "names" in variable.attrs and variable.dims == (name,):
-            words[name] = (variable.dims, json.loads(variable.attrs["names"]))
+    words: dict[Any, Any] = {
+        name: (variable.dims, json.loads(variable.attrs["names"]))
+        for name, variable in data.coords.items()
+        if "names" in variable.attrs and variable.dims == (name,)
+    }
     if "state" in data.dims and "state_names" in data.attrs:
         words["state"] = (("state",), json.loads(data.attrs["state_names"]))
     if "direction" in data.coords:

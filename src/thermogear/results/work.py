@@ -77,10 +77,7 @@ class Estimate:
 
 def points_of(plan: Plan) -> int:
     """How many points a plan has, as a whole Python integer."""
-    total = 1
-    for name in plan.variables()["status"].dims:
-        total *= int(plan.sizes[name])
-    return total
+    return math.prod(int(plan.sizes[name]) for name in plan.variables()["status"].dims)
 
 
 def estimate(plan: Plan, *, threads: int | None = None) -> Estimate:

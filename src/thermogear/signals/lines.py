@@ -22,30 +22,25 @@ from thermogear.signals import windows
 from thermogear.signals.spectra import finite_record, positive_rate
 from thermogear.signals.windows import Window
 
-_RAYLEIGH_MEDIAN = float(np.sqrt(2.0 * np.log(2.0)))  # median of |noise line| over one component
-
 
 @dataclass(frozen=True, kw_only=True)
 class Line:
-    """One line: ``frequency`` (unit of the rate), peak ``amplitude``, ``phase`` at sample 0 [rad].
+    """One line: ``frequency`` (unit of the rate), peak ``amplitude``.
 
     ``bin_offset``: distance from the nearest bin's centre, -0.5..0.5. ``floor``: median amplitude
-    of the spectrum near the line (same window); ``amplitude_error``: standard deviation of the
-    amplitude that this floor, taken as Gaussian noise, makes; ``frequency_error`` likewise.
+    of the spectrum near the line (same window).
 
     >>> t = np.arange(1000) / 1000.0
-    >>> line = find_line(2.0 * np.cos(2 * np.pi * 50.3 * t), 1000.0, near=50.0, half_width=5.0)
+    >>> spectrum = line_spectrum(2.0 * np.cos(2 * np.pi * 50.3 * t), 1000.0)
+    >>> line = line_in(spectrum, near=50.0, half_width=5.0)
     >>> f"{line.amplitude:.3f} at {line.frequency:.1f} Hz"
     '2.000 at 50.3 Hz'
     """
 
     frequency: float
     amplitude: float
-    phase: float
     bin_offset: float
     floor: float
-    amplitude_error: float
-    frequency_error: float
 
     @property
     def prominence(self) -> float:
@@ -108,27 +103,20 @@ class LineSpectrum:
     @cached_property
     def hann(self) -> Floats:
         """Peak amplitudes with the Hann window."""
-        return np.abs(self.windowed("hann"))
+        return np.abs(self.in_hann())
 
-    def windowed(self, window: str | Window) -> NDArray[np.complex128]:
-        """Complex peak amplitudes at the bins, with a window."""
-        coefficients = windows.window(window).coefficients
-        reach, count = len(coefficients) - 1, self.lines.size
-        if reach == 0:
-            return self.lines
+    def in_hann(self) -> NDArray[np.complex128]:
+        """Complex peak amplitudes at the bins, with the Hann window."""
+        middle, beside = windows.window("hann").coefficients
         # below 0 and above N/2 the DFT of a real record continues as its conjugate
-        below = np.conj(self.lines[reach:0:-1])
-        top = count - 1 if self.samples % 2 == 0 else count
-        above = np.conj(self.lines[top - 1 : top - 1 - reach : -1])
+        top = self.lines.size - 1 if self.samples % 2 == 0 else self.lines.size
+        below, above = np.conj(self.lines[1:2]), np.conj(self.lines[top - 1 : top])
         padded = np.concatenate([below, self.lines, above])
-        total = coefficients[0] * self.lines
-        for q, a in enumerate(coefficients[1:], start=1):
-            pair = padded[reach - q : reach - q + count] + padded[reach + q : reach + q + count]
-            total = total + (-1.0) ** q * 0.5 * a * pair
-        return np.asarray(total / coefficients[0])
+        pair = padded[:-2] + padded[2:]
+        return np.asarray((middle * self.lines - 0.5 * beside * pair) / middle)
 
     def windowed_at(self, window: str | Window, place: int) -> complex:
-        """``windowed`` at the bin ``place`` alone."""
+        """Complex peak amplitude at the bin ``place``, with a window."""
         coefficients = windows.window(window).coefficients
         count = self.lines.size
         top = count - 1 if self.samples % 2 == 0 else count
@@ -159,26 +147,6 @@ def line_spectrum(x: ArrayLike, rate: float) -> LineSpectrum:
         raise InputError("record", f"shape {values.shape}", allowed="one channel, >= 32 samples")
     lines = np.fft.rfft(values - values.mean()) * (2.0 / values.size)
     return LineSpectrum(per_second, int(values.size), lines)
-
-
-def find_line(
-    x: ArrayLike,
-    rate: float,
-    *,
-    near: float,
-    half_width: float,
-    window: str | Window = "flattop",
-) -> Line:
-    """The strongest line within ``near`` +- ``half_width`` of one channel: see ``line_in``.
-
-    ``x`` [any unit], ``rate`` [samples per unit of time].
-
-    >>> t = np.arange(1000) / 1000.0
-    >>> line = find_line(2.0 * np.cos(2 * np.pi * 50.3 * t), 1000.0, near=50.0, half_width=5.0)
-    >>> f"{line.frequency:.1f} Hz"
-    '50.3 Hz'
-    """
-    return line_in(line_spectrum(x, rate), near=near, half_width=half_width, window=window)
 
 
 def line_in(
@@ -215,17 +183,9 @@ def line_in(
     hann_floor = floor_around(amplitudes, peak, lobe=4)
     # noise of a line grows with the root of the window's noise bandwidth
     floor = hann_floor * float(np.sqrt(chosen.noise_bandwidth / 1.5))
-    # left and right bin carry noise of correlation 1/6 (Hann weights -1/4, 1/2, -1/4), so that
-    # d = 2 (right - left)/(3 A) near a bin's centre scatters by (2/3) sqrt(2 (1 - 1/6)) noise/A
-    scatter = (2.0 / 3.0) * np.sqrt(5.0 / 3.0) * hann_floor / _RAYLEIGH_MEDIAN
-    # seen from the bin, a line d bins off turns by half a turn per bin over the record
-    phase = float(np.angle(value)) - np.pi * offset * (1.0 - 1.0 / spectrum.samples)
     return Line(
         frequency=(peak + offset) * width,
         amplitude=abs(value),
-        phase=float(np.angle(np.exp(1j * phase))),
         bin_offset=float(offset),
         floor=floor,
-        amplitude_error=floor / _RAYLEIGH_MEDIAN,
-        frequency_error=float(scatter / max(abs(value), 1e-300) * width),
     )

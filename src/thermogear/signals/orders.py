@@ -115,13 +115,11 @@ def resample_by_angle(
     wanted = first + np.arange(count * samples_per_turn) / samples_per_turn
     place = np.interp(wanted, turned, np.arange(turned.size))
     fine = _finer(values, 4)
-    rows = [_spline(row, 4.0 * place) for row in fine.reshape(-1, fine.shape[-1])]
+    rows = [
+        ndimage.map_coordinates(row, 4.0 * place[None], order=3, mode="mirror")
+        for row in fine.reshape(-1, fine.shape[-1])
+    ]
     return np.reshape(rows, (*values.shape[:-1], place.size))
-
-
-def _spline(values: Floats, place: Floats) -> Floats:
-    """A cubic spline through samples at 0, 1, ..., mirrored at both ends as ``_finer`` does."""
-    return np.asarray(ndimage.map_coordinates(values, place[None], order=3, mode="mirror"))
 
 
 def _finer(values: Floats, factor: int) -> Floats:

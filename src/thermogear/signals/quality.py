@@ -64,7 +64,7 @@ def coarse(x: NDArray[np.float64], free: NDArray[np.bool_]) -> float:
     if not lines or not _MANY * step >= spread > 0.0:
         return 0.0
     # a Hann window shows noise of rms s by powers of mean 6 s^2/N, and of 0.69 times that median
-    floor = float(np.median(np.abs(spectrum.windowed("hann")) ** 2)) / (6.0 * float(np.log(2.0)))
+    floor = float(np.median(np.abs(spectrum.in_hann()) ** 2)) / (6.0 * float(np.log(2.0)))
     noise = max(0.0, floor * x.size / step**2 - _OWN)
     height = abs(lines[0].amplitude) / step
     return _FOLDED * float(height**-1.5 * np.exp(-2.0 * np.pi**2 * noise))

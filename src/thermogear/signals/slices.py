@@ -46,7 +46,6 @@ class Slices:
     record's unit, and ``phase`` [rad] against the angle; ``turns`` (step) at which they are read
     and ``block`` (order, step) the turns they are read over. nan where no block reaches."""
 
-    orders: Floats
     turns: Floats
     amplitude: Floats
     phase: Floats
@@ -293,7 +292,6 @@ def _chosen(
     spline = _RESAMPLED * (wanted / (0.4 * samples_per_turn)) ** 4
     smear = 0.5 * (2.0 * np.pi * wanted * angle_noise) ** 2
     return Slices(
-        orders=wanted,
         turns=turns,
         amplitude=taken[0],
         phase=taken[1],

@@ -82,7 +82,7 @@ def strong_lines(spectrum: LineSpectrum, most: int = MOST) -> tuple[Strong, ...]
     >>> [f"{one.place:.1f}" for one in strong_lines(line_spectrum(x, 1000.0), 2)]
     ['50.3', '80.0']
     """
-    left = spectrum.windowed("hann").copy()
+    left = spectrum.in_hann().copy()
     size, count = np.abs(left), left.size
     open_to = size > 3.0 * _rough_floor(size)
     open_to[:3] = open_to[-3:] = False

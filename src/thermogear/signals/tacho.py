@@ -256,8 +256,6 @@ def pulse_turns(
     >>> found.first, found.turns[[0, 20, 100]].round(3)
     (0, array([0., 1., 5.]))
     """
-    if not pulses_per_turn > 0:
-        raise InputError("pulses_per_turn", pulses_per_turn, allowed="> 0")
     times, numbers = pulses.times, pulses.numbers.astype(float)
     number_of, left = _smooth(times, numbers)
     marks = round(pulses_per_turn)
