@@ -15,13 +15,12 @@ from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
 from itertools import product
-from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
+from typing import Any, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-if TYPE_CHECKING:
-    import xarray as xr
+from thermogear.base.arrays import Dataset
 
 Arrays = dict[str, NDArray[Any]]
 Key = tuple[int, ...]
@@ -88,7 +87,7 @@ class Plan(Protocol):
 
     def compute(self, key: Key, before: Arrays | None, alive: Alive) -> Arrays: ...
 
-    def finish(self, data: xr.Dataset) -> xr.Dataset: ...
+    def finish(self, data: Dataset) -> Dataset: ...
 
     def pilot(self, share: float, *, turn: int) -> float:
         """Do about a ``share`` of the work, spread over it, at least one point of it.
@@ -149,7 +148,7 @@ def before_along(plan: Plan, key: Key, name: str) -> Key | None:
     return (*key[:-1], place) if 0 <= place < -(-plan.sizes[name] // plan.cuts[name]) else None
 
 
-def dataset_of(plan: Plan, arrays: Arrays) -> xr.Dataset:
+def dataset_of(plan: Plan, arrays: Arrays) -> Dataset:
     """The finished, labelled result."""
     import xarray as xr
 
@@ -263,7 +262,7 @@ def gather(
     threads: int | None = None,
     progress: Progress | None = None,
     alive: Alive = keep_going,
-) -> xr.Dataset:
+) -> Dataset:
     """Compute the whole plan in memory; ``alive`` raises to end the work."""
     whole = empty_arrays(plan)
     keys = keys_of(plan)

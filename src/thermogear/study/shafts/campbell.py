@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
-from thermogear.base.arrays import Complexes, Floats
+from thermogear.base.arrays import Complexes, Dataset, Floats
 from thermogear.base.errors import InputError
 from thermogear.base.progress import Progress, silent
 from thermogear.base.units import RPM
@@ -39,9 +39,6 @@ from thermogear.study.shafts.modes import bearing_parts, name_of
 from thermogear.study.shafts.sketch import sketch
 from thermogear.study.shafts.state import TrainState, plan_of, settled
 from thermogear.study.shafts.statics import notices
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 SPEEDS = 9
 """Speeds at which the natural frequencies are computed; they change little in between."""
@@ -418,7 +415,7 @@ def _in_contact(response: Response, most: Floats) -> Response:
 
 def _response_table(
     case: GearCase, states: Sequence[str], speeds: Floats, found: Sequence[Sequence[Response]]
-) -> xr.Dataset:
+) -> Dataset:
     over = ("state", "source", "response_speed")
 
     def amplitude(name: str) -> Floats:

@@ -15,13 +15,13 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from thermogear.analysis.family import axis_values
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.bounds import floats
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.base.notice import Notice, stored_notices
@@ -49,9 +49,6 @@ from thermogear.study.shafts.campbell import critical_speeds
 from thermogear.study.shafts.moving import MovingTrain, moving, rubbing
 from thermogear.study.shafts.record import HARMONICS, SAMPLES, lines, shown
 from thermogear.study.shafts.state import plan_of, settled
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 KIND = "waterfall"
 DIRECTIONS = (1, -1)
@@ -321,7 +318,7 @@ class WaterfallPlan:
             found[name][0, 0, place] = value
         return run.state, turn + passed
 
-    def _stretches(self, data: xr.Dataset, state: int) -> list[dict[str, float]]:
+    def _stretches(self, data: Dataset, state: int) -> list[dict[str, float]]:
         """Stretches of speed on which up and down differ, and where they do most."""
         rms = np.concatenate(
             [data["mesh_force_rms"].values[state][..., None], data["bearing_force_rms"][state]], -1
@@ -359,7 +356,7 @@ class WaterfallPlan:
         found = () if one is None else critical_speeds(self.case, one.state, max(self.speeds))
         return [asdict(speed) for speed in found]
 
-    def finish(self, data: xr.Dataset) -> xr.Dataset:
+    def finish(self, data: Dataset) -> Dataset:
         """The stretches, held at a steady speed side by side, and the critical speeds."""
         kinds = range(len(self.states))
         rows = [row for state in kinds for row in self._stretches(data, state)]

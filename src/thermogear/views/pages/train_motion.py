@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.display import MICROMETRE, MILLIMETRE_PER_SECOND, NEWTON, PERCENT, number
 from thermogear.results.result import Result
 from thermogear.views.columns import OF_STATE, Column, declared, rows_along
@@ -33,9 +33,6 @@ from thermogear.views.style import (
 )
 from thermogear.views.tables import labelled
 from thermogear.views.typesetting import operating_names
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 CAPTION = (
     "Settled motion with clearance in the teeth and in the bearings. Flanks: force of the drive "
@@ -123,7 +120,7 @@ def section(result: Result, pictures: Pictures) -> Section | None:
     return Section("train-motion", "The drive train in motion", blocks)
 
 
-def _closer(data: xr.Dataset) -> list[int]:
+def _closer(data: Dataset) -> list[int]:
     """Operating points whose bearings are shown: all of a few, of more the hardest on them."""
     count = data.sizes["operating"]
     if count <= FEW:
@@ -132,7 +129,7 @@ def _closer(data: xr.Dataset) -> list[int]:
     return [] if np.isnan(force).all() else [int(np.nanargmax(force))]
 
 
-def _of_bearings(data: xr.Dataset, place: int, name: str, pictures: Pictures) -> None:
+def _of_bearings(data: Dataset, place: int, name: str, pictures: Pictures) -> None:
     """Orbits with a dial of the phase, forces over time and over order."""
     path = ("journal_path", "mean_bearing_load")
     phases = [f"{f / FRAMES:.3f}" for f in range(FRAMES)]
@@ -151,7 +148,7 @@ def _of_bearings(data: xr.Dataset, place: int, name: str, pictures: Pictures) ->
     )  # fmt: skip
 
 
-def _frame(data: xr.Dataset, place: int, frame: int) -> Picture:
+def _frame(data: Dataset, place: int, frame: int) -> Picture:
     phase = data["phase"].values
     sample = round(frame / FRAMES / float(phase[1] - phase[0]))
     return bearing_orbits(data, place, sample=sample)
@@ -180,7 +177,7 @@ PATHS = (
 )
 
 
-def _tables(data: xr.Dataset) -> list[Table]:
+def _tables(data: Dataset) -> list[Table]:
     """Flanks and bearings in motion; of bearings stored without their paths the forces alone."""
     columns: tuple[Column, ...] = RINGS
     if "journal_path" in data:
@@ -209,7 +206,7 @@ MANY = 128
 """Sections from which their dots are small."""
 
 
-def four_panels(data: xr.Dataset, operating: int) -> Picture:
+def four_panels(data: Dataset, operating: int) -> Picture:
     """Mesh force over time and order, section, largest bearing lines of one operating point."""
     here = data.isel(operating=operating)
     phase = here["phase"].values
@@ -248,7 +245,7 @@ def four_panels(data: xr.Dataset, operating: int) -> Picture:
 
 
 def _lines(
-    here: xr.Dataset, order: NDArray[np.float64], amplitude: NDArray[np.float64], words: str
+    here: Dataset, order: NDArray[np.float64], amplitude: NDArray[np.float64], words: str
 ) -> Panel:
     """A spectrum (state, order) over orders of the mesh frequency."""
     floor, top = floor_of(amplitude, order=order, highest=HIGHEST)
@@ -263,7 +260,7 @@ def _lines(
     return panel
 
 
-def sound(data: xr.Dataset, operating: int) -> Picture:
+def sound(data: Dataset, operating: int) -> Picture:
     """Lines of the housing's acceleration at one operating point."""
     here = data.isel(operating=operating)
     order, lines = here["line_order"].values, here["housing_line"].values
@@ -287,7 +284,7 @@ BETWEEN_SAMPLES = 4
 """Points of a drawn orbit for every sample."""
 
 
-def bearing_orbits(data: xr.Dataset, operating: int, *, sample: int = 0) -> Picture:
+def bearing_orbits(data: Dataset, operating: int, *, sample: int = 0) -> Picture:
     """Every journal in its clearance, above to scale, below about its mean place alone [um].
 
     A dot below shows where it is at that ``sample`` of the record.
@@ -316,7 +313,7 @@ def _axes(words: str, half: float) -> tuple[Axis, Axis]:
     return x, y
 
 
-def _in_clearance(here: xr.Dataset, bearing: int) -> Panel:
+def _in_clearance(here: Dataset, bearing: int) -> Panel:
     """Clearance circles, orbits and the direction of the load of one bearing."""
     states = names_of(here, "state")
     path = MICROMETRE(here["journal_path"].values[:, bearing])
@@ -362,7 +359,7 @@ def _said(panel: Panel, words: str, load: Floats) -> None:
         )  # fmt: skip
 
 
-def _once(path: Floats, here: xr.Dataset, state: int) -> Floats:
+def _once(path: Floats, here: Dataset, state: int) -> Floats:
     """The part of ``path`` (2, sample) after which it comes again, closed; else all of it."""
     phase, name = here["phase"].values, str(here["label"].values[state])
     number = name.removeprefix("period-")
@@ -411,7 +408,7 @@ def _head(panel: Panel, tip: Floats, way: Floats, size: float, colour: str) -> N
     panel.curve(x, y, colour=colour, width=1.4)
 
 
-def _about_mean(here: xr.Dataset, bearing: int, sample: int) -> Panel:
+def _about_mean(here: Dataset, bearing: int, sample: int) -> Panel:
     """The orbits alone, each less its mean place; a dot at ``sample``, an arrow along the way."""
     path = MICROMETRE(here["journal_path"].values[:, bearing])
     path = path - path.mean(axis=2, keepdims=True)
@@ -450,7 +447,7 @@ def _rows(panels: Sequence[Panel]) -> list[list[Panel]]:
     return rows
 
 
-def bearing_force_time(data: xr.Dataset, operating: int) -> Picture:
+def bearing_force_time(data: Dataset, operating: int) -> Picture:
     """Amount of the force on every bearing over the mesh periods, undeformed and hot."""
     here = data.isel(operating=operating)
     phase, force = here["phase"].values, here["bearing_force"].values
@@ -474,7 +471,7 @@ def bearing_force_time(data: xr.Dataset, operating: int) -> Picture:
     return Picture(rows, size=(WIDE, 2.4 * len(rows) + 0.3), legend=4)
 
 
-def bearing_force_order(data: xr.Dataset, operating: int) -> Picture:
+def bearing_force_order(data: Dataset, operating: int) -> Picture:
     """Lines of the force on every bearing over orders of the mesh frequency."""
     here = data.isel(operating=operating)
     order, lines = here["line_order"].values, here["bearing_force_line"].values
@@ -502,13 +499,13 @@ HUES = ("#d62f4b", "#e8743b", "#d9a400", "#8fae2e", "#2f9e5f", "#17a2a2", "#2f7f
 QUARTERS = (("0", 0.0), ("¼", 0.25), ("½", 0.5), ("¾", 0.75))
 
 
-def turning(data: xr.Dataset, operating: int) -> list[int]:
+def turning(data: Dataset, operating: int) -> list[int]:
     """Places of the states whose motion at this operating point lies on a torus."""
     found = data["label"].values[:, operating]
     return [s for s, name in enumerate(found) if str(name) == "quasi-periodic"]
 
 
-def torus_section(data: xr.Dataset, operating: int) -> Picture:
+def torus_section(data: Dataset, operating: int) -> Picture:
     """Sections of a quasi-periodic motion, coloured by its second phase, on their closed curves."""
     here = data.isel(operating=operating)
     mesh = float(here["mesh_frequency"])

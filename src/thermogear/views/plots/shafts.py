@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from thermogear.base.arrays import DataArray, Dataset
 from thermogear.base.display import HERTZ, MICROMETRE, MILLIMETRE, PERCENT, SPEED, display
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import (
@@ -19,9 +20,6 @@ from thermogear.views.style import (
     names_of,
     scale,
 )
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 PINION, WHEEL = OKABE_ITO[0], OKABE_ITO[1]
 SHAFTS = {"pinion": PINION, "wheel": WHEEL}
@@ -111,7 +109,7 @@ def _bearing(panel: Panel, at: float, centre: float, size: float, name: str) -> 
     panel.text(at, centre - 1.75 * size, name, up="top", offset=(0.0, -3.0), size=7.5)
 
 
-def deflection(data: xr.Dataset, place: int) -> Picture:
+def deflection(data: Dataset, place: int) -> Picture:
     """Deflection of both shafts along x and y at one operating point."""
     panels = []
     for shaft, colour in SHAFTS.items():
@@ -136,7 +134,7 @@ def deflection(data: xr.Dataset, place: int) -> Picture:
     return Picture([panels], size=(WIDE, 3.2), legend=4)
 
 
-def loads(data: xr.Dataset) -> Picture:
+def loads(data: Dataset) -> Picture:
     """Load of every bearing at every operating point, cold and hot."""
     panel = Panel(Axis(""), Axis("bearing load [N]", low=0.0))
     names = names_of(data, "bearing")
@@ -157,14 +155,14 @@ def loads(data: xr.Dataset) -> Picture:
     return Picture([[panel]], size=(WIDE, 3.2))
 
 
-def internal_clearance(data: xr.Dataset) -> xr.DataArray:
+def internal_clearance(data: Dataset) -> DataArray:
     """Radial internal clearance [m], the whole play; older versions stored half of it."""
     if "radial_internal_clearance" in data:
         return data["radial_internal_clearance"]
     return 2.0 * data["radial_clearance"]
 
 
-def clearances(data: xr.Dataset) -> Picture:
+def clearances(data: Dataset) -> Picture:
     """Radial internal clearance of every bearing, cold and hot; below zero it is a preload."""
     panel = Panel(Axis(""), Axis("radial internal clearance [µm]"))
     names = names_of(data, "bearing")
@@ -183,7 +181,7 @@ def clearances(data: xr.Dataset) -> Picture:
     return Picture([[panel]], size=(WIDE, 3.0))
 
 
-def modes(table: xr.Dataset, shapes: xr.Dataset, state: int) -> Picture:
+def modes(table: Dataset, shapes: Dataset, state: int) -> Picture:
     """The lowest modes: deflection of both shafts across (full) and their twist (dashed)."""
     panels = []
     for mode in range(min(MOST_MODES, table.sizes["mode"])):
@@ -227,7 +225,7 @@ def _rows(panels: Sequence[Panel], columns: int) -> list[list[Panel]]:
     return rows
 
 
-def energies(table: xr.Dataset, state: int) -> Picture:
+def energies(table: Dataset, state: int) -> Picture:
     """Which part bends in which mode: shares of the strain energy."""
     values = PERCENT(table["energy_share"].values[state].T)
     parts = names_of(table, "part")
@@ -244,7 +242,7 @@ def energies(table: xr.Dataset, state: int) -> Picture:
     return Picture([[panel]], size=(WIDE, 0.28 * len(parts) + 1.0), left=2.2)
 
 
-def lift_offs(critical: xr.Dataset) -> Any:
+def lift_offs(critical: Dataset) -> Any:
     """Speed [rad/s] from which each resonance lifts a bearing off or parts the teeth; nan: never.
 
     Older versions did not ask.
@@ -258,7 +256,7 @@ def not_valid(speed: float) -> str:
     return f"not valid: lifts off from {SPEED(speed):.0f} rpm"
 
 
-def campbell(data: xr.Dataset, critical: xr.Dataset, speeds: Sequence[float]) -> Picture:
+def campbell(data: Dataset, critical: Dataset, speeds: Sequence[float]) -> Picture:
     """Natural frequencies over speed with the band of the mesh, the orders, the critical speeds."""
     rpm = display("pinion_speed")
     x = rpm(data["pinion_speed"].values)
@@ -310,7 +308,7 @@ def campbell(data: xr.Dataset, critical: xr.Dataset, speeds: Sequence[float]) ->
     return Picture([panels], size=(WIDE, 4.4), legend=4, share_y="row")
 
 
-def response(data: xr.Dataset, quantity: str, words: str, factor: float = 1.0) -> Picture:
+def response(data: Dataset, quantity: str, words: str, factor: float = 1.0) -> Picture:
     """Amplitude over speed, hot full, undeformed dashed; a panel a bearing, a colour a source."""
     rpm = display("pinion_speed")(data["response_speed"].values)
     panels = []

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from thermogear.base.arrays import Dataset
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.curves import along_path, axis_of, draw_by_bundle, hot_state
 from thermogear.views.style import HOT, INK, OKABE_ITO, STATES, names_of
 from thermogear.views.typesetting import math_symbol, plain, shown
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 PARTS = {
     "hertz": ("contact", OKABE_ITO[4]),
@@ -24,7 +20,7 @@ PARTS = {
 }
 
 
-def over_phase(data: xr.Dataset, bundle: int) -> Picture:
+def over_phase(data: Dataset, bundle: int) -> Picture:
     """Mesh stiffness of one bundle over a mesh period, undeformed and hot."""
     panel = Panel(
         axis_of("mesh_phase", "mesh phase", low=0.0, high=1.0), axis_of("mesh_stiffness", low=0.0)
@@ -42,7 +38,7 @@ def over_phase(data: xr.Dataset, bundle: int) -> Picture:
     return Picture([[panel]])
 
 
-def pair(data: xr.Dataset) -> Picture:
+def pair(data: Dataset) -> Picture:
     """Stiffness of one tooth pair along the path, undeformed and hot, for every bundle."""
     panel = along_path(data, axis_of("pair_stiffness", "stiffness of one pair", low=0.0))
     x = shown(data, "path_position")
@@ -52,7 +48,7 @@ def pair(data: xr.Dataset) -> Picture:
     return Picture([[panel]], legend=2)
 
 
-def parts(data: xr.Dataset, bundle: int) -> Picture:
+def parts(data: Dataset, bundle: int) -> Picture:
     """The springs in series that make one pair, hot: pinion solid, wheel dotted."""
     panel = along_path(data, Axis("stiffness of one part k [10⁸ N/m]", log="decades"))
     x = shown(data, "path_position")
@@ -69,7 +65,7 @@ def parts(data: xr.Dataset, bundle: int) -> Picture:
     return Picture([[panel]])
 
 
-def bars(data: xr.Dataset) -> Picture:
+def bars(data: Dataset) -> Picture:
     """Mean and peak-to-peak mesh stiffness of every bundle, undeformed beside hot, with values."""
     bundles, states = names_of(data, "bundle"), names_of(data, "state")
     places = np.arange(len(bundles), dtype=float)
