@@ -84,8 +84,7 @@ def warnings_as_lines() -> Iterator[None]:
     lines, root = _Lines(), logging.getLogger()
     root.addHandler(lines)
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("always", ValidityWarning)
+        with warnings.catch_warnings(action="always", category=ValidityWarning):
             warnings.showwarning = lines.show
             yield
     finally:

@@ -98,9 +98,8 @@ class Evidence:
     def grid(self) -> Dataset:
         """Friction, flash and growth over speed and torque; see :func:`chain.operating_grid`."""
         self._tell(STAGES[1])
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(action="ignore", category=ValidityWarning):
             # the closed loop's oil may leave its line's range at the corners; the page says so
-            warnings.simplefilter("ignore", ValidityWarning)
             return chain.operating_grid(
                 self.case, speeds=self.size.speeds, torques=self.size.torques
             )

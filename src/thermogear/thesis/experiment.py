@@ -92,8 +92,7 @@ def shown(values: Mapping[str, float], *, held: int = HELD_MODES) -> Shown:
     """What the train of ``values`` shows; ``held``: modes beside its interface."""
     nothing = dict.fromkeys(SEEN, (float("nan"),) * len(SPEEDS))
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", ValidityWarning)
+        with warnings.catch_warnings(action="ignore", category=ValidityWarning):
             case = gear_case(load_case(case_text(values)))
             ((state,),) = settled(case, [0], states=(HOT,))
             if state.status != STATUS.index("ok"):

@@ -106,8 +106,7 @@ def answered(
     then = {name: np.asarray(hot[name]) for name in (*OF_HOT, *MOVES)}
     asked = Asked(case, model, first, then, progress)
     found: list[Answer] = []
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ValidityWarning)
+    with warnings.catch_warnings(action="ignore", category=ValidityWarning):
         for make in MAKERS:
             found += make(asked)
     return tuple(found), asked.speeds

@@ -7,7 +7,6 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.display import MICROMETRE, MILLIMETRE_PER_SECOND, NEWTON, PERCENT, number
@@ -16,7 +15,7 @@ from thermogear.views.columns import OF_STATE, Column, declared, rows_along
 from thermogear.views.moving import Dial
 from thermogear.views.page import Block, Pictures, Section, Table, Text
 from thermogear.views.picture import Axis, Panel, Picture
-from thermogear.views.plots.shafts import internal_clearance
+from thermogear.views.plots.shafts import empty, in_rows, internal_clearance
 from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
 from thermogear.views.style import (
     ABOVE,
@@ -245,10 +244,14 @@ def four_panels(data: Dataset, operating: int) -> Picture:
 
 
 def _lines(
-    here: Dataset, order: NDArray[np.float64], amplitude: NDArray[np.float64], words: str
+    here: Dataset,
+    order: Floats,
+    amplitude: Floats,
+    words: str,
+    ends: tuple[float, float] | None = None,
 ) -> Panel:
-    """A spectrum (state, order) over orders of the mesh frequency."""
-    floor, top = floor_of(amplitude, order=order, highest=HIGHEST)
+    """A spectrum (state, order) over orders of the mesh frequency, up between its own ``ends``."""
+    floor, top = ends or floor_of(amplitude, order=order, highest=HIGHEST)
     panel = over_orders(
         "order of the mesh frequency [–]", words, floor=floor, top=top, highest=HIGHEST
     )
@@ -268,10 +271,6 @@ def sound(data: Dataset, operating: int) -> Picture:
     return Picture([[panel]], size=(WIDE, 3.4))
 
 
-# --- pictures -----------------------------------------------------------------------------------
-
-
-HIGHEST_FORCE_ORDER = 12.0
 ACROSS = 4
 """Bearings side by side in the picture of their orbits."""
 BESIDE = 2
@@ -298,7 +297,7 @@ def bearing_orbits(data: Dataset, operating: int, *, sample: int = 0) -> Picture
         rows.append([_about_mean(here, b, sample) for b in some])
     wide = max(len(row) for row in rows)
     for row in rows:
-        row.extend(_empty(row[0]) for _ in range(wide - len(row)))
+        row.extend(empty(row[0]) for _ in range(wide - len(row)))
     each = (WIDE - LEFT - RIGHT - BETWEEN * (ACROSS - 1)) / ACROSS
     size = (
         LEFT + RIGHT + wide * each + BETWEEN * (wide - 1),
@@ -434,19 +433,6 @@ def _about_mean(here: Dataset, bearing: int, sample: int) -> Panel:
     return panel
 
 
-def _empty(like: Panel) -> Panel:
-    panel = Panel(like.x, like.y)
-    panel.note("no more of them")
-    return panel
-
-
-def _rows(panels: Sequence[Panel]) -> list[list[Panel]]:
-    rows = [list(panels[i : i + BESIDE]) for i in range(0, len(panels), BESIDE)]
-    if len(rows) > 1:
-        rows[-1].extend(_empty(panels[0]) for _ in range(BESIDE - len(rows[-1])))
-    return rows
-
-
 def bearing_force_time(data: Dataset, operating: int) -> Picture:
     """Amount of the force on every bearing over the mesh periods, undeformed and hot."""
     here = data.isel(operating=operating)
@@ -467,7 +453,7 @@ def bearing_force_time(data: Dataset, operating: int) -> Picture:
                     label=f"amount of the mean, {state}",
                 )
         panels.append(panel)
-    rows = _rows(panels)
+    rows = in_rows(panels, BESIDE)
     return Picture(rows, size=(WIDE, 2.4 * len(rows) + 0.3), legend=4)
 
 
@@ -475,21 +461,13 @@ def bearing_force_order(data: Dataset, operating: int) -> Picture:
     """Lines of the force on every bearing over orders of the mesh frequency."""
     here = data.isel(operating=operating)
     order, lines = here["line_order"].values, here["bearing_force_line"].values
-    floor, top = floor_of(lines, order=order, highest=HIGHEST_FORCE_ORDER)
+    ends = floor_of(lines, order=order, highest=HIGHEST)
     panels = []
     for b, name in enumerate(names_of(here, "bearing")):
-        panel = over_orders(
-            "order of the mesh frequency [–]", "line of the force [N]", floor=floor, top=top,
-            highest=HIGHEST_FORCE_ORDER,
-        )  # fmt: skip
+        panel = _lines(here, order, lines[:, b], "line of the force [N]", ends)
         panel.title = name
-        for s, state in enumerate(names_of(here, "state")):
-            draw_lines(
-                panel, order=order, amplitude=lines[s, b], colour=STATES.get(state, INK),
-                label=state, filled=s > 0,
-            )  # fmt: skip
         panels.append(panel)
-    rows = _rows(panels)
+    rows = in_rows(panels, BESIDE)
     return Picture(rows, size=(WIDE, 2.6 * len(rows) + 0.3), legend=4)
 
 

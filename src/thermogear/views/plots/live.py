@@ -17,9 +17,10 @@ from thermogear.views.plots.one_motion import edges_in_sight
 from thermogear.views.plots.parameters import axis_words
 from thermogear.views.plots.parameters import shown as by_unit
 from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
+from thermogear.views.plots.stiffness import by_state
 from thermogear.views.plots.sweeps import CLASSES, classes_of, edges
 from thermogear.views.style import COLD, FAINT, HOT, INK, OKABE_ITO, QUIET, STATES, names_of
-from thermogear.views.typesetting import FAR, axis_label, plain, shown
+from thermogear.views.typesetting import FAR, axis_label, shown
 
 DASHED = (3, 2)
 STARTS = {"the case's start": INK, "running up": OKABE_ITO[2], "running down": OKABE_ITO[3]}
@@ -28,16 +29,7 @@ STARTS = {"the case's start": INK, "running up": OKABE_ITO[2], "running down": O
 
 def stiffness(data: Dataset) -> Picture:
     """Mesh stiffness over a mesh period, undeformed and hot, with its means."""
-    panel = Panel(
-        axis_of("mesh_phase", "mesh phase", low=0.0, high=1.0), axis_of("mesh_stiffness", low=0.0)
-    )
-    x = shown(data, "mesh_phase")
-    for place, state in enumerate(names_of(data, "state")):
-        colour, one = STATES.get(state, INK), data.isel(state=place)
-        panel.curve(x, shown(one, "mesh_stiffness"), colour=colour, label=plain(state))
-        mean = float(shown(one, "mean_stiffness"))
-        panel.line(y=mean, colour=colour, width=1.0, dash=(2, 2), label=plain(f"{state}, mean"))
-    return Picture([[panel]], size=(4.9, 3.0))
+    return Picture([[by_state(data)]], size=(4.9, 3.0))
 
 
 def gap(data: Dataset) -> Picture:
