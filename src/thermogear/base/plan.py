@@ -43,6 +43,12 @@ class Variable:
     attributes: Mapping[str, Any] = field(default_factory=dict)
 
 
+def real(dims: tuple[str, ...], words: str, units: str, *inner: str) -> Variable:
+    """A stored number over ``dims`` and ``inner`` ones, nan where none was computed."""
+    about = {"long_name": words, "units": units}
+    return Variable((*dims, *inner), "float64", float("nan"), about)
+
+
 def axis_coordinates(
     names: Sequence[str], units: Sequence[str], axes: Sequence[ArrayLike]
 ) -> dict[str, Coordinate]:

@@ -297,14 +297,6 @@ class HeatBalance:
         """Which points are ``lost``, (count,)."""
         return np.isin(np.arange(self.settled.size), list(self.lost))
 
-    def hotter(self) -> Floats:
-        """How much hotter [K] the hottest node is in the state reached from hot, (count,).
-
-        0 where it is the same state, nan where from hot none is reached.
-        """
-        each = [hot - self.steady.temperatures[name] for name, hot in self.hot.items()]
-        return np.where(self.several, np.max(each, axis=0), 0.0)
-
 
 def heat_balance(
     pair: GearPair,

@@ -15,7 +15,6 @@ from thermogear.analysis.orbits import periodic_orbit
 from thermogear.analysis.proof import Label
 from thermogear.analysis.settle import PERIODIC
 from thermogear.base.arrays import Dataset, Floats
-from thermogear.base.errors import InputError
 from thermogear.base.parameters import long_name
 from thermogear.base.vocabulary import label
 from thermogear.case.case import DimensionlessCase
@@ -58,8 +57,6 @@ def rows(table: DimensionlessCase, section: DimensionlessCase) -> Rows:
     base: dict[str, float] = {}
     for name, parameter in SWEPT.items():
         points = by_row[name]
-        if points[0].parameter != parameter:
-            raise InputError(f"rows.{name}", points[0].parameter, allowed=parameter)
         ends[name] = (points[0].value, points[-1].value)
         given = points[0].model_arguments()
         # each row holds the others' parameters at the base set

@@ -13,6 +13,7 @@ import threading
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass, field, replace
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -34,6 +35,7 @@ from thermogear.base.plan import (
     empty_arrays,
     keep_going,
     ranges_of,
+    real,
     spread,
 )
 from thermogear.base.vocabulary import STATUS, moves
@@ -166,30 +168,27 @@ class WaterfallPlan:
     def variables(self) -> dict[str, Variable]:
         dims = ("state", "direction", "pinion_speed")
 
-        def real(words: str, units: str, *inner: str) -> Variable:
-            attributes = {"long_name": words, "units": units}
-            return Variable((*dims, *inner), "float64", float("nan"), attributes)
-
+        number = partial(real, dims)
         flags = {"long_name": "whether it moved", "flag_meanings": " ".join(STATUS)}
         return {
             "status": Variable(dims, "int8", STATUS.index("not_converged"), flags),
-            "mesh_force_rms": real("vibration of the drive flanks' force, rms", "N"),
-            "mesh_force_max": real("greatest force of the drive flanks", "N"),
-            "back_force_max": real("greatest force of the back flanks", "N"),
-            "contact_loss_share": real("share of time out of drive contact", "1"),
-            "deflection_peak_to_peak": real("approach of the drive flanks, peak to peak", "m"),
-            "bearing_force_max": real("greatest force on the bearing", "N", "bearing"),
-            "bearing_force_rms": real("vibration of the bearing's force, rms", "N", "bearing"),
-            "housing_rms": real("acceleration of the housing, rms of x and y", "m/s^2"),
-            "mesh_force_line": real("line of the drive flanks' force (peak)", "N", "order"),
-            "bearing_force_line": real(
+            "mesh_force_rms": number("vibration of the drive flanks' force, rms", "N"),
+            "mesh_force_max": number("greatest force of the drive flanks", "N"),
+            "back_force_max": number("greatest force of the back flanks", "N"),
+            "contact_loss_share": number("share of time out of drive contact", "1"),
+            "deflection_peak_to_peak": number("approach of the drive flanks, peak to peak", "m"),
+            "bearing_force_max": number("greatest force on the bearing", "N", "bearing"),
+            "bearing_force_rms": number("vibration of the bearing's force, rms", "N", "bearing"),
+            "housing_rms": number("acceleration of the housing, rms of x and y", "m/s^2"),
+            "mesh_force_line": number("line of the drive flanks' force (peak)", "N", "order"),
+            "bearing_force_line": number(
                 "line of the bearing force, larger of x and y (peak)", "N", "bearing", "order"
             ),
-            "housing_line": real(
+            "housing_line": number(
                 "line of the housing's acceleration, larger of x and y (peak)", "m/s^2", "order"
             ),
-            "end_state": real("state carried on", "1", "coordinate"),
-            "end_turn": real("mesh periods since the run began", "1"),
+            "end_state": number("state carried on", "1", "coordinate"),
+            "end_turn": number("mesh periods since the run began", "1"),
         }
 
     def coordinates(self) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]:
