@@ -248,10 +248,6 @@ class Made(Sequence[Section]):
         return len(self._there)
 
 
-SHOWN = ("first", "all", "none")
-"""How many pictures a page shows."""
-
-
 def nothing() -> Any:
     """No numbers, no tables."""
     return {}

@@ -100,7 +100,6 @@ class Critical:
     order: str
     mode: int
     mostly: str
-    amplification: float
     force: float
     lift_off: float
 
@@ -112,7 +111,7 @@ def critical_speeds(case: GearCase, state: TrainState, highest: float) -> list[C
         if order.kind == "bearing":
             continue
         rows, shapes = _critical(plan_of(case), state, state.linear, order)
-        speeds, _, gains, forces, lifts = rows
+        speeds, _, _, forces, lifts = rows
         parts = strain_shares(state.linear, shapes)
         for mode in range(int(np.sum(speeds <= highest))):
             here = {name: float(value[mode]) for name, value in parts.items()}
@@ -123,7 +122,6 @@ def critical_speeds(case: GearCase, state: TrainState, highest: float) -> list[C
                     order=order.name,
                     mode=mode + 1,
                     mostly=name_of(here, rings),
-                    amplification=float(gains[mode]),
                     force=float(forces[mode]),
                     lift_off=float(lifts[mode]),
                 )

@@ -36,7 +36,6 @@ class Orbit:
     x: Floats
     v: Floats
     loop: int
-    history: int
     section_x: Floats
     section_v: Floats
 
@@ -73,7 +72,6 @@ def orbit_of(one: Dataset) -> Orbit:
         x=x,
         v=v,
         loop=min((loop - 1) * times + 1, t.size),
-        history=t.size,
         section_x=section_x,
         section_v=section_v,
     )
