@@ -177,13 +177,14 @@ def decoded_array(code: object, text: object) -> tuple[Any, ...]:
     return struct.unpack(f"<{len(raw) // size}{letter}", raw)
 
 
-def decoded_matrix(code: object, text: object, rows: object, columns: object) -> Any:
+def decoded_matrix(code: object, text: object, rows: object, columns: object) -> list[Any]:
     """The rows of a coded matrix, row-major; a missing number of rows or columns follows."""
     flat = decoded_array(code, text)
     left_out = round(len(flat) ** 0.5) if rows is None and columns is None else -1
     try:
         shape = [left_out if one is None else int(str(one)) for one in (rows, columns)]
-        return np.reshape(flat, shape).tolist()
+        found: list[Any] = np.reshape(flat, shape).tolist()
     except ValueError as cause:
         allowed = f"{short(rows)} rows of {short(columns)} numbers"
         raise InputError("coded matrix", f"{len(flat)} values", allowed=allowed) from cause
+    return found
