@@ -2,14 +2,47 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import sys
 import time
+from collections.abc import Sequence
 from pathlib import Path
 
-from thermogear.thesis.experiment import SAMPLES_STORED, SEED, TABLE, text_of, trains
+from thermogear.base.display import MICROMETRE
+from thermogear.thesis.experiment import SAMPLES_STORED, SEED, SEEN, TABLE, Shown, trains
 from thermogear.thesis.experiment_answer import results
+from thermogear.thesis.rig_trains import ASSUMED, DIGITS, SPEEDS
 
 TARGET = Path(__file__).parents[1] / "src" / "thermogear" / "thesis" / TABLE
+
+
+def header() -> list[str]:
+    """Names of the columns of the stored table."""
+    found = [*(one.name for one in ASSUMED), *(f"label_{rpm:.0f}" for rpm in SPEEDS)]
+    for place in SEEN:
+        found += [f"{place}_channel", *(f"{place}_{rpm:.0f}" for rpm in SPEEDS)]
+        found += [f"{place}_most_{rpm:.0f}" for rpm in SPEEDS]
+    return found
+
+
+def row(one: Shown) -> list[str]:
+    """A line of the stored table: inputs in the units of their ranges, amplitudes in um."""
+    found = [f"{v:.{DIGITS}g}" for v in one.values.values()]
+    found += list(one.labels)
+    for place in SEEN:
+        found.append(one.channels[place])
+        found += [f"{MICROMETRE(v):.{DIGITS}g}" for v in (*one.amplitudes[place], *one.most[place])]
+    return found
+
+
+def text_of(rows: Sequence[Shown]) -> str:
+    """The table of ``rows`` as it is stored."""
+    into = io.StringIO()
+    writer = csv.writer(into, lineterminator="\n")
+    writer.writerow(header())
+    writer.writerows(row(one) for one in rows)
+    return into.getvalue()
 
 
 def main() -> None:

@@ -8,7 +8,9 @@ import pytest
 
 from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.case.case import GearCase, load_case, load_example
-from thermogear.case.examples import EXAMPLES, OF_THE_THESIS, example_text
+from thermogear.case.examples import EXAMPLES, example_text
+
+OF_THE_THESIS = ("rig", "table-4.2", "section-4.1")
 
 
 def ours(text: str, *overrides: str) -> dict[str, tuple[str, str]]:

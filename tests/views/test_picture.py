@@ -9,6 +9,7 @@ import sys
 from itertools import chain
 from pathlib import Path
 from types import FrameType
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,12 +20,30 @@ from test_versus_report import built, read_versus
 from thermogear import pictures
 from thermogear.views import drawing
 from thermogear.views.pages import versus
-from thermogear.views.picture import KINDS, Axis, Mark, Panel, Picture
+from thermogear.views.picture import Axis, Mark, Panel, Picture, Top
 from thermogear.views.style import COLD, INK, ramp
 from traits import traits
 
 UNIT = re.compile(r"\[[^\[\]]+\]")
 FUNCTION = re.compile(r"^def ([a-z]\w*)\([^)]*\) -> Picture:", re.MULTILINE)
+
+
+def of_json(said: dict[str, Any]) -> Picture:
+    """The picture that its JSON tells of."""
+    return Picture(**{**said, "panels": [[panel_of(one) for one in row] for row in said["panels"]]})
+
+
+def panel_of(said: dict[str, Any]) -> Panel:
+    def axis(words: dict[str, Any]) -> Axis:
+        return Axis(**{name: value for name, value in words.items() if name != "unit"})
+
+    kinds = {kind.__name__.lower(): kind for kind in drawing.DRAWN}
+    marks = [
+        kinds[mark["kind"]](**{name: value for name, value in mark.items() if name != "kind"})
+        for mark in said["marks"]
+    ]
+    top = Top(**said["top"]) if said["top"] else None
+    return Panel(**{**said, "x": axis(said["x"]), "y": axis(said["y"]), "top": top, "marks": marks})
 
 
 def of_runs(place: Path) -> dict[str, Picture]:
@@ -83,7 +102,7 @@ def test_every_function_that_makes_a_picture_is_called(every: dict[str, Picture]
     texts = {path.stem: path.read_text("utf-8") for path in folder.glob("*.py")}
     assert {(n, one) for n, text in texts.items() for one in FUNCTION.findall(text)} <= MAKERS
     kinds = {type(m) for one in every.values() for panel in chain(*one.panels) for m in panel.marks}
-    assert kinds == set(KINDS.values()) == set(drawing.DRAWN)
+    assert kinds == set(drawing.DRAWN)
 
 
 def test_every_axis_has_words_and_a_unit_in_brackets(every: dict[str, Picture]) -> None:
@@ -112,10 +131,10 @@ def test_json_holds_everything_and_draws_the_same(every: dict[str, Picture]) -> 
                 assert told[axis]["unit"] in told[axis]["words"]
             labels = [getattr(mark, "label", "") for mark in panel.marks]
             assert [mark.get("label", "") for mark in told["marks"]] == labels
-        assert Picture.from_json(said).to_json() == said, name
+        assert of_json(said).to_json() == said, name
     alone = {name: one for name, one in every.items() if "/" not in name}
     for name in needed(alone):
-        again = Picture.from_json(json.loads(json.dumps(alone[name].to_json())))
+        again = of_json(json.loads(json.dumps(alone[name].to_json())))
         assert svg(again) == svg(alone[name]), name
 
 

@@ -7,7 +7,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.analysis.bifurcations import (
@@ -24,7 +23,7 @@ from thermogear.analysis.family import Family, dimension_of, model_at
 from thermogear.analysis.orbits import Orbit, shoot
 from thermogear.analysis.section import lanes_of
 from thermogear.analysis.settle import PERIODIC, units_of
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.errors import ConvergenceError
 from thermogear.dynamics.plane import plane_of
 from thermogear.dynamics.return_map import return_map
@@ -50,7 +49,7 @@ class _Line:
     """Why an arm ends although the branch goes on."""
 
 
-def with_branches(data: xr.Dataset, family: Family, parameter: str, most_period: int) -> xr.Dataset:
+def with_branches(data: Dataset, family: Family, parameter: str, most_period: int) -> Dataset:
     """Add the branches of all periodic motions of up to ``most_period`` periods to a diagram."""
     lines: list[_Line] = []
     lost: list[str] = []
@@ -70,9 +69,7 @@ def with_branches(data: xr.Dataset, family: Family, parameter: str, most_period:
     return _stored(data, lines, family)
 
 
-def with_branches_of_states(
-    data: xr.Dataset, found: Mapping[int, xr.Dataset], units: str
-) -> xr.Dataset:
+def with_branches_of_states(data: Dataset, found: Mapping[int, Dataset], units: str) -> Dataset:
     """Add the branches of several diagrams to one, by the ``state`` each was found in.
 
     ``found`` of :func:`with_branches`, its parameter in ``units``; ``branch_state`` and
@@ -105,7 +102,7 @@ def with_branches_of_states(
 
 
 def _seeds(
-    data: xr.Dataset, family: Family, parameter: str, most_period: int
+    data: Dataset, family: Family, parameter: str, most_period: int
 ) -> Iterator[tuple[int, float, Floats]]:
     """One orbit out of every stretch of a sweep on which period and place run on."""
     values = data[parameter].values
@@ -187,7 +184,7 @@ def _cut(arm: Branch) -> tuple[str, ...]:
     return (arm.ended,) if arm.ended.startswith((GAP, str(MOST_POINTS))) else ()
 
 
-def _stored(data: xr.Dataset, lines: list[_Line], family: Family) -> xr.Dataset:
+def _stored(data: Dataset, lines: list[_Line], family: Family) -> Dataset:
     longest = max([1, *(line.values.size for line in lines)])
     shape = (len(lines), longest)
     value, x, v = (np.full(shape, np.nan) for _ in range(3))
@@ -223,7 +220,7 @@ def _shown(states: Floats, values: Floats, family: Family) -> Floats:
     return np.array([plane_of(model_at(family, float(at))).of(one) for one, at in pairs])
 
 
-def _with_bifurcations(data: xr.Dataset, lines: list[_Line], family: Family) -> xr.Dataset:
+def _with_bifurcations(data: Dataset, lines: list[_Line], family: Family) -> Dataset:
     """The bifurcations of all branches, each once, in order of the parameter."""
     rows: list[tuple[float, Bifurcation, int]] = []
     for n, line in enumerate(lines):

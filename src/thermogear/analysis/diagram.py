@@ -11,7 +11,6 @@ from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.branches import with_branches
@@ -35,6 +34,7 @@ from thermogear.analysis.outcome import (
     settle_with_status,
 )
 from thermogear.analysis.settle import Rule
+from thermogear.base.arrays import Dataset
 from thermogear.base.errors import InputError
 from thermogear.base.plan import (
     Alive,
@@ -210,7 +210,7 @@ class DiagramPlan:
                 found["end"][0, :, place] = state
         return found
 
-    def finish(self, data: xr.Dataset) -> xr.Dataset:
+    def finish(self, data: Dataset) -> Dataset:
         data.attrs |= {
             "parameter": self.parameter,
             "total_periods": int(data["used_periods"].sum()),
@@ -238,7 +238,7 @@ def orbit_diagram(
     threads: int | None = None,
     progress: Progress | None = None,
     alive: Alive = keep_going,
-) -> xr.Dataset:
+) -> Dataset:
     """The settled motion over ``values`` of a ``parameter``, up and down, from every start.
 
     ``model`` has one lane, or a return map of any dimension, and a number field ``parameter``, or

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -31,6 +31,7 @@ from thermogear.analysis.outcome import (
     start_of,
 )
 from thermogear.analysis.settle import CHAOTIC, PERIODIC, Rule
+from thermogear.base.arrays import Dataset
 from thermogear.base.errors import InputError
 from thermogear.base.plan import (
     Alive,
@@ -47,10 +48,6 @@ from thermogear.base.plan import (
     spread,
 )
 from thermogear.base.vocabulary import ASSUMED
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 MAP_RULE = Rule(chaos_periods=1000)
 TILE = 64
@@ -189,7 +186,7 @@ class MapPlan:
         for name, values in watched_arrays(self.family, points, settled).items():
             found[name][i, j] = values
 
-    def finish(self, data: xr.Dataset) -> xr.Dataset:
+    def finish(self, data: Dataset) -> Dataset:
         points = int(np.prod([len(a) for a in self.axes]))
         data.attrs |= {
             "total_periods": int(data["used_periods"].sum()),
@@ -262,7 +259,7 @@ def parameter_map(
     threads: int | None = None,
     progress: Progress | None = None,
     alive: Alive = keep_going,
-) -> xr.Dataset:
+) -> Dataset:
     """What the motion from one start settles on over two parameters.
 
     ``model`` has one lane, or a return map of any dimension, and number fields named as the two

@@ -21,7 +21,6 @@ from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from thermogear.analysis.bifurcations import BIRTH, FLIP, GRAZING, Bifurcation
 from thermogear.analysis.branches import KINDS
@@ -29,6 +28,7 @@ from thermogear.analysis.event_curve import BACK, LEFT, REACHED, event_curve
 from thermogear.analysis.family import Family, dimension_of, model_at
 from thermogear.analysis.orbits import Orbit, closed
 from thermogear.analysis.section import lanes_of
+from thermogear.base.arrays import Dataset
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.base.vocabulary import moves
 from thermogear.dynamics.lanes import mixed
@@ -57,8 +57,8 @@ class _Event(NamedTuple):
 
 
 def matches(
-    one: xr.Dataset,
-    other: xr.Dataset,
+    one: Dataset,
+    other: Dataset,
     families: tuple[Family, Family],
     *,
     most: int = MOST_FOLLOWED,
@@ -127,7 +127,7 @@ def _same(event: _Event, kind: _Event, value: float, near: float) -> bool:
     return event[:2] == kind[:2] and abs(event.value - value) <= near
 
 
-def _events(data: xr.Dataset, near: float) -> list[_Event]:
+def _events(data: Dataset, near: float) -> list[_Event]:
     """The bifurcations of a diagram, grazings last; a halving is the doubling that it ends at."""
     found: list[_Event] = []
     columns = [data[f"bifurcation_{name}"].values for name in ("kind", "period", "value", "x", "v")]

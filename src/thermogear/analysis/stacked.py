@@ -5,17 +5,15 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.analysis.maps import MapPlan
+from thermogear.base.arrays import Dataset
 from thermogear.base.errors import InputError
 from thermogear.base.plan import Alive, Arrays, Coordinate, Key, Variable
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 AXIS = "state"
 
@@ -86,7 +84,7 @@ class StackedPlan:
         found = self.plans[key[0]].compute(key[1:], inner, alive)
         return {name: values[None] for name, values in found.items()}
 
-    def finish(self, data: xr.Dataset) -> xr.Dataset:
+    def finish(self, data: Dataset) -> Dataset:
         whole = self.plans[0].finish(data)
         whole.attrs["full_periods"] *= len(self.plans)
         return whole

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import importlib
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from typing import Any
 
 
@@ -133,6 +133,16 @@ def meant(name: str, known: Iterable[str], *, cutoff: float) -> str | None:
     """Advice for an unknown ``name`` that is like a known one: alike by ``cutoff`` 0..1 or more."""
     close = difflib.get_close_matches(name, list(known), n=1, cutoff=cutoff)
     return f"did you mean {close[0]!r}?" if close else None
+
+
+def require_choice(field: str, value: str, known: Collection[str], why: str | None = None) -> None:
+    """Refuse a word that is none of ``known``, with the nearest.
+
+    >>> require_choice("end", "tip", ("tip", "root"))
+    """
+    if value not in known:
+        allowed, fix = " | ".join(known), nearest(str(value), known)
+        raise InputError(field, repr(value), allowed=allowed, why=why, fix=fix)
 
 
 def printable(text: str) -> str:

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from thermogear.base import bounds
 from thermogear.base.arrays import Floats
-from thermogear.base.errors import InputError, nearest
+from thermogear.base.errors import InputError, nearest, require_choice
 from thermogear.base.units import ZERO_CELSIUS
 
 
@@ -250,13 +250,7 @@ class Lubricant:
         return self.flash_point or NO_BATH
 
     def __post_init__(self) -> None:
-        if self.kind not in LUBRICANT_KINDS:
-            raise InputError(
-                "lubricant.kind",
-                repr(self.kind),
-                allowed=" | ".join(LUBRICANT_KINDS),
-                fix=nearest(self.kind, LUBRICANT_KINDS),
-            )
+        require_choice("lubricant.kind", self.kind, LUBRICANT_KINDS)
         for field in (
             "walther_a",
             "walther_b",

@@ -15,13 +15,12 @@ from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
 from itertools import product
-from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
+from typing import Any, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-if TYPE_CHECKING:
-    import xarray as xr
+from thermogear.base.arrays import Dataset
 
 Arrays = dict[str, NDArray[Any]]
 Key = tuple[int, ...]
@@ -42,6 +41,12 @@ class Variable:
     dtype: str
     fill: float | int
     attributes: Mapping[str, Any] = field(default_factory=dict)
+
+
+def real(dims: tuple[str, ...], words: str, units: str, *inner: str) -> Variable:
+    """A stored number over ``dims`` and ``inner`` ones, nan where none was computed."""
+    about = {"long_name": words, "units": units}
+    return Variable((*dims, *inner), "float64", float("nan"), about)
 
 
 def axis_coordinates(
@@ -92,7 +97,7 @@ class Plan(Protocol):
     def compute(self, key: Key, before: Arrays | None, alive: Alive) -> Arrays:
         """The arrays of a chunk; ``before``: those of the chunk it needs."""
 
-    def finish(self, data: xr.Dataset) -> xr.Dataset:
+    def finish(self, data: Dataset) -> Dataset:
         """Add what follows from the whole."""
 
     def pilot(self, share: float, *, turn: int) -> float:
@@ -153,7 +158,7 @@ def before_along(plan: Plan, key: Key, name: str) -> Key | None:
     return (*key[:-1], place) if 0 <= place < -(-plan.sizes[name] // plan.cuts[name]) else None
 
 
-def dataset_of(plan: Plan, arrays: Arrays) -> xr.Dataset:
+def dataset_of(plan: Plan, arrays: Arrays) -> Dataset:
     """The finished, labelled result."""
     import xarray as xr
 
@@ -265,7 +270,7 @@ def gather(
     threads: int | None = None,
     progress: Progress | None = None,
     alive: Alive = keep_going,
-) -> xr.Dataset:
+) -> Dataset:
     """Compute the whole plan in memory; ``alive`` raises to end the work."""
     whole = empty_arrays(plan)
     keys = keys_of(plan)

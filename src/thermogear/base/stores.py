@@ -14,15 +14,13 @@ import zlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.errors import InputError
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 RESULT = "result.zarr"
 MANIFEST = "manifest.json"
@@ -140,7 +138,7 @@ class _Damage(Exception):
     """What is not as it was written."""
 
 
-def read_store(directory: str | Path) -> xr.Dataset:
+def read_store(directory: str | Path) -> Dataset:
     """A finished store as a Dataset in memory: numbers and metadata checked against the journal.
 
     Raises InputError where the directory is no store, is not finished, or is damaged, be it by a
@@ -168,7 +166,7 @@ def read_store(directory: str | Path) -> xr.Dataset:
         with xr.open_zarr(
             place / RESULT, consolidated=False, mask_and_scale=False, zarr_format=3
         ) as opened:
-            data: xr.Dataset = opened.load()
+            data: Dataset = opened.load()
         _check_numbers(data, manifests[vouched.manifest]["chunks"], vouched)
     except Exception as error:  # whatever a reader makes of broken bytes
         what = str(error) if isinstance(error, _Damage) else f"{type(error).__name__}: {error}"
@@ -193,7 +191,7 @@ def foreign_names(result: Path, metadata: Iterable[str]) -> list[str]:
     return sorted(p.name for p in result.iterdir() if p.is_dir() and p.name not in own)
 
 
-def _check_numbers(data: xr.Dataset, cuts: Mapping[str, int], vouched: Vouched) -> None:
+def _check_numbers(data: Dataset, cuts: Mapping[str, int], vouched: Vouched) -> None:
     counts = [-(-data.sizes[name] // n) for name, n in cuts.items()]
     if set(vouched.chunks) != set(np.ndindex(*counts)):
         have = len(vouched.chunks)

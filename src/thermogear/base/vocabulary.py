@@ -8,15 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.arrays import Dataset, Variable
 from thermogear.base.errors import InputError, nearest
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 @dataclass(frozen=True)
@@ -401,7 +399,7 @@ def label_words(name: str, *, followed: int, starts: int) -> str:
     return f"chaotic for {length} periods, {starts} start{'s' * (starts > 1)}"
 
 
-def told_labels(data: xr.Dataset) -> NDArray[np.str_]:
+def told_labels(data: Dataset) -> NDArray[np.str_]:
     """:func:`label_words` of every stored label, in its shape."""
     names = data["label"].values.astype(str)
     seen = [
@@ -415,7 +413,7 @@ def told_labels(data: xr.Dataset) -> NDArray[np.str_]:
     return np.array(told, dtype=np.str_).reshape(names.shape)
 
 
-def told_operating(data: xr.Dataset) -> int:
+def told_operating(data: Dataset) -> int:
     """Place of the operating point that represents the rest: the first with a hot state, else 0."""
     if "status" not in data or "operating" not in data["status"].dims:
         return 0
@@ -445,7 +443,7 @@ FLAGS = {
 
 def dressed(
     dims: str | tuple[str, ...], values: ArrayLike, unit: str = "", words: str = ""
-) -> xr.Variable:
+) -> Variable:
     """A variable that is no part of the vocabulary, with its unit and long name where given."""
     import xarray as xr
 
@@ -453,7 +451,7 @@ def dressed(
     return xr.Variable(dims, np.asarray(values), {k: v for k, v in told.items() if v})
 
 
-def labelled(name: str, entry: Any) -> xr.Variable:
+def labelled(name: str, entry: Any) -> Variable:
     """One variable of :func:`label`."""
     import xarray as xr
 
@@ -473,7 +471,7 @@ def label(
     variables: Mapping[str, Any],
     coordinates: Mapping[str, Any] | None = None,
     attributes_of_all: Mapping[str, Any] | None = None,
-) -> xr.Dataset:
+) -> Dataset:
     """The Dataset of ``variables`` and ``coordinates`` by name, with units and long names.
 
     An entry is (dims, values) of a name in :data:`QUANTITIES` or :data:`FLAGS`, or of texts, which

@@ -65,6 +65,18 @@ def parse_axes(case: Case, texts: Sequence[str]) -> dict[str, Floats]:
     return found
 
 
+def split_change(text: str) -> tuple[str, str]:
+    """Both sides of NAME=VALUE.
+
+    >>> split_change("state=hot")
+    ('state', 'hot')
+    """
+    name, sign, value = text.partition("=")
+    if not sign:
+        raise InputError("change", repr(text), allowed="NAME=VALUE")
+    return name, value
+
+
 def parse_numbers(texts: Sequence[str]) -> dict[str, float]:
     """NAME=VALUE of numbers of the dimensionless equation, each once.
 
@@ -72,10 +84,7 @@ def parse_numbers(texts: Sequence[str]) -> dict[str, float]:
     {'frequency': 0.7}
     """
     found: dict[str, float] = {}
-    for text in texts:
-        name, sign, value = text.partition("=")
-        if not sign:
-            raise InputError("change", repr(text), allowed="NAME=VALUE")
+    for name, value in map(split_change, texts):
         full = number_parameter(name).name
         if full in found:
             raise InputError("change", f"{full} twice", allowed="each number once")

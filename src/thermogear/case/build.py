@@ -211,8 +211,7 @@ def faults(file: GearFile) -> list[InputError]:
         partial(lubricant, file),
     )
     found = []
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ValidityWarning)
+    with warnings.catch_warnings(action="ignore", category=ValidityWarning):
         for check in checks:
             try:
                 check()

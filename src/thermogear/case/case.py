@@ -9,12 +9,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import ValidationError
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import Periodic
 from thermogear.base.materials import MATERIALS, Material
@@ -49,9 +50,6 @@ from thermogear.mesh.balance import Gearbox, HeatBalance, heat_balance
 from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import ALIKE, Operating, Temperatures, Varied
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 def decided(
@@ -199,7 +197,7 @@ class GearCase(Case):
 
     def cycle(
         self, operating: Operating, model: MeshModel, path_positions: int | None = None
-    ) -> xr.Dataset:
+    ) -> Dataset:
         """The mesh cycle at ``operating`` under ``model``: the case's housing, flanks and grids.
 
         ``path_positions`` replaces the case's number along the path of contact.

@@ -22,10 +22,6 @@ EXAMPLES = {
 }
 
 
-OF_THE_THESIS = ("rig", "table-4.2", "section-4.1")
-"""The thesis's own cases."""
-
-
 def example_text(name: str) -> str:
     """The text of a ready-made case; an unknown name says the nearest."""
     stem = name.removesuffix(".toml")

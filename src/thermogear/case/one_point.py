@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from thermogear.base.errors import InputError, nearest
+from thermogear.base.errors import InputError, require_choice
 from thermogear.base.excitation import Excitation
 from thermogear.base.parameters import NUMBERS, PARAMETERS, long_name
 from thermogear.base.units import RPM
@@ -253,8 +253,7 @@ def named(option: str, name: str | None, known: list[str]) -> str:
     """``name`` if it is known, the first of the known without one."""
     if name is None:
         return known[0]
-    if name not in known:
-        raise InputError(option, repr(name), allowed=" | ".join(known), fix=nearest(name, known))
+    require_choice(option, name, known)
     return name
 
 

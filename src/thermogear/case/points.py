@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.arrays import Floats, Whole
+from thermogear.base.arrays import Dataset, Floats, Whole
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import Excitations, Periodic
 from thermogear.base.vocabulary import moves
@@ -18,9 +18,6 @@ from thermogear.case.case import GearCase
 from thermogear.dynamics.lanes import Lanes
 from thermogear.dynamics.models import DeadZoneModel, TorsionalModel
 from thermogear.mesh.excite import excitations as mesh_excitations
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +99,7 @@ class Points:
 
 
 def excitations(
-    case: GearCase, cycle: xr.Dataset | Mapping[str, NDArray[Any]], harmonics: int | None = None
+    case: GearCase, cycle: Dataset | Mapping[str, NDArray[Any]], harmonics: int | None = None
 ) -> Excitations:
     """The excitation of every operating point of ``cycle``, of ``case``.
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base import vocabulary
+from thermogear.base.arrays import Dataset
 from thermogear.base.errors import InputError
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import HEAT_NOT_SETTLED, still
@@ -24,9 +25,6 @@ from thermogear.mesh.cycle import Cycle, warn_of_pitch
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 ALLOWED = "undeformed | hot | computed | degrees Celsius"
 
@@ -145,7 +143,7 @@ class ThermalState:
         if not self.settled(case, model, place):
             raise still(HEAT_NOT_SETTLED, self.words)
 
-    def cycle(self, case: GearCase, model: MeshModel) -> xr.Dataset:
+    def cycle(self, case: GearCase, model: MeshModel) -> Dataset:
         """The mesh cycle of every operating point, nan where nothing is known of its temperatures.
 
         Points are heat_not_settled where these are open; undeformed gears ask only for the oil's.

@@ -31,8 +31,7 @@ def of_the_thesis(case: Case) -> bool:
 
 @lru_cache(maxsize=8)
 def _example(name: str) -> Any:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ValidityWarning)
+    with warnings.catch_warnings(action="ignore", category=ValidityWarning):
         return load_example(name)
 
 

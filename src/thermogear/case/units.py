@@ -186,18 +186,14 @@ def convert(number: float, unit: str, kind: Kind) -> float:
 
 
 def _by_pint(number: float, unit: str, kind: Kind) -> float:
-    example = f'write for instance "{kind.example}"'
     meant = _SLIPS.get(kind.name, {}).get(unit)
-    slip = f'did you mean "{number:g} {meant}"?' if meant else example
-
-    def refused(why: str, fix: str) -> InputError:
-        return InputError("", f"{number:g} {unit}", why=why, fix=fix)
-
+    slip = f'did you mean "{number:g} {meant}"?' if meant else None
+    got = f"{number:g} {unit}"
     if unit in _DOUBTFUL:
-        raise refused(f"{unit!r} may be a degree or a gon", slip)
+        raise _refused(kind, got, f"{unit!r} may be a degree or a gon", slip)
     plain = _spelled(unit, kind)
     if len(plain) > 40 or not _UNIT.fullmatch(plain):
-        raise refused(f"what follows the number is no unit of {kind.name}", slip)
+        raise _refused(kind, got, f"what follows the number is no unit of {kind.name}", slip)
     registry = _registry()
     try:
         parsed = registry.parse_units(plain)
@@ -206,7 +202,7 @@ def _by_pint(number: float, unit: str, kind: Kind) -> float:
         fits = parsed.dimensionality == registry.parse_units(kind.si).dimensionality
     except Exception as cause:
         # pint answers nonsense with errors of many classes (lookup, syntax, tokens, arithmetic)
-        raise refused(f"unit {unit!r} is not known", slip) from cause
+        raise _refused(kind, got, f"unit {unit!r} is not known", slip) from cause
     if kind.name == "rotational speed" and str(parsed) in ("hertz", "1 / second"):
         slip = f'did you mean "{number:g} rps" or "{number:g} rad/s"?'
     names = str(parsed)
@@ -215,10 +211,15 @@ def _by_pint(number: float, unit: str, kind: Kind) -> float:
     if kind.name == "temperature":
         fits = fits and "delta" not in names
     if not fits:
-        raise refused(f"{unit!r} is no unit of {kind.name}", slip)
+        raise _refused(kind, got, f"{unit!r} is no unit of {kind.name}", slip)
     if kind.name == "temperature difference" and parsed != registry.kelvin and "delta" not in names:
-        raise refused(f"{unit!r} has its zero elsewhere, a difference has none", slip)
+        raise _refused(kind, got, f"{unit!r} has its zero elsewhere, a difference has none", slip)
     return float(registry.Quantity(number, parsed).to(kind.si).magnitude)
+
+
+def _refused(kind: Kind, got: object, why: str, fix: str | None = None) -> InputError:
+    example = f'write for instance "{kind.example}"'
+    return InputError("", got, why=why, fix=fix or example)
 
 
 def read_quantity(text: object, kind_name: str) -> float:
@@ -228,17 +229,12 @@ def read_quantity(text: object, kind_name: str) -> float:
     0.004
     """
     kind = KINDS[kind_name]
-    example = f'write for instance "{kind.example}"'
-
-    def refused(why: str, fix: str = example) -> InputError:
-        return InputError("", short(text), why=why, fix=fix)
-
     if isinstance(text, int | float) and not isinstance(text, bool):
         finite = math.isfinite(text)
-        fix = f'write for instance "{short(text)} {kind.shown}"' if finite else example
-        raise refused("a bare number has no unit", fix)
+        fix = f'write for instance "{short(text)} {kind.shown}"' if finite else None
+        raise _refused(kind, short(text), "a bare number has no unit", fix)
     if not isinstance(text, str):
-        raise refused(f"not a text with number and unit of {kind.name}")
+        raise _refused(kind, short(text), f"not a text with number and unit of {kind.name}")
     return _of_text(text, kind)
 
 
@@ -259,21 +255,23 @@ def rounding(text: str, kind_name: str) -> float:
 @lru_cache(maxsize=4096)
 def _of_text(text: str, kind: Kind) -> float:
     """Remembered: a batch of cases reads the same texts and bounds again and again."""
-    example = f'write for instance "{kind.example}"'
-
-    def refused(why: str, fix: str = example) -> InputError:
-        return InputError("", short(text), why=why, fix=fix)
-
     if re.match(r"\s*[+-]?\d+,\d", text):
-        raise refused("decimals follow a point, not a comma", _with_point(text, kind))
+        raise _refused(
+            kind, short(text), "decimals follow a point, not a comma", _with_point(text, kind)
+        )
     match = _TEXT.fullmatch(text)
     if match is None:
-        raise refused("no number at its start")
+        raise _refused(kind, short(text), "no number at its start")
     number, unit = float(match["number"]), match["unit"]
     if not math.isfinite(number):
-        raise refused("not finite")
+        raise _refused(kind, short(text), "not finite")
     if not unit:
-        raise refused("the unit is missing", f'write for instance "{match["number"]} {kind.shown}"')
+        raise _refused(
+            kind,
+            short(text),
+            "the unit is missing",
+            f'write for instance "{match["number"]} {kind.shown}"',
+        )
     try:
         return convert(number, unit, kind)
     except InputError as error:

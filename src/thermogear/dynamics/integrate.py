@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear import __version__
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.bounds import whole
 from thermogear.base.errors import InputError, nearest
 from thermogear.dynamics import adaptive, exact
@@ -22,10 +22,6 @@ from thermogear.dynamics.load_shared import LoadSharedModel, simulate_shared
 from thermogear.dynamics.models import ClearanceModel, PairModel
 from thermogear.dynamics.outcome import DIVERGED, Result, dataset
 from thermogear.dynamics.pair import four_of, simulate_pair, with_angles
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 METHODS = {
     "exact": "event-exact affine maps",
@@ -186,7 +182,7 @@ def simulate(
     progress: Progress | None = None,
     rtol: float = 1e-12,
     atol: float = 1e-14,
-) -> xr.Dataset:
+) -> Dataset:
     """Run ``model`` for ``discard`` + ``periods`` mesh periods from phase 0.
 
     ``model``: :class:`TorsionalModel`, :class:`DeadZoneModel` (lanes side by side),
@@ -309,7 +305,7 @@ class _Run:
 
 def _batch(
     lanes: Lanes, start: Floats, run: _Run, threads: int | None, progress: Progress | None
-) -> xr.Dataset:
+) -> Dataset:
     """Lanes side by side, in blocks on threads."""
     try:
         starts = np.broadcast_to(start, (len(lanes), 2))
@@ -336,14 +332,14 @@ def _batch(
     return dataset(result, period=lanes.period, **run.counts)
 
 
-def _give_units(data: xr.Dataset, *, si: bool) -> None:
+def _give_units(data: Dataset, *, si: bool) -> None:
     """Units of displacement, velocity and time: SI or pure numbers."""
     for name, unit in (("x", "m"), ("v", "m/s"), ("time", "s")):
         for variable in {name, f"section_{name}"} & data.variables.keys():
             data[variable].attrs["units"] = unit if si else "1"
 
 
-def _free(model: object, start: Floats, run: _Run) -> xr.Dataset:
+def _free(model: object, start: Floats, run: _Run) -> Dataset:
     """Any model with ``derivative`` and ``period``: x, x' of two states, else each by its name.
 
     The names are the model's ``states``, or y1, y2, ...; x and x' of more than two states come from
@@ -386,7 +382,7 @@ def _free(model: object, start: Floats, run: _Run) -> xr.Dataset:
     return data if relative is not None else data.drop_vars(["x", "v", "section_x", "section_v"])
 
 
-def _with_states(data: xr.Dataset, model: object, *, sections: Floats, path: Floats) -> xr.Dataset:
+def _with_states(data: Dataset, model: object, *, sections: Floats, path: Floats) -> Dataset:
     """``data`` with each state of ``model`` by its name: (point, sample) and (point, section)."""
     count = sections.shape[-1]
     names = [str(name) for name in getattr(model, "states", ())]

@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import Excitation, Periodic
 from thermogear.base.pair_springs import PairSprings
 from thermogear.dynamics.kernels.shared import advance_shared
 from thermogear.dynamics.outcome import Result, dataset
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 NO_ERROR = Periodic(0.0)
 
@@ -112,7 +108,7 @@ class LoadSharedModel:
 
 def simulate_shared(
     model: LoadSharedModel, start: Floats, *, periods: int, discard: int, steps: int, samples: int
-) -> xr.Dataset:
+) -> Dataset:
     """Classical Runge-Kutta steps of ``model`` from (y, y'); see ``simulate``."""
     if start.shape != (2,):
         raise InputError("initial_state", f"shape {start.shape}", allowed="(y, y')")

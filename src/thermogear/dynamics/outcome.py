@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.vocabulary import STATUS
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 DIVERGED = STATUS.index("diverged")
 SIDES = ("back", "free", "drive")
@@ -31,7 +26,7 @@ class Result:
 
 def dataset(
     result: Result, *, period: NDArray[np.float64], periods: int, discard: int, samples: int
-) -> xr.Dataset:
+) -> Dataset:
     import xarray as xr
 
     lanes = period.size

@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.errors import InputError
 from thermogear.dynamics import adaptive
 from thermogear.dynamics.kernels.rk4 import advance_pair
 from thermogear.dynamics.models import PairModel
 from thermogear.dynamics.outcome import Result, dataset
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 def four_of(start: Floats, model: PairModel) -> Floats:
@@ -26,7 +21,7 @@ def four_of(start: Floats, model: PairModel) -> Floats:
     return model.start(x=float(start[0]), v=float(start[1]))
 
 
-def with_angles(data: xr.Dataset, model: PairModel, start: Floats) -> xr.Dataset:
+def with_angles(data: Dataset, model: PairModel, start: Floats) -> Dataset:
     """The two rotations from x and the rigid mode, whose momentum changes with T1/r1 - T2/r2."""
     (i1, i2), (r1, r2), (t1, t2) = model.inertias, model.base_radii, model.torques
     mass = model.equivalent_mass
@@ -69,7 +64,7 @@ def simulate_pair(
     steps: int,
     samples: int,
     tolerances: tuple[float, float],
-) -> xr.Dataset:
+) -> Dataset:
     """Both rotations integrated as they are: four states."""
     state = np.array(four_of(start, model), dtype=float)
     total = discard + periods

@@ -32,7 +32,7 @@ from thermogear.front import (
     verify_commands,
     versus_commands,
 )
-from thermogear.front.lines import say, show_path, system_error, warnings_as_lines
+from thermogear.front.lines import put_text, say, show_path, system_error, warnings_as_lines
 
 if TYPE_CHECKING:
     from thermogear.base.progress import Progress
@@ -264,7 +264,7 @@ def example(name: str | None, output: str | None) -> None:
         for known, words in EXAMPLES.items():
             click.echo(f"{known:<12} {words}")
         return
-    _put(example_text(name), output)
+    put_text(example_text(name), output)
 
 
 @cli.command()
@@ -273,17 +273,7 @@ def schema(output: str | None) -> None:
     """Print the JSON schema of a case file."""
     from thermogear.case.schema import json_schema
 
-    _put(json.dumps(json_schema(), indent=2, ensure_ascii=False) + "\n", output)
-
-
-def _put(text: str, output: str | None) -> None:
-    """Print ``text``, or write it to a new file and print its name."""
-    if output is None:
-        click.echo(text, nl=False)
-        return
-    from thermogear.base.files import put_new
-
-    show_path(put_new(Path(output), text))
+    put_text(json.dumps(json_schema(), indent=2, ensure_ascii=False) + "\n", output)
 
 
 for _list in (

@@ -8,6 +8,7 @@ import sys
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TextIO
 
 import click
@@ -26,6 +27,16 @@ def one_line(text: object) -> str:
 def show_path(path: object, before: str = "") -> None:
     """A path on standard output, by itself or after the words ``before``."""
     click.echo(f"{before}{printable(str(path))}")
+
+
+def put_text(text: str, output: str | None) -> None:
+    """Print ``text``, or write it to a new file and print its name."""
+    if output is None:
+        click.echo(text, nl=False)
+        return
+    from thermogear.base.files import put_new
+
+    show_path(put_new(Path(output), text))
 
 
 def say(kind: str, text: object) -> None:
@@ -84,8 +95,7 @@ def warnings_as_lines() -> Iterator[None]:
     lines, root = _Lines(), logging.getLogger()
     root.addHandler(lines)
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("always", ValidityWarning)
+        with warnings.catch_warnings(action="always", category=ValidityWarning):
             warnings.showwarning = lines.show
             yield
     finally:

@@ -10,7 +10,7 @@ from typing import Any
 import click
 
 from thermogear.base.errors import InputError
-from thermogear.front.lines import show_path
+from thermogear.front.lines import put_text, show_path
 
 NEEDED = {
     "teeth": ("Teeth of pinion and wheel", "20 40"),
@@ -68,7 +68,7 @@ def new(output: str | None, **given: Any) -> None:
       thermogear new --teeth 20 40 --module "3 mm" --face-width "30 mm" \\
         --torque "80 N m" --speed "3000 rpm" -o mine.toml
     """
-    from thermogear.base.files import put_new, require_new_file
+    from thermogear.base.files import require_new_file
     from thermogear.case.new import NewCase
 
     if output is not None:
@@ -92,11 +92,9 @@ def new(output: str | None, **given: Any) -> None:
         if given[name] is not None:
             given[name] = _from(folder, given[name])
     text = NewCase(**{k: v for k, v in given.items() if v is not None}).text(folder)
-    if output is None:
-        click.echo(text, nl=False)
-        return
-    show_path(put_new(Path(output), text))
-    show_path(output, "next: thermogear answers ")
+    put_text(text, output)
+    if output is not None:
+        show_path(output, "next: thermogear answers ")
 
 
 def _from(folder: Path, chart: str) -> str:

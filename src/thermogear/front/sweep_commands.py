@@ -123,7 +123,7 @@ def bifurcation(
     branch_period: int, against: tuple[str, ...], output: str, as_json: bool, **options: Any,
 ) -> None:  # fmt: skip
     """Orbit diagram of CASE over one parameter, up and down, with located bifurcations."""
-    from thermogear.case.axes import parse_axis, parse_numbers
+    from thermogear.case.axes import parse_axis, parse_numbers, split_change
     from thermogear.results.files import claimed
     from thermogear.study.diagrams import case_diagram, overlaid
 
@@ -150,7 +150,7 @@ def bifurcation(
         return
     other_state = state
     _estimate_alone(options, as_json)
-    second: dict[str, str] = dict(_split(text) for text in against)
+    second: dict[str, str] = dict(map(split_change, against))
     for given in second if read.kind == "gear" else ():
         if given != "state":
             raise InputError("--against", repr(given), allowed="state=VALUE of a gear case",
@@ -373,13 +373,6 @@ def _choice(
             )  # fmt: skip
     said = options["state"]
     return options["bundle"] or "", HOT if said is None else ThermalState.parse(said, option)
-
-
-def _split(text: str) -> tuple[str, str]:
-    name, sign, value = text.partition("=")
-    if not sign:
-        raise InputError("change", repr(text), allowed="NAME=VALUE")
-    return name, value
 
 
 # --- running ------------------------------------------------------------------------------

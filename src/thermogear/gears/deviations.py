@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base import bounds
 from thermogear.base.arrays import Floats
-from thermogear.base.errors import GeometryError, InputError, nearest
+from thermogear.base.errors import GeometryError, InputError, require_choice
 from thermogear.gears.geometry import Gear
 from thermogear.gears.pair import GearPair
 
@@ -71,17 +71,6 @@ class Deviation(Protocol):
     def gap(self, at: Contacts) -> Floats:
         """e [m], > 0 where material is missing; leading axes are operating points."""
         ...
-
-
-def require_choice(field: str, value: str, known: tuple[str, ...]) -> None:
-    """Refuse a word that is none of ``known``, with the nearest.
-
-    >>> require_choice("end", "tip", ("tip", "root"))
-    """
-    if value not in known:
-        raise InputError(
-            field, repr(value), allowed=" | ".join(known), fix=nearest(str(value), known)
-        )
 
 
 class FlankShape(ABC):

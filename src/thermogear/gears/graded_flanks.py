@@ -17,9 +17,9 @@ from numpy.typing import ArrayLike
 
 from thermogear.base import bounds
 from thermogear.base.arrays import Floats
-from thermogear.base.errors import InputError
+from thermogear.base.errors import InputError, require_choice
 from thermogear.gears.accuracy import flank_tolerances
-from thermogear.gears.deviations import FLANKS, GEARS, FlankShape, active_profile, require_choice
+from thermogear.gears.deviations import FLANKS, GEARS, FlankShape, active_profile
 from thermogear.gears.pair import GearPair
 
 USED = (0.8, 1.0)

@@ -26,10 +26,10 @@ from numpy.typing import ArrayLike
 
 from thermogear.base import bounds
 from thermogear.base.arrays import Floats
-from thermogear.base.errors import GeometryError
+from thermogear.base.errors import GeometryError, require_choice
 from thermogear.gears.candidates import MeshPoints
 from thermogear.gears.corner import contact_point, off_path
-from thermogear.gears.deviations import GEARS, Contacts, require_choice
+from thermogear.gears.deviations import GEARS, Contacts
 from thermogear.gears.elements import Integers
 from thermogear.gears.geometry import Gear, millimetres
 from thermogear.gears.pair import GearPair

@@ -12,6 +12,10 @@ from thermogear.base.errors import InputError
 
 FILMS = ("film_parameter", "central_film_parameter")
 """What is infinite where a pair carries nothing."""
+POSITIVE = (
+    "reduced_radius", "viscosity", "kinematic_viscosity", "bath_viscosity", "pressure_viscosity",
+)  # fmt: skip
+"""What is never zero."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -80,18 +84,9 @@ class ContactState:
     lubricant_kind: str = "mineral"
 
     def __post_init__(self) -> None:
-        for name in ("line_load", "speed_1", "speed_2", "pressure", "roughness"):
-            self._check(name, positive=False)
-        for name in ("reduced_radius", "viscosity"):
-            self._check(name, positive=True)
-        if self.kinematic_viscosity is not None:
-            self._check("kinematic_viscosity", positive=True)
-        for name in FILMS:
-            if getattr(self, name) is not None:
-                self._check(name, positive=False)
-        for name in ("bath_viscosity", "pressure_viscosity"):
-            if getattr(self, name) is not None:
-                self._check(name, positive=True)
+        for name, values in vars(self).copy().items():
+            if values is not None and name not in ("pitch_point", "lubricant_kind"):
+                self._check(name, positive=name in POSITIVE)
 
     def needed(self, name: str, law: str) -> Floats:
         """An optional field as an array, or an error that says which law needs it."""

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from thermogear.base.arrays import Floats
-from thermogear.base.errors import InputError, nearest
+from thermogear.base.errors import InputError, require_choice
 from thermogear.base.materials import Material
 from thermogear.heat.temperature import radial_temperature
 
@@ -179,12 +179,8 @@ def _log_moment(radius: ArrayLike, bore_radius: ArrayLike) -> Floats:
 
 def _support(bore: str, plane: str, expansion: float, poisson: float) -> tuple[float, float]:
     """(lambda, nu) of the plane problem; refuses unknown names."""
-    if bore not in BORES:
-        raise InputError("bore", repr(bore), allowed=" | ".join(BORES), fix=nearest(bore, BORES))
-    if plane not in PLANES:
-        raise InputError(
-            "plane", repr(plane), allowed=" | ".join(PLANES), fix=nearest(plane, PLANES)
-        )
+    require_choice("bore", bore, BORES)
+    require_choice("plane", plane, PLANES)
     if plane == "strain":
         return expansion * (1.0 + poisson), poisson / (1.0 - poisson)
     return expansion, poisson

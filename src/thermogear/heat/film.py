@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.arrays import Floats
-from thermogear.base.errors import InputError, nearest
+from thermogear.base.errors import InputError, require_choice
 from thermogear.base.materials import Lubricant
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import REGIMES
@@ -57,14 +57,7 @@ _ISO = {  # c, e of alpha_38 = c eta_38^e, eta in Pa s
 
 
 def _of_kind(kind: str, table: dict[str, tuple[float, float]], law: str) -> tuple[float, float]:
-    if kind not in table:
-        raise InputError(
-            "lubricant.kind",
-            repr(kind),
-            allowed=" | ".join(table),
-            why=f"{law} has no constants for it",
-            fix=nearest(kind, table),
-        )
+    require_choice("lubricant.kind", kind, table, f"{law} has no constants for it")
     return table[kind]
 
 
@@ -248,10 +241,7 @@ def film_thickness(
     >>> f"{1e6 * h:.3f} um"
     '0.447 um'
     """
-    if law not in FILM_LAWS:
-        raise InputError(
-            "film law", repr(law), allowed=" | ".join(FILM_LAWS), fix=nearest(law, FILM_LAWS)
-        )
+    require_choice("film law", law, FILM_LAWS)
     film = FILM_LAWS[law](line_load, entrainment, viscosity, coefficient, reduced_radius, modulus)
     return np.asarray(film * np.asarray(thermal_factor))
 

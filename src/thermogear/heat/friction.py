@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, nearest
-from thermogear.heat.contact_state import ContactState, PitchPoint
+from thermogear.heat.contact_state import ContactState
 from thermogear.heat.film import RMS_OF_MEAN_ROUGHNESS, rms_roughness
 from thermogear.heat.law_parameters import (
     Bounded,
@@ -85,9 +85,6 @@ def beyond(law: FrictionLaw, values: Mapping[str, ArrayLike | None]) -> NDArray[
 
 def _spread(mu: Floats, state: ContactState) -> Floats:
     return np.broadcast_to(mu, state.shape).copy()
-
-
-_ANY: Mapping[str, tuple[float, float]] = MappingProxyType({})
 
 
 def benedict_kelley(
@@ -231,7 +228,7 @@ class ConstantDry:
     name: ClassVar[str] = "dry"
     regime: ClassVar[str] = "dry"
     source: ClassVar[str] = "a constant, as the case gives it"
-    ranges: ClassVar[Mapping[str, tuple[float, float]]] = _ANY
+    ranges: ClassVar[Mapping[str, tuple[float, float]]] = MappingProxyType({})
 
     def __post_init__(self) -> None:
         constant_dry(0.0, self.coefficient)
@@ -327,9 +324,10 @@ class LambdaBlend(Bounded):
 
 
 def _of_mesh(
-    at: PitchPoint, state: ContactState
+    state: ContactState, law: str
 ) -> tuple[ArrayLike, ArrayLike, ArrayLike, ArrayLike, ArrayLike]:
     """What every mean of the mesh takes first: load, speed, radius, oil, roughness (SI)."""
+    at = state.pitch(law)
     return at.line_load, at.sum_speed, at.reduced_radius, state.oil_viscosity, state.roughness
 
 
@@ -342,13 +340,11 @@ class Schlenk(Bounded):
     name: ClassVar[str] = "schlenk"
     regime: ClassVar[str] = "mixed, mean of the mesh"
     source: ClassVar[str] = "Schlenk, ISO/TR 14179-2; X_L of FZG tests (Fernandes, Seabra)"
-    ranges: ClassVar[Mapping[str, tuple[float, float]]] = _ANY
 
     def __call__(self, state: ContactState) -> Floats:
-        at = state.pitch(self.name)
         kind = lubricant_factor(state.lubricant_kind, FZG_LUBRICANT_FACTOR)
         factor = kind if self.factor is None else self.factor
-        mu = schlenk(*_of_mesh(at, state), factor=factor, ceiling=self.ceiling)
+        mu = schlenk(*_of_mesh(state, self.name), factor=factor, ceiling=self.ceiling)
         return _spread(mu, state)
 
 
@@ -361,13 +357,11 @@ class Iso13989Flash(Bounded):
     name: ClassVar[str] = "iso-13989-1"
     regime: ClassVar[str] = "mixed, mean of the mesh"
     source: ClassVar[str] = "ISO/TR 13989-1 eq. 25-28"
-    ranges: ClassVar[Mapping[str, tuple[float, float]]] = _ANY
 
     def __call__(self, state: ContactState) -> Floats:
-        at = state.pitch(self.name)
         kind = ISO_LUBRICANT_FACTOR.get(state.lubricant_kind, 1.0)
         factor = kind if self.factor is None else self.factor
-        mu = iso_13989_1(*_of_mesh(at, state), factor=factor, ceiling=self.ceiling)
+        mu = iso_13989_1(*_of_mesh(state, self.name), factor=factor, ceiling=self.ceiling)
         return _spread(mu, state)
 
 
@@ -380,11 +374,9 @@ class Iso13989Integral(Bounded):
     name: ClassVar[str] = "iso-13989-2"
     regime: ClassVar[str] = "mixed, mean of the mesh"
     source: ClassVar[str] = "ISO/TR 13989-2 eq. 1-7 = ISO/TR 15144-1 eq. 86"
-    ranges: ClassVar[Mapping[str, tuple[float, float]]] = _ANY
 
     def __call__(self, state: ContactState) -> Floats:
-        at = state.pitch(self.name)
-        mu = iso_13989_2(*_of_mesh(at, state), factor=self.factor, ceiling=self.ceiling)
+        mu = iso_13989_2(*_of_mesh(state, self.name), factor=self.factor, ceiling=self.ceiling)
         return _spread(mu, state)
 
 
@@ -397,16 +389,14 @@ class Fernandes(Bounded):
     name: ClassVar[str] = "fernandes"
     regime: ClassVar[str] = "mixed, mean of the mesh"
     source: ClassVar[str] = "Fernandes et al., Tribology International 101 (2016) 204"
-    ranges: ClassVar[Mapping[str, tuple[float, float]]] = _ANY
 
     def __call__(self, state: ContactState) -> Floats:
-        at = state.pitch(self.name)
         kind = lubricant_factor(state.lubricant_kind, FZG_LUBRICANT_FACTOR)
         factor = kind if self.factor is None else self.factor
         mu = fernandes(
-            *_of_mesh(at, state),
+            *_of_mesh(state, self.name),
             state.needed("pressure_viscosity", self.name),
-            at.face_width,
+            state.pitch(self.name).face_width,
             factor=factor,
             ceiling=self.ceiling,
         )

@@ -229,8 +229,7 @@ def fluid_from(lubricant: Lubricant) -> float:
     def beyond(kelvin: float) -> float:
         return float(np.log(oil_prandtl(lubricant, kelvin) / MOST_PRANDTL))
 
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ValidityWarning)
+    with warnings.catch_warnings(action="ignore", category=ValidityWarning):
         return float(brentq(beyond, BODY.least, BODY.most))
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass, replace
+from types import MappingProxyType
 from typing import Annotated, Any, ClassVar, TypeVar, get_type_hints
 
 from thermogear.base.bounds import Bounds
@@ -26,10 +27,12 @@ _Law = TypeVar("_Law")
 class Bounded:
     """A dataclass that refuses a field out of the range in its annotation.
 
-    ``films``: what a law of friction asks of the films of a contact, none if not said otherwise.
+    ``films``: what a law of friction asks of the films of a contact, none if not said otherwise;
+    ``ranges``: of the variables it is stated for, any if not said otherwise.
     """
 
     films: ClassVar[tuple[str, ...]] = ()
+    ranges: ClassVar[Mapping[str, tuple[float, float]]] = MappingProxyType({})
 
     def __post_init__(self) -> None:
         for name, allowed in ranges(type(self)).items():

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from thermogear.base.arrays import Floats
-from thermogear.base.errors import InputError, nearest
+from thermogear.base.errors import InputError, require_choice
 
 CEILING = 0.5
 """Greatest value any law returns: the upper end of dry friction, met only near rest."""
@@ -41,10 +41,7 @@ def lubricant_factor(kind: str, table: dict[str, float]) -> float:
     >>> lubricant_factor("mineral", FZG_LUBRICANT_FACTOR)
     0.846
     """
-    if kind not in table:
-        raise InputError(
-            "lubricant kind", repr(kind), allowed=" | ".join(table), fix=nearest(kind, table)
-        )
+    require_choice("lubricant kind", kind, table)
     return table[kind]
 
 

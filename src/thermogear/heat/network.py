@@ -160,10 +160,6 @@ class ThermalNetwork:
         for name, value in self.sources.items():
             heat[..., index[name]] += np.asarray(value, dtype=float)
         given = np.zeros((*shape, len(names)))
-        for name, value in self.sources.items():
-            watts = np.asarray(value, dtype=float)
-            if not np.all(np.isfinite(watts)):
-                raise InputError(f"source of {name}", f"{watts} W", allowed="finite")
         for name, value in self.fixed.items():
             given[..., index[name]] = value
         return laplacian, heat, given

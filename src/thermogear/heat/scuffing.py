@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from thermogear.base.arrays import Floats
-from thermogear.base.errors import InputError, nearest
+from thermogear.base.errors import InputError, require_choice
 from thermogear.base.units import ZERO_CELSIUS
 
 STRUCTURE_FACTORS: dict[str, float] = {
@@ -286,13 +286,7 @@ def structure_factor(steel: str) -> float:
     >>> structure_factor("case-hardened")
     1.0
     """
-    if steel not in STRUCTURE_FACTORS:
-        raise InputError(
-            "scuffing.steel",
-            repr(steel),
-            allowed=" | ".join(STRUCTURE_FACTORS),
-            fix=nearest(steel, STRUCTURE_FACTORS),
-        )
+    require_choice("scuffing.steel", steel, STRUCTURE_FACTORS)
     return STRUCTURE_FACTORS[steel]
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from thermogear.base.arrays import Floats
-from thermogear.base.errors import InputError, nearest
+from thermogear.base.errors import InputError, require_choice
 
 FLASH_FACTORS: dict[str, float] = {
     "ellipse": 0.785983396,
@@ -31,13 +31,7 @@ def flash_factor(distribution: str) -> float:
     >>> f"{flash_factor('ellipse'):.3f}"
     '0.786'
     """
-    if distribution not in FLASH_FACTORS:
-        raise InputError(
-            "distribution",
-            repr(distribution),
-            allowed=" | ".join(FLASH_FACTORS),
-            fix=nearest(distribution, FLASH_FACTORS),
-        )
+    require_choice("distribution", distribution, FLASH_FACTORS)
     return FLASH_FACTORS[distribution]
 
 

@@ -49,8 +49,7 @@ class Row:
 
 def row_of(read: Read, file: Path) -> Row:
     """Measure one file; an input that is refused, or that the system or memory fails, is a row."""
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always", ValidityWarning)
+    with warnings.catch_warnings(record=True, action="always", category=ValidityWarning) as caught:
         try:
             found = read(file)
         except InputError as error:

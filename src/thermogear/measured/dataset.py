@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.vocabulary import label
 from thermogear.measured.figures import evidence, figures
 from thermogear.measured.lines import MeasuredLine
@@ -16,11 +14,8 @@ from thermogear.measured.resonances import OrderSlices
 from thermogear.results.result import Result, now
 from thermogear.signals.spectra import amplitude_spectrum
 
-if TYPE_CHECKING:
-    import xarray as xr
 
-
-def slice_groups(found: OrderSlices) -> dict[str, xr.Dataset]:
+def slice_groups(found: OrderSlices) -> dict[str, Dataset]:
     """Groups ``slices`` (channel, slice, step), ``map`` (row, map_column) and ``resonances``.
 
     A fit of a model to a run-up takes ``slice_speed`` [rad/s], ``slice_speed_rate``, the name of
@@ -128,7 +123,7 @@ def result_of(found: Measurement) -> Result:
     )
 
 
-def _pieces(table: Floats, start: int) -> xr.Dataset:
+def _pieces(table: Floats, start: int) -> Dataset:
     """Lowest and highest reading of each of some hundred pieces of the record."""
     first = np.unique(np.linspace(0, table.shape[-1], _PIECES + 1).astype(int)[:-1])
     axes = ("channel", "piece")
@@ -141,7 +136,7 @@ def _pieces(table: Floats, start: int) -> xr.Dataset:
     )
 
 
-def _lines(lines: tuple[MeasuredLine, ...]) -> xr.Dataset:
+def _lines(lines: tuple[MeasuredLine, ...]) -> Dataset:
     names = {
         "line_order": "order",
         "line_position": "position",

@@ -133,9 +133,8 @@ def follow(
     found, going = Course(start.copy()), np.arange(len(start))
     before, moved = np.full(start.shape, np.nan), np.full(start.shape, np.nan)
     inverse = np.tile(np.eye(start.shape[1]), (going.size, 1, 1))
-    with warnings.catch_warnings():
+    with warnings.catch_warnings(action="ignore", category=ValidityWarning):
         # iterates on the way may leave an oil's range; the result is asked once more
-        warnings.simplefilter("ignore", ValidityWarning)
         _begin(respond, found, held)
         way = np.abs(found.reached - found.nodes).max(axis=1)
         begin, far = found.nodes.copy(), way > 0.0
@@ -298,14 +297,6 @@ class HeatBalance:
         """Which points are ``lost``, (count,)."""
         return np.isin(np.arange(self.settled.size), list(self.lost))
 
-    def hotter(self) -> Floats:
-        """How much hotter [K] the hottest node is in the state reached from hot, (count,).
-
-        0 where it is the same state, nan where from hot none is reached.
-        """
-        each = [hot - self.steady.temperatures[name] for name, hot in self.hot.items()]
-        return np.where(self.several, np.max(each, axis=0), 0.0)
-
 
 def heat_balance(
     pair: GearPair,
@@ -397,8 +388,7 @@ def heat_balance(
     nodes = np.where(lost[:, None], stand_in, ways.nodes[cold])
     # the load is shared as at these very states, but where a point stands in
     share = None if lost.any() else ways.shares(cold)
-    with warnings.catch_warnings(record=True) as told:
-        warnings.simplefilter("always", ValidityWarning)
+    with warnings.catch_warnings(record=True, action="always", category=ValidityWarning) as told:
         network, losses, means = loop.network(nodes, cold, share)
     for text in dict.fromkeys(str(one.message) for one in told):
         warnings.warn(text, ValidityWarning, stacklevel=2)
@@ -473,8 +463,7 @@ class _Loop:
     def refuse_what_never_works(self, nodes: Floats) -> None:
         """Raise what is wrong with the whole, where no point has a value at its ``nodes`` [K]."""
         found = Course(nodes)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", ValidityWarning)
+        with warnings.catch_warnings(action="ignore", category=ValidityWarning):
             found.ask(self.respond, np.arange(self.count))
             if len(found.lost) == self.count:
                 self.respond(nodes[:1], np.arange(1), None)

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.vocabulary import HEAT_NOT_SETTLED, STATUS, label
 from thermogear.heat.gearbox import Losses
 from thermogear.mesh.balance import HeatBalance
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 LOSSES = ("mesh", "churning", "bearing_1", "bearing_2")
 
@@ -57,7 +55,7 @@ def of_bearings(
     return found, {"bearing": list(losses.bearings)}
 
 
-def balance_dataset(balance: HeatBalance) -> xr.Dataset:
+def balance_dataset(balance: HeatBalance) -> Dataset:
     """Node temperatures, losses, iterations, residual and status, axis ``operating`` first.
 
     Of each bearing of a drawn train its loss, temperature and viscosity. Status heat_not_settled
@@ -117,9 +115,7 @@ OF_OIL = (
 """What of an undeformed pair depends on the oil's temperature."""
 
 
-def blanked(
-    data: xr.Dataset, lost: NDArray[np.bool_], names: Sequence[str] | None = None
-) -> xr.Dataset:
+def blanked(data: Dataset, lost: NDArray[np.bool_], names: Sequence[str] | None = None) -> Dataset:
     """``data`` with nan in the numbers ``names`` (all) of the points that are ``lost``.
 
     Positions, phases and what else belongs to no point stay, and so do flags: the status says

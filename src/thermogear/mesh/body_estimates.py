@@ -38,9 +38,8 @@ def body_estimates(
     speed = operating.speed * pair.pinion.pitch_radius
     tangential = operating.torque / pair.pinion.pitch_radius / pair.face_width
     alpha, working = pair.pinion.pressure_angle, pair.operating_pressure_angle
-    with warnings.catch_warnings():
+    with warnings.catch_warnings(action="ignore", category=ValidityWarning):
         # the heat balance has said already where the oil leaves its line
-        warnings.simplefilter("ignore", ValidityWarning)
         friction = iso_13989_2(
             tangential,
             2.0 * speed * np.tan(working) * np.cos(alpha),

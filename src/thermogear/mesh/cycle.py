@@ -7,12 +7,11 @@ import warnings
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.errors import InputError, ValidityWarning, nearest
 from thermogear.base.vocabulary import NO_OIL_BATH, STATUS, label
 from thermogear.gears.contact import (
@@ -36,10 +35,6 @@ from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair, thesis_thermal_stiffness
 
-if TYPE_CHECKING:
-    import xarray as xr
-
-
 PATH = ("operating", "path_position")
 PHASE = ("operating", "mesh_phase")
 POINT = ("operating",)
@@ -55,7 +50,7 @@ def mesh_cycle(
     path_positions: int = 201,
     mesh_positions: int = 240,
     want: Collection[str] = (),
-) -> xr.Dataset:
+) -> Dataset:
     """Everything quasi-static about ``pair`` at its operating points, in SI.
 
     Along the path of contact A..E of one tooth pair (``path_position`` s [m] from the pinion's

@@ -20,12 +20,11 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.vocabulary import label
 from thermogear.gears.candidates import mesh_points
 from thermogear.gears.deviations import Deviation, FlankShape
@@ -37,10 +36,6 @@ from thermogear.mesh.elastic import LoadedPair, elastic_pair
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 PHASES = tuple(k / 48 for k in range(48))
 """Mesh phases of a drawing: a slider's steps over one mesh period."""
@@ -55,7 +50,7 @@ def drawn_gears(
     deviations: Sequence[Deviation] = (),
     phases: ArrayLike = PHASES,
     fineness: int = 1,
-) -> xr.Dataset:
+) -> Dataset:
     """What both gears look like in mesh, over ``states`` of heat by name and operating points.
 
     Over (gear, outline_point): ``tight_radius``, ``tight_angle``; over (state, operating, gear,

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import (
     Excitation,
@@ -21,9 +22,6 @@ from thermogear.base.excitation import (
 from thermogear.base.vocabulary import moves
 from thermogear.gears.geometry import Gear
 from thermogear.gears.pair import GearPair
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 NO_ERROR = Periodic(0.0)
 
@@ -41,7 +39,7 @@ def disc_inertia(gear: Gear, *, radius: float, bore_radius: float = 0.0) -> floa
 
 
 def excitation(
-    cycle: xr.Dataset,
+    cycle: Dataset,
     pair: GearPair,
     *,
     damping_ratio: float,
@@ -82,7 +80,7 @@ EXCITES = ("mesh_stiffness", "spring_error", "half_backlash", "cold_half_backlas
 
 
 def excitations(
-    cycle: xr.Dataset | Mapping[str, NDArray[Any]],
+    cycle: Dataset | Mapping[str, NDArray[Any]],
     pair: GearPair,
     *,
     damping_ratio: ArrayLike,

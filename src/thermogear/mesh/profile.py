@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.vocabulary import label
 from thermogear.gears.pair import GearPair
 from thermogear.heat.thesis_profile import profile_as_printed
@@ -14,14 +13,10 @@ from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair
 
-if TYPE_CHECKING:
-    import xarray as xr
-
-
 POINTS = 61
 
 
-def profiles(pair: GearPair, operating: Operating, *, printed: bool) -> xr.Dataset:
+def profiles(pair: GearPair, operating: Operating, *, printed: bool) -> Dataset:
     """One flank of each gear, from form circle to tip form circle: coordinates [m].
 
     y is the tooth's centre line. The first operating point's temperatures hold. ``consistent`` is

@@ -8,17 +8,12 @@ as rank correlations and as the share of neighbouring points between which a qua
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.stats import spearmanr
 
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.vocabulary import label
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 QUANTITIES = {
     "friction": "mean_friction",
@@ -35,7 +30,7 @@ FEWEST = 3
 """Fewer points have no rank correlation worth a name."""
 
 
-def conclusion(grids: Mapping[str, xr.Dataset]) -> xr.Dataset:
+def conclusion(grids: Mapping[str, Dataset]) -> Dataset:
     """Rank correlations and monotonicity of each quantity, for each lubrication of ``grids``.
 
     ``rank_correlation`` (lubrication, quantity, with_what): Spearman's, with the other quantities
@@ -159,7 +154,7 @@ def _rises(values: Floats, axis: int) -> float:
     return float(np.mean(steps[known] > level)) if known.any() else float("nan")
 
 
-def _below(grids: Mapping[str, xr.Dataset]) -> tuple[Floats, Floats]:
+def _below(grids: Mapping[str, Dataset]) -> tuple[Floats, Floats]:
     mixed, dry = grids["mixed"], grids["dry"]
     valid = (mixed["within_oil_range"].values == 1) & (dry["within_oil_range"].values == 1)
 
@@ -182,7 +177,7 @@ def _below(grids: Mapping[str, xr.Dataset]) -> tuple[Floats, Floats]:
     return np.array(below), np.array(every)
 
 
-def verdicts(checked: xr.Dataset) -> list[dict[str, str]]:
+def verdicts(checked: Dataset) -> list[dict[str, str]]:
     """What holds of the conclusion and what does not, one row each.
 
     What the points leave nothing to compare for has no row: no neighbour along an axis, fewer

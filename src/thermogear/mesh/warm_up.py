@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base import bounds
 from thermogear.base.arrays import Floats
-from thermogear.base.errors import ConvergenceError, InputError, ValidityWarning, nearest
+from thermogear.base.errors import ConvergenceError, InputError, ValidityWarning, require_choice
 from thermogear.base.materials import MATERIALS, Lubricant, Material
 from thermogear.base.progress import Progress, silent
 from thermogear.gears.deviations import Deviation
@@ -329,9 +329,8 @@ def warm_ups(
         [{"sample": k, "row": begin + piece} for piece in range(duty.pieces)]
         for k, (duty, begin) in enumerate(zip(duties, begins, strict=False))
     ]
-    with warnings.catch_warnings():
+    with warnings.catch_warnings(action="ignore", category=ValidityWarning):
         # told once, by the losses
-        warnings.simplefilter("ignore", ValidityWarning)
         courses = together(
             [
                 (
@@ -380,10 +379,7 @@ def with_factors(surroundings: Surroundings, factors: Mapping[str, float]) -> Su
 
 def _known(factors: Mapping[str, float]) -> dict[str, float]:
     for name, value in factors.items():
-        if name not in FACTORS:
-            raise InputError(
-                "factors", repr(name), allowed=" | ".join(FACTORS), fix=nearest(name, FACTORS)
-            )
+        require_choice("factors", name, FACTORS)
         if not (np.isfinite(value) and value > 0.0):
             raise InputError(f"factors.{name}", f"{value:g}", allowed="> 0, finite")
     return dict(factors)
@@ -522,9 +518,8 @@ class _Chain:
 
     def clearance(self, state: State) -> Clearance:
         """Over the mesh phase, of a state."""
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(action="ignore", category=ValidityWarning):
             # of the oil, which a gap does not feel
-            warnings.simplefilter("ignore", ValidityWarning)
             hot = HotPair(self.pair, self.operating(state), self.model)
         return Clearance(hot, np.arange(PHASES) / PHASES, self.deviations)
 
@@ -532,8 +527,9 @@ class _Chain:
         """At many moments; warns once where the oil leaves its line."""
         parts: list[Losses] = []
         count = np.size(state["row"])
-        with warnings.catch_warnings(record=True) as told:
-            warnings.simplefilter("always", ValidityWarning)
+        with warnings.catch_warnings(
+            record=True, action="always", category=ValidityWarning
+        ) as told:
             for first in range(0, count, BLOCK):
                 here = {name: t[first : first + BLOCK] for name, t in state.items()}
                 full = {**here, "lagging": self.mesh(here)}

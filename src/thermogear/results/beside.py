@@ -3,26 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.materials import NO_BATH
 from thermogear.base.notice import Notice, stored_notices
 from thermogear.base.vocabulary import NO_OIL_BATH, moves
 
-if TYPE_CHECKING:
-    import xarray as xr
 
-
-def with_notices(data: xr.Dataset) -> xr.Dataset:
+def with_notices(data: Dataset) -> Dataset:
     """The data with its notices, where the study stored none."""
     if "notices" in data.attrs:
         return data
     return data.assign_attrs(notices=stored_notices(from_data(data)))
 
 
-def from_data(data: xr.Dataset, about: str = "") -> Iterator[Notice]:
+def from_data(data: Dataset, about: str = "") -> Iterator[Notice]:
     """Where no oil bath is kept, and whether the half backlash has any effect.
 
     Of the latter nothing where a motion is not known. ``about``: the name of what ``data`` hold.

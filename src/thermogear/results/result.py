@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import thermogear
+from thermogear.base.arrays import Dataset, DataTree
 from thermogear.base.errors import InputError, nearest
 from thermogear.base.files import SCHEMA
 from thermogear.base.notice import Notice as Notice
@@ -28,7 +29,6 @@ from thermogear.results.tables import frames, points, told
 
 if TYPE_CHECKING:
     import pandas as pd
-    import xarray as xr
 
 FILES = dict.fromkeys(("gear", "dimensionless", "thesis", "thesis-pair", "sensitivity"), RESULTS)
 """The file of a kind; of every other kind it is ``KIND.nc``."""
@@ -41,14 +41,14 @@ FIX = "name a directory that this command, or `thermogear run CASE -o DIR`, has 
 Plain = str | int | float
 
 
-class Later(Mapping[str, "xr.Dataset"]):
+class Later(Mapping[str, Dataset]):
     """Groups that are made when first asked for, once."""
 
-    def __init__(self, **made: Callable[[], xr.Dataset]) -> None:
+    def __init__(self, **made: Callable[[], Dataset]) -> None:
         self._made = made
-        self._there: dict[str, xr.Dataset] = {}
+        self._there: dict[str, Dataset] = {}
 
-    def __getitem__(self, name: str) -> xr.Dataset:
+    def __getitem__(self, name: str) -> Dataset:
         if name not in self._there:
             self._there[name] = self._made[name]()
         return self._there[name]
@@ -71,7 +71,7 @@ class Result:
 
     kind: str
     title: str
-    groups: Mapping[str, xr.Dataset]
+    groups: Mapping[str, Dataset]
     notices: tuple[Notice, ...] = ()
     provenance: Mapping[str, Plain] = field(default_factory=dict)
 
@@ -80,7 +80,7 @@ class Result:
         cls,
         kind: str,
         title: str,
-        groups: Mapping[str, xr.Dataset],
+        groups: Mapping[str, Dataset],
         notices: Iterable[Notice] = (),
         **provenance: Any,
     ) -> Result:
@@ -104,12 +104,12 @@ class Result:
 
     # --- reading --------------------------------------------------------------------------
 
-    def group(self, name: str) -> xr.Dataset | None:
+    def group(self, name: str) -> Dataset | None:
         """A group by its path, None where it is absent."""
         return self.groups.get(name)
 
     @property
-    def data(self) -> xr.Dataset:
+    def data(self) -> Dataset:
         """The one Dataset of a result that has a single group."""
         if len(self.groups) != 1:
             raise InputError("group", "none named", allowed=" | ".join(self.groups))
@@ -157,7 +157,7 @@ class Result:
     # --- as others know it ----------------------------------------------------------------
 
     @cached_property
-    def tree(self) -> xr.DataTree:
+    def tree(self) -> DataTree:
         """The whole as an xarray DataTree; title, kind, notices and provenance as attributes."""
         import xarray as xr
 
@@ -269,7 +269,7 @@ class Result:
         return found
 
 
-def result_of(tree: xr.DataTree) -> Result:
+def result_of(tree: DataTree) -> Result:
     """What a stored ``tree`` holds, every group in memory."""
     groups = {
         node.path.strip("/"): node.to_dataset(inherit=True).load()
@@ -279,12 +279,12 @@ def result_of(tree: xr.DataTree) -> Result:
     return _from_attributes(tree.attrs, groups)
 
 
-def stored_dataset(data: xr.Dataset, title: str = "") -> Result:
+def stored_dataset(data: Dataset, title: str = "") -> Result:
     """The result behind the one Dataset of a store of long work, its attributes as provenance."""
     return _from_attributes({"title": title, **data.attrs, "store": True}, {"": data})
 
 
-def _from_attributes(attrs: Mapping[Any, Any], groups: Mapping[str, xr.Dataset]) -> Result:
+def _from_attributes(attrs: Mapping[Any, Any], groups: Mapping[str, Dataset]) -> Result:
     about = {str(name): _plain(value) for name, value in attrs.items()}
     version = str(about.get("thermogear", ""))
     require_schema(about.pop("schema", 0), newest=SCHEMA, what="results", version=version)

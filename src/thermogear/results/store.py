@@ -17,7 +17,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
 import numpy as np
 import zarr
@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 from zarr.codecs import Crc32cCodec, ZstdCodec
 from zarr.storage import LocalStore, MemoryStore
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.errors import InputError
 from thermogear.base.files import (
     LOCK,
@@ -50,9 +51,6 @@ from thermogear.base.stores import (
 )
 from thermogear.results.fingerprint import code_version, environment
 from thermogear.results.result import now
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 QUARANTINE = "quarantine"
 
@@ -343,7 +341,7 @@ class Store:
 
     # --- the finished whole ----------------------------------------------------------------
 
-    def complete(self, title: str = "") -> xr.Dataset:
+    def complete(self, title: str = "") -> Dataset:
         """Add to the chunks, once all are there, what follows from them, and store that too."""
         variables = self.plan.variables()
         missing = [key for key in keys_of(self.plan) if key not in self._hashes]

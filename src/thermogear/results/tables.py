@@ -10,19 +10,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.arrays import DataArray, Dataset
 from thermogear.base.display import display
 from thermogear.base.errors import InputError
 
 if TYPE_CHECKING:
     import pandas as pd
-    import xarray as xr
 
 UNITS = ("si", "display")
 FIRST = ("status", "label", "period")
 """Columns that stand behind the axes, before all numbers."""
 
 
-def frames(data: xr.Dataset, units: str = "si") -> dict[tuple[str, ...], pd.DataFrame]:
+def frames(data: Dataset, units: str = "si") -> dict[tuple[str, ...], pd.DataFrame]:
     """Dimensions (sorted) -> the variables that have them, a row for each place.
 
     Columns are named ``name [unit]``, in ``units`` "si" or as pages show them ("display"); single
@@ -39,7 +39,7 @@ def frames(data: xr.Dataset, units: str = "si") -> dict[tuple[str, ...], pd.Data
 
 
 def stretched(
-    data: xr.Dataset, dims: Iterable[str], made: Callable[[NDArray[Any]], NDArray[Any]] = np.asarray
+    data: Dataset, dims: Iterable[str], made: Callable[[NDArray[Any]], NDArray[Any]] = np.asarray
 ) -> dict[str, NDArray[Any]]:
     """Every variable that runs along no other dimension than ``dims``, spread over all of them.
 
@@ -63,7 +63,7 @@ def rows_of(columns: Mapping[str, ArrayLike]) -> list[dict[str, Any]]:
     return [dict(zip(columns, row, strict=True)) for row in zip(*values, strict=True)]
 
 
-def rows_along(data: xr.Dataset, *dims: str) -> list[dict[str, Any]]:
+def rows_along(data: Dataset, *dims: str) -> list[dict[str, Any]]:
     """A row for each place along ``dims``: the values of :func:`stretched` by their names."""
     return rows_of(stretched(data, dims))
 
@@ -91,7 +91,7 @@ def harmless(value: object) -> object:
     return value
 
 
-def points(groups: Iterable[xr.Dataset]) -> xr.Dataset:
+def points(groups: Iterable[Dataset]) -> Dataset:
     """What the groups say of each point: the variables of the dimensions that most of them have.
 
     Curves are left out: a dimension with more than one place that only some variables have is one.
@@ -106,7 +106,7 @@ def points(groups: Iterable[xr.Dataset]) -> xr.Dataset:
             if dims:
                 counts[dims] = counts.get(dims, 0) + 1
     wanted = max(counts, key=lambda dims: counts[dims])
-    parts: list[xr.Dataset] = []
+    parts: list[Dataset] = []
     for data in every:
         own = [n for n, v in data.data_vars.items() if frozenset(map(str, v.dims)) == wanted]
         taken = {n for part in parts for n in part.data_vars}
@@ -115,7 +115,7 @@ def points(groups: Iterable[xr.Dataset]) -> xr.Dataset:
     return xr.merge(kept, combine_attrs="drop_conflicts", compat="no_conflicts")
 
 
-def spread(data: xr.Dataset, dim: str = "bearing") -> xr.Dataset:
+def spread(data: Dataset, dim: str = "bearing") -> Dataset:
     """What every ``bearing`` has of a point as variables of the point, one for each by its name."""
     if dim not in data.dims or "names" not in data[dim].attrs:
         return data
@@ -129,7 +129,7 @@ def spread(data: xr.Dataset, dim: str = "bearing") -> xr.Dataset:
     return data.assign({name: one.drop_vars(dim) for name, one in own.items()})
 
 
-def _frame(data: xr.Dataset, units: str) -> pd.DataFrame:
+def _frame(data: Dataset, units: str) -> pd.DataFrame:
     frame = in_words(data).to_dataframe().reset_index()
     dims = [name for name in map(str, data.dims) if name in frame.columns]
     first = [*dims, *(name for name in FIRST if name in frame.columns)]
@@ -150,7 +150,7 @@ def _frame(data: xr.Dataset, units: str) -> pd.DataFrame:
     return named
 
 
-def in_words(data: xr.Dataset) -> xr.Dataset:
+def in_words(data: Dataset) -> Dataset:
     """The same with the words of its flags in place of their numbers."""
     words: dict[Any, Any] = {
         name: (variable.dims, json.loads(variable.attrs["names"]))
@@ -177,7 +177,7 @@ def in_words(data: xr.Dataset) -> xr.Dataset:
     return data.assign(words)
 
 
-def _sums(variable: xr.DataArray) -> NDArray[np.object_]:
+def _sums(variable: DataArray) -> NDArray[np.object_]:
     """The words of a sum of flags, with spaces between; "none", and "unknown" below zero."""
     flags = list(
         zip(str(variable.attrs["flags"]).split(), variable.attrs["flag_masks"], strict=True)

@@ -12,10 +12,10 @@ from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from itertools import count
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from numba.core.event import install_timer
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.errors import InputError
 from thermogear.base.memory import SHARE, free_bytes
 from thermogear.base.plan import (
@@ -30,9 +30,6 @@ from thermogear.base.plan import (
 from thermogear.base.progress import duration
 from thermogear.results.store import Store
 from thermogear.results.workers import cluster, computed_on
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 WORKSPACE = 48 * 2**20
 """Bytes that one thread's kernels and maps take, about."""
@@ -159,7 +156,7 @@ def carry_out(
     forced: bool = False,
     alive: Alive = keep_going,
     title: str = "",
-) -> xr.Dataset:
+) -> Dataset:
     """Compute ``plan`` and return it as one labelled Dataset.
 
     With a ``store`` directory every chunk is written as it is ready, and the same call goes on

@@ -324,6 +324,18 @@ def _weigh(into: Assembly, gravity: float) -> None:
     into.weight[...] = -gravity * (into.mass @ down)
 
 
+def across(pull: Floats) -> Floats:
+    """A basis (n, n - 1) of all that is orthogonal to ``pull`` (n,).
+
+    Its Householder reflection leaves unit-like columns, so that nothing is lost in scale.
+    """
+    normal = pull / np.linalg.norm(pull)
+    first = int(np.argmax(np.abs(normal)))
+    normal[first] += np.copysign(1.0, normal[first])
+    mirror = np.eye(normal.size) - 2.0 * np.outer(normal, normal) / (normal @ normal)
+    return np.asarray(np.delete(mirror, first, axis=1))
+
+
 def linear_stiffness(
     assembly: Assembly, *, mesh: float, bearings: ArrayLike, back: float = 0.0
 ) -> Floats:

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.arrays import Complexes, Floats
 from thermogear.base.errors import InputError
-from thermogear.shafts.assembly import Assembly, linear_stiffness
+from thermogear.shafts.assembly import Assembly, across, linear_stiffness
 from thermogear.shafts.train import SHAFTS
 
 FREE = 1e-9
@@ -58,17 +58,8 @@ class LinearTrain:
 
     @cached_property
     def basis(self) -> Floats:
-        """A basis (n, n - 1) of all motions M-orthogonal to the rigid rotation.
-
-        The Householder reflection of M r leaves unit-like columns, so that nothing is lost in
-        scale.
-        """
-        pull = self.assembly.mass @ self.assembly.rotation
-        pull = pull / np.linalg.norm(pull)
-        first = int(np.argmax(np.abs(pull)))
-        pull[first] += np.copysign(1.0, pull[first])
-        whole = np.eye(pull.size) - 2.0 * np.outer(pull, pull) / (pull @ pull)
-        return np.asarray(np.delete(whole, first, axis=1))
+        """A basis (n, n - 1) of all motions M-orthogonal to the rigid rotation."""
+        return across(self.assembly.mass @ self.assembly.rotation)
 
     @cached_property
     def damping(self) -> Floats:

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
-from thermogear.shafts.assembly import Assembly
+from thermogear.shafts.assembly import Assembly, across
 from thermogear.shafts.linear import LinearTrain
 from thermogear.shafts.train import SHAFTS
 
@@ -137,10 +137,5 @@ def reduced(assembly: Assembly, coordinates: int | None = None) -> Reduction:
     turn = np.linalg.lstsq(whole, assembly.rotation, rcond=None)[0]
     # of like scale, so that the reflection below mixes nothing large into what is small
     scale = 1.0 / np.sqrt(np.diag(small))
-    pull = (small @ turn) * scale
-    pull = pull / np.linalg.norm(pull)
-    first = int(np.argmax(np.abs(pull)))
-    pull[first] += np.copysign(1.0, pull[first])
-    mirror = np.eye(pull.size) - 2.0 * np.outer(pull, pull) / (pull @ pull)
-    basis = whole @ (scale[:, None] * np.delete(mirror, first, axis=1))
+    basis = whole @ (scale[:, None] * across((small @ turn) * scale))
     return Reduction(assembly=assembly, basis=np.asarray(basis))

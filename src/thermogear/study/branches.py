@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ from thermogear.analysis.bifurcations import FLIP, PITCHFORK, Bifurcation
 from thermogear.analysis.continuation import GAP, Branch, continuation, switch_branch
 from thermogear.analysis.event_curve import EventCurve
 from thermogear.analysis.orbits import Orbit, periodic_orbit
+from thermogear.base.arrays import Dataset
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.base.notice import Notice
 from thermogear.base.parameters import NUMBERS, Parameter
@@ -25,9 +26,6 @@ from thermogear.case.one_point import OnePoint, of_numbers
 from thermogear.results.result import Result
 from thermogear.study.event_plane import Plane, one_mass
 from thermogear.study.orbit import complex_rows, found, orbit_of
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 STEPS = 1000
 """Progress of a branch counts in thousandths of the parameter's way."""
@@ -247,7 +245,7 @@ def _leg_summary(leg: Leg, parameter: Parameter) -> dict[str, Any]:
     }
 
 
-def dataset(leg: Leg, unit: str) -> xr.Dataset:
+def dataset(leg: Leg, unit: str) -> Dataset:
     """A branch as it is stored: points along it, bifurcations beside them."""
     data = leg.branch.dataset()
     data["stable"] = data["stable"].astype(np.int8)

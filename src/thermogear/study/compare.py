@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.errors import InputError, nearest
 from thermogear.case.base import Case
 from thermogear.case.case import gear_case, load_case
@@ -26,9 +27,6 @@ from thermogear.measured.record import Record
 from thermogear.measured.reduction import Measurement, measure
 from thermogear.results.result import Notice, Result
 from thermogear.study.case_runs import CaseRuns
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 Simulated: TypeAlias = str | Path | Case | Result | Mapping[str, LineTable]
 Measured: TypeAlias = str | Path | LineTable | Printed | Measurement | Record
@@ -220,7 +218,7 @@ def tree_lines(result: Result) -> dict[str, LineTable]:
     return _motion_lines(motion)
 
 
-def _motion_lines(motion: xr.Dataset) -> dict[str, LineTable]:
+def _motion_lines(motion: Dataset) -> dict[str, LineTable]:
     first = int(np.argmin(np.abs(motion["order"].values - 1.0)))
     speeds = np.asarray(motion["pinion_speed"].values, dtype=float)
     frequency = motion["line_frequency"].isel(order=first)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.errors import InputError
 from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import dressed, label
@@ -22,9 +23,6 @@ from thermogear.results.result import Notice, Result
 from thermogear.study.corners import HotContact
 from thermogear.study.declared import Contact, declared
 from thermogear.study.relief import UNIFORM, one_point
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 PARTS = (0.1, 0.25, 0.5, 1.0, 2.0)
 """Loads, as parts of the case's greatest, where none are named."""
@@ -149,7 +147,7 @@ def loaded_survey(
     )
 
 
-def _solve(at: HotContact, moments: NDArray[np.float64]) -> xr.Dataset:
+def _solve(at: HotContact, moments: NDArray[np.float64]) -> Dataset:
     """The loaded contact over (temperature, load, mesh_phase)."""
     load = np.tile(moments / at.pair.pinion.base_radius, (at.hot.count, 1))
     return loaded_contact(
@@ -186,7 +184,7 @@ def apart(point: Operating, difference: float) -> Operating:
 
 
 def _notices(
-    case: GearCase, at: HotContact, lost: int, contact: xr.Dataset, compared: xr.Dataset
+    case: GearCase, at: HotContact, lost: int, contact: Dataset, compared: Dataset
 ) -> Iterator[Notice]:
     edges, loads = contact["edge_contact_share"], contact["corner_load_share"]
     apart = (compared["iso_stiffness"] / compared["loaded_stiffness"] - 1.0).values

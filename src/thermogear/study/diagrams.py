@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from thermogear.analysis.maps import MAP_RULE, MapPlan, map_plan
 from thermogear.analysis.matched import MOST_FOLLOWED, matches
 from thermogear.analysis.settle import Rule
 from thermogear.analysis.stacked import StackedPlan
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.errors import InputError
 from thermogear.base.progress import Progress, silent
 from thermogear.base.stores import read_manifests
@@ -33,9 +33,6 @@ from thermogear.results.work import Estimate, estimate
 from thermogear.study.shafts.family import TabulatedTrains, TrainFamily
 from thermogear.study.shafts.motion import LONGEST
 from thermogear.study.shafts.state import STATES
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 AnyMap: TypeAlias = MapPlan | StackedPlan
 WHOLE = 120.0
@@ -222,7 +219,7 @@ def overlaid(
     title: str,
     words: Sequence[str],
     plans: Sequence[DiagramPlan],
-    found: Sequence[xr.Dataset],
+    found: Sequence[Dataset],
     *,
     most: int = MOST_FOLLOWED,
     progress: Progress = silent,

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.bounds import BODY
 from thermogear.base.progress import Progress, silent
 from thermogear.base.units import ZERO_CELSIUS
@@ -15,9 +16,6 @@ from thermogear.case.case import GearCase
 from thermogear.case.family import GearFamily
 from thermogear.case.thermal_state import HOT
 from thermogear.study.motion import follow_gears
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 COUNT = 14
 """Temperatures of a dial."""
@@ -30,7 +28,7 @@ MOVING = ("displacement", "velocity", "section_displacement", "section_velocity"
           "label", "label_reason", "contact_loss_share")  # fmt: skip
 
 
-def dial(case: GearCase, cycle: xr.Dataset, progress: Progress = silent) -> xr.Dataset | None:
+def dial(case: GearCase, cycle: Dataset, progress: Progress = silent) -> Dataset | None:
     """Stiffness, half backlash and motion of the first operating point over ``gear_temperature``.
 
     ``cycle`` is the hot cycle of the case's first model: its mesh phases, and where it jams. Both

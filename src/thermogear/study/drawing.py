@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thermogear.base.arrays import DataArray, Dataset
 from thermogear.base.errors import InputError
 from thermogear.base.vocabulary import UNDEFORMED, is_known
 from thermogear.case.case import GearCase, gear_case
@@ -17,9 +17,6 @@ from thermogear.case.thermal_state import UNDEFORMED as COLD
 from thermogear.mesh.drawing import PHASES, drawn_gears
 from thermogear.mesh.model import MeshModel
 from thermogear.results.result import Notice, Result
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 KIND = "drawing"
 MOST = 6
@@ -63,7 +60,7 @@ def drawing(
     )
 
 
-def drawn_points(case: GearCase, status: xr.DataArray) -> xr.Dataset | None:
+def drawn_points(case: GearCase, status: DataArray) -> Dataset | None:
     """The drawing of a run: at most :data:`MOST` operating points whose hot ``status`` is known.
 
     None where there is none.
@@ -83,7 +80,7 @@ def _drawn(
     places: Sequence[int],
     phases: Sequence[float],
     fineness: int,
-) -> xr.Dataset:
+) -> Dataset:
     states = {
         name: replace(one.operating(case, model), housing=case.housing).part(np.array(places))
         for name, one in ((UNDEFORMED, COLD), ("hot", hot))
@@ -98,7 +95,7 @@ def _drawn(
     )
 
 
-def _notices(data: xr.Dataset) -> Iterator[Notice]:
+def _notices(data: Dataset) -> Iterator[Notice]:
     yield Notice.of("backlash_off_all_flanks")
     if float(data["back_gap"].min()) <= 0.0:
         yield Notice.of("no_backlash_left")

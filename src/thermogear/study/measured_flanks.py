@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.vocabulary import NO_COUNT, label
 from thermogear.case.case import GearCase
 from thermogear.case.charts import Chart
@@ -15,16 +16,13 @@ from thermogear.gears.geometry import Gear
 from thermogear.gears.pair import GearPair
 from thermogear.results.result import Notice
 
-if TYPE_CHECKING:
-    import xarray as xr
 
-
-def measured_flanks(case: GearCase) -> dict[str, xr.Dataset]:
+def measured_flanks(case: GearCase) -> dict[str, Dataset]:
     """A group ``flanks/GEAR`` for each gear that was measured."""
     return {f"flanks/{chart.gear}": _group(chart, case.pair) for chart in case.charts}
 
 
-def _group(chart: Chart, pair: GearPair) -> xr.Dataset:
+def _group(chart: Chart, pair: GearPair) -> Dataset:
     gear = _gear(pair, chart.gear)
     traces, flanks = chart.traces, chart.flanks
     rho = traces.rho

@@ -5,28 +5,26 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.settle import LABELS, PERIODIC
+from thermogear.base.arrays import Dataset
 from thermogear.base.vocabulary import STILL, moves
 from thermogear.case.case import GearCase
 from thermogear.heat.friction import LUBRICATED, beyond
 from thermogear.results.beside import from_data, with_notices
 from thermogear.results.result import Notice, Result, stored_dataset
 
-if TYPE_CHECKING:
-    import xarray as xr
 
-
-def finished(data: xr.Dataset, title: str = "") -> Result:
+def finished(data: Dataset, title: str = "") -> Result:
     """What a store of long work holds, with what should be known beside it."""
     return stored_dataset(with_notices(data), title)
 
 
-def contact_notices(data: xr.Dataset) -> Iterator[Notice]:
+def contact_notices(data: Dataset) -> Iterator[Notice]:
     """What does not move; over which speeds contact is lost, and where the back flanks are hit."""
     status = data["status"].values
     for word in STILL:
@@ -54,7 +52,7 @@ def contact_notices(data: xr.Dataset) -> Iterator[Notice]:
         yield Notice.of("back_flanks_hit", **_at_speeds(data, hit))
 
 
-def _at_speeds(data: xr.Dataset, flags: NDArray[np.bool_]) -> dict[str, Any]:
+def _at_speeds(data: Dataset, flags: NDArray[np.bool_]) -> dict[str, Any]:
     """Stretches of speed [rad/s] on which ``flags`` hold anywhere, all speeds, number of states."""
     dims, ways = data["label"].dims, data["label"].sizes.get("direction", 1)
     axis = flags.ndim - len(dims) + dims.index("pinion_speed")
@@ -68,7 +66,7 @@ def _at_speeds(data: xr.Dataset, flags: NDArray[np.bool_]) -> dict[str, Any]:
     }
 
 
-def differing(data: xr.Dataset) -> NDArray[np.bool_]:
+def differing(data: Dataset) -> NDArray[np.bool_]:
     """Where the runs up and down differ, (state, speed).
 
     Of orbits the period, or the transmission error by 0.1 % of its peak to peak; of chaos, whose
@@ -82,14 +80,14 @@ def differing(data: xr.Dataset) -> NDArray[np.bool_]:
     return np.asarray(both & ((period[:, 0] != period[:, 1]) | (apart > least)))
 
 
-def difference_notices(data: xr.Dataset) -> Iterator[Notice]:
+def difference_notices(data: Dataset) -> Iterator[Notice]:
     """Over which speeds the runs up and down show different motions."""
     apart = differing(data)
     if apart.any():
         yield Notice.of("up_and_down_differ", **_at_speeds(data, apart))
 
 
-def range_notices(case: GearCase, data: xr.Dataset) -> Iterator[Notice]:
+def range_notices(case: GearCase, data: Dataset) -> Iterator[Notice]:
     """Contact, the back side, and where the case's speeds lie."""
     yield from contact_notices(data)
     yield from from_data(data)
@@ -128,7 +126,7 @@ def _grouped(reasons: Iterable[str]) -> list[str]:
 
 
 def heat_notices(
-    data: xr.Dataset, settled: NDArray[np.bool_], why: Iterable[str], about: str = ""
+    data: Dataset, settled: NDArray[np.bool_], why: Iterable[str], about: str = ""
 ) -> Iterator[Notice]:
     """Points of a heat balance without a steady temperature, and those with a second one."""
     lost = int((~settled).sum())
@@ -152,7 +150,7 @@ def heat_notices(
         )
 
 
-def jam_notices(data: xr.Dataset, reference: float, about: str = "") -> Iterator[Notice]:
+def jam_notices(data: Dataset, reference: float, about: str = "") -> Iterator[Notice]:
     """Gear temperatures at which the backlash is used up, alone and with all bodies.
 
     In proportion it is the one nearest to the ``reference`` [K], from where all bodies go.
@@ -170,7 +168,7 @@ def jam_notices(data: xr.Dataset, reference: float, about: str = "") -> Iterator
         yield Notice.of("no_jam_in_proportion", about=about)
 
 
-def friction_notices(case: GearCase, groups: Mapping[str, xr.Dataset]) -> Iterator[Notice]:
+def friction_notices(case: GearCase, groups: Mapping[str, Dataset]) -> Iterator[Notice]:
     """What the friction laws say of themselves: pitch point, ranges, the oil's range."""
     path, mesh = groups["path"], groups["mesh"]
     if np.isfinite(path["friction_coefficient_mixed"].values).any():
@@ -204,7 +202,7 @@ def friction_notices(case: GearCase, groups: Mapping[str, xr.Dataset]) -> Iterat
             )
 
 
-def _beyond_oil(row: xr.Dataset) -> list[float]:
+def _beyond_oil(row: Dataset) -> list[float]:
     """Gear temperatures [K] at which the film leaves the range of the oil's viscosity line."""
     beyond_oil = row["film_outside_range"] == 1
     axes = [d for d in beyond_oil.dims if d != "gear_temperature"]
@@ -212,7 +210,7 @@ def _beyond_oil(row: xr.Dataset) -> list[float]:
     return temperatures
 
 
-def _left_out(case: GearCase, here: xr.Dataset, viscosity: NDArray[np.float64]) -> dict[str, float]:
+def _left_out(case: GearCase, here: Dataset, viscosity: NDArray[np.float64]) -> dict[str, float]:
     """Laws of oiled contacts outside their range, with the share of the path."""
     pair = case.pair
     values: dict[str, ArrayLike | None] = {

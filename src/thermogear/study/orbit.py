@@ -8,7 +8,7 @@ tree carries metres, seconds and hertz.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from thermogear.analysis.labels import label
 from thermogear.analysis.lyapunov import lyapunov_exponents
 from thermogear.analysis.orbits import Orbit, periodic_orbit
 from thermogear.analysis.proof import Label
+from thermogear.base.arrays import Dataset
 from thermogear.base.errors import ConvergenceError
 from thermogear.base.notice import Notice
 from thermogear.base.progress import Progress, silent
@@ -27,9 +28,6 @@ from thermogear.results.result import Result
 from thermogear.signals.spectra import amplitude_spectrum
 from thermogear.study.declared import ClosedOrbit, Lyapunov, declared
 
-if TYPE_CHECKING:
-    import xarray as xr
-
 SAMPLES = 256
 """Samples a mesh period of a stored orbit."""
 HIGHEST_ORDER = 20.0
@@ -40,7 +38,7 @@ ROUNDS = 10
 
 def found(
     kind: str,
-    groups: dict[str, xr.Dataset],
+    groups: dict[str, Dataset],
     summary: dict[str, Any],
     notices: Iterable[Notice] = (),
     *,
@@ -225,7 +223,7 @@ def told_orbit(
     return found(ClosedOrbit.kind, {"orbit": data}, summary, notices)
 
 
-def _without_units(data: xr.Dataset) -> None:
+def _without_units(data: Dataset) -> None:
     """Dimensionless numbers carry no metres."""
     for name in data.variables:
         unit = data[name].attrs.get("units")

@@ -14,11 +14,12 @@ import platform
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import chain
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import Excitations
 from thermogear.base.plan import Alive, keep_going
@@ -53,9 +54,6 @@ from thermogear.study.measured_flanks import measured_flanks
 from thermogear.study.motion import Motion, follow, follow_gears, still_values
 from thermogear.study.shafts.sketch import sketch
 
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 def run(case: Case, *, progress: Progress = silent, alive: Alive = keep_going) -> Result:
     """Everything that ``case`` asks for (SI, units as attributes).
@@ -68,7 +66,7 @@ def run(case: Case, *, progress: Progress = silent, alive: Alive = keep_going) -
     """
     progress = asking(alive, progress)
     if isinstance(case, DimensionlessCase):
-        groups: dict[str, xr.Dataset] = {"points": _points(case, "motion", progress)}
+        groups: dict[str, Dataset] = {"points": _points(case, "motion", progress)}
         notices: Iterator[Notice] = run_notices.dimensionless_notices(groups["points"])
         own: dict[str, Any] = {}
     elif isinstance(case, GearCase):
@@ -116,15 +114,15 @@ def run(case: Case, *, progress: Progress = silent, alive: Alive = keep_going) -
 # --- gear cases ---------------------------------------------------------------------------
 
 
-def gear_motion(case: GearCase) -> xr.Dataset:
+def gear_motion(case: GearCase) -> Dataset:
     """The group ``motion`` of :func:`run` alone, and nothing else computed."""
     return _motion(case, _cycles(case, silent), "state", silent)
 
 
 def _gear_groups(
-    case: GearCase, cycles: Mapping[str, xr.Dataset], progress: Progress
-) -> dict[str, xr.Dataset]:
-    groups: dict[str, xr.Dataset] = {}
+    case: GearCase, cycles: Mapping[str, Dataset], progress: Progress
+) -> dict[str, Dataset]:
+    groups: dict[str, Dataset] = {}
     groups |= _split(_bundles(cycles))
     groups |= measured_flanks(case)
     first = cycles[case.models[0].name]["status"].sel(state="hot")
@@ -152,8 +150,8 @@ def _gear_groups(
 
 
 def _joined(
-    parts: Sequence[xr.Dataset], name: str, places: ArrayLike, attrs: Any = "override"
-) -> xr.Dataset:
+    parts: Sequence[Dataset], name: str, places: ArrayLike, attrs: Any = "override"
+) -> Dataset:
     """``parts`` along a new axis; ``attrs`` says what becomes of attributes, as in xarray."""
     import xarray as xr
 
@@ -162,13 +160,13 @@ def _joined(
     return xr.concat(list(parts), axis, combine_attrs=attrs)
 
 
-def _bundles(cycles: Mapping[str, xr.Dataset]) -> xr.Dataset:
+def _bundles(cycles: Mapping[str, Dataset]) -> Dataset:
     return _joined(list(cycles.values()), "bundle", list(cycles), "drop_conflicts")
 
 
-def _cycles(case: GearCase, progress: Progress) -> dict[str, xr.Dataset]:
+def _cycles(case: GearCase, progress: Progress) -> dict[str, Dataset]:
     """Bundle -> the cycle undeformed and hot, everything but the bodies' temperatures alike."""
-    found: dict[str, xr.Dataset] = {}
+    found: dict[str, Dataset] = {}
     for number, model in enumerate(case.models):
         progress("mesh cycle", number, len(case.models))
         states = [state.cycle(case, model) for state in (UNDEFORMED, HOT)]
@@ -177,7 +175,7 @@ def _cycles(case: GearCase, progress: Progress) -> dict[str, xr.Dataset]:
     return found
 
 
-def _with_numbers(case: GearCase, cycle: xr.Dataset) -> xr.Dataset:
+def _with_numbers(case: GearCase, cycle: Dataset) -> Dataset:
     """``cycle`` with the dimensionless numbers of the equation of motion beside it.
 
     The leading axis is the state, "undeformed" first, or the gear temperature; thermal stiffness
@@ -209,13 +207,13 @@ def _with_numbers(case: GearCase, cycle: xr.Dataset) -> xr.Dataset:
     return cycle.assign({name: labelled(name, (dims, v)) for name, v in numbers.items()})
 
 
-def _cold_mean(cycle: xr.Dataset) -> NDArray[np.float64]:
+def _cold_mean(cycle: Dataset) -> NDArray[np.float64]:
     if "cold_mean_stiffness" in cycle.attrs:
         return np.asarray(cycle.attrs["cold_mean_stiffness"])
     return np.asarray(cycle["mean_stiffness"].values[0])
 
 
-def _split(whole: xr.Dataset) -> dict[str, xr.Dataset]:
+def _split(whole: Dataset) -> dict[str, Dataset]:
     """The path's curves apart from the mesh's; kinematics that all bundles share once."""
     shared = [
         "pinion_rolling_velocity",
@@ -241,8 +239,8 @@ def _split(whole: xr.Dataset) -> dict[str, xr.Dataset]:
 
 
 def _motion(
-    case: GearCase, cycles: Mapping[str, xr.Dataset], axis: str, progress: Progress
-) -> xr.Dataset:
+    case: GearCase, cycles: Mapping[str, Dataset], axis: str, progress: Progress
+) -> Dataset:
     """Motion of every bundle, place on ``axis`` and operating point, in SI."""
     first = next(iter(cycles.values()))
     every = [c.isel({axis: k}) for c in cycles.values() for k in range(c.sizes[axis])]
@@ -290,9 +288,9 @@ def _motion_attributes(motion: Motion, case: Case) -> dict[str, Any]:
     }
 
 
-def _temperature_row(case: GearCase, progress: Progress) -> xr.Dataset:
+def _temperature_row(case: GearCase, progress: Progress) -> Dataset:
     """Figures and motion of both gears at each temperature of the row."""
-    cycles: dict[str, xr.Dataset] = {}
+    cycles: dict[str, Dataset] = {}
     temperatures = np.asarray(case.gear_temperatures)
     for model in case.models:
         row = [ThermalState.of(float(t)).cycle(case, model) for t in temperatures]
@@ -326,7 +324,7 @@ def _housing(case: GearCase) -> str:
     return "stays" if "housing" in case.gearbox.measured else "computed"
 
 
-def balances(case: GearCase) -> xr.Dataset:
+def balances(case: GearCase) -> Dataset:
     """The heat balance of every bundle of a case whose temperatures are computed."""
     each = [balance_dataset(case.balance(model)) for model in case.models]
     why = [json.loads(data.attrs.pop("lost")) for data in each]
@@ -382,7 +380,7 @@ def carried_uncertainty(case: GearCase) -> NDArray[np.float64]:
 # --- dimensionless cases ------------------------------------------------------------------
 
 
-def _points(case: DimensionlessCase, stage: str, progress: Progress) -> xr.Dataset:
+def _points(case: DimensionlessCase, stage: str, progress: Progress) -> Dataset:
     """Motion of every point of a dimensionless case."""
     columns = {
         name: np.array([point.model_arguments()[name] for point in case.points])

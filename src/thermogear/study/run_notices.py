@@ -7,11 +7,12 @@ import json
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 import thermogear
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import CELSIUS
 from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import STATUS, told_operating
@@ -28,10 +29,6 @@ from thermogear.results.tables import rows_along
 from thermogear.study.measured_flanks import measured_notices
 from thermogear.study.notices import friction_notices, heat_notices, jam_notices
 
-if TYPE_CHECKING:
-    import xarray as xr
-
-
 STUDIED_FREQUENCIES = (1.1, 1.3)
 """Frequency ratios of the thesis's bifurcation study."""
 
@@ -45,7 +42,7 @@ MOST_POINTS = 12
 LIBRARIES = ("numpy", "scipy", "numba", "xarray", "h5netcdf", "matplotlib")
 
 
-def _point(here: xr.Dataset | Mapping[str, Any], form: str = ".0f") -> str:
+def _point(here: Dataset | Mapping[str, Any], form: str = ".0f") -> str:
     """Speed and torque of one operating point."""
     speed, torque = float(here["pinion_speed"]) / RPM, float(here["pinion_torque"])
     return f"{speed:{form}} rpm, {torque:{form}} N m"
@@ -54,7 +51,7 @@ def _point(here: xr.Dataset | Mapping[str, Any], form: str = ".0f") -> str:
 # --- notices ------------------------------------------------------------------------------
 
 
-def notices(case: GearCase, groups: Mapping[str, xr.Dataset]) -> Iterator[Notice]:
+def notices(case: GearCase, groups: Mapping[str, Dataset]) -> Iterator[Notice]:
     """What a reader should know before the pictures, most important first."""
     mesh = groups["mesh"]
     yield from _computed(case, groups)
@@ -81,7 +78,7 @@ def notices(case: GearCase, groups: Mapping[str, xr.Dataset]) -> Iterator[Notice
         yield from _difference(mesh)
 
 
-def _stiffness(case: GearCase, mesh: xr.Dataset) -> Iterator[Notice]:
+def _stiffness(case: GearCase, mesh: Dataset) -> Iterator[Notice]:
     """How the models of the mesh stiffness stand to each other, in this case."""
     for place, model in enumerate(case.models):
         if not model.stiffness.startswith("textbook"):
@@ -99,7 +96,7 @@ def _stiffness(case: GearCase, mesh: xr.Dataset) -> Iterator[Notice]:
         yield Notice.of("wind_up_left_to_inertia")
 
 
-def _computed(case: GearCase, groups: Mapping[str, xr.Dataset]) -> Iterator[Notice]:
+def _computed(case: GearCase, groups: Mapping[str, Dataset]) -> Iterator[Notice]:
     """What the heat balance found, where it decides the temperatures."""
     if "balance" not in groups:
         return
@@ -145,7 +142,7 @@ def _deviations(case: GearCase) -> Iterator[Notice]:
         yield Notice.of("pitch_errors_of_one_period")
 
 
-def _jammed(case: GearCase, mesh: xr.Dataset) -> Iterator[Notice]:
+def _jammed(case: GearCase, mesh: Dataset) -> Iterator[Notice]:
     hot = mesh.isel(state=-1)
     yield from from_data(hot)
     for place, name in enumerate(mesh["bundle"].values):
@@ -164,7 +161,7 @@ def _jammed(case: GearCase, mesh: xr.Dataset) -> Iterator[Notice]:
             yield from jam_notices(here, case.stated.temperatures.reference, bundle)
 
 
-def _regime(case: GearCase, mesh: xr.Dataset) -> Iterator[Notice]:
+def _regime(case: GearCase, mesh: Dataset) -> Iterator[Notice]:
     ratios = mesh["frequency_ratio"].isel(bundle=0, state=0).values
     low, high = STUDIED_FREQUENCIES
     if np.any((ratios >= low) & (ratios <= high)):
@@ -180,7 +177,7 @@ def _regime(case: GearCase, mesh: xr.Dataset) -> Iterator[Notice]:
     )
 
 
-def _motion(motion: xr.Dataset) -> Iterator[Notice]:
+def _motion(motion: Dataset) -> Iterator[Notice]:
     undecided = int((motion["label"] == "undecided").sum())
     if undecided:
         yield Notice.of("motions_undecided", undecided=undecided)
@@ -192,7 +189,7 @@ def _motion(motion: xr.Dataset) -> Iterator[Notice]:
             yield Notice.of("back_flanks_free", free=free, motions=moving)
 
 
-def _row_jams(row: xr.Dataset) -> Iterator[Notice]:
+def _row_jams(row: Dataset) -> Iterator[Notice]:
     jammed = (row["status"] == STATUS.index("jammed")).any("operating")
     for bundle, here in zip(
         row["bundle"].values, jammed.transpose("bundle", ...).values, strict=True
@@ -203,7 +200,7 @@ def _row_jams(row: xr.Dataset) -> Iterator[Notice]:
             )
 
 
-def _difference(mesh: xr.Dataset) -> Iterator[Notice]:
+def _difference(mesh: Dataset) -> Iterator[Notice]:
     at = mesh.isel(operating=told_operating(mesh))
     known = at.isel(bundle=np.isfinite(at["half_backlash"].isel(state=-1).values))
     if known.sizes["bundle"]:
@@ -216,7 +213,7 @@ def _difference(mesh: xr.Dataset) -> Iterator[Notice]:
         )
 
 
-def dimensionless_notices(points: xr.Dataset) -> Iterator[Notice]:
+def dimensionless_notices(points: Dataset) -> Iterator[Notice]:
     """The notices of a dimensionless case."""
     yield Notice.of("sets_of_no_gears")
     yield from _motion(points)
@@ -225,7 +222,7 @@ def dimensionless_notices(points: xr.Dataset) -> Iterator[Notice]:
 # --- facts --------------------------------------------------------------------------------
 
 
-def facts(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[dict[str, object]]:
+def facts(case: GearCase, groups: Mapping[str, Dataset]) -> list[dict[str, object]]:
     """The case's own figures, then those of the run: frequencies, plausibility."""
     mesh = groups["mesh"]
     cold, hot = (mesh.isel(state=end) for end in (0, -1))
@@ -244,7 +241,7 @@ def facts(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[dict[str, ob
     return [asdict(fact) for fact in (*table, *_balance_facts(groups.get("balance")))]
 
 
-def _frequencies(case: GearCase, cold: xr.Dataset) -> Iterator[Fact]:
+def _frequencies(case: GearCase, cold: Dataset) -> Iterator[Fact]:
     """Natural frequencies of the mean stiffness of every bundle, and of the loaded contact."""
     for row in rows_along(cold, "bundle"):
         natural = row["natural_frequency"]
@@ -268,7 +265,7 @@ def _iso(case: GearCase, row: Mapping[str, Any]) -> Fact:
     return Fact("mesh stiffness by ISO 6336-1 method B (knows no bore)", at, value, "N/m")
 
 
-def _balance_facts(balance: xr.Dataset | None) -> Iterator[Fact]:
+def _balance_facts(balance: Dataset | None) -> Iterator[Fact]:
     """Node temperatures and losses of every operating point, and the corrected readings."""
     if balance is None:
         return
@@ -287,7 +284,7 @@ def _balance_facts(balance: xr.Dataset | None) -> Iterator[Fact]:
         yield from _balance_of(few.isel(bundle=bundle, operating=o))
 
 
-def _balance_of(here: xr.Dataset) -> Iterator[Fact]:
+def _balance_of(here: Dataset) -> Iterator[Fact]:
     """The heat balance of one bundle at one operating point."""
     group = f"heat balance, {here['bundle'].item()}, {_point(here)}"
     if np.isnan(here["residual"]):

@@ -31,6 +31,7 @@ from thermogear.base.plan import (
     empty_arrays,
     keep_going,
     ranges_of,
+    real,
     stretches,
 )
 from thermogear.base.vocabulary import NO_COUNT, moves
@@ -144,22 +145,19 @@ class RunUpPlan:
     def variables(self) -> dict[str, Variable]:
         dims = ("state", "direction", "pinion_speed")
 
-        def real(words: str, units: str, *inner: str) -> Variable:
-            attributes = {"long_name": words, "units": units}
-            return Variable((*dims, *inner), "float64", float("nan"), attributes)
-
+        number = partial(real, dims)
         found = outcome_variables(dims) | response_variables(dims, lines=True)
         for name in "xv":
-            found[f"section_{name}"] = real("Poincare section in half backlashes", "1", "section")
-            found[f"end_{name}"] = real("state carried on", "1")
-        found["end_speed"] = real("speed of the state carried on", "rad/s")
+            found[f"section_{name}"] = number("Poincare section in half backlashes", "1", "section")
+            found[f"end_{name}"] = number("state carried on", "1")
+        found["end_speed"] = number("speed of the state carried on", "rad/s")
         found["end_period"] = Variable(
             dims,
             "int32",
             0,
             {"long_name": "periods of the orbit that is followed, 0: none"} | NO_COUNT,
         )
-        found |= {name: real(*told, "leap") for name, told in LEAP.items()}
+        found |= {name: number(*told, "leap") for name, told in LEAP.items()}
         early = {"long_name": "1: a run in these steps alone leaves its branch before this speed"}
         return found | {"left_early": Variable(dims, "int8", 0, early)}
 

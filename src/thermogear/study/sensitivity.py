@@ -259,9 +259,8 @@ def evaluate(
 
     done: list[ThermalState] = []
     progress("sensitivity", 0, 5)
-    with warnings.catch_warnings():
+    with warnings.catch_warnings(action="ignore", category=ValidityWarning):
         # corners of the ranges leave an oil's range; the ranges stand beside the results
-        warnings.simplefilter("ignore", ValidityWarning)
         cold = cycle(consistent, UNDEFORMED, stiffness)
         hot = cycle(consistent, HOT, (*stiffness, *OF_THE_PATH))
         lost = int(np.count_nonzero(hot["status"] == STATUS.index("not_converged")))

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import Excitation
 from thermogear.base.pair_springs import PairSprings
@@ -24,9 +25,6 @@ from thermogear.mesh.thermal import HotPair
 from thermogear.results.result import Result
 from thermogear.study.declared import SharedForce, declared
 from thermogear.study.orbit import found
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 POSITIONS = 240
 LIGHT = 0.05
@@ -105,7 +103,7 @@ def shared_results(
     return found(SharedForce.kind, {"rest": data, "motion": moving}, summary, interrupted=cut)
 
 
-def at_rest(case: GearCase, hot: HotPair, here: Excitation, drive: PairSprings) -> xr.Dataset:
+def at_rest(case: GearCase, hot: HotPair, here: Excitation, drive: PairSprings) -> Dataset:
     """Mean stiffness and swing of the error over load: exact, pair springs, one spring."""
     phase = np.arange(POSITIONS) / POSITIONS + 1e-12
     loads = FACTORS * here.mean_force
@@ -136,7 +134,7 @@ def at_rest(case: GearCase, hot: HotPair, here: Excitation, drive: PairSprings) 
 
 def free_play(
     case: GearCase, hot: HotPair, here: Excitation, drive: PairSprings, back: PairSprings
-) -> xr.Dataset:
+) -> Dataset:
     """Free play 2 b' [m] over the mesh phase: of the pairs' springs and of the one spring.
 
     Both from one gap function; in motion the one spring keeps its mean all along.
@@ -174,10 +172,10 @@ def _swings(
     return float(np.ptp(by_pairs)), float(np.ptp(by_one))
 
 
-def _summary(rest: xr.Dataset, moving: xr.Dataset) -> dict[str, Any]:
+def _summary(rest: Dataset, moving: Dataset) -> dict[str, Any]:
     """How far apart the two forms are, at the mean load and where they part."""
 
-    def apart(data: xr.Dataset, quantity: str, of: Callable[..., Any] = np.max, **at: Any) -> float:
+    def apart(data: Dataset, quantity: str, of: Callable[..., Any] = np.max, **at: Any) -> float:
         here = data.sel(at, method="nearest")
         ratio = here[f"shared_{quantity}"] / here[f"one_spring_{quantity}"]
         return float("nan") if not ratio.size else float(of(np.abs(ratio.values - 1.0)))

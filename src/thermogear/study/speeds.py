@@ -10,23 +10,19 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.settle import CHAOTIC, UNDECIDED, WATCHED
 from thermogear.analysis.side_by_side import Motions, motions_along
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.excitation import Excitations
 from thermogear.base.units import RPM
 from thermogear.base.vocabulary import NO_COUNT, label
 from thermogear.case.points import Points, points_of
 from thermogear.case.response import Recording, respond
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 LOWEST, HIGHEST, STEP = 0.05, 1.8, 0.025
 """Mesh over natural frequency, and the step of it. At the lowest the twentieth harmonic of the
@@ -74,7 +70,7 @@ class Speeds:
         return np.asarray(self.columns[name])
 
     @cached_property
-    def data(self) -> xr.Dataset:
+    def data(self) -> Dataset:
         """The columns with their units, and the case's own speeds [rad/s]."""
         words = VALUES | MOTIONS
         found = {name: (("motion",), self.columns[name], *words[name]) for name in words}

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,7 +19,7 @@ from thermogear.analysis.outcome import (
     settle_with_status,
 )
 from thermogear.analysis.settle import Rule
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.errors import InputError
 from thermogear.base.notice import stored_notices
 from thermogear.base.plan import (
@@ -41,10 +41,6 @@ from thermogear.results.result import Result
 from thermogear.results.work import Report, carry_out
 from thermogear.study.answers.points import answer_numbers, answer_variables
 from thermogear.study.notices import finished, range_notices
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 CHUNK_POINTS = 128
 
@@ -126,7 +122,7 @@ class SweepPlan:
         flat = self._rows(grid.reshape(-1, len(values)), alive)
         return {name: a.reshape(*shape, *a.shape[1:]) for name, a in flat.items()}
 
-    def finish(self, data: xr.Dataset) -> xr.Dataset:
+    def finish(self, data: Dataset) -> Dataset:
         return data.assign_attrs(
             bundle=self.family.bundle,
             state=self.family.state.stored,

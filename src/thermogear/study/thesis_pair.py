@@ -12,11 +12,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.errors import InputError
 from thermogear.base.parameters import PARAMETERS
 from thermogear.base.plan import gather
@@ -34,10 +34,6 @@ from thermogear.study.compare import compare
 from thermogear.study.diagrams import Train, case_diagram, overlaid
 from thermogear.study.notices import friction_notices
 from thermogear.study.run import run
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 TEMPERATURES = tuple(ZERO_CELSIUS + t for t in (100.0, 120.0, 140.0, 160.0))
 """Gear temperatures [K] of section 4.1 of the thesis."""
@@ -166,7 +162,7 @@ def _axes(case: GearCase, point: Points, count: int) -> dict[str, Floats]:
     }
 
 
-def _played(case: GearCase, progress: Progress) -> xr.Dataset:
+def _played(case: GearCase, progress: Progress) -> Dataset:
     """The drive train hot over the play of all its bearings, up and down."""
     plan = case_diagram(case, "bearings.all.play", PLAYS, branch_period=0, train=Train())
     return gather(plan, progress=partial(progress, "bearing play"))

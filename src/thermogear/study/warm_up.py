@@ -6,12 +6,12 @@ import time
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq
 
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.bounds import whole
 from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.base.progress import Progress, silent
@@ -29,9 +29,6 @@ from thermogear.mesh.warm_up import PHASES, Duty, WarmUp, meshing, warm_up, with
 from thermogear.mesh.warm_up_fit import Fit, fit_factors, require_factors, until
 from thermogear.results.result import Notice, Result
 from thermogear.study.declared import WarmUpSurvey, declared
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 FLAT = 5e-8
 """Half backlash [m] above its least within which no moment is told as that of the least: a tenth of
@@ -171,7 +168,7 @@ def _course(
 
 def _course_dataset(
     case: GearCase, course: WarmUp, shown: Sequence[Shown], progress: Progress
-) -> xr.Dataset:
+) -> Dataset:
     count = course.time.size
     nodes = [n for n in (*NODES, "ambient") if n in course.temperatures]
     nodes += [n for n in course.temperatures if n not in nodes]
@@ -235,7 +232,7 @@ def _course_dataset(
 # --- what it is measured against --------------------------------------------------------------
 
 
-def _steady(case: GearCase, duty: Duty, factors: Mapping[str, float]) -> xr.Dataset:
+def _steady(case: GearCase, duty: Duty, factors: Mapping[str, float]) -> Dataset:
     """Every piece of the duty held for good: temperatures and least half backlash.
 
     Nowhere a steady state where a fitted factor would wet more than the whole of a gear.
@@ -297,7 +294,7 @@ def _least_gap(case: GearCase, pair: HotPair) -> Floats:
     )
 
 
-def _worst(case: GearCase, course: WarmUp, steady: xr.Dataset) -> dict[str, Any]:
+def _worst(case: GearCase, course: WarmUp, steady: Dataset) -> dict[str, Any]:
     """The least half backlash, the steady one of the same piece, and the end."""
     one, rest = course.worst, float(steady["half_backlash"][course.worst.piece])
     cold = float(_least_gap(case, HotPair(case.pair, case.stated, case.models[0]).drawn())[0])
@@ -357,7 +354,7 @@ def _fitted(
     return fit_factors(residuals, names, progress)
 
 
-def _record(measured: Measured, course: WarmUp, shown: Sequence[Shown]) -> xr.Dataset:
+def _record(measured: Measured, course: WarmUp, shown: Sequence[Shown]) -> Dataset:
     inside = measured.time <= course.time[-1]
     if not np.any(inside):
         raise InputError("measured", "no row within the course", allowed="rows within the duty")
@@ -377,7 +374,7 @@ def _record(measured: Measured, course: WarmUp, shown: Sequence[Shown]) -> xr.Da
     )
 
 
-def _fit_dataset(found: Fit) -> xr.Dataset:
+def _fit_dataset(found: Fit) -> Dataset:
     along = ("factor",)
     return label(
         {
@@ -439,7 +436,7 @@ def no_bath_from(course: WarmUp) -> float:
 def _notices(
     case: GearCase,
     course: WarmUp,
-    steady: xr.Dataset,
+    steady: Dataset,
     measured: Measured | None,
     found: Fit | None,
     seconds: float,

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.display import SPEED
 from thermogear.base.vocabulary import label
 from thermogear.case.case import GearCase
@@ -23,17 +22,13 @@ from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Temperatures
 
-if TYPE_CHECKING:
-    import xarray as xr
-
-
 PRINTED_MIDDLE, PRINTED_SWING = 4.875e8, 2.75e8
 """The two stiffness figures [N/m] that the document prints in section 3.2."""
 SPEEDS = (500.0, 3000.0)
 TORQUES = (50.0, 200.0)
 
 
-def operating_grid(case: GearCase, *, speeds: int = 6, torques: int = 5) -> xr.Dataset:
+def operating_grid(case: GearCase, *, speeds: int = 6, torques: int = 5) -> Dataset:
     """Friction, flash and growth over speed and torque, with two states of the bodies.
 
     ``given``: the case's temperatures at every point; ``balance``: what the closed loop of losses
@@ -96,7 +91,7 @@ def operating_grid(case: GearCase, *, speeds: int = 6, torques: int = 5) -> xr.D
     return data.assign(settled=(("speed", "torque"), settled.astype(np.int8)))
 
 
-def correlations(grid: xr.Dataset, thermal: str, kind: str = "mixed") -> dict[str, float]:
+def correlations(grid: Dataset, thermal: str, kind: str = "mixed") -> dict[str, float]:
     """Pearson's correlations of friction, flash and growth over the grid (nan: one is constant)."""
     here = grid.sel(thermal=thermal)
     rows = {

@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import GRAVITY, MICROMETRE, PERCENT
 from thermogear.case.base import Case
 from thermogear.case.case import GearCase
@@ -23,9 +24,6 @@ from thermogear.heat.thesis_profile import flank_growth_as_printed
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.thermal import HotPair
 from thermogear.results.result import Result
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 Row = dict[str, Any]
 
@@ -58,7 +56,7 @@ def with_errata(result: Result, case: Case) -> Result:
     return result
 
 
-def errata(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[Row]:
+def errata(case: GearCase, groups: Mapping[str, Dataset]) -> list[Row]:
     """The twenty rows, with numbers where the formula can be evaluated at all."""
     mesh, bundle = groups["mesh"], -1
     path = groups["path"].isel(bundle=bundle, state=-1, operating=0, path_position=0)
@@ -239,7 +237,7 @@ def errata(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[Row]:
     ]
 
 
-def _backlash(mesh: xr.Dataset, name: str) -> float | None:
+def _backlash(mesh: Dataset, name: str) -> float | None:
     """Hot half backlash [um] of the first operating point in the bundle whose name starts so."""
     for place, bundle in enumerate(mesh["bundle"].values):
         if str(bundle).startswith(name):

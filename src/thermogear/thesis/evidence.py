@@ -11,8 +11,8 @@ import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.base.progress import Progress, silent
 from thermogear.case.case import DimensionlessCase, GearCase, gear_case, load_example
@@ -24,10 +24,6 @@ from thermogear.study.run import run
 from thermogear.study.sensitivity import Plan, sensitivity
 from thermogear.thesis import base_sets, chain, experiment, experiment_answer, motions
 from thermogear.thesis.errata import with_errata
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 STAGES = (
     "the rig, from friction to motion",
@@ -90,33 +86,32 @@ class Evidence:
         return with_errata(run(self.case), self.case)
 
     @property
-    def groups(self) -> Mapping[str, xr.Dataset]:
+    def groups(self) -> Mapping[str, Dataset]:
         """The run's groups by their path."""
         return self.result.groups
 
-    def bundle(self, group: str, name: str, state: str = "hot") -> xr.Dataset:
+    def bundle(self, group: str, name: str, state: str = "hot") -> Dataset:
         """One bundle of a group of the run in one state."""
         return self.groups[group].sel(bundle=name, state=state)
 
     @cached_property
-    def grid(self) -> xr.Dataset:
+    def grid(self) -> Dataset:
         """Friction, flash and growth over speed and torque; see :func:`chain.operating_grid`."""
         self._tell(STAGES[1])
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(action="ignore", category=ValidityWarning):
             # the closed loop's oil may leave its line's range at the corners; the page says so
-            warnings.simplefilter("ignore", ValidityWarning)
             return chain.operating_grid(
                 self.case, speeds=self.size.speeds, torques=self.size.torques
             )
 
     @cached_property
-    def diagrams(self) -> dict[str, xr.Dataset]:
+    def diagrams(self) -> dict[str, Dataset]:
         """Orbit diagrams over zeta, omega_h and epsilon, by "parameter/heat"."""
         self._tell(STAGES[2])
         return motions.diagrams(self.row_points, self.size.diagram)
 
     @cached_property
-    def flips(self) -> xr.Dataset:
+    def flips(self) -> Dataset:
         """The located period doublings of every diagram."""
         self._tell(STAGES[3])
         return motions.flips(self.row_points, self.size.flips)
@@ -132,7 +127,7 @@ class Evidence:
         return base_sets.stored()
 
     @cached_property
-    def warming(self) -> xr.Dataset:
+    def warming(self) -> Dataset:
         """The temperature row with multipliers, and where its flip lies."""
         self._tell(STAGES[4])
         return motions.warming(self.rows("section-4.1"))
@@ -151,7 +146,7 @@ class Evidence:
         return sensitivity(self.case, plan)
 
     @cached_property
-    def rig_trains(self) -> xr.Dataset:
+    def rig_trains(self) -> Dataset:
         """What accelerometers show on drive trains that the rig could have been."""
         self._tell(STAGES[7])
         count = self.size.trains

@@ -10,7 +10,7 @@ from __future__ import annotations
 import csv
 import io
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from importlib.resources import files
 
@@ -19,7 +19,7 @@ import numpy as np
 from thermogear.analysis.any_motion import settle
 from thermogear.analysis.walk import Search
 from thermogear.base.arrays import Floats
-from thermogear.base.display import MICROMETRE, SPEED
+from thermogear.base.display import SPEED
 from thermogear.base.errors import ThermogearError, ValidityWarning
 from thermogear.base.vocabulary import STATUS
 from thermogear.case.case import gear_case, load_case
@@ -92,8 +92,7 @@ def shown(values: Mapping[str, float], *, held: int = HELD_MODES) -> Shown:
     """What the train of ``values`` shows; ``held``: modes beside its interface."""
     nothing = dict.fromkeys(SEEN, (float("nan"),) * len(SPEEDS))
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", ValidityWarning)
+        with warnings.catch_warnings(action="ignore", category=ValidityWarning):
             case = gear_case(load_case(case_text(values)))
             ((state,),) = settled(case, [0], states=(HOT,))
             if state.status != STATUS.index("ok"):
@@ -160,41 +159,12 @@ def _amplitudes(train: MovingTrain, start: Floats, periods: int) -> dict[str, Fl
     return {**found, "teeth": lines(teeth, orders=[1.0])[0].reshape(1)}
 
 
-def trains(count: int = SAMPLES_STORED, *, seed: int = SEED, first: int = 0) -> Iterator[Shown]:
-    """``count`` sampled trains, one after the other, from number ``first`` on."""
-    for values in drawn(count, seed=seed)[first:]:
-        yield shown(values)
+def trains(count: int = SAMPLES_STORED) -> Iterator[Shown]:
+    """``count`` sampled trains, one after the other."""
+    yield from map(shown, drawn(count, seed=SEED))
 
 
 # --- the table that is stored -------------------------------------------------------------------
-
-
-def header() -> list[str]:
-    """Names of the columns of the stored table."""
-    found = [*(one.name for one in ASSUMED), *(f"label_{rpm:.0f}" for rpm in SPEEDS)]
-    for place in SEEN:
-        found += [f"{place}_channel", *(f"{place}_{rpm:.0f}" for rpm in SPEEDS)]
-        found += [f"{place}_most_{rpm:.0f}" for rpm in SPEEDS]
-    return found
-
-
-def row(one: Shown) -> list[str]:
-    """A line of the stored table: inputs in the units of their ranges, amplitudes in um."""
-    found = [f"{v:.{DIGITS}g}" for v in one.values.values()]
-    found += list(one.labels)
-    for place in SEEN:
-        found.append(one.channels[place])
-        found += [f"{MICROMETRE(v):.{DIGITS}g}" for v in (*one.amplitudes[place], *one.most[place])]
-    return found
-
-
-def text_of(rows: Sequence[Shown]) -> str:
-    """The table of ``rows`` as it is stored."""
-    into = io.StringIO()
-    writer = csv.writer(into, lineterminator="\n")
-    writer.writerow(header())
-    writer.writerows(row(one) for one in rows)
-    return into.getvalue()
 
 
 def stored() -> list[Shown]:

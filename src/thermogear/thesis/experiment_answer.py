@@ -9,18 +9,15 @@ lower end is above :data:`YES`, else "undecided". Trains without a motion count 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.display import MICROMETRE, PERCENT, SPEED
 from thermogear.base.vocabulary import label
 from thermogear.thesis.experiment import PRINTED, SEEN, WORDS, Shown
 from thermogear.thesis.rig_trains import ASSUMED, FIXED, SPEEDS
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 NEAR = 1.5
 """Peak or rms (1.41) and an unstated processing together."""
@@ -117,7 +114,7 @@ def _ranks(rows: Sequence[Shown]) -> tuple[Floats, Floats]:
     return found, np.asarray(np.nanstd(drawn, axis=0, ddof=1))
 
 
-def results(rows: Sequence[Shown]) -> xr.Dataset:
+def results(rows: Sequence[Shown]) -> Dataset:
     """Everything that the page shows of the sampled trains."""
     lost = sum(not one.moves for one in rows)
     seen = tuple(TOLD)
@@ -180,7 +177,7 @@ def results(rows: Sequence[Shown]) -> xr.Dataset:
     return found.assign_attrs(sentence=sentence(found), deciding=deciding(found))
 
 
-def sentence(data: xr.Dataset) -> str:
+def sentence(data: Dataset) -> str:
     """The answer with its share and spread, in one sentence."""
     one = data.sel(seen=EITHER).isel(limit=LIMITS.index(NEAR))
     nearest = float(np.min(data["needed_factor"].sel(seen=EITHER).values))
@@ -202,7 +199,7 @@ def sentence(data: xr.Dataset) -> str:
     )
 
 
-def deciding(data: xr.Dataset) -> str:
+def deciding(data: Dataset) -> str:
     """What decides it: the inputs whose rank correlation is beyond three standard errors."""
     parts = []
     for name, words in TARGETS.items():

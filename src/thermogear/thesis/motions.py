@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,18 +14,13 @@ from thermogear.analysis.labels import labels
 from thermogear.analysis.orbits import periodic_orbit
 from thermogear.analysis.proof import Label
 from thermogear.analysis.settle import PERIODIC
-from thermogear.base.arrays import Floats
-from thermogear.base.errors import InputError
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.parameters import long_name
 from thermogear.base.vocabulary import label
 from thermogear.case.case import DimensionlessCase
 from thermogear.case.one_point import rows_of
 from thermogear.dynamics.integrate import simulate
 from thermogear.dynamics.models import TorsionalModel
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 SWEPT = {row: long_name(row) for row in ("zeta", "omega", "epsilon")}
 """Row of the table -> the parameter it sweeps."""
@@ -63,8 +57,6 @@ def rows(table: DimensionlessCase, section: DimensionlessCase) -> Rows:
     base: dict[str, float] = {}
     for name, parameter in SWEPT.items():
         points = by_row[name]
-        if points[0].parameter != parameter:
-            raise InputError(f"rows.{name}", points[0].parameter, allowed=parameter)
         ends[name] = (points[0].value, points[-1].value)
         given = points[0].model_arguments()
         # each row holds the others' parameters at the base set
@@ -85,7 +77,7 @@ def hottest(section: DimensionlessCase, row: str) -> TorsionalModel:
     return TorsionalModel(**rows_of(section)[row][-1].model_arguments())
 
 
-def diagrams(base: Rows, values: int = 241) -> dict[str, xr.Dataset]:
+def diagrams(base: Rows, values: int = 241) -> dict[str, Dataset]:
     """Orbit diagrams of every row without heat and with both kinds, by "row/heat"."""
     found = {}
     for name, parameter in SWEPT.items():
@@ -98,7 +90,7 @@ def diagrams(base: Rows, values: int = 241) -> dict[str, xr.Dataset]:
     return found
 
 
-def flips(base: Rows, most: int = 4) -> xr.Dataset:
+def flips(base: Rows, most: int = 4) -> Dataset:
     """Located period doublings of every row and kind of heat, along the document's direction.
 
     Over (row, heat, flip): ``value`` of the parameter (nan: none). A row that begins past its first
@@ -146,7 +138,7 @@ def _enter(
     return first, None
 
 
-def warming(section: DimensionlessCase) -> xr.Dataset:
+def warming(section: DimensionlessCase) -> Dataset:
     """The temperature rows: label, largest multiplier, distinct section points, located flip.
 
     Over (row, temperature); ``flip`` [K] per row, nan where the whole range has none. Between the
@@ -241,7 +233,7 @@ def swing(model: TorsionalModel, start: tuple[float, float] = (0.0, 0.0)) -> tup
     return float(x.std()), float(np.ptp(x))
 
 
-def sequence(data: xr.Dataset, falling: bool) -> list[str]:
+def sequence(data: Dataset, falling: bool) -> list[str]:
     """Labels met along a diagram, in the order of first meeting: "period-n", "chaotic", ..."""
     parameter = str(data.attrs["parameter"])
     direction = -1 if falling else 1
@@ -257,7 +249,7 @@ def sequence(data: xr.Dataset, falling: bool) -> list[str]:
     return list(dict.fromkeys(names))
 
 
-def stability_falls(data: xr.Dataset) -> bool:
+def stability_falls(data: Dataset) -> bool:
     """Whether a period-1 motion comes nearer to its loss with every step of a falling parameter.
 
     The modulus [1] of its largest Floquet multiplier rises from the largest value of the diagram
@@ -269,7 +261,7 @@ def stability_falls(data: xr.Dataset) -> bool:
     return lost.size > 0 and bool(np.all(np.diff(modulus[lost[-1] + 1 :]) < 0.0))
 
 
-def coexisting(data: xr.Dataset) -> int:
+def coexisting(data: Dataset) -> int:
     """Values of a diagram at which the way up and the way down end on different orbits."""
     up, down = (data.sel(direction=d).isel(start=0) for d in (1, -1))
     periodic = (up["label"].values == PERIODIC) & (down["label"].values == PERIODIC)
@@ -283,7 +275,7 @@ def coexisting(data: xr.Dataset) -> int:
     return int(np.sum(periodic & (other | (np.maximum(*edges) > 1e-3))))
 
 
-def scatter(data: xr.Dataset) -> int:
+def scatter(data: Dataset) -> int:
     """Section points beyond the period, the most of all periodic points of a diagram."""
     worst = 0
     periodic = data["label"].values == PERIODIC

@@ -8,8 +8,8 @@ import time
 from collections import Counter
 from dataclasses import dataclass
 from importlib.resources import files
-from typing import TYPE_CHECKING
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import label
 from thermogear.measured.comparison import result_of
@@ -18,10 +18,6 @@ from thermogear.study.sensitivity import plain_words
 from thermogear.thesis import section6
 from thermogear.thesis.claim import Finding, Verdict
 from thermogear.thesis.evidence import STAGES, Evidence, Size
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 TABLE = "sentences.csv"
 
@@ -135,7 +131,7 @@ TEXTS = (
 )
 
 
-def _claims(findings: list[Finding]) -> xr.Dataset:
+def _claims(findings: list[Finding]) -> Dataset:
     rows = [
         (
             claim.number, claim.place, claim.kind, claim.words, finding.thesis, finding.consistent,
@@ -152,7 +148,7 @@ def _sentences() -> dict[str, int]:
     return {"all": len(rows), "claimed": sum(bool(row.claims) for row in rows)}
 
 
-def _plain(data: xr.Dataset) -> xr.Dataset:
+def _plain(data: Dataset) -> Dataset:
     """A diagram without what its picture does not need."""
     kept = data[["label", "period", "lyapunov", "section_x"]]
     return kept.assign_attrs({k: v for k, v in data.attrs.items() if isinstance(v, str | int)})

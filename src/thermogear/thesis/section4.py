@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import CELSIUS, PERCENT
 from thermogear.base.parameters import PARAMETERS
 from thermogear.base.vocabulary import UNDEFORMED, told_labels
@@ -14,9 +14,6 @@ from thermogear.dynamics.models import TorsionalModel
 from thermogear.thesis import base_sets, motions
 from thermogear.thesis.claim import Claim, Finding, Verdict, listed, verdict_of
 from thermogear.thesis.evidence import Evidence
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 LABEL, CASCADE = "thermogear.analysis.labels.label", "thermogear.analysis.continuation.cascade"
 DIAGRAM = "thermogear.analysis.diagram.orbit_diagram"
@@ -39,7 +36,7 @@ def _no_torus(*models: TorsionalModel) -> str:
     )
 
 
-def _points(e: Evidence, name: str, row: str) -> xr.Dataset:
+def _points(e: Evidence, name: str, row: str) -> Dataset:
     """The points of one row of a ready-made case."""
     points = e.groups[f"base_sets/{name}"]
     return points.isel(point=np.flatnonzero(points["row"].values == row))

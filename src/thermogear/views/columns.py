@@ -9,19 +9,17 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 
 import numpy as np
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import Display, display, number, span
 from thermogear.base.vocabulary import QUANTITIES
 from thermogear.results import tables
 from thermogear.views.page import Cell, Table
 from thermogear.views.style import names_of
 from thermogear.views.typesetting import operating_names
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 Row = Mapping[str, Any]
 """One place: stored names with their values, SI numbers or words."""
@@ -96,10 +94,10 @@ def in_full(columns: Iterable[Column], row: Row) -> dict[str, Any]:
     return {column.key: column.figure(row) for column in columns if column.key}
 
 
-def by_name(data: xr.Dataset, columns: Sequence[Column], *dims: str) -> dict[str, Any]:
+def by_name(data: Dataset, columns: Sequence[Column], *dims: str) -> dict[str, Any]:
     """The arrays of ``data`` under their names in JSON: a table for each place along ``dims``."""
 
-    def at(here: xr.Dataset, *along: str) -> dict[str, Any]:
+    def at(here: Dataset, *along: str) -> dict[str, Any]:
         if not along:
             return in_full(columns, cast(Row, here))
         first, *rest = along
@@ -109,13 +107,13 @@ def by_name(data: xr.Dataset, columns: Sequence[Column], *dims: str) -> dict[str
     return at(tables.in_words(data), *dims)
 
 
-def units(columns: Iterable[Column], data: xr.Dataset) -> dict[str, str]:
+def units(columns: Iterable[Column], data: Dataset) -> dict[str, str]:
     """The stored units of the numbers that have their stored names in JSON, pure numbers aside."""
     stored = {c.key: data[c.key].attrs.get("units", "1") for c in columns if c.key in data}
     return {name: unit for name, unit in stored.items() if unit != "1"}
 
 
-def reaches(caption: str, columns: Iterable[Column], data: xr.Dataset) -> Table:
+def reaches(caption: str, columns: Iterable[Column], data: Dataset) -> Table:
     """The least and the greatest of each of the ``columns`` over all of ``data``."""
     row = cast(Row, data)
     return pairs(
@@ -127,7 +125,7 @@ OF_STATE = (Column("state", "state"), Column("operating point", "operating"))
 """The state of heat and the operating point, as the first columns of a table."""
 
 
-def rows_along(data: xr.Dataset, *dims: str) -> list[dict[str, Any]]:
+def rows_along(data: Dataset, *dims: str) -> list[dict[str, Any]]:
     """A row for each place along ``dims``, as :func:`~thermogear.results.tables.rows_along`.
 
     Under ``operating`` stands the name of the operating point where these have none.

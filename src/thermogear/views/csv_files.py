@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import CELSIUS
 from thermogear.results.result import Result
 from thermogear.results.tables import harmless, stretched
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 CURVES = {
     "path_position": "path",
@@ -49,7 +46,7 @@ def curve_tables(result: Result) -> dict[str, str]:
     }
 
 
-def _files(group: str, data: xr.Dataset) -> Iterator[tuple[str, list[Column]]]:
+def _files(group: str, data: Dataset) -> Iterator[tuple[str, list[Column]]]:
     """(name without ending, columns) of every file that a group becomes."""
     short = group.removeprefix("base_sets/")
     figures = _along(data, "")
@@ -70,7 +67,7 @@ def _files(group: str, data: xr.Dataset) -> Iterator[tuple[str, list[Column]]]:
             yield "_".join([stem, *labels]), _columns(here, [*inner, curve])
 
 
-def _along(data: xr.Dataset, curve: str) -> list[str]:
+def _along(data: Dataset, curve: str) -> list[str]:
     """The variables that run along ``curve``; with "" those that run along none."""
     return [
         str(name)
@@ -79,7 +76,7 @@ def _along(data: xr.Dataset, curve: str) -> list[str]:
     ]
 
 
-def _place_name(data: xr.Dataset, dimension: str, place: int) -> str:
+def _place_name(data: Dataset, dimension: str, place: int) -> str:
     if dimension not in data.coords:
         return f"{dimension}{place}"
     value = data[dimension].values[place]
@@ -88,7 +85,7 @@ def _place_name(data: xr.Dataset, dimension: str, place: int) -> str:
     return str(value)
 
 
-def _columns(data: xr.Dataset, dims: list[str]) -> list[Column]:
+def _columns(data: Dataset, dims: list[str]) -> list[Column]:
     """Every coordinate and variable of ``data`` as cells, stretched over ``dims`` and laid flat."""
     numbered = {d: np.arange(data.sizes[d]) for d in dims if d not in data.coords}
     # a number is written once, however many rows repeat it
@@ -104,7 +101,7 @@ def _columns(data: xr.Dataset, dims: list[str]) -> list[Column]:
     ]
 
 
-def head_text(data: xr.Dataset, name: str) -> str:
+def head_text(data: Dataset, name: str) -> str:
     """The name of a column with the unit it is stored in, if there is one."""
     unit = data[name].attrs.get("units", "") if name in data.variables else ""
     return f"{name} [{unit}]" if unit else name

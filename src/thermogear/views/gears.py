@@ -12,16 +12,13 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.display import MILLIMETRE, SPEED, exactly
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 Points = NDArray[np.complex128]
 
@@ -200,9 +197,7 @@ class GearDrawing:
         }
 
 
-def gear_drawing(
-    data: xr.Dataset, operating: int = 0, *, factor: float | None = None
-) -> GearDrawing:
+def gear_drawing(data: Dataset, operating: int = 0, *, factor: float | None = None) -> GearDrawing:
     """The drawing in a stored group at one operating point; ``factor`` None: a round one that fits.
 
     The factor is a 1, 2 or 5 with zeros, the greatest at which neither gap nor growth hides what a
@@ -239,7 +234,7 @@ def gear_drawing(
     )
 
 
-def _state(here: xr.Dataset) -> DrawnState:
+def _state(here: Dataset) -> DrawnState:
     return DrawnState(
         name=str(here["state"].item()),
         outlines=_outlines(here, "outline"),
@@ -252,7 +247,7 @@ def _state(here: xr.Dataset) -> DrawnState:
     )
 
 
-def _outlines(here: xr.Dataset, name: str) -> tuple[Points, Points]:
+def _outlines(here: Dataset, name: str) -> tuple[Points, Points]:
     radius, angle = MM * here[f"{name}_radius"].values, here[f"{name}_angle"].values
     first, second = (np.asarray(radius[k] * np.exp(1j * angle[k])) for k in (PINION, WHEEL))
     return first, second

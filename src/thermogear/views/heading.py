@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import MICROMETRE, celsius, number, span
 from thermogear.base.parameters import PARAMETERS
 from thermogear.base.toml import told
 from thermogear.results.result import Result
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 STUDIES = {
     "gear": "Run", "dimensionless": "Run", "answers": "Answers", "diagram": "Orbit diagram",
@@ -88,7 +86,7 @@ def _fixed(result: Result) -> Iterator[str]:
         yield f"{len(changes) - MOST_CHANGES} more changes (see the case file)"
 
 
-def _of_the_case(result: Result, data: xr.Dataset) -> Iterator[str]:
+def _of_the_case(result: Result, data: Dataset) -> Iterator[str]:
     """Speed and torque as the case file gives them, where they are no axis: the first of each."""
     try:
         given = tomllib.loads(result.text("case")).get("operating", {})
@@ -105,7 +103,7 @@ def _of_the_case(result: Result, data: xr.Dataset) -> Iterator[str]:
             yield value
 
 
-def _points(data: xr.Dataset) -> Iterator[str]:
+def _points(data: Dataset) -> Iterator[str]:
     """Speeds, torques and the other axes, each a value or a span."""
     names = ["pinion_speed", "pinion_torque"]
     names += [str(n) for n in data.dims if str(n) in PARAMETERS and str(n) not in names]

@@ -8,10 +8,11 @@ from functools import cache, cached_property
 from importlib.resources import files
 from itertools import zip_longest
 from textwrap import wrap
-from typing import TYPE_CHECKING, Any, overload
+from typing import Any, overload
 
 from markupsafe import Markup
 
+from thermogear.base.arrays import Dataset
 from thermogear.results.files import finite
 from thermogear.results.result import Notice, Result
 from thermogear.views.heading import who
@@ -19,9 +20,6 @@ from thermogear.views.moving import Dial, attribute, compact, moving, policy, sc
 from thermogear.views.picture import Picture
 from thermogear.views.svg import draw, shared_styles
 from thermogear.views.typesetting import prose
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 Cell = str | Markup
 
@@ -187,7 +185,7 @@ class Pictures:
         name: str,
         heading: str,
         caption: Cell,
-        data: xr.Dataset,
+        data: Dataset,
         needs: Iterable[str],
         make: Callable[[], Picture],
         wide: bool = False,
@@ -248,10 +246,6 @@ class Made(Sequence[Section]):
 
     def __len__(self) -> int:
         return len(self._there)
-
-
-SHOWN = ("first", "all", "none")
-"""How many pictures a page shows."""
 
 
 def nothing() -> Any:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import KW_ONLY, dataclass, field, fields, is_dataclass
 from typing import Any, Concatenate, ParamSpec
 
@@ -211,12 +211,6 @@ class Hatch(Mark):
     values: ArrayLike
 
 
-KINDS = {
-    kind.__name__.lower(): kind
-    for kind in (Curve, Points, Stems, Band, Span, Line, Text, Bars, Field, Contours, Hatch)
-}
-
-
 @dataclass
 class Axis:
     """Words with the [unit], and the ends; where there is none the data with ``margin`` say it.
@@ -345,12 +339,6 @@ class Picture:
         assert isinstance(found, dict)
         return found
 
-    @classmethod
-    def from_json(cls, said: Mapping[str, Any]) -> Picture:
-        """The picture that :meth:`to_json` told."""
-        panels = [[_panel(one) for one in row] for row in said["panels"]]
-        return cls(**{**said, "panels": panels})
-
 
 def _plain(value: Any) -> Any:
     if is_dataclass(value):
@@ -363,15 +351,3 @@ def _plain(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [_plain(one) for one in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value
-
-
-def _panel(said: Mapping[str, Any]) -> Panel:
-    def axis(words: Mapping[str, Any]) -> Axis:
-        return Axis(**{name: value for name, value in words.items() if name != "unit"})
-
-    marks = [
-        KINDS[mark["kind"]](**{name: value for name, value in mark.items() if name != "kind"})
-        for mark in said["marks"]
-    ]
-    top = Top(**said["top"]) if said["top"] else None
-    return Panel(**{**said, "x": axis(said["x"]), "y": axis(said["y"]), "top": top, "marks": marks})

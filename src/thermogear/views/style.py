@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.vocabulary import UNDEFORMED
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 COLD, HOT = "#0072B2", "#D55E00"
 INK, QUIET, FAINT = "#22303c", "#66727d", "#d5dbe0"
@@ -95,7 +93,7 @@ HANDLE, LETTER = 0.55, 0.066
 """Width [in] of a legend's line with its gaps, and of a letter."""
 
 
-def path_points(data: xr.Dataset) -> dict[str, float]:
+def path_points(data: Dataset) -> dict[str, float]:
     """A..E [m] of the path of contact as stored with it; nothing where they are not."""
     try:
         found = json.loads(str(data.attrs.get("path_points", "{}")))
@@ -139,6 +137,6 @@ def chosen(count: int, *, most: int = MOST_POINTS) -> list[int]:
     return sorted({round(i * (count - 1) / (most - 1)) for i in range(most)})
 
 
-def names_of(data: xr.Dataset, axis: str) -> list[str]:
+def names_of(data: Dataset, axis: str) -> list[str]:
     """The names along a text coordinate, as stored."""
     return [str(v) for v in data[axis].values]

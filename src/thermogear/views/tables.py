@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from markupsafe import Markup
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import (
     KELVIN,
     MICROMETRE,
@@ -25,9 +26,6 @@ from thermogear.views.page import Cell, Table
 from thermogear.views.plots.rows import of_row, row_names, value_parts
 from thermogear.views.typesetting import html_symbol, jam_at, prose
 
-if TYPE_CHECKING:
-    import xarray as xr
-
 JAMMED = STATUS.index("jammed")
 _UNITS = {"um": "µm", "1": "", "deg": "°", "degC": "°C", "N m": "N m", "kg m2": "kg m²",
           "kg m^2": "kg m²", "N/m^2": "N/m²", "N/m^2 | N/m": "N/m², N/m"}  # fmt: skip
@@ -43,7 +41,7 @@ def unit_text(unit: object) -> str:
     return _UNITS.get(str(unit), str(unit))
 
 
-def is_jammed(one: xr.Dataset) -> bool:
+def is_jammed(one: Dataset) -> bool:
     """Whether a point's status says jammed."""
     return "status" in one and int(one["status"]) == JAMMED
 
@@ -57,7 +55,7 @@ def motion_word(row: Row) -> Cell:
     return str(row.get("motion", "–"))
 
 
-def labelled(data: xr.Dataset) -> xr.Dataset:
+def labelled(data: Dataset) -> Dataset:
     """``data`` with the words of its labels, as a reader sees them, under ``motion``."""
     if "label" not in data:
         return data
@@ -120,7 +118,7 @@ KEY_RESULTS = (
 )
 
 
-def key_results(mesh: xr.Dataset, path: xr.Dataset | None, motion: xr.Dataset | None) -> Table:
+def key_results(mesh: Dataset, path: Dataset | None, motion: Dataset | None) -> Table:
     """Undeformed and hot side by side, a row for every bundle and operating point."""
     if motion is not None:
         moved = labelled(motion)
@@ -161,7 +159,7 @@ CONTACT = (
 )
 
 
-def motion_proofs(motion: xr.Dataset, axis: str, words: Sequence[str]) -> Table:
+def motion_proofs(motion: Dataset, axis: str, words: Sequence[str]) -> Table:
     """Every motion with its label, what proves it, and the figures of contact."""
     data = labelled(motion).assign_coords({axis: list(words)})
     columns = (
@@ -194,7 +192,7 @@ EXPECTED = (
 )
 
 
-def row_table(points: xr.Dataset, row: str) -> Table:
+def row_table(points: Dataset, row: str) -> Table:
     """The points of one row: found against expected, with the proof."""
     data = labelled(of_row(points, row))
     parts = [value_parts(data.isel(point=i)) for i in range(data.sizes["point"])]
@@ -218,11 +216,11 @@ def row_table(points: xr.Dataset, row: str) -> Table:
     )
 
 
-def _spans(data: xr.Dataset, digits: int) -> dict[str, str]:
+def _spans(data: Dataset, digits: int) -> dict[str, str]:
     return {n: span(data[n].values, digits) for n in DIMENSIONLESS if n in data}
 
 
-def numbers_beside(points: xr.Dataset | None, mesh: xr.Dataset | None, name: str) -> Table:
+def numbers_beside(points: Dataset | None, mesh: Dataset | None, name: str) -> Table:
     """The dimensionless numbers of a base set, and those of the rig beside them."""
     rows: list[Row] = []
     if points is not None:

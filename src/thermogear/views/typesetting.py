@@ -4,24 +4,20 @@ from __future__ import annotations
 
 import math
 import re
-from typing import TYPE_CHECKING
 
 import numpy as np
 from markupsafe import Markup, escape
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import CELSIUS, celsius, display, exactly, raised
 from thermogear.base.vocabulary import QUANTITIES, told_labels
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 FAR = 400.0
 """Jam temperatures [degC] above this are not told apart: no gear lives there."""
 
 
-def shown(data: xr.Dataset, name: str) -> NDArray[np.float64]:
+def shown(data: Dataset, name: str) -> NDArray[np.float64]:
     """The values of ``data[name]`` in display units."""
     variable = data[name]
     return display(name, str(variable.attrs.get("units", QUANTITIES[name].unit)))(variable.values)
@@ -33,7 +29,7 @@ def plain(text: object) -> str:
     return flat if len(flat) <= 60 else flat[:57] + "..."
 
 
-def label_text(one: xr.Dataset) -> str:
+def label_text(one: Dataset) -> str:
     """The label of one stored point, for chaos with how long and from how many starts."""
     return str(told_labels(one).item())
 
@@ -127,7 +123,7 @@ def field_name(text: object) -> Markup:
     return Markup(re.sub(r"([._])", r"\1<wbr/>", str(escape(str(text)))))
 
 
-def operating_names(data: xr.Dataset) -> list[str]:
+def operating_names(data: Dataset) -> list[str]:
     """One name per operating point: its speed, and its torque where torques differ."""
     speeds = display("pinion_speed")(data["pinion_speed"].values)
     torques = np.asarray(data["pinion_torque"].values, dtype=float)

@@ -12,6 +12,8 @@ import re
 import struct
 from typing import Any, NoReturn
 
+import numpy as np
+
 from thermogear.base.errors import InputError, short
 from thermogear.case.rexs.model import (
     LONGEST_TEXT,
@@ -178,21 +180,11 @@ def decoded_array(code: object, text: object) -> tuple[Any, ...]:
 def decoded_matrix(code: object, text: object, rows: object, columns: object) -> list[Any]:
     """The rows of a coded matrix, row-major; a missing number of rows or columns follows."""
     flat = decoded_array(code, text)
-    high, wide = (_count(one) for one in (rows, columns))
-    if high is None and wide is None:
-        high = wide = round(len(flat) ** 0.5)
-    high = high if high is not None else len(flat) // max(wide or 1, 1)
-    wide = wide if wide is not None else len(flat) // max(high, 1)
-    if high * wide != len(flat):
-        raise InputError("coded matrix", f"{len(flat)} values", allowed=f"{high} x {wide}")
-    return [list(flat[k * wide : (k + 1) * wide]) for k in range(high)]
-
-
-def _count(text: object) -> int | None:
-    if text is None:
-        return None
+    left_out = round(len(flat) ** 0.5) if rows is None and columns is None else -1
     try:
-        found = int(str(text))
+        shape = [left_out if one is None else int(str(one)) for one in (rows, columns)]
+        found: list[Any] = np.reshape(flat, shape).tolist()
     except ValueError as cause:
-        raise InputError("coded matrix", short(text), allowed="rows and columns") from cause
-    return max(found, 0)
+        allowed = f"{short(rows)} rows of {short(columns)} numbers"
+        raise InputError("coded matrix", f"{len(flat)} values", allowed=allowed) from cause
+    return found

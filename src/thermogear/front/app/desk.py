@@ -40,8 +40,9 @@ class Desk:
         from thermogear.front.app.parts import Look, made
 
         start, came = time.process_time(), time.monotonic()
-        with warnings.catch_warnings(record=True) as said:
-            warnings.simplefilter("always", ValidityWarning)
+        with warnings.catch_warnings(
+            record=True, action="always", category=ValidityWarning
+        ) as said:
             case = self.given.at(show.state)
         told = list(dict.fromkeys(str(one.message) for one in said))
         self.post("now", self._now(case, show, told))
@@ -106,8 +107,7 @@ class Desk:
                                    "done": done, "total": total})  # fmt: skip
 
         case = self.given.at(export.state)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", ValidityWarning)
+        with warnings.catch_warnings(action="ignore", category=ValidityWarning):
             page = page_of(with_errata(run(case, progress=asking(alive, report)), case))
         return "report.html", render(page.showing("first", "All of them: thermogear run"))
 

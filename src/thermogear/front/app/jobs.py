@@ -110,9 +110,8 @@ class Worker(threading.Thread):
             self._there.notify()
 
     def run(self) -> None:
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(action="ignore", category=ValidityWarning):
             # what limits a state is told once with it, and not for each of its parts
-            warnings.simplefilter("ignore", ValidityWarning)
             while self._one_step():
                 pass
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.base.errors import InputError, nearest
+from thermogear.base.errors import InputError, require_choice
 from thermogear.base.materials import Material
 from thermogear.shafts.bearings.geometry import RollingBearing
 
@@ -51,10 +51,7 @@ def class_clearance(kind: str, bore: float, name: str) -> tuple[float, float]:
     >>> [round(1e6 * g) for g in class_clearance("ball", 25e-3, "CN")]
     [5, 20]
     """
-    if name not in CLASSES:
-        raise InputError(
-            "clearance_class", repr(name), allowed=" | ".join(CLASSES), fix=nearest(name, CLASSES)
-        )
+    require_choice("clearance_class", name, CLASSES)
     borders = _BORES[kind]
     row = int(np.searchsorted(borders, 1e3 * bore - 1e-9)) - 1
     if not (0 <= row < len(_PLAY[kind]) and (kind == "roller" or bore >= 10e-3)):

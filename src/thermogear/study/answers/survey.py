@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.errors import ValidityWarning
 from thermogear.base.progress import Progress, silent
 from thermogear.case.case import GearCase
@@ -24,9 +25,6 @@ from thermogear.study.answers import moving, shafts, sharing, steady
 from thermogear.study.answers.asked import MOST_POINTS, MOVES, OF_COLD, OF_HOT, Asked
 from thermogear.study.declared import Answers, declared
 from thermogear.study.speeds import Speeds
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 MAKERS = (
     steady.mesh,
@@ -99,8 +97,8 @@ def notices(case: GearCase, found: Sequence[Answer], speeds: Speeds | None) -> I
 def answered(
     case: GearCase,
     model: MeshModel,
-    cold: xr.Dataset | Mapping[str, NDArray[Any]],
-    hot: xr.Dataset | Mapping[str, NDArray[Any]],
+    cold: Dataset | Mapping[str, NDArray[Any]],
+    hot: Dataset | Mapping[str, NDArray[Any]],
     progress: Progress = silent,
 ) -> tuple[tuple[Answer, ...], Speeds | None]:
     """Every answer from the mesh cycles undeformed and ``hot`` under ``model``; the speeds."""
@@ -108,8 +106,7 @@ def answered(
     then = {name: np.asarray(hot[name]) for name in (*OF_HOT, *MOVES)}
     asked = Asked(case, model, first, then, progress)
     found: list[Answer] = []
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ValidityWarning)
+    with warnings.catch_warnings(action="ignore", category=ValidityWarning):
         for make in MAKERS:
             found += make(asked)
     return tuple(found), asked.speeds

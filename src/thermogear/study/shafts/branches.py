@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from thermogear.analysis.continuation import Branch
 from thermogear.analysis.event_curve import EventCurve
 from thermogear.analysis.orbits import Orbit, periodic_orbit, shoot
 from thermogear.analysis.walk import Motion, Search
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.base.notice import Notice
 from thermogear.base.parameters import Parameter
@@ -37,10 +37,6 @@ from thermogear.study.branches import (
 from thermogear.study.event_plane import Plane
 from thermogear.study.orbit import found
 from thermogear.study.shafts.family import TrainFamily
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 BEYOND = 0.5
 """Cells of the grid by which a walk's steps may reach beyond its ends."""
@@ -287,7 +283,7 @@ def straight_error(grid: TrainGrid, branch: Branch, plane: Plane | None) -> dict
     return {"value": value, "multiplier": abs(one - other), "force": abs(force / own - 1.0)}
 
 
-def _stored(leg: Leg, varied: Parameter) -> xr.Dataset:
+def _stored(leg: Leg, varied: Parameter) -> Dataset:
     """A branch as it is stored: points along it with their greatest force, and bifurcations."""
     branch = leg.branch
     data = branch.dataset()

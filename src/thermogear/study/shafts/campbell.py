@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
-from thermogear.base.arrays import Complexes, Floats
+from thermogear.base.arrays import Complexes, Dataset, Floats
 from thermogear.base.errors import InputError
 from thermogear.base.progress import Progress, silent
 from thermogear.base.units import RPM
@@ -39,9 +39,6 @@ from thermogear.study.shafts.modes import bearing_parts, name_of
 from thermogear.study.shafts.sketch import sketch
 from thermogear.study.shafts.state import TrainState, plan_of, settled
 from thermogear.study.shafts.statics import notices
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 SPEEDS = 9
 """Speeds at which the natural frequencies are computed; they change little in between."""
@@ -103,7 +100,6 @@ class Critical:
     order: str
     mode: int
     mostly: str
-    amplification: float
     force: float
     lift_off: float
 
@@ -115,7 +111,7 @@ def critical_speeds(case: GearCase, state: TrainState, highest: float) -> list[C
         if order.kind == "bearing":
             continue
         rows, shapes = _critical(plan_of(case), state, state.linear, order)
-        speeds, _, gains, forces, lifts = rows
+        speeds, _, _, forces, lifts = rows
         parts = strain_shares(state.linear, shapes)
         for mode in range(int(np.sum(speeds <= highest))):
             here = {name: float(value[mode]) for name, value in parts.items()}
@@ -126,7 +122,6 @@ def critical_speeds(case: GearCase, state: TrainState, highest: float) -> list[C
                     order=order.name,
                     mode=mode + 1,
                     mostly=name_of(here, rings),
-                    amplification=float(gains[mode]),
                     force=float(forces[mode]),
                     lift_off=float(lifts[mode]),
                 )
@@ -418,7 +413,7 @@ def _in_contact(response: Response, most: Floats) -> Response:
 
 def _response_table(
     case: GearCase, states: Sequence[str], speeds: Floats, found: Sequence[Sequence[Response]]
-) -> xr.Dataset:
+) -> Dataset:
     over = ("state", "source", "response_speed")
 
     def amplitude(name: str) -> Floats:

@@ -6,7 +6,7 @@ import json
 import threading
 from collections.abc import Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,7 @@ from thermogear.analysis.family import Models
 from thermogear.analysis.settle import CHAOTIC, PERIODIC, UNDECIDED, Settled
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, ThermogearError, nearest
-from thermogear.base.plan import Arrays, Coordinate, Variable
+from thermogear.base.plan import Arrays, Coordinate, Variable, real
 from thermogear.base.vocabulary import STATUS, moves, still
 from thermogear.case.allowed import LANE
 from thermogear.case.case import GearCase
@@ -260,11 +260,7 @@ class TrainFamily:
 
     def watched(self, dims: tuple[str, ...]) -> dict[str, Variable]:
         """The stored variables of :meth:`watch` over ``dims``."""
-
-        def one(words: str, units: str, *inner: str) -> Variable:
-            about = {"long_name": words, "units": units}
-            return Variable((*dims, *inner), "float64", float("nan"), about)
-
+        number = partial(real, dims)
         bearings = range(1, len(plan_of(self.case).bearing_names) + 1)
         flags = (*LOST_FLAGS, *(f"bearing_{number}" for number in bearings))
         lost = {
@@ -273,12 +269,14 @@ class TrainFamily:
             "flags": " ".join(flags),
         }
         return {
-            "greatest_mesh_force": one("greatest force of the drive flanks", "N"),
-            "drive_free_share": one("share of time in which no drive flank carries", "1"),
-            "back_share": one("share of time in contact of the back flanks", "1"),
-            "greatest_bearing_force": one("greatest force on the bearing", "N", "bearing"),
-            "average_bearing_force": one("mean amount of the force on the bearing", "N", "bearing"),
-            "bearing_free_share": one(
+            "greatest_mesh_force": number("greatest force of the drive flanks", "N"),
+            "drive_free_share": number("share of time in which no drive flank carries", "1"),
+            "back_share": number("share of time in contact of the back flanks", "1"),
+            "greatest_bearing_force": number("greatest force on the bearing", "N", "bearing"),
+            "average_bearing_force": number(
+                "mean amount of the force on the bearing", "N", "bearing"
+            ),
+            "bearing_free_share": number(
                 "share of time in which a bearing bears nothing", "1", "bearing"
             ),
             "lost_contact": Variable(dims, "float64", float("nan"), lost),

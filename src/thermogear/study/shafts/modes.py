@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import label
 from thermogear.case.case import GearCase
@@ -19,9 +20,6 @@ from thermogear.study.declared import NaturalModes, declared
 from thermogear.study.shafts.sketch import sketch
 from thermogear.study.shafts.state import TrainState, plan_of, settled
 from thermogear.study.shafts.statics import notices
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 MODE = ("state", "mode")
 
@@ -88,7 +86,7 @@ def _table(
     found: Sequence[TrainState],
     free: Sequence[Modes],
     rings: Mapping[str, str],
-) -> xr.Dataset:
+) -> Dataset:
     shares = [strain_shares(one, m.shape) for one, m in zip(linear, free, strict=True)]
     parts = list(shares[0])
     energy = np.array([[one[part] for part in parts] for one in shares]).swapaxes(1, 2)
@@ -129,7 +127,7 @@ def _table(
 
 def _shapes(
     linear: Sequence[LinearTrain], free: Sequence[Modes], found: Sequence[TrainState]
-) -> xr.Dataset:
+) -> Dataset:
     """Shapes of both shafts, scaled so that the largest of x, y and r_b tz is 1."""
     assembly = linear[0].assembly
     radii = assembly.frame.base_radii

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import chain
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from thermogear.analysis.any_motion import settle
 from thermogear.analysis.torus import Torus
 from thermogear.analysis.walk import Motion, Search
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.errors import ConvergenceError
 from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import STATUS, STILL, label, moves
@@ -31,9 +31,6 @@ from thermogear.study.shafts.record import (
     torus_orders,
 )
 from thermogear.study.shafts.state import TrainState, places_of, plan_of, settled
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 POINT = ("state", "operating")
 SECTIONS = 64
@@ -141,7 +138,7 @@ def train_motion(
     places: Sequence[int] | None = None,
     coordinates: int | None = None,
     progress: Progress = silent,
-) -> tuple[xr.Dataset, list[Notice]]:
+) -> tuple[Dataset, list[Notice]]:
     """Settled motion over (state, operating) of a case with shafts, and what is to be said of it.
 
     Both flanks on their own lines of action, friction of the teeth, clearance of the bearings,
@@ -161,7 +158,7 @@ def train_motion(
     return _table(case, found), list(_told(found))
 
 
-def _table(case: GearCase, found: Sequence[Sequence[Moved]]) -> xr.Dataset:
+def _table(case: GearCase, found: Sequence[Sequence[Moved]]) -> Dataset:
     flat = [one for row in found for one in row]
     shape = (len(found), len(found[0]))
     teeth = (case.pair.pinion.teeth, case.pair.wheel.teeth)

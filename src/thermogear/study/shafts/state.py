@@ -212,8 +212,7 @@ def _settled(
 
 def meshing(case: GearCase, model: MeshModel, pair: GearPair, at: Operating) -> Meshing:
     """The mesh of the case's gears at the centre distance of ``pair``, at one operating point."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ValidityWarning)
+    with warnings.catch_warnings(action="ignore", category=ValidityWarning):
         cycle = mesh_cycle(
             pair,
             at,

@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from itertools import chain
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import STATUS, label
 from thermogear.case.case import GearCase
@@ -19,9 +18,6 @@ from thermogear.shafts.train import SHAFTS
 from thermogear.study.declared import Statics, declared
 from thermogear.study.shafts.sketch import sketch
 from thermogear.study.shafts.state import JAMMED, TrainState, places_of, plan_of, settled
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 TILT_SHARE = 0.5
 """Misalignment across the face over the mesh deflection from which a plane mesh is doubtful."""
@@ -79,7 +75,7 @@ def _grid(found: Sequence[Sequence[TrainState]], of: Callable[[TrainState], Arra
     )
 
 
-def of_mesh(case: GearCase, found: Sequence[Sequence[TrainState]]) -> xr.Dataset:
+def of_mesh(case: GearCase, found: Sequence[Sequence[TrainState]]) -> Dataset:
     """What the mesh feels, over (state, operating)."""
     width = min(case.pair.pinion.face_width, case.pair.wheel.face_width)
 
@@ -143,7 +139,7 @@ def of_mesh(case: GearCase, found: Sequence[Sequence[TrainState]]) -> xr.Dataset
     )
 
 
-def of_bearings(case: GearCase, found: Sequence[Sequence[TrainState]]) -> xr.Dataset:
+def of_bearings(case: GearCase, found: Sequence[Sequence[TrainState]]) -> Dataset:
     """Load, clearance, displacement and stiffness of every bearing, hot and cold."""
     plan = plan_of(case)
     ratio = case.pair.pinion.teeth / case.pair.wheel.teeth
@@ -187,7 +183,7 @@ def of_bearings(case: GearCase, found: Sequence[Sequence[TrainState]]) -> xr.Dat
     )
 
 
-def _deflections(found: Sequence[Sequence[TrainState]]) -> xr.Dataset:
+def _deflections(found: Sequence[Sequence[TrainState]]) -> Dataset:
     """Lines of both shafts: x and y [m] over the length."""
     variables: dict[str, object] = {}
     places: dict[str, object] = {}

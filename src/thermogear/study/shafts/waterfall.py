@@ -13,15 +13,16 @@ import threading
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass, field, replace
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from thermogear.analysis.family import axis_values
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.bounds import floats
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.base.notice import Notice, stored_notices
@@ -34,6 +35,7 @@ from thermogear.base.plan import (
     empty_arrays,
     keep_going,
     ranges_of,
+    real,
     spread,
 )
 from thermogear.base.vocabulary import STATUS, moves
@@ -49,9 +51,6 @@ from thermogear.study.shafts.campbell import critical_speeds
 from thermogear.study.shafts.moving import MovingTrain, moving, rubbing
 from thermogear.study.shafts.record import HARMONICS, SAMPLES, lines, shown
 from thermogear.study.shafts.state import plan_of, settled
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 KIND = "waterfall"
 DIRECTIONS = (1, -1)
@@ -169,30 +168,27 @@ class WaterfallPlan:
     def variables(self) -> dict[str, Variable]:
         dims = ("state", "direction", "pinion_speed")
 
-        def real(words: str, units: str, *inner: str) -> Variable:
-            attributes = {"long_name": words, "units": units}
-            return Variable((*dims, *inner), "float64", float("nan"), attributes)
-
+        number = partial(real, dims)
         flags = {"long_name": "whether it moved", "flag_meanings": " ".join(STATUS)}
         return {
             "status": Variable(dims, "int8", STATUS.index("not_converged"), flags),
-            "mesh_force_rms": real("vibration of the drive flanks' force, rms", "N"),
-            "mesh_force_max": real("greatest force of the drive flanks", "N"),
-            "back_force_max": real("greatest force of the back flanks", "N"),
-            "contact_loss_share": real("share of time out of drive contact", "1"),
-            "deflection_peak_to_peak": real("approach of the drive flanks, peak to peak", "m"),
-            "bearing_force_max": real("greatest force on the bearing", "N", "bearing"),
-            "bearing_force_rms": real("vibration of the bearing's force, rms", "N", "bearing"),
-            "housing_rms": real("acceleration of the housing, rms of x and y", "m/s^2"),
-            "mesh_force_line": real("line of the drive flanks' force (peak)", "N", "order"),
-            "bearing_force_line": real(
+            "mesh_force_rms": number("vibration of the drive flanks' force, rms", "N"),
+            "mesh_force_max": number("greatest force of the drive flanks", "N"),
+            "back_force_max": number("greatest force of the back flanks", "N"),
+            "contact_loss_share": number("share of time out of drive contact", "1"),
+            "deflection_peak_to_peak": number("approach of the drive flanks, peak to peak", "m"),
+            "bearing_force_max": number("greatest force on the bearing", "N", "bearing"),
+            "bearing_force_rms": number("vibration of the bearing's force, rms", "N", "bearing"),
+            "housing_rms": number("acceleration of the housing, rms of x and y", "m/s^2"),
+            "mesh_force_line": number("line of the drive flanks' force (peak)", "N", "order"),
+            "bearing_force_line": number(
                 "line of the bearing force, larger of x and y (peak)", "N", "bearing", "order"
             ),
-            "housing_line": real(
+            "housing_line": number(
                 "line of the housing's acceleration, larger of x and y (peak)", "m/s^2", "order"
             ),
-            "end_state": real("state carried on", "1", "coordinate"),
-            "end_turn": real("mesh periods since the run began", "1"),
+            "end_state": number("state carried on", "1", "coordinate"),
+            "end_turn": number("mesh periods since the run began", "1"),
         }
 
     def coordinates(self) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]:
@@ -321,7 +317,7 @@ class WaterfallPlan:
             found[name][0, 0, place] = value
         return run.state, turn + passed
 
-    def _stretches(self, data: xr.Dataset, state: int) -> list[dict[str, float]]:
+    def _stretches(self, data: Dataset, state: int) -> list[dict[str, float]]:
         """Stretches of speed on which up and down differ, and where they do most."""
         rms = np.concatenate(
             [data["mesh_force_rms"].values[state][..., None], data["bearing_force_rms"][state]], -1
@@ -359,7 +355,7 @@ class WaterfallPlan:
         found = () if one is None else critical_speeds(self.case, one.state, max(self.speeds))
         return [asdict(speed) for speed in found]
 
-    def finish(self, data: xr.Dataset) -> xr.Dataset:
+    def finish(self, data: Dataset) -> Dataset:
         """The stretches, held at a steady speed side by side, and the critical speeds."""
         kinds = range(len(self.states))
         rows = [row for state in kinds for row in self._stretches(data, state)]

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import groupby
-from typing import TYPE_CHECKING
 
 import numpy as np
 from markupsafe import Markup
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import display
 from thermogear.base.limits import FINE, LOOK, OPEN
 from thermogear.results.answer import Answer, worst
@@ -18,9 +18,6 @@ from thermogear.views.page import Block, Code, Made, Page, Pictures, Section, Ta
 from thermogear.views.pages.background import background
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import HOT, INK, QUIET, WIDE
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 KINDS = ("answers",)
 MOST_POINTS = 6
@@ -136,7 +133,7 @@ KEPT = 1e-3
 """Share of time out of contact below which contact is kept."""
 
 
-def speeds_picture(data: xr.Dataset) -> Picture:
+def speeds_picture(data: Dataset) -> Picture:
     """Every motion's dynamic factor over pinion speed: open in contact, filled where it is lost."""
     panel = Panel(Axis("pinion speed [rpm]"), Axis("dynamic factor [–]"))
     rpm = display("pinion_speed")(data["pinion_speed"].values)

@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import MICROMETRE, MILLIMETRE, PERCENT, number, span
 from thermogear.base.vocabulary import told_operating
 from thermogear.views.plots.curves import hot_state
 from thermogear.views.plots.path import BAND, own_law
 from thermogear.views.style import chosen, names_of, path_points
 from thermogear.views.typesetting import operating_names
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 NEAR = 0.02
 """Positions closer than this part of the path are the same place."""
@@ -33,7 +30,7 @@ PLACES = {
 }
 
 
-def hertz(data: xr.Dataset, bundle: int, name: str) -> str:
+def hertz(data: Dataset, bundle: int, name: str) -> str:
     """Of pressure and half width of ``bundle`` along the path."""
     words = (
         f"Pressure and half width of the contact band, bundle {name}, hot. Both go with the root "
@@ -46,20 +43,20 @@ def hertz(data: xr.Dataset, bundle: int, name: str) -> str:
     return words
 
 
-def where(data: xr.Dataset, name: str) -> str:
+def where(data: Dataset, name: str) -> str:
     """ "At <first operating point>. " where the picture could not stand for all of them."""
     values = data[name].transpose("operating", ...).values
     alike = np.allclose(values, values[:1], rtol=1e-4, atol=0.0, equal_nan=True)
     return "" if alike else f"At {operating_names(data)[0]}. "
 
 
-def pitch_inside(data: xr.Dataset) -> bool:
+def pitch_inside(data: Dataset) -> bool:
     """Whether the pitch point lies on the path of contact."""
     points = path_points(data)
     return "C" in points and points.get("A", np.inf) < points["C"] < points.get("E", -np.inf)
 
 
-def place(data: xr.Dataset, position: float) -> str:
+def place(data: Dataset, position: float) -> str:
     """A ``position`` [m] on the path by its letter, where one is near, else in millimetres."""
     points = path_points(data)
     s = data["path_position"].values
@@ -69,7 +66,7 @@ def place(data: xr.Dataset, position: float) -> str:
     return f"at {number(MILLIMETRE(position), 4)} mm"
 
 
-def top_of(data: xr.Dataset, values: NDArray[np.float64]) -> str:
+def top_of(data: Dataset, values: NDArray[np.float64]) -> str:
     """Where the greatest of ``values`` along the path lies."""
     return place(data, float(data["path_position"].values[int(np.nanargmax(values))]))
 
@@ -84,7 +81,7 @@ def _sentence(parts: Mapping[str, str], start: str = "") -> str:
     return f"{start}: {told}." if start else f"{told}."
 
 
-def regimes(here: xr.Dataset) -> str:
+def regimes(here: Dataset) -> str:
     """The lubrication regime of every drawn operating point by its film; "" if unknown.
 
     ``here`` has the axes operating and path_position alone. A film is nan where the heat does not
@@ -104,7 +101,7 @@ def regimes(here: xr.Dataset) -> str:
     return _sentence(told, f"Lubrication by the film parameter, Λ = {span(film, 2)}")
 
 
-def _regime_along(one: xr.Dataset) -> str:
+def _regime_along(one: Dataset) -> str:
     """ "boundary throughout", or from where to where each regime reaches."""
     names = str(one["regime"].attrs["flag_meanings"]).split()
     index, s = one["regime"].values.astype(int), MILLIMETRE(one["path_position"].values)
@@ -119,7 +116,7 @@ def _regime_along(one: xr.Dataset) -> str:
     return ", ".join(run + end for run, end in zip(runs, ends, strict=True))
 
 
-def kinematics(data: xr.Dataset, fastest: int) -> str:
+def kinematics(data: Dataset, fastest: int) -> str:
     """Of the rolling and sliding speeds."""
     words = f"At {operating_names(data)[fastest]}. "
     if not pitch_inside(data):
@@ -130,7 +127,7 @@ def kinematics(data: xr.Dataset, fastest: int) -> str:
     )
 
 
-def load_share(data: xr.Dataset, bundles: Mapping[str, Any]) -> str:
+def load_share(data: Dataset, bundles: Mapping[str, Any]) -> str:
     """Of the share of one tooth pair."""
     here = hot_state(data).isel(operating=0)
     s, points = data["path_position"].values, path_points(data)
@@ -155,7 +152,7 @@ def load_share(data: xr.Dataset, bundles: Mapping[str, Any]) -> str:
     )
 
 
-def friction(data: xr.Dataset, bundle: int, bundles: Mapping[str, Any]) -> str:
+def friction(data: Dataset, bundle: int, bundles: Mapping[str, Any]) -> str:
     """Of the friction coefficient by the case's own law, lubricated and dry, and of the band."""
     here = hot_state(data).isel(bundle=bundle)
     name = names_of(data, "bundle")[bundle]
@@ -183,7 +180,7 @@ def friction(data: xr.Dataset, bundle: int, bundles: Mapping[str, Any]) -> str:
     return " ".join([*words, regimes(here)]).strip()
 
 
-def band_words(here: xr.Dataset) -> str:
+def band_words(here: Dataset) -> str:
     """How far the laws within their range spread; nothing where that is not stored."""
     if not set(here.data_vars) >= BAND:
         return ""
@@ -201,7 +198,7 @@ def band_words(here: xr.Dataset) -> str:
     return f"{words}."
 
 
-def _falls_with_speed(here: xr.Dataset, values: NDArray[np.float64]) -> str:
+def _falls_with_speed(here: Dataset, values: NDArray[np.float64]) -> str:
     """How the mean coefficient goes with speed, where points differ in their speed alone."""
     speed, torque = here["pinion_speed"].values, here["pinion_torque"].values
     if np.unique(speed).size < 2 or np.unique(torque).size > 1 or not np.isfinite(values).all():
@@ -212,7 +209,7 @@ def _falls_with_speed(here: xr.Dataset, values: NDArray[np.float64]) -> str:
     return "It rises with the speed." if np.all(steps > 0.0) else ""
 
 
-def flash(data: xr.Dataset, name: str) -> str:
+def flash(data: Dataset, name: str) -> str:
     """Of the flash temperature ``name`` over what the picture draws."""
     here = hot_state(data)[name].transpose("bundle", "operating", ...).values
     drawn = chosen(here.shape[1])
@@ -227,7 +224,7 @@ def flash(data: xr.Dataset, name: str) -> str:
     return f"{words}{zero}A rise of the skin alone."
 
 
-def temperatures(data: xr.Dataset, bundle: int) -> str:
+def temperatures(data: Dataset, bundle: int) -> str:
     """Of body and contact temperatures."""
     bodies = hot_state(data).isel(bundle=bundle)[["pinion_body_temperature"]]
     words = f"Bundle {names_of(data, 'bundle')[bundle]}, hot. The body temperatures"
@@ -237,7 +234,7 @@ def temperatures(data: xr.Dataset, bundle: int) -> str:
     return words + (", and as cool as the bodies at C." if pitch_inside(data) else ".")
 
 
-def growth(data: xr.Dataset) -> str:
+def growth(data: Dataset) -> str:
     """Of the flanks' growth."""
     if "deformation_sum" not in data:
         return "Growth of the hot flanks."
@@ -266,7 +263,7 @@ def profile(factor: int, printed: bool, at: str) -> str:
     return words
 
 
-def gap_over_phase(mesh: xr.Dataset) -> str:
+def gap_over_phase(mesh: Dataset) -> str:
     """Of the half backlash over a mesh period."""
     drawn = mesh["half_backlash_curve"].isel(operating=told_operating(mesh))
     curves = drawn.transpose("bundle", "state", ...).values
@@ -294,7 +291,7 @@ FOLLOWS = {
 """How the housing goes along with the gears in a row of temperatures."""
 
 
-def gap_over_temperature(row: xr.Dataset, jams: Collection[str]) -> str:
+def gap_over_temperature(row: Dataset, jams: Collection[str]) -> str:
     """Of the half backlash over the gears' temperature; ``jams`` by the ways that are drawn."""
     how = FOLLOWS.get(str(row.attrs.get("housing", "")))
     words = f"{where(row, 'half_backlash')}Points: both gears at that temperature"
@@ -310,7 +307,7 @@ def gap_over_temperature(row: xr.Dataset, jams: Collection[str]) -> str:
     return words
 
 
-def row_intro(row: xr.Dataset, temperatures: str) -> str:
+def row_intro(row: Dataset, temperatures: str) -> str:
     """What goes along with the gears over a row of temperatures."""
     words = f"Both gears at {temperatures}"
     how = FOLLOWS.get(str(row.attrs.get("housing", "")))
@@ -327,7 +324,7 @@ def row_views(*, columns: int, most: int) -> str:
     )
 
 
-def stiffness(mesh: xr.Dataset, bundle: int) -> str:
+def stiffness(mesh: Dataset, bundle: int) -> str:
     """Of the mesh stiffness over a mesh period."""
     one = mesh.isel(operating=told_operating(mesh), bundle=bundle)["mean_stiffness"].values
     change = PERCENT(float(one[-1]) / float(one[0]) - 1.0)
@@ -340,7 +337,7 @@ def stiffness(mesh: xr.Dataset, bundle: int) -> str:
     return f"{words}Hot against undeformed the mean changes by {change:+.1f} %.".replace("-", "−")
 
 
-def bars(mesh: xr.Dataset) -> str:
+def bars(mesh: Dataset) -> str:
     """Of mean and swing of the stiffness: what heat does in each bundle."""
     names = names_of(mesh, "bundle")
     springs, softer = [], []
@@ -367,14 +364,14 @@ def bars(mesh: xr.Dataset) -> str:
     return words
 
 
-def one_pair(mesh: xr.Dataset) -> str:
+def one_pair(mesh: Dataset) -> str:
     """Of the stiffness of one tooth pair."""
     values = mesh["pair_stiffness"].isel(bundle=0, state=-1, operating=told_operating(mesh)).values
     at = f", stiffest {top_of(mesh, values)}" if np.isfinite(values).any() else ""
     return f"{where(mesh, 'pair_stiffness')}One pair alone along its path of contact{at}."
 
 
-def path_intro(data: xr.Dataset) -> str:
+def path_intro(data: Dataset) -> str:
     """How the pictures along the path are to be read."""
     points = path_points(data)
     words = "Along the path of contact: A start, C pitch point, E end."

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import (
     CELSIUS,
     MEGAPASCAL,
@@ -26,9 +26,6 @@ from thermogear.views.pages.survey import survey
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import COLD, HOT, INK, OKABE_ITO, WIDE, ramp
 from thermogear.views.typesetting import prose
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 KINDS = ("contact",)
 
@@ -190,7 +187,7 @@ EDGE = OKABE_ITO[4]
 STATES: dict[str, tuple[str, tuple[float, ...]]] = {UNDEFORMED: (COLD, (5, 2)), "hot": (HOT, ())}
 
 
-def over_phase(data: xr.Dataset) -> Picture:
+def over_phase(data: Dataset) -> Picture:
     """Tangent and secant stiffness and transmission error over a mesh period, hot, by load."""
     here = data.sel(temperature="hot")
     panels = []
@@ -208,7 +205,7 @@ def over_phase(data: xr.Dataset) -> Picture:
     return Picture([panels], size=(WIDE, 3.3), legend=6)
 
 
-def along_path(data: xr.Dataset, points: dict[str, float]) -> Picture:
+def along_path(data: Dataset, points: dict[str, float]) -> Picture:
     """Load share and pressure of a tooth pair along the path at the first and the last load.
 
     The pressure stops where a tip corner carries, and those stretches are shaded.
@@ -236,7 +233,7 @@ def along_path(data: xr.Dataset, points: dict[str, float]) -> Picture:
     return Picture([[share, pressure]], size=(WIDE, 3.3), legend=4)
 
 
-def _corners(panel: Panel, data: xr.Dataset) -> None:
+def _corners(panel: Panel, data: Dataset) -> None:
     """Shade where a tip corner carries at any load and temperature."""
     positions, flags = data["pair_position"].values, data["edge_contact"].values
     label = "edge contact: pressure not valid"
@@ -257,7 +254,7 @@ def _marks(panel: Panel, points: dict[str, float]) -> None:
         panel.x.low, panel.x.high = low - 0.12 * (high - low), high + 0.12 * (high - low)
 
 
-def double_contact(data: xr.Dataset, base_pitch: float, name: str) -> Picture:
+def double_contact(data: Dataset, base_pitch: float, name: str) -> Picture:
     """``name`` over the load (logarithmic) for gears of unequal temperature."""
     words = {
         "double_contact_length": (MILLIMETRE, "length of double contact [mm]"),
@@ -279,7 +276,7 @@ def double_contact(data: xr.Dataset, base_pitch: float, name: str) -> Picture:
     return Picture([[panel]])
 
 
-def iso(data: xr.Dataset) -> Picture:
+def iso(data: Dataset) -> Picture:
     """Mean stiffness of the loaded contact beside that of ISO 6336-1 over the load."""
     panel = Panel(Axis("pinion torque [N m]"), Axis("mean mesh stiffness [10⁸ N/m]", low=0.0))
     for name, words, colour in (

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import CELSIUS, MICROMETRE, SPEED, STIFFNESS, number
 from thermogear.base.vocabulary import STATUS, STILL, is_known
 from thermogear.results.result import Result
@@ -19,9 +19,6 @@ from thermogear.views.plots.motion import BEYOND, label_of, moving, orbit_of
 from thermogear.views.plots.motion import SPEED as SPEED_AXIS
 from thermogear.views.style import COLD, FAINT, HOT, INK, QUIET
 from thermogear.views.typesetting import FAR, plain, shown
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 NAME = "dial"
 NEEDS = ("mesh_stiffness", "half_backlash", "status")
@@ -48,7 +45,7 @@ def section(results: Result, pictures: Pictures) -> Section | None:
     return Section("dial", "Over temperature", pictures.take())
 
 
-def caption(data: xr.Dataset, start: str) -> str:
+def caption(data: Dataset, start: str) -> str:
     """Which operating point, and what is shown without the dial."""
     torque, speed = float(data.attrs["pinion_torque"]), SPEED(data.attrs["pinion_speed"])
     jammed = int(data.attrs["jammed"])
@@ -66,7 +63,7 @@ def caption(data: xr.Dataset, start: str) -> str:
 POINTS = 400
 
 
-def at(data: xr.Dataset, place: int) -> Picture:
+def at(data: Dataset, place: int) -> Picture:
     """Mesh stiffness, half backlash and orbit at the ``place``-th temperature of a dial.
 
     Faint: the other ends of the dial. All pictures of one dial have the same axes.
@@ -77,7 +74,7 @@ def at(data: xr.Dataset, place: int) -> Picture:
     )  # fmt: skip
 
 
-def told(data: xr.Dataset, place: int) -> str:
+def told(data: Dataset, place: int) -> str:
     """What is found at one temperature, in words."""
     one = data.isel(gear_temperature=place)
     state = STATUS[int(one["status"])]
@@ -92,7 +89,7 @@ def told(data: xr.Dataset, place: int) -> str:
     return f"{stiffness}; {left}; {label_of(one)}"
 
 
-def _stiffness(data: xr.Dataset, place: int) -> Panel:
+def _stiffness(data: Dataset, place: int) -> Panel:
     panel = Panel(
         axis_of("mesh_phase", "mesh phase", low=0.0, high=1.0),
         axis_of("mesh_stiffness", low=0.0),
@@ -107,7 +104,7 @@ def _stiffness(data: xr.Dataset, place: int) -> Panel:
     return panel
 
 
-def _backlash(data: xr.Dataset, place: int) -> Panel:
+def _backlash(data: Dataset, place: int) -> Panel:
     panel = Panel(
         axis_of("gear_temperature"), axis_of("half_backlash", "half backlash"), "Half backlash"
     )
@@ -129,7 +126,7 @@ def thin(count: int) -> NDArray[np.int64]:
     return np.unique(np.linspace(0, count - 1, min(count, POINTS)).round().astype(int))
 
 
-def _orbit(data: xr.Dataset, place: int) -> Panel:
+def _orbit(data: Dataset, place: int) -> Panel:
     panel = Panel(Axis(BEYOND), Axis(SPEED_AXIS), "Orbit")
     one = data.isel(gear_temperature=place)
     if "displacement" not in data or not moving(one):

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import MILLIMETRE, number
 from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.results.result import Result
@@ -15,9 +16,6 @@ from thermogear.views.gears import NEEDS, PINION, WHEEL, GearDrawing, gear_drawi
 from thermogear.views.page import Page, Pictures, Section, Shown, Table
 from thermogear.views.pages.survey import survey
 from thermogear.views.plots.gears import in_mesh
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 KINDS = ("drawing",)
 NAME, HEADING = "gears", "The gears in mesh, hot over cold"
@@ -56,7 +54,7 @@ def page(result: Result) -> Page:
     )
 
 
-def _data(data: xr.Dataset) -> list[dict[str, Any]]:
+def _data(data: Dataset) -> list[dict[str, Any]]:
     """Every operating point's drawing as the page's script takes it."""
     return [gear_drawing(data, place).to_json() for place in range(data.sizes["operating"])]
 

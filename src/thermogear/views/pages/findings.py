@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 from collections import Counter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import PERCENT, exactly, number, stretches
 from thermogear.base.vocabulary import ASSUMED
 from thermogear.views.plots.lost_contact import has_lost, lost_of, things
 from thermogear.views.plots.parameters import each_state, parameter_of, shown
 from thermogear.views.plots.sweeps import CLASSES, classes_of
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 UNDECIDED, PERIODIC = 9, 7
 """Places of the classes: undecided, and the last of the periodic ones."""
@@ -24,7 +22,7 @@ APART = 1e-3
 SAME = "Up and down end on the same motion at every value"
 
 
-def finding(data: xr.Dataset) -> str:
+def finding(data: Dataset) -> str:
     """One sentence; it says so where nothing was found."""
     kind = str(data.attrs["kind"])
     if kind in ("diagram", "run-up"):
@@ -38,7 +36,7 @@ def finding(data: xr.Dataset) -> str:
     return f"{words}{_undecided(data)}."
 
 
-def _two_ways(data: xr.Dataset) -> str:
+def _two_ways(data: Dataset) -> str:
     """Where the motions up and down differ in kind, and where they jump."""
     name, codes = _codes(data)
     if (codes > UNDECIDED).all():
@@ -60,13 +58,13 @@ def _two_ways(data: xr.Dataset) -> str:
     return "; ".join(parts)
 
 
-def _codes(data: xr.Dataset) -> tuple[str, NDArray[np.int64]]:
+def _codes(data: Dataset) -> tuple[str, NDArray[np.int64]]:
     """The parameter, and the kinds of motion with both ways first."""
     name = str(data.attrs.get("parameter", "pinion_speed"))
     return name, np.moveaxis(classes_of(data), data["label"].dims.index("direction"), 0)
 
 
-def ways_apart(data: xr.Dataset) -> NDArray[np.bool_]:
+def ways_apart(data: Dataset) -> NDArray[np.bool_]:
     """Where, along the parameter, up and down end on different motions: between is a jump."""
     name, codes = _codes(data)
     rest = [str(n) for n in data["label"].dims if n != "direction"]
@@ -76,7 +74,7 @@ def ways_apart(data: xr.Dataset) -> NDArray[np.bool_]:
     return np.asarray(apart.any(axis=other))
 
 
-def _swings_apart(data: xr.Dataset, codes: NDArray[np.int64]) -> NDArray[np.bool_]:
+def _swings_apart(data: Dataset, codes: NDArray[np.int64]) -> NDArray[np.bool_]:
     """Where both ways end on one kind of orbit, and yet on two orbits.
 
     By the peak-to-peak error where it is stored, else by the place at phase 0 of period 1.
@@ -91,7 +89,7 @@ def _swings_apart(data: xr.Dataset, codes: NDArray[np.int64]) -> NDArray[np.bool
     return np.asarray(both & (np.abs(values[0] - values[1]) > APART * size))
 
 
-def _basins(data: xr.Dataset) -> str:
+def _basins(data: Dataset) -> str:
     count = data.sizes["attractor_number"]
     if not count:
         return "No attractor was found"
@@ -105,7 +103,7 @@ def _basins(data: xr.Dataset) -> str:
     return f"{count} attractors exist side by side: {'; '.join(shares)}"
 
 
-def _counts(data: xr.Dataset) -> str:
+def _counts(data: Dataset) -> str:
     codes, assumed = classes_of(data), data["status"].values == ASSUMED
 
     def words(some: NDArray[np.int64]) -> str:
@@ -123,7 +121,7 @@ def _counts(data: xr.Dataset) -> str:
     )
 
 
-def _greatest(data: xr.Dataset) -> str:
+def _greatest(data: Dataset) -> str:
     values = data["dynamic_factor"].values
     if not np.isfinite(values).any():
         return "; no point has a dynamic factor"
@@ -135,7 +133,7 @@ def _greatest(data: xr.Dataset) -> str:
     return f"; the greatest dynamic factor is {number(float(values[place]))}, at {', '.join(at)}"
 
 
-def _undecided(data: xr.Dataset) -> str:
+def _undecided(data: Dataset) -> str:
     if "label" not in data:
         return ""
     codes = classes_of(data)
@@ -143,7 +141,7 @@ def _undecided(data: xr.Dataset) -> str:
     return f"; {count} of {codes.size} points are undecided" if count else ""
 
 
-def _unit(data: xr.Dataset, name: str) -> str:
+def _unit(data: Dataset, name: str) -> str:
     return f" {parameter_of(name, data[name]).shown}".rstrip()
 
 
@@ -154,7 +152,7 @@ FILLED = 0.75
 """A stretch of the map is called by its ends alone where so much of it is meant."""
 
 
-def lost_words(data: xr.Dataset) -> str:
+def lost_words(data: Dataset) -> str:
     """A sentence or several: what loses contact where; "" where nothing says."""
     if not has_lost(data):
         return ""
@@ -173,7 +171,7 @@ def lost_words(data: xr.Dataset) -> str:
     return " ".join(told)
 
 
-def lost_rows(data: xr.Dataset) -> list[dict[str, Any]]:
+def lost_rows(data: Dataset) -> list[dict[str, Any]]:
     """The same as rows: state, what, points, of so many, where."""
     rows = []
     for state, here in each_state(data):
@@ -188,7 +186,7 @@ def lost_rows(data: xr.Dataset) -> list[dict[str, Any]]:
     return rows
 
 
-def where(data: xr.Dataset, flags: NDArray[np.bool_]) -> str:
+def where(data: Dataset, flags: NDArray[np.bool_]) -> str:
     """Where on the axes of the result ``flags`` are set: ranges in the units shown."""
     axes = [str(n) for n in data["label"].dims if n not in ("direction", "start")]
     rest = tuple(i for i, n in enumerate(data["label"].dims) if str(n) not in axes)

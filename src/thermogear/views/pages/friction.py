@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import Display, number
 from thermogear.results.result import Result
 from thermogear.views.columns import Column, Row, by_name, declared, key
@@ -15,9 +16,6 @@ from thermogear.views.pages.survey import operating_rows, survey
 from thermogear.views.plots import laws
 from thermogear.views.style import names_of
 from thermogear.views.typesetting import operating_names
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 MOST_PICTURES = 4
 """Operating points that get a picture of their own."""
@@ -107,13 +105,13 @@ def _mean(row: Row, place: int) -> str:
     return number(row["mean"][place]) + " (outside)" * bool(row["outside"][place])
 
 
-def _regime_shares(data: xr.Dataset) -> list[dict[str, float]]:
+def _regime_shares(data: Dataset) -> list[dict[str, float]]:
     """The share of the path in each regime, by its name, of every operating point."""
     names = names_of(data, "regime_name")
     return [dict(zip(names, row.tolist(), strict=True)) for row in data["regime_share"].values]
 
 
-def _numbers(data: xr.Dataset) -> dict[str, Any]:
+def _numbers(data: Dataset) -> dict[str, Any]:
     return {
         "operating": operating_rows(data),
         "laws": [by_name(data.sel(law=law), OF_LAW) for law in names_of(data, "law")],

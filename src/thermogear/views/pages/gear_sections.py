@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import MICROMETRE, MILLIMETRE, PERCENT, celsius
 from thermogear.results.result import Result
 from thermogear.views import tables
@@ -23,10 +22,6 @@ from thermogear.views.plots import (
 )
 from thermogear.views.style import chosen, names_of
 from thermogear.views.typesetting import jam_words, operating_names
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 FIGURES = ("profile_slope", "profile_form", "profile_total")
 
@@ -55,7 +50,7 @@ def first(results: Result) -> list[tuple[str]]:
     return [(f"flanks-{gear}",) for gear in gears if results.group(f"flanks/{gear}") is not None]
 
 
-def caption(data: xr.Dataset) -> str:
+def caption(data: Dataset) -> str:
     """What the picture shows and what of it the mesh feels."""
     sides = flanks.sides(data)
     cut = ", ".join(f"{MILLIMETRE(float(data[f'{side}_cutoff'])):.2g} mm" for side in sides)
@@ -78,7 +73,7 @@ COLUMNS = (
 )
 
 
-def table(data: xr.Dataset, gear: str) -> Table:
+def table(data: Dataset, gear: str) -> Table:
     """Slope, form and total deviation of each trace with its class."""
     words = (
         f"Each trace of the {gear} over the evaluated range, and the class of ISO 1328-1:2013 that "
@@ -91,7 +86,7 @@ MOST_SPEEDS = 3
 """Operating points whose motion is drawn over temperature."""
 
 
-def with_gap(data: xr.Dataset, mesh: xr.Dataset | None) -> xr.Dataset:
+def with_gap(data: Dataset, mesh: Dataset | None) -> Dataset:
     """``data`` with the half backlash and the jam temperature of the same points beside it."""
     if mesh is None:
         return data
@@ -208,7 +203,7 @@ def gap(results: Result, pictures: Pictures) -> Section | None:
     return _section("backlash", "Backlash", blocks, pictures)
 
 
-def _jam_texts(data: xr.Dataset, end: str = "") -> list[Block]:
+def _jam_texts(data: Dataset, end: str = "") -> list[Block]:
     """A sentence for every bundle and state that is jammed, with its temperature."""
     found: list[Block] = []
     names = operating_names(data)
@@ -292,7 +287,7 @@ def vibration(results: Result, pictures: Pictures) -> Section | None:
     return Section("motion", "Motion, undeformed and hot", [*blocks, *drawn, table])
 
 
-def _motion_caption(here: xr.Dataset) -> str:
+def _motion_caption(here: Dataset) -> str:
     parts = []
     for s, state in enumerate(names_of(here, "state")):
         one = here.isel(state=s)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import MICROMETRE, celsius, display, number, percent, span
 from thermogear.base.vocabulary import STATUS, STILL, is_known, told_labels, told_operating
 from thermogear.results.result import Result
@@ -16,9 +16,6 @@ from thermogear.views.page import Tile
 from thermogear.views.style import names_of
 from thermogear.views.tables import JAMMED, jam_words
 from thermogear.views.typesetting import jam_at
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 STUDIED = "1.1 to 1.3"
 """Frequency ratios of the thesis's bifurcation study."""
@@ -44,7 +41,7 @@ def summary(results: Result) -> str:
     return " ".join(part for part in parts if part)
 
 
-def _heat(mesh: xr.Dataset) -> str:
+def _heat(mesh: Dataset) -> str:
     if "hot_temperature" not in mesh:
         return ""
     cold, hot = (mesh["hot_temperature"].isel(state=i).values for i in (0, -1))
@@ -61,7 +58,7 @@ def _heat(mesh: xr.Dataset) -> str:
     return f"; {gears} against {drawn} undeformed{colder}"
 
 
-def _bundle(mesh: xr.Dataset, place: int) -> str:
+def _bundle(mesh: Dataset, place: int) -> str:
     name = names_of(mesh, "bundle")[place]
     here = mesh.isel(bundle=place)
     cold, hot = here.isel(state=0), here.isel(state=-1)
@@ -98,7 +95,7 @@ def _studied(results: Result) -> bool:
     return results.text("thesis_case") == "1"
 
 
-def _regime(mesh: xr.Dataset, studied: bool) -> str:
+def _regime(mesh: Dataset, studied: bool) -> str:
     ratio = mesh["frequency_ratio"].isel(bundle=0, state=0).values
     frequency = span(mesh["natural_frequency"].isel(bundle=0, state=0).values, 4)
     place = "below" if ratio.max() < 0.9 else "above" if ratio.min() > 1.1 else "around"
@@ -110,7 +107,7 @@ def _regime(mesh: xr.Dataset, studied: bool) -> str:
     )
 
 
-def _count(motion: xr.Dataset) -> str:
+def _count(motion: Dataset) -> str:
     found = Counter(map(str, told_labels(motion).flat))
     if len(found) == 1:
         name = next(iter(found))
@@ -118,7 +115,7 @@ def _count(motion: xr.Dataset) -> str:
     return ", ".join(f"{count} × {name}" for name, count in found.most_common())
 
 
-def _rows_summary(points: xr.Dataset | None) -> str:
+def _rows_summary(points: Dataset | None) -> str:
     if points is None:
         return "These results hold no group that could be drawn."
     return (

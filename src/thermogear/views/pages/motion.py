@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from operator import itemgetter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import MICROMETRE, NANOMETRE, PERCENT, Display, number
 from thermogear.results.result import Result
 from thermogear.views.columns import Column, Row, declared, pairs
@@ -25,10 +26,6 @@ from thermogear.views.picture import Picture
 from thermogear.views.plots import one_motion as plots
 from thermogear.views.plots.parameters import page_words
 from thermogear.views.typesetting import prose
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 Summary = dict[str, Any]
 SECOND = "second_shown"
@@ -91,7 +88,7 @@ def plane_tables(summary: Summary) -> list[Block]:
     ]
 
 
-Groups = Mapping[str, "xr.Dataset"]
+Groups = Mapping[str, Dataset]
 
 KINDS = ("orbit", "lyapunov", "branch", "cascade", "shared")
 
@@ -128,7 +125,7 @@ def _picture(kind: str, groups: Groups) -> Callable[[], Picture]:
     return partial(plots.orbit_picture if kind == "orbit" else plots.lyapunov_picture, groups[kind])
 
 
-def _numbered(groups: Groups, begin: str) -> list[xr.Dataset]:
+def _numbered(groups: Groups, begin: str) -> list[Dataset]:
     """The groups named ``begin`` and a number, in order."""
     names = sorted((n for n in groups if n.startswith(begin)), key=lambda n: int(n[len(begin) :]))
     return [groups[name] for name in names]

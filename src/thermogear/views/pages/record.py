@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import HERTZ, SPEED, number
 from thermogear.results.result import Result
 from thermogear.views.columns import Column, by_name, key, pairs
@@ -16,9 +17,6 @@ from thermogear.views.pages.record_tables import comparison_tables, line_table
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.sweeps import edges
 from thermogear.views.style import COLD, HOT, INK, OKABE_ITO, WIDE, scale
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _SHOWN = 60  # lines of the table: the most prominent
 _BINS = 3.0  # to each side of a line, in which its curve is looked at
@@ -128,7 +126,7 @@ def _spectrum(results: Result) -> Section | None:
     return Section("spectrum", "Spectrum", pictures.take(), folded=False)
 
 
-def _spectrum_of_run(results: Result, data: xr.Dataset, slices: xr.Dataset) -> Section:
+def _spectrum_of_run(results: Result, data: Dataset, slices: Dataset) -> Section:
     """Of a run whose speed changes: no line has one frequency, so none is marked."""
     rate, speed = results.text("rate"), SPEED(slices["slice_speed"].values)
     words = "frequency [Hz]" if rate else "frequency [cycles/sample]"
@@ -150,7 +148,7 @@ def _spectrum_of_run(results: Result, data: xr.Dataset, slices: xr.Dataset) -> S
 
 
 def _drawn_spectrum(
-    data: xr.Dataset, marked: xr.Dataset | None, scale: float, words: str, unit: str
+    data: Dataset, marked: Dataset | None, scale: float, words: str, unit: str
 ) -> Picture:
     """Curves over ``spectrum_position`` times ``scale``, and marks of lines."""
     panel = Panel(Axis(words), Axis(f"amplitude (peak) [{unit}]", log="decades"))
@@ -165,7 +163,7 @@ def _drawn_spectrum(
     return Picture([[panel]], size=(WIDE, 3.6), legend=5)
 
 
-def _above(data: xr.Dataset, marked: xr.Dataset) -> bool:
+def _above(data: Dataset, marked: Dataset) -> bool:
     """Whether a channel's strongest line is above its curve by more than the window takes."""
     x = data["spectrum_position"].values
     if x.size < 2:
@@ -421,7 +419,7 @@ MOST = 6
 """Orders drawn as slices."""
 
 
-def order_map(data: xr.Dataset, resonances: xr.Dataset | None, unit: str, count: str) -> Picture:
+def order_map(data: Dataset, resonances: Dataset | None, unit: str, count: str) -> Picture:
     """Amplitude over order and speed; dotted where a resonance in hertz would be."""
     rpm, order = SPEED(data["map_speed"].values), data["map_order"].values
     rising = np.argsort(rpm, kind="stable")
@@ -447,7 +445,7 @@ def order_map(data: xr.Dataset, resonances: xr.Dataset | None, unit: str, count:
     return Picture([[panel]], size=(WIDE, 4.4), legend=4)
 
 
-def over_speed(data: xr.Dataset, channel: int, unit: str) -> Picture:
+def over_speed(data: Dataset, channel: int, unit: str) -> Picture:
     """Amplitudes of the highest orders of a channel over speed, with their 95 % intervals."""
     rpm = SPEED(data["slice_speed"].values)
     a = data["slice_reading"].values[channel]

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import GRAVITY, MICROMETRE, PERCENT, Display, number
 from thermogear.results.result import Result
 from thermogear.views.columns import PLAIN, Column, Row, declared, rows_along
 from thermogear.views.page import Table
 from thermogear.views.typesetting import html_symbol, prose
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 UNCERTAINTY = Column(html_symbol("u_D"), "line_uncertainty", 4, PERCENT)
 QUANTITY = {
@@ -70,7 +67,7 @@ def _error(row: Row, name: str) -> str:
     return f"{printed} | {PERCENT(row[f'error {name}']):+.2f}".removeprefix(" | ").replace("-", "−")
 
 
-def comparison_table(data: xr.Dataset) -> Table:
+def comparison_table(data: Dataset) -> Table:
     """Measured and simulated values with the errors of every model and their uncertainties."""
     models = [str(name) for name in data["model"].values]
     has_printed = "printed" in data.coords
@@ -128,7 +125,7 @@ IMPLIED = (
 )
 
 
-def implied_table(implied: xr.Dataset) -> Table:
+def implied_table(implied: Dataset) -> Table:
     """Acceleration, speed and distance from the mesh line that measured lines imply."""
     return declared(
         "What the measured lines imply.", IMPLIED, rows_along(implied, "speed"), names=0

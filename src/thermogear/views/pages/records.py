@@ -4,19 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import PERCENT, SPEED, Display
 from thermogear.results.result import Result
 from thermogear.views.columns import PLAIN, Column, Row, declared
 from thermogear.views.page import Page, Pictures, Section, Table, Text
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import OKABE_ITO, WIDE
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 KINDS = ("records",)
 _SHOWN = 200
@@ -54,7 +52,7 @@ def page(result: Result) -> Page:
     )
 
 
-def _is_compared(data: xr.Dataset) -> bool:
+def _is_compared(data: Dataset) -> bool:
     """Whether a line of any record has a change against the baseline's."""
     known = np.isfinite(data["record_line_change"].values)
     return bool(np.any(known.sum(axis=0) > 1))
@@ -147,7 +145,7 @@ _NAMED, _LETTERS = 12, 18  # records that the axis names, and letters of a name
 _KNOWN = 50.0  # per cent: a line of a wider interval hides the others
 
 
-def course(data: xr.Dataset) -> Picture:
+def course(data: Dataset) -> Picture:
     """Change of the lines that changed most for their uncertainty, of those known to +-50 % if
     there are any; shaded: 95 % intervals."""
     change = PERCENT(data["record_line_change"].values)
@@ -165,7 +163,7 @@ def course(data: xr.Dataset) -> Picture:
     return Picture([[panel]], size=(WIDE, 4.0), legend=3)
 
 
-def _records(data: xr.Dataset) -> Axis:
+def _records(data: Dataset) -> Axis:
     """The axis of the records: their names where they are few, else their numbers."""
     names = [str(one) for one in data["record"].values]
     if len(names) <= _NAMED:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thermogear.base.arrays import DataArray, Dataset
 from thermogear.base.display import CELSIUS, MICROMETRE, MILLIMETRE, STIFFNESS, Display, exactly
 from thermogear.results.result import Result
 from thermogear.views.columns import Column, declared
@@ -15,9 +15,6 @@ from thermogear.views.pages import survey_captions as words
 from thermogear.views.pages.survey import survey
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import COLD, HOT, INK, names_of
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 KINDS = ("relief",)
 
@@ -95,7 +92,7 @@ def page(result: Result) -> Page:
 COLOURS = {"unrelieved": COLD, "relieved": HOT}
 
 
-def error(data: xr.Dataset) -> Picture:
+def error(data: Dataset) -> Picture:
     """Static transmission error over a mesh period at the design load, mean taken off."""
     panel = Panel(
         Axis("mesh phase φ [–]", low=0.0, high=1.0), Axis("transmission error, mean removed [µm]")
@@ -108,7 +105,7 @@ def error(data: xr.Dataset) -> Picture:
     return Picture([[panel]], legend=1)
 
 
-def stiffness(data: xr.Dataset) -> Picture:
+def stiffness(data: Dataset) -> Picture:
     """Tangent stiffness over a mesh period at the design load."""
     panel = Panel(
         Axis("mesh phase φ [–]", low=0.0, high=1.0),
@@ -118,7 +115,7 @@ def stiffness(data: xr.Dataset) -> Picture:
     return Picture([[panel]], legend=2)
 
 
-def over_load(data: xr.Dataset, design: float) -> Picture:
+def over_load(data: Dataset, design: float) -> Picture:
     """Peak-to-peak error over the torque, the design torque marked."""
     panel = Panel(
         Axis("pinion torque [N m]", low=0.0), Axis("transmission error, peak to peak [µm]", low=0.0)
@@ -128,6 +125,6 @@ def over_load(data: xr.Dataset, design: float) -> Picture:
     return Picture([[panel]])
 
 
-def _pairs(panel: Panel, x: xr.DataArray, y: xr.DataArray, shown: Display) -> None:
+def _pairs(panel: Panel, x: DataArray, y: DataArray, shown: Display) -> None:
     for place, name in enumerate(str(n) for n in y["pair_kind"].values):
         panel.curve(x.values, shown(y.values[place]), colour=COLOURS.get(name, INK), label=name)

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import MICROMETRE, PERCENT, SPEED
 from thermogear.results.result import Result
 from thermogear.views.columns import Column, Row, by_name, declared, key, rows_along
@@ -14,9 +15,6 @@ from thermogear.views.page import Block, Pictures, Table, Text
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import COLD, FAINT, HOT, INK, OKABE_ITO, SINGLE, WIDE, scale
 from thermogear.views.typesetting import prose
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 def blocks(results: Result, pictures: Pictures) -> list[Block]:
@@ -56,7 +54,7 @@ def blocks(results: Result, pictures: Pictures) -> list[Block]:
     return [*said, *drawn, Text(prose(how))]
 
 
-def _shares(data: xr.Dataset) -> Table:
+def _shares(data: Dataset) -> Table:
     by_limit = {
         f"within {float(limit):g}": rows_along(data.isel(limit=k), "seen")
         for k, limit in enumerate(data["limit"].values)
@@ -87,7 +85,7 @@ ASSUMED = (
 )
 
 
-def _assumed(data: xr.Dataset) -> Table:
+def _assumed(data: Dataset) -> Table:
     caption = "What is assumed of the rig, all ours unless said."
     return declared(caption, ASSUMED, rows_along(data, "input"), names=3, wordy=True)
 
@@ -95,7 +93,7 @@ def _assumed(data: xr.Dataset) -> Table:
 IN_JSON = tuple(map(key, ("hits", "share", "share_low", "share_high")))
 
 
-def numbers(data: xr.Dataset) -> dict[str, Any]:
+def numbers(data: Dataset) -> dict[str, Any]:
     """The answer JSON-ready, with shares by place and factor."""
     limits = [f"{float(limit):g}" for limit in data["limit"].values]
     told = ("answer", "sentence", "deciding", "motions")
@@ -111,7 +109,7 @@ def numbers(data: xr.Dataset) -> dict[str, Any]:
 # --- pictures -----------------------------------------------------------------------------------
 
 
-def displacements(data: xr.Dataset) -> Picture:
+def displacements(data: Dataset) -> Picture:
     """Every train's nearest channel over speed, the spread of the largest, and the printed ones."""
     rpm = SPEED(data["rig_speed"].values)
     panels = []
@@ -140,7 +138,7 @@ def displacements(data: xr.Dataset) -> Picture:
     return Picture([panels], size=(WIDE, 3.4), share_y="row", between=0.2, legend=4)
 
 
-def factors(data: xr.Dataset) -> Picture:
+def factors(data: Dataset) -> Picture:
     """The share of trains whose nearest channel lies within a factor of the printed values."""
     panel = Panel(
         Axis("factor allowed at all three speeds [–]", log="full", low=1.0, high=1000.0),
@@ -156,7 +154,7 @@ def factors(data: xr.Dataset) -> Picture:
     return Picture([[panel]], size=(SINGLE[0] + 1.6, SINGLE[1]), legend=1)
 
 
-def ranks(data: xr.Dataset) -> Picture:
+def ranks(data: Dataset) -> Picture:
     """Rank correlations as a map: a row for every result, a column for every assumption."""
     outputs = [str(v) for v in data["target_words"].values]
     inputs = [str(v) for v in data["input_words"].values]

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import number
 from thermogear.results.result import Result
 from thermogear.views import tables
 from thermogear.views.page import Block, Pictures, Section, Text
 from thermogear.views.plots import rows
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 PREFIX = "base_sets/"
 
@@ -50,7 +46,7 @@ def points(results: Result, pictures: Pictures) -> Section | None:
     return Section("motion", "Motion", blocks)
 
 
-def _rows(data: xr.Dataset, pictures: Pictures, prefix: str) -> list[Block]:
+def _rows(data: Dataset, pictures: Pictures, prefix: str) -> list[Block]:
     """Picture and table of every row, then the half-order line where temperatures run."""
     needs = ("scaled_displacement", "scaled_velocity", "section_displacement", "line_amplitude")
     width = float(data.attrs.get("bin_width_orders", 0.0))

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import isfinite
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from thermogear.base.arrays import DataArray, Dataset
 from thermogear.base.display import SPEED
 from thermogear.base.vocabulary import DIMENSIONLESS
 from thermogear.results.result import Result
@@ -25,9 +26,6 @@ from thermogear.views.pages import (
     train_motion,
 )
 from thermogear.views.pages.background import background
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 def numbers(result: Result) -> dict[str, Any]:
@@ -50,7 +48,7 @@ def numbers(result: Result) -> dict[str, Any]:
     return found | ({"points": sets} if sets else {})
 
 
-def _rows(data: xr.Dataset, columns: Sequence[Column], *dims: str) -> list[dict[str, Any]]:
+def _rows(data: Dataset, columns: Sequence[Column], *dims: str) -> list[dict[str, Any]]:
     """The numbers of every place, as far as they are stored."""
     there = [column for column in columns if column.key in data or column.value in data]
     return [in_full(there, row) for row in rows_along(data, *dims)]
@@ -107,7 +105,7 @@ OF_POINT = (
 )
 
 
-def _operating(groups: Mapping[str, xr.Dataset]) -> xr.Dataset:
+def _operating(groups: Mapping[str, Dataset]) -> Dataset:
     """The figures of the mesh with the extremes along the path and those of the motion."""
     path, motion = groups["path"], groups.get("motion")
     data = groups["mesh"].assign(
@@ -184,7 +182,7 @@ def with_hot_temperature(results: Result) -> Result:
     path, mesh = results.group("path"), results.group("mesh")
     if path is None or mesh is None or "pinion_body_temperature" not in path:
         return results
-    tip: xr.DataArray = path["pinion_body_temperature"].isel(path_position=-1, drop=True)
+    tip: DataArray = path["pinion_body_temperature"].isel(path_position=-1, drop=True)
     grown = mesh.assign(hot_temperature=tip.variable)
     if "wheel_body_temperature" in path:
         other = path["wheel_body_temperature"].isel(path_position=0, drop=True)

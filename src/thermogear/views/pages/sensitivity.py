@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import PERCENT, SPEED
 from thermogear.results.result import Result
 from thermogear.views.columns import Column, Row, declared, in_full, key, rows_along
@@ -14,9 +15,6 @@ from thermogear.views.page import Block, Page, Pictures, Section, Text
 from thermogear.views.pages.background import background
 from thermogear.views.plots import claims as plots
 from thermogear.views.typesetting import prose
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 KINDS = ("sensitivity",)
 
@@ -92,7 +90,7 @@ INDICES = (
 )
 
 
-def _strongest(data: xr.Dataset) -> list[Row]:
+def _strongest(data: Dataset) -> list[Row]:
     """The strongest inputs of every result; one row without an index where none changes it."""
     rows: list[Row] = []
     for place in range(data.sizes["output"]):
@@ -118,7 +116,7 @@ OF_INPUT = tuple(map(key, ("input", "first_order", "first_order_conf", "total", 
 SETTINGS = ("evaluations", "samples", "confidence", "seconds", "jammed", "speed", "seed")
 
 
-def _numbers(data: xr.Dataset) -> dict[str, Any]:
+def _numbers(data: Dataset) -> dict[str, Any]:
     """The study: settings, and for every output its spread, conclusion and ranking."""
     outputs = [
         {

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import partial
 from operator import itemgetter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import (
     CELSIUS,
     HERTZ,
@@ -39,9 +40,6 @@ from thermogear.views.pages.survey import operating_rows, survey
 from thermogear.views.plots import shafts as plots
 from thermogear.views.style import names_of
 from thermogear.views.typesetting import operating_names
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 KINDS = ("statics", "modes", "campbell")
 SKETCH = (
@@ -109,7 +107,7 @@ def _statics(result: Result) -> Page:
     )
 
 
-def _clearances(rings: xr.Dataset) -> Shown:
+def _clearances(rings: Dataset) -> Shown:
     return Shown(
         "clearances",
         "Clearance of the bearings",
@@ -169,7 +167,7 @@ def _static_numbers(result: Result) -> dict[str, Any]:
     }
 
 
-def _stored(data: xr.Dataset) -> list[Column]:
+def _stored(data: Dataset) -> list[Column]:
     """Every variable with a unit, its unit in the name."""
     return [
         key(f"{name}_{variable.attrs['units'].replace('/', '_per_')}", str(name))

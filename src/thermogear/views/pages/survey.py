@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import SPEED
 from thermogear.results.result import Result
 from thermogear.results.tables import csv_text, frames
@@ -21,9 +22,6 @@ from thermogear.views.page import (
     Text,
 )
 from thermogear.views.pages.background import case_file
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 def survey(
@@ -80,6 +78,6 @@ OPERATING = (
 )
 
 
-def operating_rows(data: xr.Dataset) -> list[dict[str, Any]]:
+def operating_rows(data: Dataset) -> list[dict[str, Any]]:
     """Speed and torque of every operating point."""
     return [in_full(OPERATING, row) for row in rows_along(data, "operating")]

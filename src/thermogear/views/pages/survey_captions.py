@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import MICROMETRE, MILLIMETRE, PERCENT, SPEED, exactly, number, span
 from thermogear.base.vocabulary import is_known
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 def several(count: int, noun: str) -> str:
@@ -22,7 +18,7 @@ def several(count: int, noun: str) -> str:
 # --- friction -----------------------------------------------------------------------------
 
 
-def laws(data: xr.Dataset, operating: int, means: frozenset[str]) -> str:
+def laws(data: Dataset, operating: int, means: frozenset[str]) -> str:
     """Of the friction laws at one operating point."""
     here = data.isel(operating=operating)
     drawn = np.isfinite(here["friction_coefficient"].values).any(axis=-1)
@@ -36,20 +32,20 @@ def laws(data: xr.Dataset, operating: int, means: frozenset[str]) -> str:
 # --- temperature --------------------------------------------------------------------------
 
 
-def running(data: xr.Dataset) -> list[str]:
+def running(data: Dataset) -> list[str]:
     """The axes of the map along which there is more than one value."""
     axes = {"pinion_speed": "speed", "pinion_torque": "torque"}
     return [words for name, words in axes.items() if data.sizes[name] > 1]
 
 
-def held(data: xr.Dataset) -> str:
+def held(data: Dataset) -> str:
     """The one value of the axis that does not run."""
     if data.sizes["pinion_speed"] > 1:
         return f"{exactly(float(data['pinion_torque'][0]))} N m"
     return f"{exactly(SPEED(float(data['pinion_speed'][0])))} rpm"
 
 
-def thermal_map(data: xr.Dataset, safe: float) -> str:
+def thermal_map(data: Dataset, safe: float) -> str:
     """Of the map of everything hot, or of its line over one axis."""
     settled = is_known(data["status"].values)
     beyond = settled & (data["within_oil_range"].values == 0)
@@ -66,7 +62,7 @@ def thermal_map(data: xr.Dataset, safe: float) -> str:
     return " ".join(words)
 
 
-def one_point(data: xr.Dataset) -> str:
+def one_point(data: Dataset) -> str:
     """What a map of one point would show."""
     here = data.isel(pinion_speed=0, pinion_torque=0)
     if not is_known(int(here["status"])):
@@ -82,21 +78,21 @@ def one_point(data: xr.Dataset) -> str:
 # --- tip relief ---------------------------------------------------------------------------
 
 
-def relief_error(data: xr.Dataset) -> str:
+def relief_error(data: Dataset) -> str:
     """Of the transmission error under the design load."""
     spread = MICROMETRE(np.ptp(data["transmission_error"].values, axis=-1))
     without, with_it = (number(float(v)) for v in spread)
     return f"Under the design load: {without} µm peak to peak without relief, {with_it} µm with it."
 
 
-def relief_stiffness(data: xr.Dataset) -> str:
+def relief_stiffness(data: Dataset) -> str:
     """Of the tangent stiffness under the design load."""
     without, with_it = data["tangent_stiffness"].values.mean(axis=-1)
     change = PERCENT(with_it / without - 1.0)
     return f"Relief changes the mean stiffness by {change:+.1f} %.".replace("-", "−")
 
 
-def relief_loads(data: xr.Dataset) -> str:
+def relief_loads(data: Dataset) -> str:
     """Of the error over other loads than the design load."""
     load = data["load"].values
     without, with_it = data["peak_to_peak_error"].values
@@ -113,7 +109,7 @@ def relief_loads(data: xr.Dataset) -> str:
 # --- loaded contact -----------------------------------------------------------------------
 
 
-def contact_phase(data: xr.Dataset) -> str:
+def contact_phase(data: Dataset) -> str:
     """Of stiffness and error over a mesh period."""
     mean = data.sel(temperature="hot")["tangent_stiffness"].mean("mesh_phase").values
     words = "Tangent and secant stiffness are kept apart"
@@ -124,7 +120,7 @@ def _rises(values: NDArray[np.float64]) -> bool:
     return values.size > 1 and bool(np.all(np.diff(values) > 0.0))
 
 
-def contact_path(data: xr.Dataset) -> str:
+def contact_path(data: Dataset) -> str:
     """Of load share and pressure along the path."""
     loads = [exactly(float(data["load"][end])) for end in (0, -1)]
     words = (
@@ -143,7 +139,7 @@ def contact_path(data: xr.Dataset) -> str:
     )
 
 
-def double_contact(data: xr.Dataset) -> str:
+def double_contact(data: Dataset) -> str:
     """Of the length of double contact of unequally hot gears."""
     length = MILLIMETRE(data["double_contact_length"].values)
     apart = data["temperature_difference"].values
@@ -162,7 +158,7 @@ def double_contact(data: xr.Dataset) -> str:
     )
 
 
-def uneven_stiffness(data: xr.Dataset) -> str:
+def uneven_stiffness(data: Dataset) -> str:
     """Of the mean stiffness of unequally hot gears."""
     mean, apart = data["mean_stiffness"].values, data["temperature_difference"].values
     ratio = PERCENT(mean / mean[int(np.argmin(np.abs(apart)))] - 1.0)
@@ -174,7 +170,7 @@ def _percent(value: float) -> str:
     return "0" if abs(value) < 0.5 else f"{value:+.0f}".replace("-", "−")
 
 
-def uneven_error(data: xr.Dataset) -> str:
+def uneven_error(data: Dataset) -> str:
     """Of the transmission error of unequally hot gears."""
     error = data["peak_to_peak_error"].values
     apart = data["temperature_difference"].values

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import CELSIUS, MICROMETRE, PERCENT, SPEED, exactly, number
 from thermogear.base.vocabulary import ASSUMED, FASTER_RULE
 from thermogear.results.result import Result
@@ -27,10 +28,7 @@ from thermogear.views.plots.lost_contact import (
 )
 from thermogear.views.plots.parameters import page_words, parameter_of, shown
 
-if TYPE_CHECKING:
-    import xarray as xr
-
-Words = Callable[["xr.Dataset"], str]
+Words = Callable[[Dataset], str]
 TITLES = {
     "diagram": "Orbit diagram",
     "map": "Map of regimes",
@@ -87,7 +85,7 @@ def page(result: Result) -> Page:
     )
 
 
-def _summary(data: xr.Dataset) -> str:
+def _summary(data: Dataset) -> str:
     kind = str(data.attrs["kind"])
     if "label" in data:
         said = [lost_words(data), finding(data), f"{FASTER_RULE.capitalize()}."]
@@ -102,9 +100,9 @@ def _summary(data: xr.Dataset) -> str:
     return finding(data)
 
 
-def _pictures(data: xr.Dataset) -> Section:
+def _pictures(data: Dataset) -> Section:
     kind = str(data.attrs["kind"])
-    makers: dict[str, list[tuple[str, str, str | Words, Callable[[xr.Dataset], Picture]]]] = {
+    makers: dict[str, list[tuple[str, str, str | Words, Callable[[Dataset], Picture]]]] = {
         "diagram": [
             (
                 "orbits", "Orbit diagram", _diagram_caption, sweeps.orbit_diagram_picture,
@@ -145,7 +143,7 @@ def _pictures(data: xr.Dataset) -> Section:
     pictures = Pictures()
     for name, heading, caption, make in makers[kind]:
 
-        def drawn(make: Callable[[xr.Dataset], Picture] = make) -> Picture:
+        def drawn(make: Callable[[Dataset], Picture] = make) -> Picture:
             return make(data)
 
         said = caption if isinstance(caption, str) else caption(data)
@@ -153,7 +151,7 @@ def _pictures(data: xr.Dataset) -> Section:
     return Section(LEAD, "In pictures", pictures.take(), folded=False)
 
 
-def _map_caption(data: xr.Dataset) -> str:
+def _map_caption(data: Dataset) -> str:
     words = "What the motion from one start settles on."
     if not has_lost(data):
         words += " Beside it whether the drive flanks part, and whether the back flanks are hit."
@@ -162,7 +160,7 @@ def _map_caption(data: xr.Dataset) -> str:
     return words
 
 
-def _diagram_caption(data: xr.Dataset) -> str:
+def _diagram_caption(data: Dataset) -> str:
     words = (
         "Sections at phase 0 of the settled motion, each value starting from the end of the last: "
         "up with rising values, down with falling ones"
@@ -175,14 +173,14 @@ def _diagram_caption(data: xr.Dataset) -> str:
     )
 
 
-def _sweep_caption(data: xr.Dataset) -> str:
+def _sweep_caption(data: Dataset) -> str:
     words = "Every point from the case's own start."
     rest = [str(name) for name in data["label"].dims[2:]]
     at = [f"{page_words(n, data[n])} {number(float(shown(n, data[n][0])))}" for n in rest]
     return f"{words} Drawn at {', '.join(at)}." if at else words
 
 
-def _run_up_caption(data: xr.Dataset) -> str:
+def _run_up_caption(data: Dataset) -> str:
     words = (
         "One speed, met from below and from above"
         if data.sizes["pinion_speed"] == 1
@@ -192,7 +190,7 @@ def _run_up_caption(data: xr.Dataset) -> str:
     return words + ("; thin vertical lines are located folds." if folds else ".")
 
 
-def _points(data: xr.Dataset, result: Result) -> Section:
+def _points(data: Dataset, result: Result) -> Section:
     blocks: list[Block] = [lost_table(data)] if result.kind == "diagram" and has_lost(data) else []
     if "label" in data:
         blocks.append(_motions(data))
@@ -244,7 +242,7 @@ MOTIONS = (
 )
 
 
-def _motions(data: xr.Dataset) -> Table:
+def _motions(data: Dataset) -> Table:
     """How often each motion was found."""
     found = _labels(data)
     counts = {name: found[name] for name in ("labels", "assumed")}
@@ -255,7 +253,7 @@ def _motions(data: xr.Dataset) -> Table:
     return declared("Motions found.", MOTIONS, rows)
 
 
-def lost_table(data: xr.Dataset) -> Table:
+def lost_table(data: Dataset) -> Table:
     """Of every value the motion, what loses contact and the greatest force, up and down."""
     name = str(data.attrs["parameter"])
     free, force = data["drive_free_share"].values, data["greatest_mesh_force"].values
@@ -331,7 +329,7 @@ ATTRACTORS = (
 )
 
 
-def _located(data: xr.Dataset, dim: str) -> list[dict[str, Any]]:
+def _located(data: Dataset, dim: str) -> list[dict[str, Any]]:
     """The rows of bifurcations or jumps, with the temperature of the gears at each."""
     if f"{dim}_state" in data:
         gears = data["gear_temperature"].values[data[f"{dim}_state"].values]
@@ -339,11 +337,11 @@ def _located(data: xr.Dataset, dim: str) -> list[dict[str, Any]]:
     return rows_along(data, dim)
 
 
-def _jumps(data: xr.Dataset) -> list[dict[str, Any]]:
+def _jumps(data: Dataset) -> list[dict[str, Any]]:
     return _located(data, "jump") if "jump_kind" in data else []
 
 
-def _bifurcations(data: xr.Dataset) -> tuple[list[Column], list[dict[str, Any]]]:
+def _bifurcations(data: Dataset) -> tuple[list[Column], list[dict[str, Any]]]:
     """Columns and rows of the located bifurcations; no rows where none were looked for."""
     if "bifurcation_kind" not in data:
         return [], []
@@ -360,7 +358,7 @@ def _bifurcations(data: xr.Dataset) -> tuple[list[Column], list[dict[str, Any]]]
     return columns + [GEARS] * ("bifurcation_state" in data), _located(data, "bifurcation")
 
 
-def _attractors(data: xr.Dataset) -> list[dict[str, Any]]:
+def _attractors(data: Dataset) -> list[dict[str, Any]]:
     """The attractors, each with its first section."""
     if "attractor_x" not in data:
         return []
@@ -369,7 +367,7 @@ def _attractors(data: xr.Dataset) -> list[dict[str, Any]]:
     return rows_along(data.assign(first | {"period": periods}), "attractor_number")
 
 
-def _settings(data: xr.Dataset) -> Section:
+def _settings(data: Dataset) -> Section:
     shown = {
         "total_periods": "mesh periods run",
         "full_periods": "mesh periods of the full run",
@@ -402,7 +400,7 @@ def numbers(result: Result) -> dict[str, Any]:
     return found | {"rule": FASTER_RULE} | ({"seconds": float(seconds)} if seconds else {})
 
 
-def _labels(data: xr.Dataset) -> dict[str, Any]:
+def _labels(data: Dataset) -> dict[str, Any]:
     """How often each motion was found, and how often it is assumed."""
     told = np.char.replace(in_words(data)["label"].values, "_", " ").astype("U32")
     periodic = told == "periodic"
@@ -418,7 +416,7 @@ def _labels(data: xr.Dataset) -> dict[str, Any]:
     return found | ({"lost_contact": lost_rows(data)} if has_lost(data) else {})
 
 
-def _basin_numbers(data: xr.Dataset) -> dict[str, Any]:
+def _basin_numbers(data: Dataset) -> dict[str, Any]:
     names = ("basin_entropy", "boundary_basin_entropy", "unassigned")
     return {
         "points": data["attractor"].size,

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.display import CELSIUS, KELVIN, MICROMETRE, PERCENT, SPEED, exactly, number
 from thermogear.base.vocabulary import STATUS, is_known
 from thermogear.results.result import Result
@@ -20,9 +20,6 @@ from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import INK, OKABE_ITO, WIDE, names_of, scale
 from thermogear.views.tables import is_settled
 from thermogear.views.typesetting import prose
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 KINDS = ("temperature",)
 
@@ -132,7 +129,7 @@ CORNERS = (
 )
 
 
-def _with_nodes(data: xr.Dataset) -> xr.Dataset:
+def _with_nodes(data: Dataset) -> Dataset:
     """The same with the temperature of every node and each estimate as a variable."""
     of_nodes = {n: data["node_temperature"].sel(node=n, drop=True) for n in names_of(data, "node")}
     estimates = {
@@ -141,7 +138,7 @@ def _with_nodes(data: xr.Dataset) -> xr.Dataset:
     return data.assign(of_nodes | estimates)
 
 
-def _at_corners(data: xr.Dataset) -> list[dict[str, Any]]:
+def _at_corners(data: Dataset) -> list[dict[str, Any]]:
     """Corners and middle of the grid."""
     chosen = {
         name: sorted({0, data.sizes[name] // 2, data.sizes[name] - 1})
@@ -150,7 +147,7 @@ def _at_corners(data: xr.Dataset) -> list[dict[str, Any]]:
     return rows_along(data.isel(chosen), *chosen)
 
 
-def _corner_table(data: xr.Dataset) -> Table:
+def _corner_table(data: Dataset) -> Table:
     caption = ("The operating point.", "Ends and middle.", "Corners and middle of the map.")
     return declared(caption[len(words.running(data))], CORNERS, _at_corners(data), names=3)
 
@@ -167,7 +164,7 @@ def _estimate(row: Row, name: str) -> str:
     return f"{Column('', name, 3, CELSIUS).cell(row)}{apart}".replace("-", "−")
 
 
-def _estimate_table(data: xr.Dataset) -> Table:
+def _estimate_table(data: Dataset) -> Table:
     names = names_of(data, "estimate")
     columns = [
         *POINT,
@@ -191,7 +188,7 @@ SAFE = 50.0
 """Scuffing margin [K] that is advised at least."""
 
 
-def thermal_map(data: xr.Dataset) -> Picture:
+def thermal_map(data: Dataset) -> Picture:
     """Regime, flash, body temperature, backlash left, scuffing margin and friction: six maps.
 
     Points without a steady state are white; where the oil leaves its viscosity line the map is
@@ -241,12 +238,12 @@ def thermal_map(data: xr.Dataset) -> Picture:
     return Picture(panels, size=(WIDE, 6.6), between=0.96, above=0.95, right=0.5)
 
 
-def _grid(data: xr.Dataset) -> tuple[Floats, Floats]:
+def _grid(data: Dataset) -> tuple[Floats, Floats]:
     return SPEED(data["pinion_speed"].values), data["pinion_torque"].values
 
 
 def _panel(
-    data: xr.Dataset,
+    data: Dataset,
     values: Floats,
     title: str,
     colours: str,
@@ -287,7 +284,7 @@ def _nice(values: Floats, count: int) -> list[float]:
 
 
 def _lines(
-    panel: Panel, data: xr.Dataset, values: Floats, levels: Sequence[float], words: Sequence[str]
+    panel: Panel, data: Dataset, values: Floats, levels: Sequence[float], words: Sequence[str]
 ) -> None:
     """Named contour lines, where they exist."""
     known = values[np.isfinite(values)]
@@ -300,7 +297,7 @@ def _lines(
         panel.contours(*_grid(data), values.T, levels=list(inside), words=list(inside.values()))
 
 
-def _jam(panel: Panel, data: xr.Dataset, left: Floats) -> None:
+def _jam(panel: Panel, data: Dataset, left: Floats) -> None:
     """The border where the backlash is used up, or that there is none."""
     known = left[np.isfinite(left)]
     if known.size and known.min() <= 0.0:

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from markupsafe import Markup
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import MICROMETRE, PERCENT, celsius
 from thermogear.results.result import Result
 from thermogear.views.columns import PLAIN, Column, Row, declared, in_full, key, pairs, rows_along
@@ -33,9 +34,6 @@ from thermogear.views.pages.sensitivity import sensitivity_section
 from thermogear.views.plots import claims as plots
 from thermogear.views.plots.sweeps import over_each_other
 from thermogear.views.typesetting import html_symbol, prose
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 PREFIX = "diagrams/"
 DIAGRAMS = {"zeta": "damping", "omega": "frequency", "epsilon": "stiffness"}
@@ -174,7 +172,7 @@ def _thesis_sections(results: Result, pictures: Pictures) -> list[Section]:
     return found
 
 
-def _names(claims: xr.Dataset) -> list[str]:
+def _names(claims: Dataset) -> list[str]:
     return [str(value) for value in claims["number"].values]
 
 
@@ -182,7 +180,7 @@ def _section(name: str) -> int:
     return int(name.split(".")[0])
 
 
-def _counted(results: Result, claims: xr.Dataset) -> Section:
+def _counted(results: Result, claims: Dataset) -> Section:
     verdicts = list(results.table("counts"))
     found = Counter(
         (_section(n), str(v)) for n, v in zip(_names(claims), claims["verdict"].values, strict=True)
@@ -207,7 +205,7 @@ def _counted(results: Result, claims: xr.Dataset) -> Section:
     return Section("verdicts", "Verdicts", [intro, table], folded=False)
 
 
-def _claims_table(claims: xr.Dataset, place: int, shown: Collection[str]) -> Table:
+def _claims_table(claims: Dataset, place: int, shown: Collection[str]) -> Table:
     rows = [
         row | {"drawn": f"fig-{row['picture']}" in shown} for row in rows_along(claims, "claim")
     ]
@@ -332,7 +330,7 @@ def _simulation(results: Result, pictures: Pictures) -> list[Block]:
     return [*found, *pictures.take(), _flip_table(flips)]
 
 
-def _flip_table(flips: xr.Dataset) -> Table:
+def _flip_table(flips: Dataset) -> Table:
     heats = {
         "none": "none",
         "thesis": "as in the thesis",

@@ -6,10 +6,11 @@ import json
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import (
     CELSIUS,
     KELVIN,
@@ -38,9 +39,6 @@ from thermogear.views.plots.lost_contact import forces_picture
 from thermogear.views.plots.motion import label_of, moving
 from thermogear.views.plots.parameters import shown
 from thermogear.views.plots.sweeps import CLASSES, classes_of, overlay_picture, state_of
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 KINDS = ("thesis-pair",)
 JAMMED = STATUS.index("jammed")
@@ -84,7 +82,7 @@ def _summary(result: Result) -> str:
     )
 
 
-def _hot(data: xr.Dataset) -> xr.Dataset:
+def _hot(data: Dataset) -> Dataset:
     """The one point of a group, hot."""
     return data.isel(bundle=0, operating=0, state=-1)
 
@@ -94,11 +92,11 @@ def _sentence(parts: Sequence[str]) -> str:
     return words[:1].upper() + words[1:]
 
 
-def _micro(one: xr.Dataset, name: str) -> str:
+def _micro(one: Dataset, name: str) -> str:
     return number(MICROMETRE(float(one[name])))
 
 
-def _temperatures(result: Result) -> list[xr.Dataset]:
+def _temperatures(result: Result) -> list[Dataset]:
     """The point at every gear temperature."""
     here = result.groups["temperature"].isel(bundle=0, operating=0)
     return [here.isel(gear_temperature=k) for k in range(here.sizes["gear_temperature"])]
@@ -143,11 +141,11 @@ def _warming(result: Result, pictures: Pictures) -> Told:
     return _sentence(told), blocks
 
 
-def _at(one: xr.Dataset) -> str:
+def _at(one: Dataset) -> str:
     return celsius(float(one["gear_temperature"]))
 
 
-def _gap(points: list[xr.Dataset]) -> str:
+def _gap(points: list[Dataset]) -> str:
     """What is left at the tightest phase where it jams, and where: each has its own housing."""
     gaps = span([MICROMETRE(float(one["least_half_backlash"])) for one in points])
     jams = span([round(CELSIUS(float(one["jam_temperature"])), 0) for one in points])
@@ -196,7 +194,7 @@ def _diagram(name: str, result: Result, pictures: Pictures) -> Told:
     return _sentence([f"from {' to '.join(ends)} {PARAMETERS[name].shown}".strip(), *told]), blocks
 
 
-def _shares(one: xr.Dataset) -> str:
+def _shares(one: Dataset) -> str:
     """Which motions one state settles on, by their shares of the values."""
     code = classes_of(one)
     parts = (f"{CLASSES[n][0]} at {number(PERCENT(np.mean(code == n)))} %" for n in np.unique(code))

@@ -4,19 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.display import MICROMETRE, MILLIMETRE_PER_SECOND, NEWTON, PERCENT, number
 from thermogear.results.result import Result
 from thermogear.views.columns import OF_STATE, Column, declared, rows_along
 from thermogear.views.moving import Dial
 from thermogear.views.page import Block, Pictures, Section, Table, Text
 from thermogear.views.picture import Axis, Panel, Picture
-from thermogear.views.plots.shafts import internal_clearance
+from thermogear.views.plots.shafts import empty, in_rows, internal_clearance
 from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
 from thermogear.views.style import (
     ABOVE,
@@ -33,9 +32,6 @@ from thermogear.views.style import (
 )
 from thermogear.views.tables import labelled
 from thermogear.views.typesetting import operating_names
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 CAPTION = (
     "Settled motion with clearance in the teeth and in the bearings. Flanks: force of the drive "
@@ -123,7 +119,7 @@ def section(result: Result, pictures: Pictures) -> Section | None:
     return Section("train-motion", "The drive train in motion", blocks)
 
 
-def _closer(data: xr.Dataset) -> list[int]:
+def _closer(data: Dataset) -> list[int]:
     """Operating points whose bearings are shown: all of a few, of more the hardest on them."""
     count = data.sizes["operating"]
     if count <= FEW:
@@ -132,7 +128,7 @@ def _closer(data: xr.Dataset) -> list[int]:
     return [] if np.isnan(force).all() else [int(np.nanargmax(force))]
 
 
-def _of_bearings(data: xr.Dataset, place: int, name: str, pictures: Pictures) -> None:
+def _of_bearings(data: Dataset, place: int, name: str, pictures: Pictures) -> None:
     """Orbits with a dial of the phase, forces over time and over order."""
     path = ("journal_path", "mean_bearing_load")
     phases = [f"{f / FRAMES:.3f}" for f in range(FRAMES)]
@@ -151,7 +147,7 @@ def _of_bearings(data: xr.Dataset, place: int, name: str, pictures: Pictures) ->
     )  # fmt: skip
 
 
-def _frame(data: xr.Dataset, place: int, frame: int) -> Picture:
+def _frame(data: Dataset, place: int, frame: int) -> Picture:
     phase = data["phase"].values
     sample = round(frame / FRAMES / float(phase[1] - phase[0]))
     return bearing_orbits(data, place, sample=sample)
@@ -180,7 +176,7 @@ PATHS = (
 )
 
 
-def _tables(data: xr.Dataset) -> list[Table]:
+def _tables(data: Dataset) -> list[Table]:
     """Flanks and bearings in motion; of bearings stored without their paths the forces alone."""
     columns: tuple[Column, ...] = RINGS
     if "journal_path" in data:
@@ -209,7 +205,7 @@ MANY = 128
 """Sections from which their dots are small."""
 
 
-def four_panels(data: xr.Dataset, operating: int) -> Picture:
+def four_panels(data: Dataset, operating: int) -> Picture:
     """Mesh force over time and order, section, largest bearing lines of one operating point."""
     here = data.isel(operating=operating)
     phase = here["phase"].values
@@ -248,10 +244,14 @@ def four_panels(data: xr.Dataset, operating: int) -> Picture:
 
 
 def _lines(
-    here: xr.Dataset, order: NDArray[np.float64], amplitude: NDArray[np.float64], words: str
+    here: Dataset,
+    order: Floats,
+    amplitude: Floats,
+    words: str,
+    ends: tuple[float, float] | None = None,
 ) -> Panel:
-    """A spectrum (state, order) over orders of the mesh frequency."""
-    floor, top = floor_of(amplitude, order=order, highest=HIGHEST)
+    """A spectrum (state, order) over orders of the mesh frequency, up between its own ``ends``."""
+    floor, top = ends or floor_of(amplitude, order=order, highest=HIGHEST)
     panel = over_orders(
         "order of the mesh frequency [–]", words, floor=floor, top=top, highest=HIGHEST
     )
@@ -263,7 +263,7 @@ def _lines(
     return panel
 
 
-def sound(data: xr.Dataset, operating: int) -> Picture:
+def sound(data: Dataset, operating: int) -> Picture:
     """Lines of the housing's acceleration at one operating point."""
     here = data.isel(operating=operating)
     order, lines = here["line_order"].values, here["housing_line"].values
@@ -271,10 +271,6 @@ def sound(data: xr.Dataset, operating: int) -> Picture:
     return Picture([[panel]], size=(WIDE, 3.4))
 
 
-# --- pictures -----------------------------------------------------------------------------------
-
-
-HIGHEST_FORCE_ORDER = 12.0
 ACROSS = 4
 """Bearings side by side in the picture of their orbits."""
 BESIDE = 2
@@ -287,7 +283,7 @@ BETWEEN_SAMPLES = 4
 """Points of a drawn orbit for every sample."""
 
 
-def bearing_orbits(data: xr.Dataset, operating: int, *, sample: int = 0) -> Picture:
+def bearing_orbits(data: Dataset, operating: int, *, sample: int = 0) -> Picture:
     """Every journal in its clearance, above to scale, below about its mean place alone [um].
 
     A dot below shows where it is at that ``sample`` of the record.
@@ -301,7 +297,7 @@ def bearing_orbits(data: xr.Dataset, operating: int, *, sample: int = 0) -> Pict
         rows.append([_about_mean(here, b, sample) for b in some])
     wide = max(len(row) for row in rows)
     for row in rows:
-        row.extend(_empty(row[0]) for _ in range(wide - len(row)))
+        row.extend(empty(row[0]) for _ in range(wide - len(row)))
     each = (WIDE - LEFT - RIGHT - BETWEEN * (ACROSS - 1)) / ACROSS
     size = (
         LEFT + RIGHT + wide * each + BETWEEN * (wide - 1),
@@ -316,7 +312,7 @@ def _axes(words: str, half: float) -> tuple[Axis, Axis]:
     return x, y
 
 
-def _in_clearance(here: xr.Dataset, bearing: int) -> Panel:
+def _in_clearance(here: Dataset, bearing: int) -> Panel:
     """Clearance circles, orbits and the direction of the load of one bearing."""
     states = names_of(here, "state")
     path = MICROMETRE(here["journal_path"].values[:, bearing])
@@ -362,7 +358,7 @@ def _said(panel: Panel, words: str, load: Floats) -> None:
         )  # fmt: skip
 
 
-def _once(path: Floats, here: xr.Dataset, state: int) -> Floats:
+def _once(path: Floats, here: Dataset, state: int) -> Floats:
     """The part of ``path`` (2, sample) after which it comes again, closed; else all of it."""
     phase, name = here["phase"].values, str(here["label"].values[state])
     number = name.removeprefix("period-")
@@ -411,7 +407,7 @@ def _head(panel: Panel, tip: Floats, way: Floats, size: float, colour: str) -> N
     panel.curve(x, y, colour=colour, width=1.4)
 
 
-def _about_mean(here: xr.Dataset, bearing: int, sample: int) -> Panel:
+def _about_mean(here: Dataset, bearing: int, sample: int) -> Panel:
     """The orbits alone, each less its mean place; a dot at ``sample``, an arrow along the way."""
     path = MICROMETRE(here["journal_path"].values[:, bearing])
     path = path - path.mean(axis=2, keepdims=True)
@@ -437,20 +433,7 @@ def _about_mean(here: xr.Dataset, bearing: int, sample: int) -> Panel:
     return panel
 
 
-def _empty(like: Panel) -> Panel:
-    panel = Panel(like.x, like.y)
-    panel.note("no more of them")
-    return panel
-
-
-def _rows(panels: Sequence[Panel]) -> list[list[Panel]]:
-    rows = [list(panels[i : i + BESIDE]) for i in range(0, len(panels), BESIDE)]
-    if len(rows) > 1:
-        rows[-1].extend(_empty(panels[0]) for _ in range(BESIDE - len(rows[-1])))
-    return rows
-
-
-def bearing_force_time(data: xr.Dataset, operating: int) -> Picture:
+def bearing_force_time(data: Dataset, operating: int) -> Picture:
     """Amount of the force on every bearing over the mesh periods, undeformed and hot."""
     here = data.isel(operating=operating)
     phase, force = here["phase"].values, here["bearing_force"].values
@@ -470,29 +453,21 @@ def bearing_force_time(data: xr.Dataset, operating: int) -> Picture:
                     label=f"amount of the mean, {state}",
                 )
         panels.append(panel)
-    rows = _rows(panels)
+    rows = in_rows(panels, BESIDE)
     return Picture(rows, size=(WIDE, 2.4 * len(rows) + 0.3), legend=4)
 
 
-def bearing_force_order(data: xr.Dataset, operating: int) -> Picture:
+def bearing_force_order(data: Dataset, operating: int) -> Picture:
     """Lines of the force on every bearing over orders of the mesh frequency."""
     here = data.isel(operating=operating)
     order, lines = here["line_order"].values, here["bearing_force_line"].values
-    floor, top = floor_of(lines, order=order, highest=HIGHEST_FORCE_ORDER)
+    ends = floor_of(lines, order=order, highest=HIGHEST)
     panels = []
     for b, name in enumerate(names_of(here, "bearing")):
-        panel = over_orders(
-            "order of the mesh frequency [–]", "line of the force [N]", floor=floor, top=top,
-            highest=HIGHEST_FORCE_ORDER,
-        )  # fmt: skip
+        panel = _lines(here, order, lines[:, b], "line of the force [N]", ends)
         panel.title = name
-        for s, state in enumerate(names_of(here, "state")):
-            draw_lines(
-                panel, order=order, amplitude=lines[s, b], colour=STATES.get(state, INK),
-                label=state, filled=s > 0,
-            )  # fmt: skip
         panels.append(panel)
-    rows = _rows(panels)
+    rows = in_rows(panels, BESIDE)
     return Picture(rows, size=(WIDE, 2.6 * len(rows) + 0.3), legend=4)
 
 
@@ -502,13 +477,13 @@ HUES = ("#d62f4b", "#e8743b", "#d9a400", "#8fae2e", "#2f9e5f", "#17a2a2", "#2f7f
 QUARTERS = (("0", 0.0), ("¼", 0.25), ("½", 0.5), ("¾", 0.75))
 
 
-def turning(data: xr.Dataset, operating: int) -> list[int]:
+def turning(data: Dataset, operating: int) -> list[int]:
     """Places of the states whose motion at this operating point lies on a torus."""
     found = data["label"].values[:, operating]
     return [s for s, name in enumerate(found) if str(name) == "quasi-periodic"]
 
 
-def torus_section(data: xr.Dataset, operating: int) -> Picture:
+def torus_section(data: Dataset, operating: int) -> Picture:
     """Sections of a quasi-periodic motion, coloured by its second phase, on their closed curves."""
     here = data.isel(operating=operating)
     mesh = float(here["mesh_frequency"])

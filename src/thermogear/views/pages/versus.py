@@ -5,11 +5,12 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from markupsafe import Markup
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import display, in_words, percent
 from thermogear.base.vocabulary import UNDEFORMED, label
 from thermogear.results.result import Result
@@ -23,9 +24,6 @@ from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
 from thermogear.views.style import INK, OKABE_ITO, WIDE, chosen, names_of
 from thermogear.views.tables import jam_words
 from thermogear.views.typesetting import axis_label, field_name, operating_names, plain, prose
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 MOST_POINTS = 3
 """At most so many operating points are drawn."""
@@ -88,7 +86,7 @@ def page(result: Result) -> Page:
     )
 
 
-def _summary(data: xr.Dataset) -> str:
+def _summary(data: Dataset) -> str:
     has = data["present"].values.astype(bool)
     shared = int((has.any(axis=1).sum(axis=0) > 1).sum())
     fields = len(json.loads(data.attrs["differences"]))
@@ -103,7 +101,7 @@ def _value(row: Row, place: int) -> Markup:
     return prose(in_words(row["values"][place]))
 
 
-def _differences(data: xr.Dataset) -> Section:
+def _differences(data: Dataset) -> Section:
     titles = names_of(data, "case")
     by_case = [Column(title, partial(_value, place=k)) for k, title in enumerate(titles)]
     fields, made = (json.loads(data.attrs[name]) for name in ("differences", "choices"))
@@ -122,7 +120,7 @@ def _differences(data: xr.Dataset) -> Section:
     return Section("differences", "What differs", blocks, folded=False)
 
 
-def _figures(data: xr.Dataset) -> Section:
+def _figures(data: Dataset) -> Section:
     bundles = [str(name) for name in data["bundle"].values]
     blocks: list[Block] = []
     for b, bundle in enumerate(bundles):
@@ -145,7 +143,7 @@ CASES = (
 )
 
 
-def _table(here: xr.Dataset, names: Sequence[str], words: str) -> Table:
+def _table(here: Dataset, names: Sequence[str], words: str) -> Table:
     """A row for each case, those of one operating point below each other."""
     there = here["present"]
     here = here.assign_coords(operating=_points(here)).assign(
@@ -171,12 +169,12 @@ def _table(here: xr.Dataset, names: Sequence[str], words: str) -> Table:
     )
 
 
-def _any(here: xr.Dataset, name: str) -> bool:
+def _any(here: Dataset, name: str) -> bool:
     values = here[name].values
     return bool((values != "").any() if values.dtype.kind in "UO" else not np.isnan(values).all())
 
 
-def _column(here: xr.Dataset, name: str) -> Column:
+def _column(here: Dataset, name: str) -> Column:
     """A figure of a point, undeformed → hot where it has both and they read differently."""
     words = FIGURES[name]
     if name in JAMS:
@@ -207,7 +205,7 @@ def _both(texts: Sequence[str]) -> str:
     return texts[0] if len(set(texts)) == 1 else " → ".join(texts)
 
 
-def _points(data: xr.Dataset) -> list[str]:
+def _points(data: Dataset) -> list[str]:
     if "pinion_speed" not in data.coords:
         return [str(name) for name in data["point"].values]
     names = operating_names(data)
@@ -215,7 +213,7 @@ def _points(data: xr.Dataset) -> list[str]:
     return [str(name) for name in data["point"].values] if twice else names
 
 
-def _pictures(data: xr.Dataset) -> list[Section]:
+def _pictures(data: Dataset) -> list[Section]:
     """One section for each bundle; points that several cases share come before others."""
     found = []
     points = _points(data)
@@ -258,7 +256,7 @@ def _pictures(data: xr.Dataset) -> list[Section]:
     return found
 
 
-def _alike(data: xr.Dataset, name: str, bundle: int, one: int, other: int) -> bool:
+def _alike(data: Dataset, name: str, bundle: int, one: int, other: int) -> bool:
     """Whether ``name`` is the same at both operating points, rounding aside."""
     if name not in data:
         return False
@@ -268,7 +266,7 @@ def _alike(data: xr.Dataset, name: str, bundle: int, one: int, other: int) -> bo
     return bool(np.allclose(a, b, rtol=0.0, atol=1e-6 * size, equal_nan=True))
 
 
-def _cases(data: xr.Dataset) -> Section:
+def _cases(data: Dataset) -> Section:
     blocks: list[Block] = []
     for title, text in zip(data["case"].values, json.loads(data.attrs["cases"]), strict=True):
         blocks += [Text(str(title), "title"), Code(str(text))]
@@ -278,7 +276,7 @@ def _cases(data: xr.Dataset) -> Section:
 # --- tables as files ----------------------------------------------------------------------
 
 
-def _rows(data: xr.Dataset) -> list[dict[str, Any]]:
+def _rows(data: Dataset) -> list[dict[str, Any]]:
     """The figures of every case, bundle, point and state that there are."""
     names = [*map(key, ("case", "bundle", "point", "state", "label", *_numbers_there(data)))]
     places = data.assign_coords(operating=data["point"].values)
@@ -286,13 +284,13 @@ def _rows(data: xr.Dataset) -> list[dict[str, Any]]:
     return [in_full(names, row) for row in rows if row["present"]]
 
 
-def _numbers_there(data: xr.Dataset) -> dict[str, str]:
+def _numbers_there(data: Dataset) -> dict[str, str]:
     """The stored figures that are numbers, with their units."""
     names = [name for name in FIGURES if name in data and name != "label"]
     return {name: str(data[name].attrs.get("units", "1")) for name in names}
 
 
-def _csv_tables(data: xr.Dataset) -> dict[str, tuple[list[str], list[list[Any]]]]:
+def _csv_tables(data: Dataset) -> dict[str, tuple[list[str], list[list[Any]]]]:
     titles = names_of(data, "case")
     fields = [
         [r["field"], *map(in_words, r["values"])] for r in json.loads(data.attrs["differences"])
@@ -319,7 +317,7 @@ SHIFT = 0.07
 """Lines of neighbouring cases in a spectrum stand so far apart [orders]."""
 
 
-def has_curve(data: xr.Dataset, name: str, *, bundle: int, operating: int) -> bool:
+def has_curve(data: Dataset, name: str, *, bundle: int, operating: int) -> bool:
     """Whether any case has a curve ``name`` there that is not zero throughout."""
     if name not in data:
         return False
@@ -327,7 +325,7 @@ def has_curve(data: xr.Dataset, name: str, *, bundle: int, operating: int) -> bo
     return bool((np.isfinite(values) & (values != 0.0)).any())
 
 
-def curve(data: xr.Dataset, name: str, *, bundle: int, operating: int) -> Picture:
+def curve(data: Dataset, name: str, *, bundle: int, operating: int) -> Picture:
     """``name`` of every case and state over its own positions, at one bundle and point."""
     along = "path_position" if "path_place" in data[name].dims else "mesh_phase"
     unit = str(data[name].attrs["units"])
@@ -369,7 +367,7 @@ WORDS = {
 """Words of an axis where the long name would not fit beside it."""
 
 
-def spectrum(data: xr.Dataset, *, bundle: int, operating: int) -> Picture:
+def spectrum(data: Dataset, *, bundle: int, operating: int) -> Picture:
     """Spectral lines of the displacement: a colour for each case, open undeformed and full hot."""
     here = data.isel(bundle=bundle, operating=operating)
     unit = str(data["line_amplitude"].attrs["units"])
@@ -410,13 +408,13 @@ def spectrum(data: xr.Dataset, *, bundle: int, operating: int) -> Picture:
     return Picture([[panel]], size=(WIDE, 3.6), legend=4)
 
 
-def _entries(panel: Panel, data: xr.Dataset) -> None:
+def _entries(panel: Panel, data: Dataset) -> None:
     """An entry of the legend for each case in its colour."""
     for title, colour in zip(data["case"].values, OKABE_ITO, strict=False):
         panel.curve([], [], colour=colour, width=2.4, label=plain(title))
 
 
-def _path(data: xr.Dataset, y: Axis) -> Panel:
+def _path(data: Dataset, y: Axis) -> Panel:
     """Over the path of contact, A..E marked where the cases share one."""
     points = json.loads(str(data.attrs.get("path_points", "[]")))
     x = Axis(axis_label("path_position"))

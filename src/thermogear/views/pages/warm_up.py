@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import (
     CELSIUS,
     KELVIN,
@@ -26,9 +27,6 @@ from thermogear.views.page import Page, Shown, Table
 from thermogear.views.pages.survey import survey
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import HOT, INK, OKABE_ITO, QUIET, WIDE
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 KINDS = ("warmup",)
 
@@ -173,7 +171,7 @@ MOMENTS = (
 )
 
 
-def _moments(data: xr.Dataset, worst: Mapping[str, Any]) -> Table:
+def _moments(data: Dataset, worst: Mapping[str, Any]) -> Table:
     """Start, worst moment, end."""
     of_nodes = {node: data["node_temperature"].sel(node=node, drop=True) for node in NODES}
     places = [0, int(np.argmin(data["half_backlash"].values)), data.sizes["moment"] - 1]
@@ -204,7 +202,7 @@ PIECES = (
 )
 
 
-def _pieces(data: xr.Dataset, steady: xr.Dataset) -> Table:
+def _pieces(data: Dataset, steady: Dataset) -> Table:
     """The pieces of the duty, and what each would leave for good."""
     time, gap = data["time"].values, data["half_backlash"].values
     begins = steady["begin"].values
@@ -231,7 +229,7 @@ SENSORS = (
 )
 
 
-def _sensors(data: xr.Dataset) -> Table:
+def _sensors(data: Dataset) -> Table:
     error = data["sensor_temperature"] - data["true_temperature"]
     last = data.isel(moment=-1).assign(
         end=error.isel(moment=-1),
@@ -252,7 +250,7 @@ DIFFERENCES = (
 )
 
 
-def _differences(record: xr.Dataset) -> Table:
+def _differences(record: Dataset) -> Table:
     difference = record["difference"]
     over = [dim for dim in difference.dims if dim != "channel"]
     low, high = difference.min(over), difference.max(over)
@@ -327,9 +325,9 @@ FIRST = 0.1
 
 
 def course(
-    data: xr.Dataset,
-    steady: xr.Dataset,
-    record: xr.Dataset | None,
+    data: Dataset,
+    steady: Dataset,
+    record: Dataset | None,
     worst: Mapping[str, Any],
     *,
     cold: float,
@@ -385,7 +383,7 @@ def _mark(above: Panel, below: Panel, worst: Mapping[str, Any], logarithmic: boo
     )  # fmt: skip
 
 
-def mesh(data: xr.Dataset, worst: Mapping[str, Any], *, logarithmic: bool) -> Picture:
+def mesh(data: Dataset, worst: Mapping[str, Any], *, logarithmic: bool) -> Picture:
     """Flash temperature, film parameter, margin to the jam, mean stiffness over time."""
     minutes = MINUTE(data["time"].values)
     panels = []
@@ -406,7 +404,7 @@ def mesh(data: xr.Dataset, worst: Mapping[str, Any], *, logarithmic: bool) -> Pi
     return Picture([panels[:2], panels[2:]], size=(WIDE, 5.6), above=0.62)
 
 
-def sensors(data: xr.Dataset, record: xr.Dataset | None, *, logarithmic: bool) -> Picture:
+def sensors(data: Dataset, record: Dataset | None, *, logarithmic: bool) -> Picture:
     """What every sensor shows (solid) beside the true temperature (dashed), and the error."""
     minutes = MINUTE(data["time"].values)
     level = Panel(_time(minutes, logarithmic), Axis("temperature [°C]"))
@@ -425,7 +423,7 @@ def sensors(data: xr.Dataset, record: xr.Dataset | None, *, logarithmic: bool) -
     return Picture([[level, error]], size=(WIDE, 3.6), legend=6)
 
 
-def _points(panel: Panel, record: xr.Dataset, colours: Mapping[str, str]) -> None:
+def _points(panel: Panel, record: Dataset, colours: Mapping[str, str]) -> None:
     """The record's readings of what is drawn here."""
     minutes = MINUTE(record["time"].values)
     for name in (str(n) for n in record["channel"].values):

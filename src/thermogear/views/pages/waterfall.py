@@ -5,11 +5,11 @@ from __future__ import annotations
 import json
 from functools import partial
 from operator import itemgetter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.display import HERTZ, NEWTON, SPEED, number
 from thermogear.base.vocabulary import STATUS, STILL
 from thermogear.results.result import Result
@@ -20,9 +20,6 @@ from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.shafts import not_valid
 from thermogear.views.plots.sweeps import edges
 from thermogear.views.style import INK, QUIET, STATES, WIDE, scale
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 KINDS = ("waterfall",)
 OVER = (
@@ -48,7 +45,7 @@ def page(result: Result) -> Page:
     return survey(result, summary(data), pictures, tables, numbers=partial(numbers, data))
 
 
-def summary(data: xr.Dataset) -> str:
+def summary(data: Dataset) -> str:
     """What was found, in a sentence or two."""
     speeds = SPEED(data["pinion_speed"].values)
     rms = data["mesh_force_rms"].values
@@ -83,7 +80,7 @@ APART = (
 )
 
 
-def _apart(data: xr.Dataset) -> list[dict[str, Any]]:
+def _apart(data: Dataset) -> list[dict[str, Any]]:
     """The stretches on which the ways up and down differ, with the words of states and parts."""
     states = np.array(states_of(data))[data["apart_state"].values]
     parts = np.array(["mesh force", *json.loads(data.attrs["bearing_names"])])
@@ -92,7 +89,7 @@ def _apart(data: xr.Dataset) -> list[dict[str, Any]]:
     return rows_along(named, "stretch")
 
 
-def jumps(data: xr.Dataset) -> Table:
+def jumps(data: Dataset) -> Table:
     """The stretches of speed on which the ways up and down differ."""
     rows = _apart(data)
     return declared(
@@ -116,7 +113,7 @@ CRITICAL = (
 )
 
 
-def _critical(data: xr.Dataset) -> Table:
+def _critical(data: Dataset) -> Table:
     low, high = data["pinion_speed"].values[[0, -1]]
     rows = [
         {"state": state, **resonance}
@@ -136,7 +133,7 @@ IN_JSON = (
 )
 
 
-def numbers(data: xr.Dataset) -> dict[str, Any]:
+def numbers(data: Dataset) -> dict[str, Any]:
     """The figures of a run-up, JSON-ready."""
     return {
         "speeds_rpm": SPEED(data["pinion_speed"].values).tolist(),
@@ -155,7 +152,7 @@ LEAST_FORCE = 0.1
 WAYS = ((0, "up", ()), (1, "down", (4.0, 3.0)))
 
 
-def over_speed(data: xr.Dataset) -> Picture:
+def over_speed(data: Dataset) -> Picture:
     """Vibration of the mesh force, the bearings and the housing over speed, up and down."""
     rpm = SPEED(data["pinion_speed"].values)
     panels = []
@@ -187,12 +184,12 @@ def over_speed(data: xr.Dataset) -> Picture:
     return Picture(panels, size=size, above=0.2, share_x="column", legend=4)
 
 
-def states_of(data: xr.Dataset) -> list[str]:
+def states_of(data: Dataset) -> list[str]:
     """Names of the states of heat."""
     return [str(one) for one in json.loads(data.attrs["state_names"])]
 
 
-def critical(data: xr.Dataset) -> list[float]:
+def critical(data: Dataset) -> list[float]:
     """Critical speeds [rad/s] of the last state within the run that a bearing feels."""
     rows = [one for one in json.loads(data.attrs.get("critical", "[]")) if one]
     if not rows:
@@ -206,14 +203,14 @@ def critical(data: xr.Dataset) -> list[float]:
     )
 
 
-def lines(data: xr.Dataset, direction: int) -> Picture:
+def lines(data: Dataset, direction: int) -> Picture:
     """Largest line of any bearing's force over speed and order, one panel a state."""
     rpm, order = SPEED(data["pinion_speed"].values), data["order"].values
     values = np.nanmax(data["bearing_force_line"].values[:, direction], axis=2)
     return _field(data, rpm, order, values, "line of bearing force [N]")
 
 
-def sound(data: xr.Dataset, direction: int) -> Picture:
+def sound(data: Dataset, direction: int) -> Picture:
     """Lines of the housing's acceleration over speed and order, one panel a state."""
     rpm, order = SPEED(data["pinion_speed"].values), data["order"].values
     return _field(
@@ -222,7 +219,7 @@ def sound(data: xr.Dataset, direction: int) -> Picture:
 
 
 def _field(
-    data: xr.Dataset,
+    data: Dataset,
     rpm: Floats,
     order: Floats,
     values: Floats,

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import CELSIUS, MICROMETRE
 from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.views.picture import Panel, Picture, Text
@@ -13,11 +12,8 @@ from thermogear.views.plots.curves import axis_of, draw_by_bundle
 from thermogear.views.style import COLD, FAINT, HOT, INK, QUIET, STATES, bundle_line, names_of
 from thermogear.views.typesetting import FAR, plain, shown
 
-if TYPE_CHECKING:
-    import xarray as xr
 
-
-def over_phase(data: xr.Dataset) -> Picture:
+def over_phase(data: Dataset) -> Picture:
     """Half backlash over a mesh period, undeformed and hot, at the first operating point."""
     panel = Panel(
         axis_of("mesh_phase", "mesh phase", low=0.0, high=1.0),
@@ -43,7 +39,7 @@ WAYS: dict[str, tuple[tuple[float, ...], str]] = {
 """Ways to the jam by the stored temperature at their end: line and words."""
 
 
-def over_temperature(row: xr.Dataset, mesh: xr.Dataset | None) -> Picture:
+def over_temperature(row: Dataset, mesh: Dataset | None) -> Picture:
     """Half backlash over the gears' temperature, with the line at which the pair jams.
 
     ``mesh`` adds both ways to the jam: the gears alone get hotter and the housing stays, and all
@@ -85,7 +81,7 @@ def _mark_jam(panel: Panel, jam: float, *, left: bool) -> None:
         panel.text(jam, 0.0, words, offset=(away, -5), across=across, up="top")
 
 
-def jams(row: xr.Dataset, mesh: xr.Dataset | None) -> list[str]:
+def jams(row: Dataset, mesh: Dataset | None) -> list[str]:
     """The jam temperatures whose way is drawn for any bundle."""
     if mesh is None:
         return []
@@ -93,7 +89,7 @@ def jams(row: xr.Dataset, mesh: xr.Dataset | None) -> list[str]:
     return [jam for jam in WAYS if any(_way_to_jam(mesh, name, jam) for name in bundles)]
 
 
-def _way_to_jam(mesh: xr.Dataset, bundle: str, jam: str) -> tuple[list[float], list[float]] | None:
+def _way_to_jam(mesh: Dataset, bundle: str, jam: str) -> tuple[list[float], list[float]] | None:
     """From the hot state to the jam [degC], [um]; None where the jam is out of reach."""
     bundles = names_of(mesh, "bundle")
     if bundle not in bundles or "hot_temperature" not in mesh or jam not in mesh:

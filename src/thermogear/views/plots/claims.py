@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import CELSIUS, PERCENT, SPEED, Display
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import (
@@ -21,10 +20,6 @@ from thermogear.views.style import (
     scale,
 )
 
-if TYPE_CHECKING:
-    import xarray as xr
-
-
 HEATS = {
     "none": ("without heat", COLD),
     "thesis": ("heat as in the thesis", HOT),
@@ -32,7 +27,7 @@ HEATS = {
 }
 
 
-def over_grid(data: xr.Dataset, name: str, unit: str, scale: Display) -> Picture:
+def over_grid(data: Dataset, name: str, unit: str, scale: Display) -> Picture:
     """One quantity over speed, a curve per torque: temperatures given beside the heat balance."""
     rpm = SPEED(data["speed"].values)
     torques = data["torque"].values
@@ -55,7 +50,7 @@ def over_grid(data: xr.Dataset, name: str, unit: str, scale: Display) -> Picture
     return Picture([panels], size=(WIDE, 3.3), share_y="row", between=0.3, legend=5)
 
 
-def warming(data: xr.Dataset) -> Picture:
+def warming(data: Dataset) -> Picture:
     """The largest Floquet multiplier over temperature, and where it reaches the border."""
     panel = Panel(Axis("gear temperature T [°C]"), Axis("largest Floquet multiplier, modulus [–]"))
     celsius = CELSIUS(data["temperature"].values)
@@ -77,7 +72,7 @@ def warming(data: xr.Dataset) -> Picture:
     return Picture([[panel]], legend=2)
 
 
-def experiment(data: xr.Dataset) -> Picture:
+def experiment(data: Dataset) -> Picture:
     """Errors of the displacement, printed and recomputed, beside the validation uncertainty."""
     here = data.isel(row=np.flatnonzero(data["quantity"].values == "displacement"))
     rpm = SPEED(here["pinion_speed"].values)
@@ -101,7 +96,7 @@ def experiment(data: xr.Dataset) -> Picture:
     return Picture([[panel]], size=(SINGLE[0] + 0.6, SINGLE[1]), legend=2)
 
 
-def sensitivity(data: xr.Dataset) -> Picture:
+def sensitivity(data: Dataset) -> Picture:
     """Total indices as a map: a row for every result, a column for every input."""
     outputs = [str(v) for v in data["output_words"].values]
     inputs = [str(v) for v in data["input_words"].values]

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.display import MILLIMETRE
 from thermogear.views.picture import Axis, Panel
 from thermogear.views.style import (
@@ -22,9 +22,6 @@ from thermogear.views.style import (
 )
 from thermogear.views.typesetting import axis_label, operating_names, plain, shown
 
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 def axis_of(
     name: str, words: str | None = None, *, low: float | None = None, high: float | None = None
@@ -33,7 +30,7 @@ def axis_of(
     return Axis(axis_label(name, words), low=low, high=high)
 
 
-def along_path(data: xr.Dataset, y: Axis, *, letters: bool = True) -> Panel:
+def along_path(data: Dataset, y: Axis, *, letters: bool = True) -> Panel:
     """A panel over the path of contact [mm], A..E marked; C, the pitch point, stands out."""
     s = MILLIMETRE(data["path_position"].values)
     room = 0.02 * float(np.ptp(s))
@@ -55,7 +52,7 @@ def along_path(data: xr.Dataset, y: Axis, *, letters: bool = True) -> Panel:
     return panel
 
 
-def hot_state(data: xr.Dataset) -> xr.Dataset:
+def hot_state(data: Dataset) -> Dataset:
     """The last state, which is the hot one; ``data`` itself if it has none."""
     return data.isel(state=-1) if "state" in data.dims else data
 
@@ -71,7 +68,7 @@ def distinct(curves: Sequence[Floats]) -> bool:
 
 
 def draw_by_operating(
-    panel: Panel, data: xr.Dataset, name: str, x: Floats, label: str = "", **look: Any
+    panel: Panel, data: Dataset, name: str, x: Floats, label: str = "", **look: Any
 ) -> None:
     """``name`` over ``x``, one curve per operating point; a single one where all agree.
 
@@ -94,7 +91,7 @@ def draw_by_operating(
 
 
 def draw_by_bundle(
-    panel: Panel, data: xr.Dataset, name: str, x: Floats, *, colour: str, what: str = ""
+    panel: Panel, data: Dataset, name: str, x: Floats, *, colour: str, what: str = ""
 ) -> None:
     """``name`` over ``x`` at the first operating point, one line style per bundle."""
     bundles = names_of(data, "bundle")
@@ -107,7 +104,7 @@ def draw_by_bundle(
 
 
 def draw_by_both(
-    panel: Panel, data: xr.Dataset, name: str, x: Floats, *, thin: float = 1.7, **look: Any
+    panel: Panel, data: Dataset, name: str, x: Floats, *, thin: float = 1.7, **look: Any
 ) -> None:
     """``name`` over ``x``, the first axis left: points by colour, bundles by line style.
 

@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import MICROMETRE, MILLIMETRE
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.curves import along_path, hot_state
 from thermogear.views.style import HOT, INK, OKABE_ITO, QUIET, bundle_line, names_of
 from thermogear.views.typesetting import plain, shown
 
-if TYPE_CHECKING:
-    import xarray as xr
 
-
-def growth(data: xr.Dataset) -> Picture:
+def growth(data: Dataset) -> Picture:
     """Normal growth of both flanks and their sum, each bundle with a line style of its own."""
     panel = along_path(data, Axis("normal growth of the hot flank $δ_{n}$ [µm]"))
     x, here = shown(data, "path_position"), hot_state(data).isel(operating=0)
@@ -40,7 +37,7 @@ def growth(data: xr.Dataset) -> Picture:
     return Picture([[panel]], legend=2)
 
 
-def hot_profiles(data: xr.Dataset) -> dict[str, tuple[str, str, tuple[float, ...], float]]:
+def hot_profiles(data: Dataset) -> dict[str, tuple[str, str, tuple[float, ...], float]]:
     """The hot profiles that are stored: words, colour, dash and width of each."""
     printed = "printed_x" in data
     words = "hot, repaired" if printed else "hot"
@@ -52,7 +49,7 @@ def hot_profiles(data: xr.Dataset) -> dict[str, tuple[str, str, tuple[float, ...
     return found
 
 
-def magnification(data: xr.Dataset, gear: int) -> int:
+def magnification(data: Dataset, gear: int) -> int:
     """The round factor that makes the largest displacement about a fifth of the tooth's height."""
     here = data.isel(gear=gear)
     height = float(np.ptp(here["involute_y"].values))
@@ -68,7 +65,7 @@ def magnification(data: xr.Dataset, gear: int) -> int:
     return int(next(step * power for step in (5.0, 2.0, 1.0) if step * power <= wanted))
 
 
-def profile(data: xr.Dataset, gear: int) -> Picture:
+def profile(data: Dataset, gear: int) -> Picture:
     """One tooth: cold involute and the hot profiles, their displacement magnified."""
     here = data.isel(gear=gear)
     factor = magnification(data, gear)
@@ -88,7 +85,7 @@ def profile(data: xr.Dataset, gear: int) -> Picture:
     return Picture([[panel]], size=(4.9, 4.3))
 
 
-def profile_growth(data: xr.Dataset, gear: int) -> Picture:
+def profile_growth(data: Dataset, gear: int) -> Picture:
     """How far each hot profile stands off the cold involute, along the flank's normal."""
     panel = Panel(Axis("radius on the flank r [mm]"), Axis("distance from the cold involute [µm]"))
     here = data.isel(gear=gear)

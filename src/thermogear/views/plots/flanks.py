@@ -2,27 +2,23 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import MICROMETRE, MILLIMETRE
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import COLD, FAINT, HOT, INK, QUIET
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 NEEDS = ("trace_deviation", "trace_flank", "diameter")
 SIDES = {"drive": "drive flank", "back": "back flank"}
 
 
-def sides(data: xr.Dataset) -> list[str]:
+def sides(data: Dataset) -> list[str]:
     """The sides that were measured, drive first."""
     return [side for side in SIDES if f"{side}_acting" in data]
 
 
-def traces(data: xr.Dataset) -> Picture:
+def traces(data: Dataset) -> Picture:
     """Each side's traces, the smoothed mean of the teeth and what acts, over the diameter."""
     row = []
     x = MILLIMETRE(data["diameter"].values)
@@ -51,7 +47,7 @@ def traces(data: xr.Dataset) -> Picture:
     return Picture([row], size=wide, legend=5 if len(row) > 1 else 3)
 
 
-def peak(data: xr.Dataset) -> float:
+def peak(data: Dataset) -> float:
     """Most that acts, peak to peak over both sides [m]."""
     return max(
         float(np.nanmax(acts) - np.nanmin(acts))

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import MILLIMETRE, PERCENT
 from thermogear.views.picture import Axis, Picture
 from thermogear.views.plots.curves import along_path
 from thermogear.views.style import DRY, FAINT, INK, OKABE_ITO, QUIET, WIDE, chosen
 from thermogear.views.typesetting import operating_names, plain
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 REGIME_COLOURS = {
     "boundary": "#c0504d",
@@ -26,7 +22,7 @@ BAND = 0.05
 """Height of the regime's band, part of the axis."""
 
 
-def laws(data: xr.Dataset, place: int, means: frozenset[str] = frozenset()) -> Picture:
+def laws(data: Dataset, place: int, means: frozenset[str] = frozenset()) -> Picture:
     """|mu| of every law along the path at one operating point; the band on top is the regime.
 
     Laws in ``means`` give one value for the mesh and are drawn dashed; where the contact leaves a
@@ -60,7 +56,7 @@ def laws(data: xr.Dataset, place: int, means: frozenset[str] = frozenset()) -> P
     return Picture([[panel]], size=(WIDE, 4.6), top=0.55, legend=4)
 
 
-def film(data: xr.Dataset) -> Picture:
+def film(data: Dataset) -> Picture:
     """Film parameter along the path at every operating point, with the regimes' borders."""
     panel = along_path(data, Axis("film parameter Λ [–]", low=0.0))
     x = MILLIMETRE(data["path_position"].values)

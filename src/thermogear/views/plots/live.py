@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.display import CELSIUS, MICROMETRE, SPEED, STIFFNESS, number
 from thermogear.base.vocabulary import STATUS, STILL, is_known
 from thermogear.views.picture import Axis, Panel, Picture
@@ -18,34 +17,22 @@ from thermogear.views.plots.one_motion import edges_in_sight
 from thermogear.views.plots.parameters import axis_words
 from thermogear.views.plots.parameters import shown as by_unit
 from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
+from thermogear.views.plots.stiffness import by_state
 from thermogear.views.plots.sweeps import CLASSES, classes_of, edges
 from thermogear.views.style import COLD, FAINT, HOT, INK, OKABE_ITO, QUIET, STATES, names_of
-from thermogear.views.typesetting import FAR, axis_label, plain, shown
-
-if TYPE_CHECKING:
-    import xarray as xr
-
+from thermogear.views.typesetting import FAR, axis_label, shown
 
 DASHED = (3, 2)
 STARTS = {"the case's start": INK, "running up": OKABE_ITO[2], "running down": OKABE_ITO[3]}
 """Where a motion comes from, and its colour."""
 
 
-def stiffness(data: xr.Dataset) -> Picture:
+def stiffness(data: Dataset) -> Picture:
     """Mesh stiffness over a mesh period, undeformed and hot, with its means."""
-    panel = Panel(
-        axis_of("mesh_phase", "mesh phase", low=0.0, high=1.0), axis_of("mesh_stiffness", low=0.0)
-    )
-    x = shown(data, "mesh_phase")
-    for place, state in enumerate(names_of(data, "state")):
-        colour, one = STATES.get(state, INK), data.isel(state=place)
-        panel.curve(x, shown(one, "mesh_stiffness"), colour=colour, label=plain(state))
-        mean = float(shown(one, "mean_stiffness"))
-        panel.line(y=mean, colour=colour, width=1.0, dash=(2, 2), label=plain(f"{state}, mean"))
-    return Picture([[panel]], size=(4.9, 3.0))
+    return Picture([[by_state(data)]], size=(4.9, 3.0))
 
 
-def gap(data: xr.Dataset) -> Picture:
+def gap(data: Dataset) -> Picture:
     """Half backlash over the gears' temperature, where the gears are, and the way to the jam."""
     panel = Panel(axis_of("gear_temperature"), axis_of("half_backlash", "half backlash"))
     x, values = shown(data, "gear_temperature"), shown(data, "half_backlash")
@@ -66,7 +53,7 @@ def gap(data: xr.Dataset) -> Picture:
     return Picture([[panel]], size=(4.9, 3.0))
 
 
-def run_up(states: Mapping[str, xr.Dataset], speed: float) -> Picture:
+def run_up(states: Mapping[str, Dataset], speed: float) -> Picture:
     """Transmission error over speed, up and down, by state; below the section of the hot pair.
 
     ``states``: what :class:`~thermogear.study.live.LiveRunUp` holds of each. ``speed`` [rad/s] is
@@ -97,7 +84,7 @@ def run_up(states: Mapping[str, xr.Dataset], speed: float) -> Picture:
     return Picture([[above], [below]], size=(10.0, 5.2), share_x="column", heights=(3, 2), legend=5)
 
 
-def _section(panel: Panel, data: xr.Dataset) -> None:
+def _section(panel: Panel, data: Dataset) -> None:
     """Sections of the hot run over speed, blue up and red down."""
     n = SPEED(data["pinion_speed"].values)
     scale = MICROMETRE(float(data.attrs.get("length", 1.0)))
@@ -113,7 +100,7 @@ def _section(panel: Panel, data: xr.Dataset) -> None:
         panel.points(at, up, colour=colour, marker="dot", edge_width=0.0, size=1.8, label=words)
 
 
-def jumps(data: xr.Dataset) -> list[str]:
+def jumps(data: Dataset) -> list[str]:
     """The jumps of a run-up so far, in words: from where to where, at which speed."""
     found = []
     for way, words in enumerate(("up", "down")):
@@ -135,7 +122,7 @@ def jumps(data: xr.Dataset) -> list[str]:
     return found
 
 
-def orbits(found: Mapping[str, xr.Dataset]) -> Picture:
+def orbits(found: Mapping[str, Dataset]) -> Picture:
     """Phase plane with section, time history and spectrum of motions by where they come from."""
     x, v = "displacement x [µm]", axis_label("velocity")
     phase = Panel(Axis(x), Axis(v), "Phase plane, section at phase 0")
@@ -167,7 +154,7 @@ def orbits(found: Mapping[str, xr.Dataset]) -> Picture:
     return Picture([panels], size=(11.4, 3.4), between=0.9, legend=4)
 
 
-def _spectra(found: Mapping[str, xr.Dataset]) -> Panel:
+def _spectra(found: Mapping[str, Dataset]) -> Panel:
     ends = [
         floor_of(
             MICROMETRE(one["line_amplitude"].values),
@@ -189,7 +176,7 @@ def _spectra(found: Mapping[str, xr.Dataset]) -> Panel:
     return panel
 
 
-def told_mesh(data: xr.Dataset) -> list[str]:
+def told_mesh(data: Dataset) -> list[str]:
     """Stiffness, half backlash and jam in words."""
     found = []
     for place, state in enumerate(names_of(data, "state")):
@@ -214,7 +201,7 @@ def told_mesh(data: xr.Dataset) -> list[str]:
 
 
 def measured_orders(
-    computed: Mapping[str, xr.Dataset], *, order: Floats, amplitude: Floats, half: Floats
+    computed: Mapping[str, Dataset], *, order: Floats, amplitude: Floats, half: Floats
 ) -> Picture:
     """Lines of a record over computed ones: ``amplitude`` [m] with its 95 % ``half`` width."""
     panel = _spectra(computed)
@@ -233,7 +220,7 @@ def measured_orders(
     return Picture([[panel]], size=(10.0, 3.4), legend=4)
 
 
-def regimes(data: xr.Dataset, known: NDArray[np.bool_]) -> Picture:
+def regimes(data: Dataset, known: NDArray[np.bool_]) -> Picture:
     """A map over two parameters as far as it is ``known``; white is not there yet."""
     one, two = (str(name) for name in data["label"].dims[:2])
     borders = edges(by_unit(one, data[one])), edges(by_unit(two, data[two]))

@@ -3,21 +3,16 @@
 from __future__ import annotations
 
 from collections import Counter
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.arrays import Flags
+from thermogear.base.arrays import Dataset, Flags
 from thermogear.base.display import PERCENT
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.parameters import axis_words, each_state, named, shown
 from thermogear.views.plots.sweeps import edges, hatch_assumed, regimes
 from thermogear.views.style import FAINT, INK, OKABE_ITO, QUIET, WIDE
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 DRIVE, BACK, FIRST = 1, 2, 4
 """Flags of what loses contact: the drive flank, the back flank (hit), the first bearing."""
@@ -37,17 +32,17 @@ SETS = ("#0072B2", "#56B4E9", "#009E73", "#CC79A7", "#F0E442", "#8a5a2b")
 BLANK = (("not known", UNKNOWN), ("jammed", LOCKED))
 
 
-def has_lost(data: xr.Dataset) -> bool:
+def has_lost(data: Dataset) -> bool:
     """Whether the stored result says what loses contact."""
     return "lost_contact" in data
 
 
-def lost_of(data: xr.Dataset) -> NDArray[np.int64]:
+def lost_of(data: Dataset) -> NDArray[np.int64]:
     """The sums of flags, -1 where nothing is known (which no file holds: there it is missing)."""
     return np.asarray(np.nan_to_num(data["lost_contact"].values, nan=-1.0), dtype=np.int64)
 
 
-def things(data: xr.Dataset) -> dict[str, Flags]:
+def things(data: Dataset) -> dict[str, Flags]:
     """Where what loses contact, arrays as the labels': flanks first, then each bearing."""
     lost = lost_of(data)
     some = np.where(lost > 0, lost, 0)
@@ -60,7 +55,7 @@ def things(data: xr.Dataset) -> dict[str, Flags]:
     return found
 
 
-def map_picture(data: xr.Dataset) -> Picture:
+def map_picture(data: Dataset) -> Picture:
     """The regime over two parameters, in every state of heat that it has; what is assumed hatched.
 
     Of a pair beside it what the teeth lose contact at, which a train has a picture of its own for.
@@ -77,7 +72,7 @@ def map_picture(data: xr.Dataset) -> Picture:
     return Picture([panels], size=(WIDE, 4.6), legend=4, share_y="row")
 
 
-def lost_contact_picture(data: xr.Dataset) -> Picture:
+def lost_contact_picture(data: Dataset) -> Picture:
     """Which flank, and which bearing, loses contact over two parameters, in every state of heat."""
     states = each_state(data)
     sets = _sets(data)
@@ -88,13 +83,13 @@ def lost_contact_picture(data: xr.Dataset) -> Picture:
     return Picture(panels, size=(WIDE, 8.2), legend=3, share_y="row", share_x="column")
 
 
-def _panel(data: xr.Dataset, words: str) -> Panel:
+def _panel(data: Dataset, words: str) -> Panel:
     along, up = (Axis(axis_words(str(name), data[name])) for name in data["label"].dims[-2:])
     return Panel(along, up, words)
 
 
 def _put(
-    panel: Panel, data: xr.Dataset, codes: NDArray[np.int64], looks: list[tuple[str, str]]
+    panel: Panel, data: Dataset, codes: NDArray[np.int64], looks: list[tuple[str, str]]
 ) -> Panel:
     one, two = (str(name) for name in data["label"].dims[-2:])
     names, colours = zip(*looks, *BLANK, strict=True)
@@ -106,20 +101,20 @@ def _put(
     return panel
 
 
-def _teeth(data: xr.Dataset, state: str) -> Panel:
+def _teeth(data: Dataset, state: str) -> Panel:
     lost = lost_of(data)
     codes = np.where(lost & BACK, 2, np.where(lost & DRIVE, 1, 0))
     return _put(_panel(data, f"teeth{f', {state}' * bool(state)}"), data, codes, list(TEETH))
 
 
-def _sets(data: xr.Dataset) -> list[int]:
+def _sets(data: Dataset) -> list[int]:
     """The sets of unloaded bearings that occur, the most frequent first."""
     lost = lost_of(data)
     found = Counter((lost[lost > 0] // FIRST).ravel().tolist())
     return [one for one, _ in found.most_common() if one][:MOST]
 
 
-def _bearings(data: xr.Dataset, state: str, sets: list[int]) -> Panel:
+def _bearings(data: Dataset, state: str, sets: list[int]) -> Panel:
     bearings, lost = named(data, "bearing"), lost_of(data)
     own = np.where(lost > 0, lost, 0) // FIRST
     looks = [("bearings always loaded", ALIKE)]
@@ -133,7 +128,7 @@ def _bearings(data: xr.Dataset, state: str, sets: list[int]) -> Panel:
     return _put(_panel(data, f"bearings{f', {state}' * bool(state)}"), data, codes, looks)
 
 
-def forces_picture(data: xr.Dataset) -> Picture:
+def forces_picture(data: Dataset) -> Picture:
     """Greatest force on teeth and bearings over a parameter, up and down; what lifts off below."""
     name = str(data.attrs["parameter"])
     p = shown(name, data[name])

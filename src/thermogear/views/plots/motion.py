@@ -4,21 +4,16 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.display import display, number
 from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.views.picture import Axis, Panel, Picture, Top
 from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
 from thermogear.views.style import INK, QUIET, STATES, WIDE, names_of
 from thermogear.views.typesetting import axis_label, label_text, plain
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 HIGHEST_ORDER = 8.0
 """Spectra are drawn up to this order of the mesh frequency."""
@@ -41,22 +36,21 @@ class Orbit:
     x: Floats
     v: Floats
     loop: int
-    history: int
     section_x: Floats
     section_v: Floats
 
 
-def moving(one: xr.Dataset) -> bool:
+def moving(one: Dataset) -> bool:
     """Whether this point has a motion to draw: neither jammed nor diverged."""
     return bool(np.isfinite(one["displacement"].values).all())
 
 
-def label_of(one: xr.Dataset) -> str:
+def label_of(one: Dataset) -> str:
     """The label of a point, in words a title can hold."""
     return plain(label_text(one))
 
 
-def orbit_of(one: xr.Dataset) -> Orbit:
+def orbit_of(one: Dataset) -> Orbit:
     """The orbit of one point; x counts from the drive-side edge of its own gap."""
     edge = float(one["half_backlash"]) if "half_backlash" in one else 0.0
     t, x, v = (one[name].values for name in ("time", "displacement", "velocity"))
@@ -78,7 +72,6 @@ def orbit_of(one: xr.Dataset) -> Orbit:
         x=x,
         v=v,
         loop=min((loop - 1) * times + 1, t.size),
-        history=t.size,
         section_x=section_x,
         section_v=section_v,
     )
@@ -92,7 +85,7 @@ def draw_loop(
     panel.curve(orbit.x[loop], orbit.v[loop], colour=colour, width=width, opacity=opacity)
 
 
-def four_panels(data: xr.Dataset, *, bundle: int, operating: int) -> Picture:
+def four_panels(data: Dataset, *, bundle: int, operating: int) -> Picture:
     """Time history, phase plane, Poincare section and spectrum, undeformed and hot together.
 
     ``data`` is the group ``motion`` with ``half_backlash`` of the same points beside it.
@@ -130,7 +123,7 @@ def four_panels(data: xr.Dataset, *, bundle: int, operating: int) -> Picture:
     )  # fmt: skip
 
 
-def _spectra(here: xr.Dataset, states: list[str], points: list[xr.Dataset]) -> Panel:
+def _spectra(here: Dataset, states: list[str], points: list[Dataset]) -> Panel:
     """Amplitude over order, with the frequency in Hz along the top."""
     order = here["order"].values
     scale = display("line_amplitude")
@@ -152,7 +145,7 @@ def _spectra(here: xr.Dataset, states: list[str], points: list[xr.Dataset]) -> P
     return panel
 
 
-def mesh_frequency(here: xr.Dataset) -> float:
+def mesh_frequency(here: Dataset) -> float:
     """Mesh frequency [Hz] of one operating point, 0 where it is not stored."""
     if "line_frequency" not in here:
         return 0.0
@@ -160,7 +153,7 @@ def mesh_frequency(here: xr.Dataset) -> float:
     return float(frequency[-1] / order[-1])
 
 
-def needed(data: xr.Dataset, *, bundle: int, operating: int) -> bool:
+def needed(data: Dataset, *, bundle: int, operating: int) -> bool:
     """Whether any state of this point moves at all."""
     here = data.isel(bundle=bundle, operating=operating)
     return any(moving(here.isel(state=i)) for i in range(data.sizes["state"]))

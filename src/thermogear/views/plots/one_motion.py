@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.display import MICROMETRE, MILLIMETRE_PER_SECOND, SPEED, STIFFNESS, Display
 from thermogear.views.picture import Axis, Panel, Picture, Top
 from thermogear.views.plots.motion import refined
@@ -16,10 +15,6 @@ from thermogear.views.plots.parameters import axis_words, shown
 from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
 from thermogear.views.style import COLD, HOT, INK, OKABE_ITO, QUIET, WIDE
 from thermogear.views.typesetting import plain
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 HIGHEST_ORDER = 8.0
 DASHED = (4, 2)
@@ -34,7 +29,7 @@ MARKS = {
 }
 
 
-def orbit_picture(data: xr.Dataset) -> Picture:
+def orbit_picture(data: Dataset) -> Picture:
     """Time history, phase plane with section, Floquet multipliers and spectrum of one orbit."""
     si = data["displacement"].attrs.get("units") == "m"
     length, speed = (MICROMETRE, MILLIMETRE_PER_SECOND) if si else (Display("–"), Display("–"))
@@ -71,7 +66,7 @@ def orbit_picture(data: xr.Dataset) -> Picture:
     return Picture([[history, phase], [unit, spectrum]], size=(WIDE, 6.6), above=0.95, between=0.9)
 
 
-def edges_in_sight(data: xr.Dataset) -> list[float]:
+def edges_in_sight(data: Dataset) -> list[float]:
     """The edges of the backlash that lie on an orbit or near it."""
     x, edge = data["displacement"].values, float(data["half_backlash"])
     low, high = float(x.min()), float(x.max())
@@ -91,7 +86,7 @@ def _multipliers(real: Floats, imag: Floats) -> Panel:
     return panel
 
 
-def _spectrum(data: xr.Dataset, length: Display) -> Panel:
+def _spectrum(data: Dataset, length: Display) -> Panel:
     order, amplitude = data["order"].values, length(data["line_amplitude"].values)
     floor, top = floor_of(amplitude, order=order, highest=HIGHEST_ORDER)
     panel = over_orders(
@@ -107,7 +102,7 @@ def _spectrum(data: xr.Dataset, length: Display) -> Panel:
     return panel
 
 
-def lyapunov_picture(data: xr.Dataset) -> Picture:
+def lyapunov_picture(data: Dataset) -> Picture:
     """Batch means and the running mean with its standard error."""
     values = data["lyapunov_batch"].values
     count = np.arange(1, values.size + 1)
@@ -123,7 +118,7 @@ def lyapunov_picture(data: xr.Dataset) -> Picture:
     return Picture([[panel]], legend=2)
 
 
-def branch_picture(branches: Sequence[xr.Dataset], title: str = "") -> Picture:
+def branch_picture(branches: Sequence[Dataset], title: str = "") -> Picture:
     """Displacement at phase 0 along the parameter: stable solid, unstable dotted."""
     parameter = str(branches[0].attrs["parameter"])
     train = "mesh_force" in branches[0]
@@ -140,7 +135,7 @@ def branch_picture(branches: Sequence[xr.Dataset], title: str = "") -> Picture:
     return Picture([[panel], [_sizes(branches, parameter)]], size=(WIDE, 6.2), legend=4)
 
 
-def _sizes(branches: Sequence[xr.Dataset], parameter: str) -> Panel:
+def _sizes(branches: Sequence[Dataset], parameter: str) -> Panel:
     """The largest multiplier of every orbit, stable below 1."""
     panel = Panel(
         Axis(axis_words(parameter, branches[0]["value"])),
@@ -157,7 +152,7 @@ def _sizes(branches: Sequence[xr.Dataset], parameter: str) -> Panel:
 
 def draw_branch(
     panel: Panel,
-    data: xr.Dataset,
+    data: Dataset,
     parameter: str,
     colour: str,
     label: str,
@@ -197,9 +192,7 @@ def _between(events: Floats, one: float, other: float) -> int | None:
     return int(inside[-1]) if inside.size else None
 
 
-def _marks(
-    panel: Panel, branches: Sequence[xr.Dataset], parameter: str, row: str = "event_x"
-) -> None:
+def _marks(panel: Panel, branches: Sequence[Dataset], parameter: str, row: str = "event_x") -> None:
     for kind, (marker, colour) in MARKS.items():
         for data in branches:
             here = data["event_kind"].values.astype(str) == kind
@@ -211,7 +204,7 @@ def _marks(
                 )  # fmt: skip
 
 
-def cascade_picture(branches: Sequence[xr.Dataset]) -> Picture:
+def cascade_picture(branches: Sequence[Dataset]) -> Picture:
     """One axis for each row: the doubling branches, one colour for each state of heat."""
     rows = list(dict.fromkeys(str(b.attrs["row"]) for b in branches))
     heats = list(dict.fromkeys(str(b.attrs["heat"]) for b in branches))
@@ -246,7 +239,7 @@ FORMS: dict[str, tuple[str, str, tuple[float, ...]]] = {
 }
 
 
-def shared_picture(rest: xr.Dataset, motion: xr.Dataset) -> Picture:
+def shared_picture(rest: Dataset, motion: Dataset) -> Picture:
     """Stiffness and error over load; swing of the error in motion over speed at two loads."""
     load = rest["load"].values
     mean = float(load[np.argmin(np.abs(rest["factor"].values - 1.0))])
@@ -281,7 +274,7 @@ def shared_picture(rest: xr.Dataset, motion: xr.Dataset) -> Picture:
 # --- pictures -----------------------------------------------------------------------------------
 
 
-def plane_picture(curves: Sequence[xr.Dataset]) -> Picture:
+def plane_picture(curves: Sequence[Dataset]) -> Picture:
     """Every curve over both parameters: solid where a stable motion meets it, else dotted."""
     first, second = str(curves[0].attrs["first"]), str(curves[0].attrs["second"])
     panel = Panel(

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING
 
 import numpy as np
 from markupsafe import Markup
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.arrays import DataArray, Dataset
 from thermogear.base.display import display
 from thermogear.base.parameters import PARAMETERS, Parameter, long_name
 from thermogear.views.typesetting import math_symbol, prose
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 def parameter_of(name: str, values: object = None) -> Parameter:
@@ -29,7 +26,7 @@ def parameter_of(name: str, values: object = None) -> Parameter:
     return PARAMETERS.get(long_name(name), other)
 
 
-def shown(name: str, values: ArrayLike | xr.DataArray) -> NDArray[np.float64]:
+def shown(name: str, values: ArrayLike | DataArray) -> NDArray[np.float64]:
     """Values of a parameter in the unit its axis shows."""
     return np.asarray(parameter_of(name, values).show(np.asarray(values, dtype=float)))
 
@@ -45,12 +42,12 @@ def page_words(name: str, values: object = None) -> Markup:
     return prose(parameter_of(name, values).label)
 
 
-def named(data: xr.Dataset, axis: str) -> list[str]:
+def named(data: Dataset, axis: str) -> list[str]:
     """The names along a numbered axis, as stored with it."""
     return [str(one) for one in json.loads(str(data[axis].attrs["names"]))]
 
 
-def each_state(data: xr.Dataset) -> list[tuple[str, xr.Dataset]]:
+def each_state(data: Dataset) -> list[tuple[str, Dataset]]:
     """A map in every state of heat that it has, with the state's name; "" where it has one."""
     if "state" not in data["label"].dims:
         return [("", data)]

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.display import display
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.curves import (
@@ -20,9 +18,6 @@ from thermogear.views.plots.curves import (
 )
 from thermogear.views.style import DRY, FAINT, HOT, INK, OKABE_ITO, chosen
 from thermogear.views.typesetting import axis_label, math_symbol, shown
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 S = "path_position"
 FLASHES = {
@@ -40,7 +35,7 @@ SPEEDS: dict[str, tuple[str, str, tuple[float, ...]]] = {
 """Words, colour and line of each speed."""
 
 
-def speeds(data: xr.Dataset) -> Picture:
+def speeds(data: Dataset) -> Picture:
     """Rolling speeds of both flanks, sliding and entrainment at the fastest operating point."""
     panel, x = along_path(data, Axis("speed along the flank v [m/s]")), shown(data, S)
     here = data.isel(operating=fastest(data))
@@ -50,19 +45,19 @@ def speeds(data: xr.Dataset) -> Picture:
     return Picture([[panel]], legend=2)
 
 
-def fastest(data: xr.Dataset) -> int:
+def fastest(data: Dataset) -> int:
     """The operating point of the greatest pinion speed."""
     return int(np.argmax(np.abs(data["pinion_speed"].values)))
 
 
-def load_share(data: xr.Dataset) -> Picture:
+def load_share(data: Dataset) -> Picture:
     """Share of the normal force that one tooth pair carries, for every bundle."""
     panel = along_path(data, axis_of("load_share", "load share of one pair", low=0.0, high=1.08))
     draw_by_bundle(panel, hot_state(data), "load_share", shown(data, S), colour=HOT)
     return Picture([[panel]])
 
 
-def hertz(data: xr.Dataset, bundle: int) -> Picture:
+def hertz(data: Dataset, bundle: int) -> Picture:
     """Hertzian pressure and half width of one bundle along the path, one curve per load."""
     here = hot_state(data).isel(bundle=bundle)
     above = along_path(data, axis_of("hertz_pressure", "Hertzian pressure", low=0.0))
@@ -74,7 +69,7 @@ def hertz(data: xr.Dataset, bundle: int) -> Picture:
     return Picture([[above], [below]], size=(4.9, 4.4), share_x="column", above=0.45)
 
 
-def own_law(data: xr.Dataset, name: str) -> bool:
+def own_law(data: Dataset, name: str) -> bool:
     """Whether ``name`` by the case's own law is neither its lubricated nor its dry curve."""
     if not all(n in data for n in (name, f"{name}_mixed", f"{name}_dry")):
         return False
@@ -82,7 +77,7 @@ def own_law(data: xr.Dataset, name: str) -> bool:
     return all(distinct([data[name].values, other]) for other in others)
 
 
-def friction(data: xr.Dataset, bundle: int) -> Picture:
+def friction(data: Dataset, bundle: int) -> Picture:
     """Friction coefficient by the case's own law, lubricated and dry, for every operating point.
 
     Shaded behind it what the laws within their range span.
@@ -105,7 +100,7 @@ BAND = {"friction_coefficient_least", "friction_coefficient_greatest"}
 """Stored when the laws within their range are: what they span."""
 
 
-def _band(panel: Panel, here: xr.Dataset, x: Floats) -> None:
+def _band(panel: Panel, here: Dataset, x: Floats) -> None:
     """The span of the laws within their range, over all operating points that are drawn."""
     places = chosen(here.sizes["operating"])
     least = shown(here, "friction_coefficient_least")[places]
@@ -118,7 +113,7 @@ def _band(panel: Panel, here: xr.Dataset, x: Floats) -> None:
         panel.band(x, low=low, high=high, colour=FAINT, label="laws in their range")
 
 
-def flash(data: xr.Dataset, name: str) -> Picture:
+def flash(data: Dataset, name: str) -> Picture:
     """Flash temperature rise ``name`` of :data:`FLASHES`: speeds by colour, bundles by line."""
     words = f"flash temperature rise, {FLASHES[name]}"
     panel = along_path(data, axis_of("flash_temperature", words, low=0.0))
@@ -126,7 +121,7 @@ def flash(data: xr.Dataset, name: str) -> Picture:
     return Picture([[panel]], legend=2)
 
 
-def temperatures(data: xr.Dataset, bundle: int) -> Picture:
+def temperatures(data: Dataset, bundle: int) -> Picture:
     """Body temperature of both flanks and the contact temperature above it."""
     unit = display("contact_temperature").unit
     panel = along_path(data, Axis(f"temperature {math_symbol('T')} [{unit}]"))

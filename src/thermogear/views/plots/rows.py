@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import CELSIUS
 from thermogear.base.vocabulary import QUANTITIES
 from thermogear.views.picture import Axis, Panel, Picture
@@ -13,9 +12,6 @@ from thermogear.views.plots.motion import HISTORY, label_of, periods_to_draw, th
 from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
 from thermogear.views.style import COLD, FAINT, HOT, INK, OKABE_ITO, QUIET
 from thermogear.views.typesetting import math_symbol, plain
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 HIGHEST_ORDER = 4.0
 DENSE = 6000
@@ -28,23 +24,23 @@ NAMES = {"frequency": "frequency_ratio", "thermal_stiffness": "thermal_stiffness
 """Parameters of a case file whose stored name differs."""
 
 
-def row_names(points: xr.Dataset) -> list[str]:
+def row_names(points: Dataset) -> list[str]:
     """The rows in the order in which they are stored."""
     return list(dict.fromkeys(str(name) for name in points["row"].values))
 
 
-def of_row(points: xr.Dataset, row: str) -> xr.Dataset:
+def of_row(points: Dataset, row: str) -> Dataset:
     """The points of one row."""
     return points.isel(point=np.flatnonzero(points["row"].values.astype(str) == row))
 
 
-def value_text(one: xr.Dataset) -> str:
+def value_text(one: Dataset) -> str:
     """The swept parameter of one point with its value, for a title or a table."""
     symbol, value, unit = value_parts(one)
     return f"{math_symbol(symbol)} = {value}{unit}"
 
 
-def value_parts(one: xr.Dataset) -> tuple[str, str, str]:
+def value_parts(one: Dataset) -> tuple[str, str, str]:
     """(symbol, value, unit with a space) of the swept parameter."""
     parameter, value = str(one["parameter"].item()), float(one["value"])
     if _is_temperature(one):
@@ -54,11 +50,11 @@ def value_parts(one: xr.Dataset) -> tuple[str, str, str]:
     return symbol, f"{value:.4g}".replace("-", "−"), ""
 
 
-def _is_temperature(data: xr.Dataset) -> bool:
+def _is_temperature(data: Dataset) -> bool:
     return str(np.ravel(data["parameter"].values)[0]) == "temperature"
 
 
-def panels(points: xr.Dataset, row: str) -> Picture:
+def panels(points: Dataset, row: str) -> Picture:
     """One row: time history, orbit with its Poincare section, and spectrum of every point."""
     data = of_row(points, row)
     count = data.sizes["point"]
@@ -105,7 +101,7 @@ def panels(points: xr.Dataset, row: str) -> Picture:
     )  # fmt: skip
 
 
-def _history(panel: Panel, one: xr.Dataset) -> None:
+def _history(panel: Panel, one: Dataset) -> None:
     """X over the last mesh periods that are stored, at least two whole orbits where it has one."""
     x, samples = one["scaled_displacement"].values, _samples_per_period(one)
     label = str(one["label"].item())
@@ -114,7 +110,7 @@ def _history(panel: Panel, one: xr.Dataset) -> None:
     panel.curve(np.arange(shown) / samples, x[:shown], colour=COLD, width=0.9)
 
 
-def _orbit(panel: Panel, one: xr.Dataset) -> None:
+def _orbit(panel: Panel, one: Dataset) -> None:
     """The orbit with its section, over the gap in which no teeth touch."""
     x, v = one["scaled_displacement"].values, one["scaled_velocity"].values
     samples = _samples_per_period(one)
@@ -138,14 +134,14 @@ def _orbit(panel: Panel, one: xr.Dataset) -> None:
     panel.span(x=(-edge, edge), colour=FAINT, opacity=0.45, order=0.0, label="gap, no contact")
 
 
-def _samples_per_period(one: xr.Dataset) -> int:
+def _samples_per_period(one: Dataset) -> int:
     if "phase" not in one or one["phase"].size < 2:
         return int(one.sizes["sample"])
     step = float(one["phase"].values[1] - one["phase"].values[0])
     return max(1, round(1.0 / step)) if step > 0.0 else int(one.sizes["sample"])
 
 
-def half_order(points: xr.Dataset) -> Picture:
+def half_order(points: Dataset) -> Picture:
     """Amplitude of the line at half the mesh frequency along every row of temperatures."""
     panel = Panel(Axis("gear temperature T [°C]"), Axis("half-order amplitude |X| [–]"))
     rows = [row for row in row_names(points) if _is_temperature(of_row(points, row))]
@@ -164,6 +160,6 @@ def half_order(points: xr.Dataset) -> Picture:
     return Picture([[panel]], left=0.88)
 
 
-def has_temperatures(points: xr.Dataset) -> bool:
+def has_temperatures(points: Dataset) -> bool:
     """Whether any row of ``points`` runs through temperatures."""
     return any(str(name) == "temperature" for name in points["parameter"].values)

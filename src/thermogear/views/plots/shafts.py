@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from thermogear.base.arrays import DataArray, Dataset, Floats
 from thermogear.base.display import HERTZ, MICROMETRE, MILLIMETRE, PERCENT, SPEED, display
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import (
@@ -19,9 +20,6 @@ from thermogear.views.style import (
     names_of,
     scale,
 )
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 PINION, WHEEL = OKABE_ITO[0], OKABE_ITO[1]
 SHAFTS = {"pinion": PINION, "wheel": WHEEL}
@@ -111,7 +109,7 @@ def _bearing(panel: Panel, at: float, centre: float, size: float, name: str) -> 
     panel.text(at, centre - 1.75 * size, name, up="top", offset=(0.0, -3.0), size=7.5)
 
 
-def deflection(data: xr.Dataset, place: int) -> Picture:
+def deflection(data: Dataset, place: int) -> Picture:
     """Deflection of both shafts along x and y at one operating point."""
     panels = []
     for shaft, colour in SHAFTS.items():
@@ -136,54 +134,47 @@ def deflection(data: xr.Dataset, place: int) -> Picture:
     return Picture([panels], size=(WIDE, 3.2), legend=4)
 
 
-def loads(data: xr.Dataset) -> Picture:
-    """Load of every bearing at every operating point, cold and hot."""
-    panel = Panel(Axis(""), Axis("bearing load [N]", low=0.0))
-    names = names_of(data, "bearing")
-    count = data.sizes["operating"]
+def _at_bearings(panel: Panel, data: Dataset, values: Floats, apart: float) -> None:
+    """A mark for each state, operating point and bearing; points ``apart`` on the axis."""
+    names, count = names_of(data, "bearing"), data.sizes["operating"]
     for state, name in enumerate(names_of(data, "state")):
         for point in range(count):
-            x = np.arange(len(names)) + (state - 0.5) * 0.25 + 0.08 * (point - 0.5 * (count - 1))
+            x = np.arange(len(names)) + (state - 0.5) * 0.25 + apart * (point - 0.5 * (count - 1))
             panel.points(
                 x,
-                data["bearing_load"].values[state, point],
+                values[state, point],
                 colour=STATES.get(name, INK),
                 marker="circle" if state else "square",
                 open=not state,
                 label=name if point == 0 else "",
             )
     panel.x.ticks, panel.x.names = np.arange(len(names)), names
+
+
+def loads(data: Dataset) -> Picture:
+    """Load of every bearing at every operating point, cold and hot."""
+    panel = Panel(Axis(""), Axis("bearing load [N]", low=0.0))
+    _at_bearings(panel, data, data["bearing_load"].values, 0.08)
     panel.y.high = 1.1 * float(np.nanmax(data["bearing_load"].values, initial=1.0))
     return Picture([[panel]], size=(WIDE, 3.2))
 
 
-def internal_clearance(data: xr.Dataset) -> xr.DataArray:
+def internal_clearance(data: Dataset) -> DataArray:
     """Radial internal clearance [m], the whole play; older versions stored half of it."""
     if "radial_internal_clearance" in data:
         return data["radial_internal_clearance"]
     return 2.0 * data["radial_clearance"]
 
 
-def clearances(data: xr.Dataset) -> Picture:
+def clearances(data: Dataset) -> Picture:
     """Radial internal clearance of every bearing, cold and hot; below zero it is a preload."""
     panel = Panel(Axis(""), Axis("radial internal clearance [µm]"))
-    names = names_of(data, "bearing")
-    for state, name in enumerate(names_of(data, "state")):
-        for point in range(data.sizes["operating"]):
-            panel.points(
-                np.arange(len(names)) + (state - 0.5) * 0.25,
-                MICROMETRE(internal_clearance(data).values[state, point]),
-                colour=STATES.get(name, INK),
-                marker="circle" if state else "square",
-                open=not state,
-                label=name if point == 0 else "",
-            )
+    _at_bearings(panel, data, MICROMETRE(internal_clearance(data).values), 0.0)
     panel.line(y=0.0, colour=QUIET, width=1.0, dash=(4.0, 3.0))
-    panel.x.ticks, panel.x.names = np.arange(len(names)), names
     return Picture([[panel]], size=(WIDE, 3.0))
 
 
-def modes(table: xr.Dataset, shapes: xr.Dataset, state: int) -> Picture:
+def modes(table: Dataset, shapes: Dataset, state: int) -> Picture:
     """The lowest modes: deflection of both shafts across (full) and their twist (dashed)."""
     panels = []
     for mode in range(min(MOST_MODES, table.sizes["mode"])):
@@ -212,22 +203,26 @@ def modes(table: xr.Dataset, shapes: xr.Dataset, state: int) -> Picture:
                 label=words and f"{words}twist times base radius",
             )
         panels.append(panel)
-    rows = _rows(panels, 4)
+    rows = in_rows(panels, 4)
     return Picture(rows, size=(WIDE, 2.4 * len(rows) + 0.4), legend=4, between=0.75, above=0.85)
 
 
-def _rows(panels: Sequence[Panel], columns: int) -> list[list[Panel]]:
+def empty(like: Panel) -> Panel:
+    """A panel beside ``like`` for which nothing is left to draw."""
+    panel = Panel(like.x, like.y)
+    panel.note("no more of them")
+    return panel
+
+
+def in_rows(panels: Sequence[Panel], columns: int) -> list[list[Panel]]:
     """Rows of at most so many panels; the last is filled up with empty ones."""
     columns = min(columns, len(panels))
     rows = [list(panels[i : i + columns]) for i in range(0, len(panels), columns)]
-    for _ in range(columns - len(rows[-1])):
-        empty = Panel(panels[0].x, panels[0].y)
-        empty.note("no more of them")
-        rows[-1].append(empty)
+    rows[-1].extend(empty(panels[0]) for _ in range(columns - len(rows[-1])))
     return rows
 
 
-def energies(table: xr.Dataset, state: int) -> Picture:
+def energies(table: Dataset, state: int) -> Picture:
     """Which part bends in which mode: shares of the strain energy."""
     values = PERCENT(table["energy_share"].values[state].T)
     parts = names_of(table, "part")
@@ -244,7 +239,7 @@ def energies(table: xr.Dataset, state: int) -> Picture:
     return Picture([[panel]], size=(WIDE, 0.28 * len(parts) + 1.0), left=2.2)
 
 
-def lift_offs(critical: xr.Dataset) -> Any:
+def lift_offs(critical: Dataset) -> Any:
     """Speed [rad/s] from which each resonance lifts a bearing off or parts the teeth; nan: never.
 
     Older versions did not ask.
@@ -258,7 +253,7 @@ def not_valid(speed: float) -> str:
     return f"not valid: lifts off from {SPEED(speed):.0f} rpm"
 
 
-def campbell(data: xr.Dataset, critical: xr.Dataset, speeds: Sequence[float]) -> Picture:
+def campbell(data: Dataset, critical: Dataset, speeds: Sequence[float]) -> Picture:
     """Natural frequencies over speed with the band of the mesh, the orders, the critical speeds."""
     rpm = display("pinion_speed")
     x = rpm(data["pinion_speed"].values)
@@ -310,17 +305,17 @@ def campbell(data: xr.Dataset, critical: xr.Dataset, speeds: Sequence[float]) ->
     return Picture([panels], size=(WIDE, 4.4), legend=4, share_y="row")
 
 
-def response(data: xr.Dataset, quantity: str, words: str, factor: float = 1.0) -> Picture:
+def response(data: Dataset, quantity: str, words: str) -> Picture:
     """Amplitude over speed, hot full, undeformed dashed; a panel a bearing, a colour a source."""
     rpm = display("pinion_speed")(data["response_speed"].values)
     panels = []
     for number, bearing in enumerate(names_of(data, "bearing")):
         panel = Panel(Axis("pinion speed [rpm]"), Axis(words, log="decades"), bearing)
         parts = [data[f"{quantity}_{c}"].values[..., number] for c in ("x", "y")]
-        floor = LEAST_SHARE * factor * float(np.nanmax(np.hypot(*parts), initial=0.0))
+        floor = LEAST_SHARE * float(np.nanmax(np.hypot(*parts), initial=0.0))
         for place, source in enumerate(names_of(data, "source")):
             for state, name in enumerate(names_of(data, "state")):
-                size = factor * np.hypot(*(part[state, place] for part in parts))
+                size = np.hypot(*(part[state, place] for part in parts))
                 if np.any(size > floor):
                     panel.curve(
                         rpm,
@@ -331,5 +326,5 @@ def response(data: xr.Dataset, quantity: str, words: str, factor: float = 1.0) -
                         label=source if number == 0 and name == "hot" else "",
                     )
         panels.append(panel)
-    rows = _rows(panels, 2)
+    rows = in_rows(panels, 2)
     return Picture(rows, size=(WIDE, 2.7 * len(rows) + 0.3), legend=3)

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from thermogear.base.arrays import Dataset
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.curves import along_path, axis_of, draw_by_bundle, hot_state
 from thermogear.views.style import HOT, INK, OKABE_ITO, STATES, names_of
 from thermogear.views.typesetting import math_symbol, plain, shown
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 PARTS = {
     "hertz": ("contact", OKABE_ITO[4]),
@@ -24,17 +20,24 @@ PARTS = {
 }
 
 
-def over_phase(data: xr.Dataset, bundle: int) -> Picture:
-    """Mesh stiffness of one bundle over a mesh period, undeformed and hot."""
+def by_state(data: Dataset) -> Panel:
+    """Mesh stiffness over a mesh period, undeformed and hot, with its means."""
     panel = Panel(
         axis_of("mesh_phase", "mesh phase", low=0.0, high=1.0), axis_of("mesh_stiffness", low=0.0)
     )
-    x, here = shown(data, "mesh_phase"), data.isel(bundle=bundle, operating=0)
+    x = shown(data, "mesh_phase")
     for place, state in enumerate(names_of(data, "state")):
-        colour, one = STATES.get(state, INK), here.isel(state=place)
+        colour, one = STATES.get(state, INK), data.isel(state=place)
         panel.curve(x, shown(one, "mesh_stiffness"), colour=colour, label=plain(state))
         mean = float(shown(one, "mean_stiffness"))
         panel.line(y=mean, colour=colour, width=1.0, dash=(2, 2), label=plain(f"{state}, mean"))
+    return panel
+
+
+def over_phase(data: Dataset, bundle: int) -> Picture:
+    """Mesh stiffness of one bundle over a mesh period, undeformed and hot."""
+    x, here = shown(data, "mesh_phase"), data.isel(bundle=bundle, operating=0)
+    panel = by_state(here)
     if float(np.nanmax(np.abs(data["thermal_stiffness"].isel(bundle=bundle).values))) > 0.0:
         elastic = shown(here.isel(state=-1), "elastic_stiffness")
         words = f"hot without {math_symbol('k_T')}"
@@ -42,7 +45,7 @@ def over_phase(data: xr.Dataset, bundle: int) -> Picture:
     return Picture([[panel]])
 
 
-def pair(data: xr.Dataset) -> Picture:
+def pair(data: Dataset) -> Picture:
     """Stiffness of one tooth pair along the path, undeformed and hot, for every bundle."""
     panel = along_path(data, axis_of("pair_stiffness", "stiffness of one pair", low=0.0))
     x = shown(data, "path_position")
@@ -52,7 +55,7 @@ def pair(data: xr.Dataset) -> Picture:
     return Picture([[panel]], legend=2)
 
 
-def parts(data: xr.Dataset, bundle: int) -> Picture:
+def parts(data: Dataset, bundle: int) -> Picture:
     """The springs in series that make one pair, hot: pinion solid, wheel dotted."""
     panel = along_path(data, Axis("stiffness of one part k [10⁸ N/m]", log="decades"))
     x = shown(data, "path_position")
@@ -69,7 +72,7 @@ def parts(data: xr.Dataset, bundle: int) -> Picture:
     return Picture([[panel]])
 
 
-def bars(data: xr.Dataset) -> Picture:
+def bars(data: Dataset) -> Picture:
     """Mean and peak-to-peak mesh stiffness of every bundle, undeformed beside hot, with values."""
     bundles, states = names_of(data, "bundle"), names_of(data, "state")
     places = np.arange(len(bundles), dtype=float)

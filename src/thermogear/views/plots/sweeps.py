@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.display import CELSIUS, KILONEWTON, MICROMETRE, PERCENT, Display
 from thermogear.base.vocabulary import ASSUMED, STATUS, UNDEFORMED
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.parameters import axis_words, parameter_of, shown
 from thermogear.views.style import COLD, FAINT, HOT, INK, MIXED, OKABE_ITO, QUIET, WIDE, scale
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 Rows = Sequence[Mapping[str, Any]]
 DIVERGED = STATUS.index("diverged")
@@ -43,7 +40,7 @@ DRAWN = ("fold", "period doubling", "pitchfork", "torus")
 MARKS = ("square", "diamond", "upright", "thin diamond", "plus", "circle")
 
 
-def classes_of(data: xr.Dataset) -> NDArray[np.int64]:
+def classes_of(data: Dataset) -> NDArray[np.int64]:
     """Numbers into :data:`CLASSES` from stored label and period."""
     label, period = data["label"].values, data["period"].values
     found = np.full(label.shape, 9, np.int64)
@@ -77,15 +74,15 @@ def _dot(values: Floats) -> str:
     return "circle" if values.size == 1 else ""
 
 
-def _parameter(data: xr.Dataset) -> str:
+def _parameter(data: Dataset) -> str:
     return str(data.attrs["parameter"])
 
 
-def _along(data: xr.Dataset, name: str) -> Axis:
+def _along(data: Dataset, name: str) -> Axis:
     return Axis(axis_words(name, data[name]))
 
 
-def orbit_diagram_picture(data: xr.Dataset) -> Picture:
+def orbit_diagram_picture(data: Dataset) -> Picture:
     """Sections over the parameter, up and down, with branches and bifurcations; exponent below."""
     name = _parameter(data)
     p = shown(name, data[name])
@@ -113,15 +110,13 @@ def _above_exponent(top: Panel, low: Panel) -> Picture:
     )
 
 
-def overlay_picture(data: xr.Dataset, states: Sequence[str], matches: Rows) -> Picture:
+def overlay_picture(data: Dataset, states: Sequence[str], matches: Rows) -> Picture:
     """The diagrams of all ``states`` over each other; see :func:`over_each_other`."""
     each = [state_of(data, place) for place in range(len(states))]
     return over_each_other(each, states, matches)
 
 
-def over_each_other(
-    each: Sequence[xr.Dataset], states: Sequence[str], matches: Rows = ()
-) -> Picture:
+def over_each_other(each: Sequence[Dataset], states: Sequence[str], matches: Rows = ()) -> Picture:
     """Orbit diagrams over each other, a colour for each state, up and down alike.
 
     A thin line leads from a bifurcation of the first to the same one of the second.
@@ -151,13 +146,13 @@ def over_each_other(
     return _above_exponent(top, low)
 
 
-def _height(data: xr.Dataset, value: float) -> float:
+def _height(data: Dataset, value: float) -> float:
     """X of the bifurcation at a value of the parameter."""
     place = int(np.argmin(np.abs(data["bifurcation_value"].values - value)))
     return float(data["bifurcation_x"].values[place])
 
 
-def state_of(data: xr.Dataset, place: int) -> xr.Dataset:
+def state_of(data: Dataset, place: int) -> Dataset:
     """One diagram of an overlay: its points, branches and bifurcations."""
     here = data.isel(state=place)
     for thing in ("branch", "bifurcation"):
@@ -167,7 +162,7 @@ def state_of(data: xr.Dataset, place: int) -> xr.Dataset:
     return here
 
 
-def _branches(panel: Panel, data: xr.Dataset, name: str, colour: str = "") -> None:
+def _branches(panel: Panel, data: Dataset, name: str, colour: str = "") -> None:
     """Branches with their bifurcations; those of an overlay in the ``colour`` of their state."""
     if "branch_value" not in data:
         return
@@ -194,7 +189,7 @@ def _branches(panel: Panel, data: xr.Dataset, name: str, colour: str = "") -> No
             )  # fmt: skip
 
 
-def hatch_assumed(panel: Panel, data: xr.Dataset) -> None:
+def hatch_assumed(panel: Panel, data: Dataset) -> None:
     """Hatch the cells of a map over two parameters that were not computed."""
     assumed = data["status"].values.T == ASSUMED
     if assumed.any():
@@ -205,14 +200,14 @@ def hatch_assumed(panel: Panel, data: xr.Dataset) -> None:
         panel.hatch(across, up, np.repeat(np.repeat(assumed, 2, axis=0), 2, axis=1))
 
 
-def _over_two(data: xr.Dataset) -> tuple[Panel, tuple[Floats, Floats]]:
+def _over_two(data: Dataset) -> tuple[Panel, tuple[Floats, Floats]]:
     """An empty panel over the first two axes of a grid, and the borders of its cells."""
     one, two = (str(name) for name in data["label"].dims[:2])
     borders = edges(shown(one, data[one])), edges(shown(two, data[two]))
     return Panel(_along(data, one), _along(data, two)), borders
 
 
-def regimes(data: xr.Dataset) -> Panel:
+def regimes(data: Dataset) -> Panel:
     panel, borders = _over_two(data)
     names, colours = zip(*CLASSES, strict=True)
     panel.field(*borders, classes_of(data).T, colours=colours, classes=names)
@@ -220,7 +215,7 @@ def regimes(data: xr.Dataset) -> Panel:
     return panel
 
 
-def basins_picture(data: xr.Dataset) -> Picture:
+def basins_picture(data: Dataset) -> Picture:
     """Which attractor each start ends on, with the attractors' sections."""
     x, y = edges(data["x"].values), edges(data["v"].values)
     panel = Panel(
@@ -245,11 +240,11 @@ def basins_picture(data: xr.Dataset) -> Picture:
     return Picture([[panel]], size=(7.4, 7.4), legend=4)
 
 
-def _state_words(data: xr.Dataset, state: int) -> str:
+def _state_words(data: Dataset, state: int) -> str:
     return f"{CELSIUS(float(data['gear_temperature'].values[state])):.4g} °C"
 
 
-def run_up_picture(data: xr.Dataset) -> Picture:
+def run_up_picture(data: Dataset) -> Picture:
     """Transmission error, mesh force and dynamic factor over speed, up and down, by state."""
     n = shown("pinion_speed", data["pinion_speed"])
     count = data.sizes["state"]
@@ -279,7 +274,7 @@ def run_up_picture(data: xr.Dataset) -> Picture:
     return Picture(panels, size=(WIDE, 8.0), above=0.15, share_x="column", legend=4)
 
 
-def waterfall_picture(data: xr.Dataset) -> Picture:
+def waterfall_picture(data: Dataset) -> Picture:
     """Lines of the transmission error over speed and order, running up, one panel a state."""
     borders = (
         edges(shown("pinion_speed", data["pinion_speed"])), edges(data["order"].values)
@@ -300,7 +295,7 @@ def waterfall_picture(data: xr.Dataset) -> Picture:
     return Picture([panels], size=(WIDE, 4.2), share_y="row")
 
 
-def sweep_picture(data: xr.Dataset) -> Picture:
+def sweep_picture(data: Dataset) -> Picture:
     """Dynamic factor and regime over the first one or two axes of a sweep."""
     dims = [str(d) for d in data["label"].dims]
     here = data.isel(dict.fromkeys(dims[2:], 0))

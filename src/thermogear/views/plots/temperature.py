@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import CELSIUS, celsius, display
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.curves import axis_of, draw_by_both
@@ -13,15 +12,12 @@ from thermogear.views.plots.motion import draw_loop, label_of, moving, orbit_of
 from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
 from thermogear.views.style import FAINT, INK, QUIET, WIDE, chosen, ramp
 
-if TYPE_CHECKING:
-    import xarray as xr
-
 MOST_COLUMNS = 6
 HIGHEST_ORDER = 4.0
 """Spectra are drawn up to this order of the mesh frequency."""
 
 
-def views(row: xr.Dataset, *, bundle: int, operating: int) -> Picture:
+def views(row: Dataset, *, bundle: int, operating: int) -> Picture:
     """Time history, phase plane, Poincare section and spectrum: a column for each temperature."""
     here = row.isel(bundle=bundle, operating=operating)
     temperatures = row["gear_temperature"].values
@@ -71,7 +67,7 @@ def _panel(x: str, y: str) -> Panel:
     return Panel(Axis(x, most=4, small=True), Axis(y, most=4, small=True))
 
 
-def _still(one: xr.Dataset) -> str:
+def _still(one: Dataset) -> str:
     """What stands in a panel without motion."""
     jam = float(one["jam_temperature"]) if "jam_temperature" in one else np.nan
     if str(one["label"].item()) == "jammed" and np.isfinite(jam):
@@ -79,7 +75,7 @@ def _still(one: xr.Dataset) -> str:
     return label_of(one)
 
 
-def over_temperature(row: xr.Dataset, name: str) -> Picture:
+def over_temperature(row: Dataset, name: str) -> Picture:
     """The swing of the motion over the gears' temperature: speeds by colour, bundles by line."""
     panel = Panel(axis_of("gear_temperature"), Axis("displacement, peak to peak [µm]"))
     x = CELSIUS(row["gear_temperature"].values)
