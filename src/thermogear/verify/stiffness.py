@@ -17,9 +17,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from thermogear.base.arrays import Floats
-from thermogear.base.errors import InputError
+from thermogear.base.errors import InputError, require_choice
 from thermogear.gears.contact import hertz_half_width
-from thermogear.gears.deviations import FlankShape, require_choice
+from thermogear.gears.deviations import FlankShape
 from thermogear.gears.geometry import Gear
 from thermogear.gears.pair import GearPair
 from thermogear.gears.tooth_mesh import Density
