@@ -122,7 +122,7 @@ def test_half_widths_join_where_the_laws_meet() -> None:
 
     assert half(0.0, 0.0, np.inf) == pytest.approx(a, rel=1e-12)
     assert half(0.0, 0.0, a * (1.0 - 1e-12)) == pytest.approx(a, rel=1e-11)
-    assert half(0.0, 0.0, 0.5 * a) == pytest.approx(a * (0.3 + 0.7 * 0.5), rel=1e-12)
+    assert half(0.0, 0.0, 0.5 * a) == pytest.approx(a * (1.0 - 0.7 * 0.25), rel=1e-12)
     assert half(0.0, 0.0, 0.0) == pytest.approx(0.3 * a, rel=1e-12)
     assert half(0.0, 1e-12, 0.0) == pytest.approx(0.3 * a, rel=1e-8)
     # a punch whose pressure falls from its edge as sqrt((l - x)/x) carries pi E* theta l/4

@@ -24,10 +24,9 @@ from numpy.typing import ArrayLike, NDArray
 from thermogear.base.arrays import Floats
 from thermogear.gears.pair import GearPair
 
-TILTED, FREE, NEAR = 0.65, 0.6, 0.7
+TILTED, FREE = 0.65, 0.6
 """Widths [-] of a contact by an edge, measured here against plane finite elements: parts of a
-tilted punch's length and of the involutes' half width (both within 25 %), and what each unit of
-distance from the edge adds to the half width."""
+tilted punch's length and of the involutes' half width, both within 25 %."""
 
 
 class ContactPoint(NamedTuple):

@@ -22,11 +22,10 @@ from numpy.typing import NDArray
 
 from thermogear.base.arrays import Floats
 from thermogear.base.kernel_cache import compiled
-from thermogear.gears.corner import FREE, NEAR, TILTED
+from thermogear.gears.corner import FREE, TILTED
 
 MOST_STEPS = 200
 _TOLERANCE = 1e-12
-_TILTED, _FREE, _NEAR = 0.65, 0.6, 0.7
 NOUGHT: Any = np.int64(0)  # a plain 0 would have numba compile what takes it for itself
 
 
@@ -64,25 +63,30 @@ def _half_width(
     With a = sqrt(wide rho*) of the involutes, a_e = sqrt(wide r*) of the edge circle on its mate,
     l = wide/theta of a punch tilted by theta and d the distance along the flank to its end,
 
-        b = a_e + w/2 + 0.7 d,   1/w = 1/(0.65 l) + 1/(0.6 a),   not above a.
+        b = a - (a - b_0)(1 - d/a)^2,   b_0 = a_e + w/2 <= a,   1/w = 1/(0.65 l) + 1/(0.6 a).
 
-    On the path theta = 0: at the end of a sharp tip b = 0.3 a, and a from d = a on; on an edge
-    d = 0.
+    On the path theta = 0: at the end of a sharp tip b = 0.3 a, and a from d = a on, without a kink
+    in the stiffness; on an edge d = 0.
     Source: a and a_e Johnson, eq. 4.43; l the contact of a flat punch on its edge, whose pressure
-    (E* theta/2) sqrt((l - x)/x) carries F/b = pi E* theta l/4; the factors 0.65, 0.6 and 0.7 [-]
+    (E* theta/2) sqrt((l - x)/x) carries F/b = pi E* theta l/4; the factors 0.65 and 0.6 [-]
     measured here against plane finite elements, whose contacts on corners are as wide as w within
     25 %.
     """
     whole = np.sqrt(wide * radius)
-    if NEAR * distance >= whole:
+    if distance >= whole:
         return whole, 0.5
     edge = np.sqrt(wide * edge_radius)
     tilted, free = angle / (TILTED * wide), 1.0 / (FREE * whole)
     punch = 1.0 / (tilted + free)
-    half = edge + 0.5 * punch + NEAR * distance
-    if half >= whole:
+    lost = whole - edge - 0.5 * punch
+    if lost <= 0.0:
         return whole, 0.5
-    return half, 0.5 * (edge + punch * punch * (tilted + 0.5 * free)) / half
+    part = 1.0 - distance / whole
+    half = whole - lost * part * part
+    # 2 d/d ln F, of a alone times a: d/a falls as a rises
+    lost_rate = whole - edge - punch * punch * (tilted + 0.5 * free)
+    rate = whole - lost_rate * part * part - 2.0 * lost * part * (1.0 - part)
+    return half, 0.5 * rate / half
 
 
 @compiled

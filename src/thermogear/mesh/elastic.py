@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from thermogear.base.arrays import Floats
 from thermogear.gears.contact import curvature_radii, hertz_half_width, reduced_radius
 from thermogear.gears.contact import reduced_modulus as _reduced_modulus
-from thermogear.gears.corner import FREE, NEAR, contact_point
+from thermogear.gears.corner import FREE, contact_point
 from thermogear.gears.deviations import Deviation
 from thermogear.gears.geometry import Gear
 from thermogear.gears.loaded import LEAST_LINE_LOAD, LoadedMesh, solve_mesh
@@ -194,7 +194,8 @@ class LoadedPair(ElasticPair):
         near = contact_point(pair, s)
         edge = hertz_half_width(load / width, near.rounding, self.contact_modulus)
         # near a tip the contact narrows, see sharing_kernel
-        half_width = np.minimum(half_width, edge + 0.5 * FREE * half_width + NEAR * near.distance)
+        lost = np.maximum((1.0 - 0.5 * FREE) * half_width - edge, 0.0)
+        half_width = half_width - lost * np.maximum(1.0 - near.distance / half_width, 0.0) ** 2
         approach = np.zeros_like(load)
         for name, gear, rho, moduli in zip(
             ("pinion", "wheel"),
