@@ -255,6 +255,7 @@ NOT_FORMULAS = {
     "laws_together",
     "outside_range",
     "structure_factor",
+    "together",
     "transition_pieces",
 }
 

@@ -63,10 +63,10 @@ def test_pressures_and_gaps_exclude_each_other() -> None:
     """Two springs of 1 and 2 under 3 with gaps 0 and 1: both carry, p = delta and 2 (delta - 1)."""
     stiff = np.diag([1.0, 0.5])
     ones = np.ones(2)
-    pressure, deflection = closed(stiff, np.array([0.0, 1.0]), ones, ones, 3.0)
+    pressure, deflection = closed(stiff, gap=np.array([0.0, 1.0]), area=ones, lever=ones, load=3.0)
     assert pressure == pytest.approx([5.0 / 3.0, 4.0 / 3.0])
     assert deflection == pytest.approx(5.0 / 3.0)
-    pressure, deflection = closed(stiff, np.array([0.0, 9.0]), ones, ones, 3.0)
+    pressure, deflection = closed(stiff, gap=np.array([0.0, 9.0]), area=ones, lever=ones, load=3.0)
     assert (pressure.tolist(), deflection) == ([3.0, 0.0], 3.0)
 
 

@@ -143,7 +143,7 @@ def test_indentation_follows_the_half_plane(near: str, factor: float) -> None:
 
 def load_at(sector: FlankSector, part: float) -> tuple[np.ndarray, np.ndarray]:
     low, high = sector.ends
-    case = sector.pressed(low + part * (high - low), 0.5 * A)
+    case = sector.pressed(low + part * (high - low), half_width=0.5 * A)
     return case, sector.felt(case)
 
 
@@ -153,12 +153,12 @@ def test_neighbours_are_reciprocal() -> None:
     first, second = load_at(sector, 0.3), load_at(sector, 0.7)
     for lag in (1, 2):
         ahead, behind = (
-            sector.compliance(first, second, lag),
-            sector.compliance(second, first, -lag),
+            sector.compliance(first, second=second, lag=lag),
+            sector.compliance(second, second=first, lag=-lag),
         )
         assert ahead == pytest.approx(behind.T, rel=1e-9)
-    own = sector.compliance(first, first, 0)
-    assert own > sector.compliance(first, first, 1) > 0.0
+    own = sector.compliance(first, second=first, lag=0)
+    assert own > sector.compliance(first, second=first, lag=1) > 0.0
 
 
 def test_all_teeth_loaded_alike_wind_the_ring_up() -> None:
@@ -171,7 +171,8 @@ def test_all_teeth_loaded_alike_wind_the_ring_up() -> None:
     for bore in (10e-3, 8e-3):
         sector = FlankSector(replace(gear, bore_radius=bore), 0.6e-3, 2)
         load = load_at(sector, 0.5)
-        sums.append(sum(float(sector.compliance(load, load, lag)[0, 0]) for lag in range(-5, 6)))
+        each = [sector.compliance(load, second=load, lag=lag)[0, 0] for lag in range(-5, 6)]
+        sums.append(float(sum(each)))
     wound = gear.base_radius**2 * 1.3 / (2.0 * np.pi) * (8e-3**-2 - 10e-3**-2)
     assert sums[1] - sums[0] == pytest.approx(gear.teeth * wound, rel=3e-3)
 
@@ -196,7 +197,7 @@ def test_stress_at_the_root(gear: Gear, string: float, factor: float) -> None:
     """sigma b m/F_n loaded at the outer point of single contact, finite elements done apart."""
     sector = FlankSector(gear, 0.05 * gear.module, 2)
     arc = string**2 / (2.0 * gear.base_radius)
-    stress, places = sector.root_stress(sector.pressed(arc, 0.12 * gear.module))
+    stress, places = sector.root_stress(sector.pressed(arc, half_width=0.12 * gear.module))
     assert gear.module * stress.max() == pytest.approx(factor, rel=0.01)
     # in the fillet, between the root circle and half a module above it
     radius = float(np.hypot(*places[np.argmax(stress[0])]))

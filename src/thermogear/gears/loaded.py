@@ -330,7 +330,7 @@ def loaded_contact(
     >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
     >>> contact = loaded_contact(pair, 4e3, 32)
     >>> f"{1e-6 * contact.mean_stiffness:.0f} N/um"
-    '395 N/um'
+    '393 N/um'
     """
     import xarray as xr
 

@@ -303,8 +303,8 @@ def _added(shape: Shape, depth: float, angle: float) -> Floats:
             fix="take a shorter crack or one at a larger angle to the tooth's axis",
         ) from error
     # the forces on the sides that loads on the teeth about this one come to
-    moved = joined(shut.stiffness, shut.pushed, gear.teeth)[::-1].transpose(1, 0, 2)
-    ring = joined(shut.stiffness, np.eye(len(shut.stiffness)), gear.teeth)[MATES]
+    moved = joined(shut.stiffness, pushed=shut.pushed, teeth=gear.teeth)[::-1].transpose(1, 0, 2)
+    ring = joined(shut.stiffness, pushed=np.eye(len(shut.stiffness)), teeth=gear.teeth)[MATES]
     whole = np.linalg.inv(ring)
     before = np.einsum("st,tkl->skl", whole, moved)
     before[:, MATES] = shut.pushed.T

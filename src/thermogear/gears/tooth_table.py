@@ -348,7 +348,7 @@ class Sector:
     def solved(self, loads: Floats) -> Solved:
         """Condense and join the sectors, ``loads`` as in :meth:`condensed`."""
         part = self.condensed(loads)
-        shifted = joined(part.stiffness, part.pushed, self.gear.teeth)
+        shifted = joined(part.stiffness, pushed=part.pushed, teeth=self.gear.teeth)
         lags = part.pushed @ shifted
         lags[MATES] += part.held
         return Solved(*part[:4], part.frame @ shifted, lags)
@@ -441,7 +441,7 @@ def _polar_frame(foot: Foot) -> Floats:
     return frame
 
 
-def joined(stiffness: Floats, pushed: Floats, teeth: int) -> Floats:
+def joined(stiffness: Floats, *, pushed: Floats, teeth: int) -> Floats:
     """Motion of the sides of the sectors about the loaded one, (lag, side, load).
 
     stiffness (side, side), left before right: of the sector at its sides; pushed (load, side): the
@@ -449,6 +449,9 @@ def joined(stiffness: Floats, pushed: Floats, teeth: int) -> Floats:
     With w = exp(2 pi i n/z) the left sides' equation of harmonic n is K_n u_n = V^H f,
     K_n = K_LL + K_RR + w K_LR + K_RL/w, V = P_L + w P_R; k pitches ahead they move by
     (1/z) sum over n of w^k u_n, and their right sides as the next sector's left ones.
+
+    >>> joined(np.eye(2), pushed=np.ones((1, 2)), teeth=9)[MATES].ravel().round(3)
+    array([0.5, 0.5])
     """
     half = stiffness.shape[0] // 2
     left, right = slice(None, half), slice(half, None)

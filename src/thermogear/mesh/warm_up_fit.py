@@ -6,8 +6,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import least_squares
-from scipy.stats import t as student
 
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, nearest
@@ -124,6 +122,8 @@ def fit_factors(residuals: Residuals, names: Sequence[str], progress: Progress =
 
     reach = float(np.log(REACH))
     start = np.zeros(len(names))
+    from scipy.optimize import least_squares
+
     found = least_squares(flat, start, jac=slope, bounds=(-reach, reach), xtol=1e-4, ftol=1e-6)
     x = np.asarray(found.x)
     final, jacobian = table(x), slope(x)
@@ -142,6 +142,8 @@ def fit_factors(residuals: Residuals, names: Sequence[str], progress: Progress =
     if freedom > 0.0 and np.linalg.cond(normal) < 1e12:
         variance = float(one @ one) / max(count - x.size, 1)
         covariance = variance * np.linalg.inv(normal) * count / effective
+        from scipy.stats import t as student
+
         spread = np.sqrt(np.diag(covariance)) * student.ppf(0.5 + 0.5 * CONFIDENCE, freedom)
         # an interval wider than the search says nothing
         spread = np.where(spread < reach, spread, np.nan)

@@ -200,7 +200,7 @@ def _notices(
             gear=str(heaviest["gear"].values),
             load=heaviest.item(),
         )
-    if at.yields(at.under(contact["load"].values[None, :], UNIFORM)).any():
+    if at.yields(at.under(contact["load"].values[None, :], phase=UNIFORM)).any():
         yield Notice.of("edge_settles")
     if lost:
         yield Notice.of("positions_not_settled", lost=lost)

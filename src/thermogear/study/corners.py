@@ -39,7 +39,7 @@ class HotContact(LoadedPair):
             "model": self.hot.model.loaded,
         }
 
-    def under(self, torque: Floats, phase: Floats) -> LoadedMesh:
+    def under(self, torque: Floats, *, phase: Floats) -> LoadedMesh:
         """The mesh at ``phase``, axes (state, load) first: pinion torques [N m] of that shape."""
         force = torque / self.pair.pinion.base_radius
         return solve_mesh(self.pair, force, phase, **self.arguments)
@@ -57,7 +57,7 @@ class HotContact(LoadedPair):
         phase = np.concatenate([((ends - pair.path.a) / pair.base_pitch) % 1.0, UNIFORM])
 
         def carry(torque: Floats) -> NDArray[np.bool_]:
-            mesh, gear = self.under(torque, phase), np.arange(2)
+            mesh, gear = self.under(torque, phase=phase), np.arange(2)
             last = np.abs(mesh.points.s[:2] - ends[:, None]).argmin(axis=-1)
             touched = mesh.force[:, gear, gear, last] > 0.0
             return np.asarray(touched | (mesh.corner_load[:, gear, gear] > 0.0))
@@ -97,7 +97,7 @@ class HotContact(LoadedPair):
         Figures of the words: [%] of the load and of the period, [N m]. Empty words where no corner
         carries.
         """
-        mesh = self.under(np.array([[torque]]), UNIFORM)
+        mesh = self.under(np.array([[torque]]), phase=UNIFORM)
         load, part, yields = mesh.corner_load[0, 0], mesh.corner_part[0, 0], self.yields(mesh)[0, 0]
         onset, words, figures = self.onset(torque)[0], list[str](), dict[str, float]()
         carried = [(place, GEARS[place]) for place in (1, 0) if load[place] > 0.0]

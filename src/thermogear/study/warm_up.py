@@ -9,7 +9,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from scipy.optimize import brentq
 
 from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.bounds import whole
@@ -426,6 +425,8 @@ def no_bath_from(course: WarmUp) -> float:
 
     0 where it is so from the start. Only for a course that has such a moment.
     """
+    from scipy.optimize import brentq
+
     place = int(np.argmax(course.operating.no_bath))
     if place == 0:
         return 0.0

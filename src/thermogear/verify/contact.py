@@ -218,7 +218,7 @@ class FlankContact:
         def block(first: ToothContact, second: ToothContact) -> Floats:
             ahead = first.number - second.number
             parts = [
-                sector.compliance(first.cases[g], second.cases[g], signs[g] * ahead)
+                sector.compliance(first.cases[g], second=second.cases[g], lag=signs[g] * ahead)
                 / sector.gear.material.youngs_modulus
                 for g, sector in enumerate(self.sectors)
             ]
@@ -237,7 +237,11 @@ class FlankContact:
         for _ in range(_ROUNDS):
             same = (owner[:, None] == owner) * held[owner]
             pressure, deflection = closed(
-                compliance + same * np.outer(area, area), gap * area, area, lever, load
+                compliance + same * np.outer(area, area),
+                gap=gap * area,
+                area=area,
+                lever=lever,
+                load=load,
             )
             carried = pressure * area
             force = np.bincount(owner, carried, minlength=len(touching))
@@ -262,11 +266,14 @@ class FlankContact:
             low, high = np.sqrt(2.0 * np.array(sector.ends) / gear.base_radius)
             t = float(np.clip(string / gear.base_radius, low, high))
             narrow = half_width * float(np.sqrt(1.0 - gear.material.poisson_ratio**2))
-            total += held_in(gear, t, half_width, narrow) / gear.material.youngs_modulus
+            total += (
+                held_in(gear, t, in_stress=half_width, in_strain=narrow)
+                / gear.material.youngs_modulus
+            )
         return total
 
 
-def held_in(gear: Gear, t: float, in_stress: float, in_strain: float) -> float:
+def held_in(gear: Gear, t: float, *, in_stress: float, in_strain: float) -> float:
     """Approach of a flank in plane strain less that in plane stress, times E b/F.
 
     t: tan(alpha_k); half widths [m] of the pressure in both states. Source: Weber's law, see
@@ -303,7 +310,7 @@ def _half_width(touch: ToothContact, force: Floats) -> float:
 
 
 def closed(
-    compliance: Floats, gap: Floats, area: Floats, lever: Floats, load: float
+    compliance: Floats, *, gap: Floats, area: Floats, lever: Floats, load: float
 ) -> tuple[Floats, float]:
     """Pressures p >= 0 and deflection delta of w = gap + C p - area lambda delta >= 0, w p = 0."""
     along = area * lever

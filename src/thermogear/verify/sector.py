@@ -171,9 +171,9 @@ class FlankSector:
         strains = np.zeros((places.shape[0], self.degrees))
         strains[:, -places.shape[0] :] = np.eye(places.shape[0])
         first, second = (strains, self.felt(strains)), (weights, self.felt(weights))
-        return self.compliance(first, second, 0).T, places
+        return self.compliance(first, second=second, lag=0).T, places
 
-    def pressed(self, arc: float, half_width: float) -> Floats:
+    def pressed(self, arc: float, *, half_width: float) -> Floats:
         """Weights (1, degree) of a unit force of elliptic pressure about ``arc`` [m]."""
         angle = np.pi * np.arange(1, 80) / 80
         nodes, shape = self.shapes(arc + half_width * np.cos(angle))
@@ -219,7 +219,7 @@ class FlankSector:
         return np.asarray(weights @ self._solved[1])
 
     def compliance(
-        self, first: tuple[Floats, Floats], second: tuple[Floats, Floats], lag: int
+        self, first: tuple[Floats, Floats], *, second: tuple[Floats, Floats], lag: int
     ) -> Floats:
         """Work of the loads ``first`` on the motion by ``second``, ``lag`` pitches behind.
 

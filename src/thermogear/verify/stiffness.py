@@ -89,12 +89,12 @@ def gear_compliance(
                 allowed=f"> {1e3 * half_width:.4g} mm, the Hertzian half width",
                 fix="take a position farther inside the path of contact",
             )
-        case = sector.pressed(arc, half_width)
+        case = sector.pressed(arc, half_width=half_width)
         load = case, sector.felt(case)
-        value = float(sector.compliance(load, load, 0)[0, 0])
+        value = float(sector.compliance(load, second=load, lag=0)[0, 0])
         if near == "strain":
             # the mean over the same pressure is 1/(2 pi) less than at its middle
-            value += held_in(gear, float(at), half_width, half_width)
+            value += held_in(gear, float(at), in_stress=half_width, in_strain=half_width)
             value += gear.material.poisson_ratio**2 / (2.0 * np.pi)
         values.append(value)
     return np.array(values) / (gear.material.youngs_modulus * gear.face_width)

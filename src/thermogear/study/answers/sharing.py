@@ -34,8 +34,8 @@ def answers(asked: Asked) -> Iterator[Answer]:
     yield answer(
         SHARE,
         "effective_contact_ratio",
-        f"Under load {ratio:.2f} tooth pairs carry on average, the effective contact ratio; as "
-        "drawn it is {nominal:.2f}.",
+        f"Under load {ratio:.2f} tooth pairs carry on average, the effective contact ratio; "
+        "the nominal one is {nominal:.2f}.",
         ratio,
         at=at,
         figures={"nominal": case.pair.contact_ratio},
