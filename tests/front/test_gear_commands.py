@@ -135,8 +135,8 @@ def test_json_figures_of_the_map_are_those_of_its_grid(
             "--fit: got housing; there is no record to fit to; give m",
         ),
         (["warmup", "--fit", "houses"], "--fit: got 'houses'; allowed housing | oil_housing | wet"),
-        (["relief", "--torque", "0"], "--torque: got 0; allowed > 0, below 1e9"),
-        (["relief", "--torque", "nan"], "--torque: got nan; allowed > 0, below 1e9"),
+        (["relief", "--torque", "0"], "--torque: got 0 N m; allowed > 0 N m"),
+        (["relief", "--torque", "nan"], "--torque: got nan N m; allowed 0..1e7 N m"),
         (["relief", "--temperature", "-300"], "--temperature: got -300 degC; allowed -70..600"),
         (["contact", "--torques", ""], "--torques: got ''; allowed numbers with commas between"),
         (

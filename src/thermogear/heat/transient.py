@@ -520,6 +520,16 @@ def together(
 
     Each goes its own way; what they ask of one and the same law, they ask at once. Raises what is
     wrong with the first course that fails.
+
+    >>> from thermogear.heat.network import Link
+    >>> network = ThermalNetwork(
+    ...     (Link("oil", "ambient", 10.0),), sources={"oil": 200.0}, fixed={"ambient": 293.15},
+    ...     capacities={"oil": 6000.0},
+    ... )
+    >>> stretch = Stretch(end=600.0, network=lambda state: network)
+    >>> cold, warm = together([([stretch], {"oil": 293.15}), ([stretch], {"oil": 313.15})])
+    >>> [f"{course.temperatures['oil'][-1] - 293.15:.1f} K" for course in (cold, warm)]
+    ['12.6 K', '20.0 K']
     """
     if not tolerance > 0.0:
         raise InputError("tolerance", f"{tolerance} K", allowed="> 0 K")
