@@ -343,7 +343,7 @@ def test_the_stress_of_the_roots_is_that_of_the_loaded_contact() -> None:
     mesh = solve_mesh(pair, force, phase, deviations=case.deviations, model=model.loaded)
     wanted = [1e-6 * float(gear.stress) for gear in root_stress(pair, mesh)]
     assert one.figures["undeformed"] == pytest.approx(wanted, rel=1e-9)
-    assert all(abs(a / b - 1.0) > 0.01 for a, b in zip(one.figures["hot"], wanted, strict=True))
+    assert all(abs(a / b - 1.0) > 0.003 for a, b in zip(one.figures["hot"], wanted, strict=True))
     nominal = 1e-6 * force * math.cos(pair.pinion.pressure_angle)
     nominal /= pair.face_width * pair.pinion.module
     factors = zip(one.figures["form"], one.figures["notch"], strict=True)

@@ -85,7 +85,9 @@ def test_a_sweep_tells_what_the_answers_tell(monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setattr(moving, "_relief", lambda asked: undecided("", "relief", "not asked"))
     # nor is the way there: a sweep has no number of it
     monkeypatch.setattr(
-        steady, "_worst_moment", lambda asked: undecided("", "warm_up", "not asked")
+        steady,
+        "_worst_moment",
+        lambda asked: undecided("", "warm_up", "not asked", limit="backlash"),
     )
     worst = dict.fromkeys(SCALE, 0.0)
     factors = []

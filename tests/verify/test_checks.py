@@ -8,6 +8,7 @@ import pytest
 from conftest import Compared
 from thermogear.base.errors import InputError
 from thermogear.gears.geometry import Gear, Rack
+from thermogear.gears.mesh_system import LoadedModel
 from thermogear.gears.pair import GearPair
 from thermogear.heat.expansion import RadialField
 from thermogear.verify import (
@@ -46,7 +47,7 @@ def test_published_table_of_finite_elements(compared: Compared) -> None:
 
 
 @pytest.mark.parametrize("checked", [PUBLISHED, *own_pairs()], ids=lambda c: c.name)
-@pytest.mark.parametrize(("near", "limit"), [("strain", 0.015), ("stress", 0.03)])
+@pytest.mark.parametrize(("near", "limit"), [("strain", 0.01), ("stress", 0.035)])
 def test_own_pairs_within_three_per_cent(
     checked: CheckedPair, near: str, limit: float, compared: Compared
 ) -> None:
@@ -69,9 +70,12 @@ def test_own_pairs_within_three_per_cent(
 @pytest.mark.parametrize("checked", far_pairs(), ids=lambda c: c.name)
 def test_where_the_model_leaves_three_per_cent(checked: CheckedPair) -> None:
     """25 deg, large profile shifts and sharp fillets: the beam is 4.3 .. 4.9 % too soft."""
-    got = check_stiffness(checked.pair, checked.line_load * checked.pair.face_width)
-    assert np.max(np.abs(got.difference)) < 0.05
-    assert got.worst_share < 0.015
+    load = checked.line_load * checked.pair.face_width
+    for tooth, apart in (("solved", 0.01), ("beam", 0.05)):
+        model = LoadedModel(tooth=tooth, body="bore_clamped", extended=False)
+        got = check_stiffness(checked.pair, load, model=model)
+        assert np.max(np.abs(got.difference)) < apart
+        assert got.worst_share < 0.015
 
 
 def test_splitting_every_element() -> None:

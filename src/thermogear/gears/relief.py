@@ -201,13 +201,15 @@ def optimise_tip_relief(
     for x in screened.population[np.argsort(screened.population_energies)]:
         if len(places) < PLACES and all(np.abs(x - other).max() > _EDGE for other in places):
             places.append(x)
-    near = [refined(x, rough, curve(x) - rough(x)).x for x in places]
-    starts = sorted(near, key=lambda x: float(np.ptp(curve(x))))[:STARTS]
+    starts = sorted(
+        (refined(x, rough, curve(x) - rough(x)).x for x in places),
+        key=lambda x: float(np.ptp(curve(x))),
+    )[:STARTS]
     least = min((refined(x, curve, 0.0) for x in starts), key=lambda r: float(r.fun))
-    one, two = reliefs(least.x if least.fun < unrelieved else 0.0 * least.x)
+    pinion, wheel = reliefs(least.x if least.fun < unrelieved else 0.0 * least.x)
     return ReliefDesign(
-        pinion=one,
-        wheel=two,
+        pinion=pinion,
+        wheel=wheel,
         unrelieved=unrelieved,
         relieved=min(float(least.fun), unrelieved),
         evaluations=done,
