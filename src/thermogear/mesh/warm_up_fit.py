@@ -120,11 +120,12 @@ def fit_factors(residuals: Residuals, names: Sequence[str], progress: Progress =
             columns.append((flat(moved) - base) / (moved[k] - x[k]))
         return np.stack(columns, axis=1)
 
-    reach = float(np.log(REACH))
-    start = np.zeros(len(names))
-    from scipy.optimize import least_squares
+    from scipy import optimize, stats
 
-    found = least_squares(flat, start, jac=slope, bounds=(-reach, reach), xtol=1e-4, ftol=1e-6)
+    reach, start = float(np.log(REACH)), np.zeros(len(names))
+    found = optimize.least_squares(
+        flat, start, jac=slope, bounds=(-reach, reach), xtol=1e-4, ftol=1e-6
+    )
     x = np.asarray(found.x)
     final, jacobian = table(x), slope(x)
     for name, column in zip(names, jacobian.T, strict=True):
@@ -142,9 +143,7 @@ def fit_factors(residuals: Residuals, names: Sequence[str], progress: Progress =
     if freedom > 0.0 and np.linalg.cond(normal) < 1e12:
         variance = float(one @ one) / max(count - x.size, 1)
         covariance = variance * np.linalg.inv(normal) * count / effective
-        from scipy.stats import t as student
-
-        spread = np.sqrt(np.diag(covariance)) * student.ppf(0.5 + 0.5 * CONFIDENCE, freedom)
+        spread = np.sqrt(np.diag(covariance)) * stats.t.ppf(0.5 + 0.5 * CONFIDENCE, freedom)
         # an interval wider than the search says nothing
         spread = np.where(spread < reach, spread, np.nan)
         if x.size == 2:
