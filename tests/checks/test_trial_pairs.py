@@ -32,7 +32,8 @@ def test_twenty_random_pairs_go_through_the_whole_chain() -> None:
     assert refused.total() < 0.3 * (COUNT + refused.total())
     worst = {what: max(one.worst[what] for one in found) for what in found[0].worst}
     assert worst["shares off 1"] < 1e-12
-    assert worst["scale, tangent stiffness"] < 1e-12
+    # touch is closed to a step in metres, and the slope is that of the last step
+    assert worst["scale, tangent stiffness"] < 1e-10
     assert worst["exchange, tangent stiffness"] < 1e-6
 
 

@@ -206,10 +206,10 @@ def optimise_tip_relief(
         key=lambda x: float(np.ptp(curve(x))),
     )[:STARTS]
     least = min((refined(x, curve, 0.0) for x in starts), key=lambda r: float(r.fun))
-    pinion, wheel = reliefs(least.x if least.fun < unrelieved else 0.0 * least.x)
+    one, two = reliefs(least.x if least.fun < unrelieved else 0.0 * least.x)
     return ReliefDesign(
-        pinion=pinion,
-        wheel=wheel,
+        pinion=one,
+        wheel=two,
         unrelieved=unrelieved,
         relieved=min(float(least.fun), unrelieved),
         evaluations=done,
