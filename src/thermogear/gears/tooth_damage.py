@@ -26,7 +26,7 @@ from numpy.typing import ArrayLike
 
 from thermogear.base import bounds
 from thermogear.base.arrays import Floats
-from thermogear.base.errors import GeometryError, require_choice
+from thermogear.base.errors import GeometryError, InputError, require_choice
 from thermogear.gears.candidates import MeshPoints
 from thermogear.gears.corner import contact_point, off_path
 from thermogear.gears.deviations import GEARS, Contacts
@@ -111,6 +111,8 @@ class Damage(ABC):
 
     def __post_init__(self) -> None:
         require_choice("damage.gear", self.gear, GEARS)
+        if not isinstance(self.tooth, int | np.integer):
+            raise InputError("damage.tooth", repr(self.tooth), allowed="a whole number")
 
     def touching(self, points: MeshPoints, extended: bool) -> MeshPoints:
         """The candidates as they are: the flank is whole."""

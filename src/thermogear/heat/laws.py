@@ -240,7 +240,8 @@ def xu_kahraman(
     ratio = slide / speed
     thick = ratio * p * np.log10(eta)
     f = b1 + b4 * thick + b5 * np.exp(-thick) + b9 * np.exp(np.asarray(roughness) * 1e6)
-    mu = np.exp(f) * p**b2 * ratio**b3 * speed**b6 * eta**b7
+    with np.errstate(over="ignore"):  # near the base circle it grows without bound: capped
+        mu = np.exp(f) * p**b2 * ratio**b3 * speed**b6 * eta**b7
     mu = mu * np.asarray(reduced_radius, dtype=float) ** b8 * np.tanh(ratio / pitch_floor)
     at_rest = np.where(slide > 0.0, np.where(p > 0.0, ceiling, 0.0), 0.0)
     return np.asarray(np.where(moving, _capped(mu, ceiling), at_rest))

@@ -135,6 +135,9 @@ class MeshModel:
                     allowed=" | ".join(known),
                     fix=nearest(str(value), known),
                 )
+        if (self.tooth, self.plane) == ("beam", "strain"):
+            why = "a beam on a ring knows no other plane state"
+            raise InputError("model.plane", "'strain'", allowed="stress with a beam", why=why)
         if not 0.0 < self.dry_coefficient <= 1.0:
             raise InputError("model.dry_coefficient", self.dry_coefficient, allowed="0 < mu <= 1")
 

@@ -14,6 +14,7 @@ from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import STILL
 from thermogear.case.case import GearCase
 from thermogear.case.thermal_state import HOT, UNDEFORMED
+from thermogear.gears.geometry import Gear
 from thermogear.gears.iso6336 import root_factors, single_contact
 from thermogear.gears.pair import GearPair
 from thermogear.gears.root_stress import root_stress
@@ -393,6 +394,16 @@ def _rated(
 # --- the teeth's roots ---------------------------------------------------------------------------
 
 
+THIN_RIM = 1.2
+"""Rim [tooth heights] below which its thickness weakens the root: Y_B of ISO 6336-3."""
+
+
+def _thin(gear: Gear) -> bool:
+    """Whether the rim between bore and root circle is thin."""
+    height = gear.tip_radius - gear.root_radius
+    return gear.root_radius - gear.bore_radius < THIN_RIM * height
+
+
 def root(asked: Asked) -> Iterator[Answer]:
     """Of both gears, under the shares of the loaded contact over a mesh period."""
     pair, force = asked.case.pair, asked.hot["normal_force"]
@@ -404,6 +415,11 @@ def root(asked: Asked) -> Iterator[Answer]:
     for point in asked.points:
         at, load = asked.at(point), float(force[point])
         why = asked.still(point) or "there is no load" * (not load > 0.0)
+        if not why and any(_thin(gear) for gear in (pair.pinion, pair.wheel)):
+            why = (
+                f"a rim is thinner than {THIN_RIM:g} tooth heights, where the bore, held here, "
+                "decides"
+            )
         if why:
             yield undecided(ROOT, "root_stress", why, limit=limit, at=at)
             continue
