@@ -22,7 +22,8 @@ def test_labels_of_random_trains_asked_otherwise(at_length: AtLength, compared: 
     count = at_length(3, 40, "random drive trains labelled in four ways")
     records = [TRIAL.labelled(number) for number in range(1, 1 + count)]
     undecided = [way for one in records for way in TRIAL.WAYS if one[way]["name"] == "undecided"]
-    assert len(undecided) <= 0.05 * len(TRIAL.WAYS) * count
+    # of a few trains one may be undecided in every way
+    assert len(undecided) <= max(0.05 * len(TRIAL.WAYS) * count, len(TRIAL.WAYS))
     wrong = [
         (one["number"], way, words)
         for one in records
