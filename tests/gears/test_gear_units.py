@@ -152,6 +152,7 @@ FORMULAS: dict[str, tuple[tuple[int, int, int], Formula]] = {
     "first_touch": (LENGTH, lambda g: touched(g)),
     "flank_point": (LENGTH, lambda g: tooth.flank_point(g.gear, g.t)[:2]),
     "start_angle": (NUMBER, lambda g: tooth.start_angle(g.gear, "30-degree")),
+    "section_angle": (NUMBER, lambda g: tooth.section_angle(g.gear, 0.5)),
     "tooth_compliances": (COMPLIANCE, lambda g: tooth.tooth_compliances(g.gear, g.t)),
     "unit_compliance": (NUMBER, lambda g: tooth.unit_compliance(g.gear, g.t)),
     "sainsot_coefficients": (

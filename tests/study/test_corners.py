@@ -48,7 +48,7 @@ def relieved(amount: float, gear: str = "pinion") -> str:
 def test_at_light_load_the_effective_contact_ratio_is_the_nominal_one() -> None:
     at = contact()
     torques = np.array([0.02, 2.0, 20.0, 100.0])
-    ratio = at.under(torques[None, :], UNIFORM).effective_ratio[0]
+    ratio = at.under(torques[None, :], phase=UNIFORM).effective_ratio[0]
     nominal = at.pair.contact_ratio
     # each end of the path to one of the positions
     assert abs(ratio[0] - nominal) < 2.5 / UNIFORM.size
@@ -58,7 +58,7 @@ def test_at_light_load_the_effective_contact_ratio_is_the_nominal_one() -> None:
 
 def test_the_effective_contact_ratio_is_the_loaded_length_over_the_base_pitch() -> None:
     at = contact(relieved(12.0))
-    mesh = at.under(np.array([[60.0]]), UNIFORM)
+    mesh = at.under(np.array([[60.0]]), phase=UNIFORM)
     s = np.where(mesh.force[0, 0] > 0.0, mesh.points.s, np.nan)
     step = at.pair.base_pitch / UNIFORM.size
     length = np.nanmax(s) - np.nanmin(s) + step
@@ -67,7 +67,7 @@ def test_the_effective_contact_ratio_is_the_loaded_length_over_the_base_pitch() 
 
 def test_corners_of_equal_gears_carry_alike() -> None:
     at = contact()
-    mesh = at.under(np.array([[100.0]]), np.arange(201) / 201)
+    mesh = at.under(np.array([[100.0]]), phase=np.arange(201) / 201)
     pinion, wheel = mesh.corner_load[0, 0]
     # but for the lever of the pinion's edge, whose torque is given
     assert pinion == pytest.approx(wheel, abs=0.02)
@@ -83,9 +83,12 @@ def test_a_corner_carries_from_where_the_relief_is_used_up() -> None:
         at = contact(relieved(10.0, gear))
         pair, onset = at.pair, at.onset(MOST)[0]
         end = np.array([pair.contact_ratio % 1.0 if gear == "pinion" else 0.0])
-        pairs = (at.under(onset[place] * np.array([[0.99, 1.01]]), end).force > 0.0).sum(axis=-1)
+        ends = at.under(onset[place] * np.array([[0.99, 1.01]]), phase=end)
+        pairs = (ends.force > 0.0).sum(axis=-1)
         assert pairs.ravel().tolist() == [1, 2]
-        later = at.under(onset[place] * np.array([[0.99, 1.5]]), UNIFORM).corner_load[0, :, place]
+        later = at.under(onset[place] * np.array([[0.99, 1.5]]), phase=UNIFORM).corner_load[
+            0, :, place
+        ]
         assert later[0] == 0.0 < later[1]
         assert onset[1 - place] == 0.0
         assert math.isnan(at.onset(0.9 * onset[place])[0, place])
@@ -99,9 +102,9 @@ def test_a_rounded_corner_yields_where_its_circle_is_pressed_too_hard() -> None:
     sizes = [f"gears.{gear}.tip_rounding=0.1 mm" for gear in ("pinion", "wheel")]
     at = contact(*sizes)
     torques = np.array([0.5, 5.0, 400.0])
-    mesh = at.under(torques[None, :], UNIFORM)
+    mesh = at.under(torques[None, :], phase=UNIFORM)
     found = at.yields(mesh)
     assert found[0, 0].tolist() == [False, False]
     assert found[0, -1].tolist() == [True, True]
     sharp = contact()
-    assert not sharp.yields(sharp.under(torques[None, :], UNIFORM)).any()
+    assert not sharp.yields(sharp.under(torques[None, :], phase=UNIFORM)).any()
