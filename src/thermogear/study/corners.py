@@ -39,10 +39,14 @@ class HotContact(LoadedPair):
             "model": self.hot.model.loaded,
         }
 
-    def under(self, torque: Floats, *, phase: Floats) -> LoadedMesh:
-        """The mesh at ``phase``, axes (state, load) first: pinion torques [N m] of that shape."""
-        force = torque / self.pair.pinion.base_radius
-        return solve_mesh(self.pair, force, phase, **self.arguments)
+    def under(self, torque: Floats, *, phase: Floats, mean: float | None = None) -> LoadedMesh:
+        """The mesh at ``phase``, axes (state, load) first: pinion torques [N m] of that shape.
+
+        ``mean``: torque [N m] over whose contact the flanks are averaged, each its own if left out.
+        """
+        base = self.pair.pinion.base_radius
+        load = None if mean is None else mean / base
+        return solve_mesh(self.pair, torque / base, phase, mean_load=load, **self.arguments)
 
     def onset(self, greatest: float) -> Floats:
         """Pinion torque [N m] from which on the corners of pinion and wheel carry, (state, gear).
@@ -50,14 +54,14 @@ class HotContact(LoadedPair):
         The gap of a corner grows from that of its flank's last point: it carries as soon as the
         pair there does, at E for the pinion, at A for the wheel; or where the shape of a flank lets
         it touch first. 0 where that is so at any load (1 N/mm), nan where up to the ``greatest``
-        torque it is not. Halved between the two.
+        torque it is not. Halved between the two; flanks averaged over the contact of the greatest.
         """
         pair = self.pair
         ends = np.array([pair.path.e, pair.path.a])
         phase = np.concatenate([((ends - pair.path.a) / pair.base_pitch) % 1.0, UNIFORM])
 
         def carry(torque: Floats) -> NDArray[np.bool_]:
-            mesh, gear = self.under(torque, phase=phase), np.arange(2)
+            mesh, gear = self.under(torque, phase=phase, mean=greatest), np.arange(2)
             last = np.abs(mesh.points.s[:2] - ends[:, None]).argmin(axis=-1)
             touched = mesh.force[:, gear, gear, last] > 0.0
             return np.asarray(touched | (mesh.corner_load[:, gear, gear] > 0.0))
