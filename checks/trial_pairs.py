@@ -330,11 +330,24 @@ def symmetries(drawn: Drawn, found: Found) -> None:
     )
     large = scaled(pair, 2.0)
     twice = loaded_contact(large, 4.0 * force, phase, deviations=[enlarged(d, 2.0) for d in own])
-    for what, one, factor in (("exchange", there, 1.0), ("scale", twice, 2.0)):
+    # beyond the path the lever is that about the pinion: exchanged pairs differ where one carries
+    flanks = on_path(pair, here) & on_path(other, there)
+    everywhere = np.ones_like(flanks)
+    for what, other_mesh, factor, where in (
+        ("exchange", there, 1.0, flanks),
+        ("scale", twice, 2.0, everywhere),
+    ):
         for name in ("tangent_stiffness", "transmission_error"):
-            size = np.abs(here[name].values).max()
-            apart = np.abs(one[name].values / factor - here[name].values).max() / size
-            found.see(f"{what}, {name.replace('_', ' ')}", float(apart))
+            known = here[name].values
+            apart = np.abs(other_mesh[name].values / factor - known)[where] / np.abs(known).max()
+            found.see(f"{what}, {name.replace('_', ' ')}", float(apart.max(initial=0.0)))
+    found.counts["positions on the path alone"] += int(flanks.sum())
+
+
+def on_path(pair: GearPair, mesh: xr.Dataset) -> NDArray[np.bool_]:
+    """Positions at which nothing carries before A or beyond E."""
+    s, share = mesh["pair_position"].values, mesh["load_share"].values
+    return ~np.any((share > 0.0) & ((s < pair.path.a) | (s > pair.path.e)), axis=-1)
 
 
 def exchanged(deviation: Deviation, pair: GearPair) -> Deviation:

@@ -137,10 +137,10 @@ class Damage(ABC):
         body = table.more(t, pitches)
         # a crack at the root of the other flank is pressed shut
         body *= contacts.flank == "drive"
-        own, sound = table.alike.under(t, angle), table.sound.under(t, angle)
+        alike, sound = table.alike.under(t, angle), table.sound.under(t, angle)
         here = pitches == 0
-        body += (here * (own[1] - sound[1]))[..., None] * np.eye(t.shape[-1])
-        return here * (own[0] - sound[0]), body
+        body += (here * (alike[1] - sound[1]))[..., None] * np.eye(t.shape[-1])
+        return here * (alike[0] - sound[0]), body
 
 
 @dataclass(frozen=True)
@@ -312,9 +312,9 @@ def _added(shape: Shape, depth: float, angle: float) -> Floats:
     before[:, MATES] = shut.pushed.T
     after = before.copy()
     after[:, MATES] = cracked.pushed.T
-    one, two = before.reshape(len(ring), -1), after.reshape(len(ring), -1)
-    changed = two.T @ np.linalg.solve(whole + cracked.stiffness - shut.stiffness, two)
-    added = (changed - one.T @ ring @ one).reshape(2 * (2 * MATES + 1, arcs.size))
+    sound, damaged = before.reshape(len(ring), -1), after.reshape(len(ring), -1)
+    changed = damaged.T @ np.linalg.solve(whole + cracked.stiffness - shut.stiffness, damaged)
+    added = (changed - sound.T @ ring @ sound).reshape(2 * (2 * MATES + 1, arcs.size))
     added[MATES, :, MATES] += cracked.held - shut.held
     low, high = Profile(gear).ends
     fit = np.linalg.pinv(chebyshev.chebvander((2.0 * arcs - low - high) / (high - low), COUPLED))

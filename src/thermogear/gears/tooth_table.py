@@ -219,15 +219,15 @@ def _pressure_load(gear: Gear, tooth: Tooth, centre: float, half_width: float) -
 class Condensed(NamedTuple):
     """A sector with its inner unknowns eliminated, under loads on its tooth.
 
-    Unknowns ``inner`` and at the ``sides``; ``own`` (inner, load) with the sides held, ``by_side``
-    (inner, side); ``frame`` turns radial and hoop motions of the sides into x and y; by these
+    Unknowns ``inner`` and at the ``sides``; ``inside`` (inner, load) with the sides held,
+    ``by_side`` (inner, side); ``frame`` turns radial and hoop motions of the sides into x and y; by these
     motions ``stiffness`` (side, side) and ``pushed`` (load, side), the deflection at the loads;
     ``held`` (load, load): that with the sides held.
     """
 
     inner: Integers
     sides: Integers
-    own: Floats
+    inside: Floats
     by_side: Floats
     frame: Floats
     stiffness: Floats
@@ -238,14 +238,14 @@ class Condensed(NamedTuple):
 class Solved(NamedTuple):
     """Motion of the sectors under unit forces on the tooth of one, unit modulus and width.
 
-    Unknowns ``inner`` and at the ``sides``; ``own`` (inner, load) with the sides held, ``by_side``
-    (inner, side); ``moved`` (lag, side, load): the sides of the sector ``lag - MATES`` pitches
+    Unknowns ``inner`` and at the ``sides``; ``inside`` (inner, load) with the sides held,
+    ``by_side`` (inner, side); ``moved`` (lag, side, load): the sides of the sector ``lag - MATES`` pitches
     ahead; ``lags`` (lag, load, load): deflections at the loads' places there.
     """
 
     inner: Integers
     sides: Integers
-    own: Floats
+    inside: Floats
     by_side: Floats
     moved: Floats
     lags: Floats
@@ -254,7 +254,7 @@ class Solved(NamedTuple):
         """(lag, row, load): what ``operator`` (row, unknown) makes of the motion."""
         by_side = operator[:, self.sides].toarray() + operator[:, self.inner] @ self.by_side
         out = np.asarray(by_side @ self.moved)
-        out[MATES] += operator[:, self.inner] @ self.own
+        out[MATES] += operator[:, self.inner] @ self.inside
         return out
 
 
@@ -338,12 +338,12 @@ class Sector:
         coupling = columns[inner].toarray()
         moved = factor.solve(np.concatenate([loads[inner], -coupling], axis=1))
         count = loads.shape[1]
-        own, by_side = moved[:, :count], moved[:, count:]
+        inside, by_side = moved[:, :count], moved[:, count:]
         frame = _polar_frame(foot)
         pushed = loads[inner].T @ by_side @ frame
         stiffness = frame.T @ (columns[sides].toarray() + coupling.T @ by_side) @ frame
-        held = loads[inner].T @ own
-        return Condensed(inner, sides, own, by_side, frame, stiffness, pushed, held)
+        held = loads[inner].T @ inside
+        return Condensed(inner, sides, inside, by_side, frame, stiffness, pushed, held)
 
     def solved(self, loads: Floats) -> Solved:
         """Condense and join the sectors, ``loads`` as in :meth:`condensed`."""
@@ -372,7 +372,7 @@ class Sector:
 
         # the energy of the tooth above its foot, under its load
         motion = np.zeros((patch.unknowns, count))
-        motion[solved.inner] = solved.own + solved.by_side @ solved.moved[MATES]
+        motion[solved.inner] = solved.inside + solved.by_side @ solved.moved[MATES]
         motion[solved.sides] = solved.moved[MATES]
         above = motion.reshape(-1, 2, count)[self.number].reshape(-1, count)
         tooth = above.T @ (self.mesh.patch.stiffness() @ above)

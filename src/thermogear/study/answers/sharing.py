@@ -40,6 +40,10 @@ def answers(asked: Asked) -> Iterator[Answer]:
         at=at,
         figures={"nominal": case.pair.contact_ratio},
     )
+    if case.pair.cut_short:
+        why = "undercut ends the path, and its edge is not told from the mate's tip corner"
+        yield undecided(SHARE, "edge_contact", why, at=at)
+        return
     words = f"{words[:1].upper()}{words[1:] or 'Tip corners carry 0 % of the load'}."
     yield answer(
         SHARE,
