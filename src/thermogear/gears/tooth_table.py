@@ -220,8 +220,9 @@ class Condensed(NamedTuple):
     """A sector with its inner unknowns eliminated, under loads on its tooth.
 
     Unknowns ``inner`` and at the ``sides``; ``inside`` (inner, load) with the sides held,
-    ``by_side`` (inner, side); ``frame`` turns radial and hoop motions of the sides into x and y; by these
-    motions ``stiffness`` (side, side) and ``pushed`` (load, side), the deflection at the loads;
+    ``by_side`` (inner, side); ``frame`` turns radial and hoop motions of the sides into x and y; by
+    these motions ``stiffness`` (side, side) and ``pushed`` (load, side), the deflection at the
+    loads;
     ``held`` (load, load): that with the sides held.
     """
 
@@ -239,8 +240,8 @@ class Solved(NamedTuple):
     """Motion of the sectors under unit forces on the tooth of one, unit modulus and width.
 
     Unknowns ``inner`` and at the ``sides``; ``inside`` (inner, load) with the sides held,
-    ``by_side`` (inner, side); ``moved`` (lag, side, load): the sides of the sector ``lag - MATES`` pitches
-    ahead; ``lags`` (lag, load, load): deflections at the loads' places there.
+    ``by_side`` (inner, side); ``moved`` (lag, side, load): the sides of the sector ``lag - MATES``
+    pitches ahead; ``lags`` (lag, load, load): deflections at the loads' places there.
     """
 
     inner: Integers
