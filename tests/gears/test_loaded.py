@@ -528,7 +528,8 @@ class TestForceAtGivenDeflection:
             assert np.median(apart) == pytest.approx(median, rel=0.05)
             assert apart.max() == pytest.approx(worst, rel=0.05)
             same = np.all((mesh.force > 0) == (other.force > 0), axis=-1)
-            assert apart[same].max() < 8.0 * np.median(apart)
+            # at nine tenths what is left is a corner's narrowing contact, 0.1 % of the load
+            assert apart[same].max() < (8.0 if part == 0.9 else 2.0) * np.median(apart)
             assert part == 0.9 or not same[np.argmax(apart)]
 
     def test_refusal(self) -> None:
