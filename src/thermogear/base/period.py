@@ -1,0 +1,55 @@
+"""After how many mesh periods a pair of gears repeats itself, and the orders that follow."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from thermogear.base.errors import InputError
+
+
+@dataclass(frozen=True)
+class Period:
+    """A pair of gears repeats itself after ``mesh_periods`` L mesh periods.
+
+    1 where all teeth of a gear are alike; the teeth of a gear, z1 or z2, where those of that gear
+    alone differ; the least common multiple of ``teeth`` (z1, z2) where those of both do: the turn
+    of the pair, the hunting tooth period. ``teeth`` None: nothing is known of shafts.
+
+    >>> Period.of((20, 30), pinion=True, wheel=True).orders
+    {'pinion': 3, 'wheel': 2, 'mesh': 60, 'hunting_tooth': 1}
+    """
+
+    mesh_periods: int = 1
+    teeth: tuple[int, int] | None = None
+
+    def __post_init__(self) -> None:
+        if not (isinstance(self.mesh_periods, int) and self.mesh_periods >= 1):
+            raise InputError("mesh_periods", repr(self.mesh_periods), allowed="1, 2, 3, ...")
+
+    @classmethod
+    def of(cls, teeth: tuple[int, int], *, pinion: bool = False, wheel: bool = False) -> Period:
+        """The period of gears with ``teeth``, where the teeth of the named gears differ."""
+        differing = [z for z, differs in zip(teeth, (pinion, wheel), strict=True) if differs]
+        return cls(math.lcm(*differing), teeth)
+
+    @property
+    def orders(self) -> dict[str, int]:
+        """Orders of the period at which a shaft, the mesh and the hunting tooth repeat.
+
+        A shaft stands here only where a whole number of its turns fills the period; the hunting
+        tooth only where the same two teeth meet once in a period.
+        """
+        found = {}
+        if self.teeth is not None:
+            for name, z in zip(("pinion", "wheel"), self.teeth, strict=True):
+                if self.mesh_periods % z == 0:
+                    found[name] = self.mesh_periods // z
+        found["mesh"] = self.mesh_periods
+        if self.teeth is not None and self.mesh_periods == math.lcm(*self.teeth):
+            found["hunting_tooth"] = 1
+        return found
+
+    def frequency(self, mesh_frequency: float) -> float:
+        """How often the period repeats [the unit of ``mesh_frequency``]."""
+        return mesh_frequency / self.mesh_periods
