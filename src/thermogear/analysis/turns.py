@@ -20,8 +20,8 @@ from thermogear.base.arrays import Complexes, Floats
 from thermogear.dynamics.kernels.turns import advance_turn
 
 STEPS = 192
-"""Least steps in a mesh period: eight of its 24th harmonic, and edges of the backlash are met within
-one of them."""
+"""Least steps in a mesh period: eight in a period of its 24th harmonic; an edge of the backlash is
+met within one."""
 LONGEST_STEP = 0.25
 """Of a step, in radians of the natural frequency: Runge and Kutta lose 1e-5 of an amplitude in a
 cycle of it."""
@@ -41,7 +41,7 @@ LEAST_TURNS = 4
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class TurnTables:
-    """What all speeds of a pair share over its turn, Fourier coefficients over the turn, mean first.
+    """What all speeds of a pair share: Fourier coefficients over the turn, the mean first.
 
     ``stiffness`` k over its mean, ``error`` e in half backlashes; ``mesh_periods`` in a turn.
     """
@@ -52,7 +52,7 @@ class TurnTables:
     _sampled: dict[int, tuple[Floats, Floats, Floats]] = field(default_factory=dict, init=False)
 
     def sampled(self, steps: int) -> tuple[Floats, Floats, Floats]:
-        """k and e'' (phase in turns) at the half steps, e at the steps of ``steps`` a mesh period."""
+        """k and e'' (phase in turns) at half steps, e at the ``steps`` of every mesh period."""
         if steps not in self._sampled:
             count = steps * self.mesh_periods
             ranks = np.arange(self.error.size)
@@ -103,9 +103,9 @@ class TurnLanes:
 def follow_turns(tables: TurnTables, lanes: TurnLanes, start: Floats) -> TurnMotions:
     """What each lane settles on from ``start`` (lane, 2), held ahead of the turn.
 
-    The run begins ln(1/:data:`DIED_OUT`) of the vibration's decay ahead of phase 0, at most a
-    the turns followed at most. It ends where two turns in a row end within :data:`SAME`, or where the
-    states at phase 0 are those of up to :data:`LONGEST_CYCLE` turns before, a cycle long.
+    The run begins as long ahead of phase 0 as a vibration takes to fall to :data:`DIED_OUT`. It
+    ends where two turns in a row end within :data:`SAME`, or where the states at phase 0 are those
+    of up to :data:`LONGEST_CYCLE` turns before, a cycle long.
     """
     count, mesh = lanes.mean.size, tables.mesh_periods
     out = TurnMotions(

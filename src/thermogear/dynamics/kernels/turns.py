@@ -28,8 +28,8 @@ def advance_turn(
     """Advance all lanes by ``count`` classical Runge-Kutta steps from step ``first``, in place.
 
     x'' + damping x' + k f(x; b) = mean + scale e''. ``stiffness`` k and ``bend`` e'' (2 N,) at the
-    half steps of a turn of N steps, ``error`` e (N,), shared by the lanes. ``felt`` (5, lane), grown
-    in place: greatest and least k f, greatest and least x + e, steps out of drive-side contact.
+    half steps of a turn of N steps, ``error`` e (N,), shared by the lanes. ``felt`` (5, lane) is
+    kept up: greatest and least k f, greatest and least x + e, steps out of drive-side contact.
     """
     steps = error.shape[0]
     for number in range(count):

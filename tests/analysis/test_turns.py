@@ -1,0 +1,73 @@
+"""Motions over a turn by fixed steps, against linear theory and event-exact orbits."""
+
+import numpy as np
+import pytest
+
+from thermogear.analysis.orbits import periodic_orbit
+from thermogear.analysis.settle import PERIODIC
+from thermogear.analysis.turns import TurnLanes, TurnTables, follow_turns
+from thermogear.base.excitation import Periodic
+from thermogear.dynamics.models import DeadZoneModel
+
+MESH_PERIODS = 12
+
+
+def _tables(seed: int, size: float) -> TurnTables:
+    """A stiffness of the mesh and an error of shaft and mesh orders, drawn."""
+    draw = np.random.default_rng(seed)
+    stiffness = np.zeros(3 * MESH_PERIODS + 1, complex)
+    stiffness[0] = 1.0
+    stiffness[MESH_PERIODS::MESH_PERIODS] = [0.1, 0.05, 0.02]
+    error = np.zeros_like(stiffness)
+    error[1:] = size * (draw.normal(size=(stiffness.size - 1, 2)) @ [1.0, 1j])
+    error[1:] /= 1.0 + np.arange(1, error.size)
+    return TurnTables(stiffness=stiffness, error=error, mesh_periods=MESH_PERIODS)
+
+
+def _lanes(ratio: np.ndarray, force: float) -> TurnLanes:
+    """Mesh over natural frequency ``ratio``, damping ratio 0.05."""
+    ones = np.ones(ratio.size)
+    return TurnLanes(
+        mean=force * ones, damping=0.1 * ones, backlash=ones,
+        period=MESH_PERIODS * 2.0 * np.pi / ratio,
+    )  # fmt: skip
+
+
+def test_a_pair_that_never_parts_moves_as_linear_theory_says(compared) -> None:
+    # constant stiffness: every order of the error by itself
+    tables = _tables(1, 0.01)
+    tables.stiffness[1:] = 0.0
+    lanes = _lanes(np.array([0.05, 0.3, 1.1]), 0.8)
+    motions = follow_turns(tables, lanes, np.array([[1.8, 0.0]] * 3))
+    assert (motions.label == PERIODIC).all()
+    assert (motions.period == 1).all()
+    assert (motions.lost == 0.0).all()
+    ranks = np.arange(tables.error.size)
+    phase = np.arange(4096) / 4096
+    for lane, period in enumerate(lanes.period):
+        rate = 2.0 * np.pi * ranks / period
+        answer = tables.error * rate**2 / (1.0 - rate**2 + 0.1j * rate)
+        force = 0.8 + (np.exp(2j * np.pi * np.outer(phase, ranks)) @ answer).real
+        worst = np.abs(motions.force[lane] - [force.max(), force.min()]).max()
+        compared("force of a pair in contact", "linear theory", worst, 1e-4, "b_c")
+
+
+@pytest.mark.parametrize("ratio", [0.75, 0.95])
+def test_flanks_that_part_move_on_the_exact_orbit(compared, ratio: float) -> None:
+    tables, lanes = _tables(2, 0.05), _lanes(np.array([ratio]), 0.1)
+    motions = follow_turns(tables, lanes, np.array([[1.1, 0.0]]))
+    rate = 2.0 * np.pi / lanes.period[0]
+    bend = tables.error * (1j * rate * np.arange(tables.error.size)) ** 2
+    model = DeadZoneModel(
+        damping_ratio=0.05, frequency=rate,
+        stiffness=Periodic(1.0, tuple(tables.stiffness[1:])), force=Periodic(0.1, tuple(-bend[1:])),
+    )  # fmt: skip
+    orbit = periodic_orbit(model, 1, motions.state[0])
+    assert motions.period[0] == 1
+    assert motions.lost[0] > 0.02
+    apart = np.abs(orbit.state - motions.state[0]).max()
+    compared("state at the turn's start", "event-exact orbit", apart, 2e-3, "b_c")
+    factor = motions.force[0, 0] / 0.1 / orbit.dynamic_load_factor() - 1.0
+    compared("greatest mesh force", "event-exact orbit", factor, 2e-3, "1")
+    share = motions.lost[0] - (1.0 - orbit.time_share["drive"])
+    compared("share of time out of contact", "event-exact orbit", share, 2e-3, "1")
