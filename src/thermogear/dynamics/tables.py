@@ -26,6 +26,7 @@ class LaneTables:
 
     ``stiffness`` and ``force`` are Fourier coefficients of shape (lane, harmonic), column 0 the
     mean; ``stiffness_pieces`` and ``force_pieces`` add jumps, lane by lane (None: none).
+    ``mesh_periods``: so many mesh periods are one ``period`` of every lane.
     """
 
     period: Floats
@@ -35,6 +36,7 @@ class LaneTables:
     force: Complexes
     stiffness_pieces: tuple[Pieces | None, ...]
     force_pieces: tuple[Pieces | None, ...]
+    mesh_periods: int = 1
 
     def __len__(self) -> int:
         return int(self.period.size)
@@ -50,6 +52,7 @@ class LaneTables:
             force=self.force[chosen],
             stiffness_pieces=tuple(self.stiffness_pieces[i] for i in chosen),
             force_pieces=tuple(self.force_pieces[i] for i in chosen),
+            mesh_periods=self.mesh_periods,
         )
 
     def jumps(self, lane: int) -> tuple[float, ...]:
