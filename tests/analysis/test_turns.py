@@ -52,7 +52,7 @@ def test_a_pair_that_never_parts_moves_as_linear_theory_says(compared) -> None:
         compared("force of a pair in contact", "linear theory", worst, 1e-4, "b_c")
 
 
-@pytest.mark.parametrize("ratio", [0.85, 0.95, 1.1])
+@pytest.mark.parametrize("ratio", [0.85, 0.95])
 def test_flanks_that_part_move_on_the_exact_orbit(compared, ratio: float) -> None:
     tables, lanes = _tables(2, 0.05), _lanes(np.array([ratio]), 0.1)
     motions = follow_turns(tables, lanes, np.array([[1.1, 0.0]]))

@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.settle import CHAOTIC, UNDECIDED, WATCHED
-from thermogear.analysis.side_by_side import Motions, motions_along
+from thermogear.analysis.side_by_side import APART, Motions, motions_along
+from thermogear.analysis.turns import TurnLanes, TurnTables, follow_turns
 from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.excitation import Excitations
 from thermogear.base.units import RPM
@@ -38,6 +39,10 @@ PEAK = 1.05
 LEAST_FACTOR = 0.99
 """Dynamic factor [-] below which a record has not seen its motion: 1 less what samples may miss of
 a peak (ours)."""
+TURN_STEP = 0.05
+"""Of a mesh whose teeth differ, which costs a turn of both gears at every speed (chosen)."""
+ALIKE = 1e-2
+"""Of their greatest force: motions over several turns that differ by less are one (chosen)."""
 LOST = 1e-3
 """Share of time out of contact below which contact is kept."""
 
@@ -165,16 +170,103 @@ def look(mesh: Excitations, *, teeth: int, own: Floats) -> Speeds:
     """
     natural = float(mesh.natural_frequency[0])
     high = max(HIGHEST, min(1.1 * teeth * own.max() / natural, FARTHEST))
-    count = int(np.ceil(np.log(high / LOWEST) / np.log1p(STEP)))
+    step = STEP if mesh.mesh_periods == 1 else TURN_STEP
+    count = int(np.ceil(np.log(high / LOWEST) / np.log1p(step)))
     ratio = np.geomspace(LOWEST, high, count + 1)
     along = mesh.take(np.zeros(ratio.size, int))
     lanes = points_of(replace(along, mesh_frequency=natural * ratio))
-    motions = motions_along(lanes.flat, starts_of(lanes))
-    found = figures_of(lanes, motions)
+    motions, found = motions_of(lanes, starts_of(lanes), handed_on=True)
     columns: dict[str, ArrayLike] = {name: found[name] for name in VALUES}
     columns |= {"period": motions.period, "label_code": motions.label, "state": motions.state}
     columns["pinion_speed"] = lanes.mesh_frequency[motions.lane] / teeth
     return Speeds(columns, float(ratio[1] / ratio[0] - 1.0), np.unique(own))
+
+
+def motions_of(
+    points: Points, starts: Floats, *, handed_on: bool = False
+) -> tuple[Motions, dict[str, Floats]]:
+    """What ``points`` settle on from ``starts`` (point, start, 2), and their figures, (motion,).
+
+    Of teeth that are alike: :func:`~thermogear.analysis.side_by_side.motions_along` and
+    :func:`figures_of`. Where they differ the motion over the turn of the gears is followed, each
+    start by itself; where motions are ``handed_on`` the neighbours' are starts too.
+    """
+    if points.mesh_periods == 1:
+        motions = motions_along(points.flat, starts)
+        return motions, figures_of(points, motions)
+    rows = _over_the_turn(points, starts)
+    if handed_on:
+        lane, state = rows["lane"].astype(int), np.stack([rows["x"], rows["v"]], axis=1)
+        first = state[np.searchsorted(lane, np.arange(len(points.status)))]
+        beside = np.stack([np.roll(first, 1, axis=0), np.roll(first, -1, axis=0)], axis=1)
+        rows = _over_the_turn(points, np.concatenate([first[:, None], beside, starts], axis=1))
+    motions = Motions(
+        rows["lane"].astype(np.int64), np.stack([rows["x"], rows["v"]], axis=1),
+        rows["label"].astype(np.int8), rows["period"].astype(np.int32),
+    )  # fmt: skip
+    return motions, {name: rows[name] for name in VALUES}
+
+
+def _over_the_turn(points: Points, starts: Floats) -> dict[str, Floats]:
+    """Every motion over a turn that the ``starts`` (point, start, 2) lead to, in columns."""
+    count = starts.shape[1]
+    rows: list[dict[str, float]] = []
+    shared = [
+        (row.tobytes(), error.tobytes(), float(length))
+        for row, error, length in zip(
+            points.flat.stiffness, points.error, points.length, strict=True
+        )
+    ]
+    for key in dict.fromkeys(shared):
+        index = np.array([place for place, other in enumerate(shared) if other == key])
+        here = points.take(index)
+        tables = TurnTables(
+            stiffness=here.flat.stiffness[0],
+            error=here.error[0] / here.length[0],
+            mesh_periods=points.mesh_periods,
+        )
+        each = np.repeat(np.arange(index.size), count)
+        lanes = TurnLanes(
+            mean=here.flat.force[each, 0].real,
+            damping=here.flat.damping[each],
+            backlash=here.flat.half_backlash[each],
+            period=here.flat.period[each],
+        )
+        motions = follow_turns(tables, lanes, starts[index].reshape(-1, 2))
+        newton = here.stiffness[each] * here.length[each]
+        force = newton[:, None] * motions.force
+        columns = {
+            "lane": index[each],
+            "frequency_ratio": (here.mesh_frequency / here.rate)[each],
+            "dynamic_factor": np.abs(force).max(axis=1) / here.force[each],
+            "dte_peak_to_peak": here.length[each] * np.ptp(motions.travel, axis=1),
+            "contact_loss_share": motions.lost,
+            "mesh_force_min": force[:, 1],
+            "period": motions.period,
+            "label": motions.label,
+            "x": motions.state[:, 0],
+            "v": motions.state[:, 1],
+        }
+        known: list[dict[str, float]] = []
+        for values in zip(*columns.values(), strict=True):
+            row = dict(zip(columns, map(float, values), strict=True))
+            if not any(_alike(row, other) for other in known):
+                known.append(row)
+        rows += known
+    rows.sort(key=lambda row: row["lane"])
+    return {name: np.array([row[name] for row in rows]) for name in rows[0]}
+
+
+def _alike(row: Mapping[str, float], other: Mapping[str, float]) -> bool:
+    """Whether two motions of a lane are one."""
+    if any(row[name] != other[name] for name in ("lane", "period", "label")):
+        return False
+    if row["label"] == UNDECIDED:
+        return True
+    if row["period"] == 1.0:
+        return abs(row["x"] - other["x"]) < APART
+    # a longer motion may be met at another turn of it
+    return abs(row["dynamic_factor"] / other["dynamic_factor"] - 1.0) < ALIKE
 
 
 def figures_of(points: Points, motions: Motions) -> dict[str, Floats]:

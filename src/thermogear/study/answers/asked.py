@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.analysis.settle import UNDECIDED
-from thermogear.analysis.side_by_side import RULE, motions_along
+from thermogear.analysis.side_by_side import RULE
 from thermogear.base.arrays import Floats
 from thermogear.base.display import worded
 from thermogear.base.limits import LIMITS, NO_LIMIT
@@ -34,7 +34,7 @@ from thermogear.mesh.model import MeshModel
 from thermogear.mesh.thermal import HotPair
 from thermogear.mesh.warm_up import WarmUp, warm_up
 from thermogear.results.answer import Answer
-from thermogear.study.speeds import Speeds, figures_of, look, starts_of
+from thermogear.study.speeds import Speeds, look, motions_of, starts_of
 
 Cycle = Mapping[str, NDArray[Any]]
 MOVES = (*EXCITES, "status", "pinion_speed", "pinion_torque")
@@ -260,9 +260,8 @@ class Asked:
         if self.speeds is not None:
             speed = points.mesh_frequency / self.case.pair.pinion.teeth
             starts = np.concatenate([starts, self.speeds.beside(speed, start=starts[:, 0])], axis=1)
-        motions = motions_along(points.flat, starts)
+        motions, figures = motions_of(points, starts)
         lane = motions.lane
-        figures = figures_of(points, motions)
         figures["undecided"] = np.where(motions.label == UNDECIDED, 1.0, 0.0)
         place = np.arange(lane.size) - np.searchsorted(lane, lane)
         every = {}
