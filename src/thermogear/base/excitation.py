@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base import fourier
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.base.period import Period
@@ -70,6 +72,9 @@ class Periodic:
     def __call__(self, phase: ArrayLike) -> Floats:
         """Values at ``phase`` (in periods, any shape)."""
         phi = np.asarray(phase, dtype=float)
+        if len(self.harmonics) > fourier.MANY:
+            found: Floats = fourier.values(self._row, phi)[0]
+            return found
         if phi.ndim == 0 and self.harmonics and abs(phi) < _FAR:
             return self._one(float(phi))
         total = np.full(phi.shape, self.mean)
@@ -77,6 +82,10 @@ class Periodic:
             if amplitude != 0.0:
                 total = total + (amplitude * np.exp(2j * np.pi * order * phi)).real
         return total
+
+    @cached_property
+    def _row(self) -> NDArray[np.complex128]:
+        return self.columns([self])
 
     def _one(self, phi: float) -> Floats:
         """The value at one phase, to the last digit that of arrays, in a tenth of their time."""

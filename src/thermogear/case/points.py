@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base import fourier
 from thermogear.base.arrays import Dataset, Floats, Whole
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import Excitations, Periodic
@@ -85,6 +86,8 @@ class Points:
 
     def kinematic(self, phase: Floats) -> Floats:
         """e [m] at ``phase`` [periods of the tables], (point, phase)."""
+        if self.flat.by_fft:
+            return fourier.values(self.error, phase)
         ranks = np.arange(self.error.shape[1])
         waves = np.exp(2j * np.pi * np.multiply.outer(ranks, phase))
         # one product a point: the same to the last bit in every batch
@@ -183,11 +186,10 @@ def largest_fluctuation(points: Points) -> Floats:
 
     k = k_m (1 + s w(t)) with the pair's own w: s = -1/min w; infinite without fluctuation.
     """
-    waves = points.flat.stiffness[:, 1:]
-    count = 8 * (waves.shape[1] + 1)
-    turns = np.outer(np.arange(1, waves.shape[1] + 1), np.arange(count) / count)
-    least = (waves @ np.exp(2j * np.pi * turns)).real.min(axis=1)
-    mean = points.flat.stiffness[:, 0].real
+    waves = points.flat.stiffness.copy()
+    mean = waves[:, 0].real.copy()
+    waves[:, 0] = 0.0
+    least = fourier.sampled(waves, 8 * waves.shape[1]).min(axis=1)
     return np.asarray(np.divide(mean, -least, out=np.full(mean.size, np.inf), where=least < 0.0))
 
 

@@ -376,10 +376,11 @@ def _cycle(
         operating = case.operating_at(temperature, model)
     hot = HotPair(case.pair, replace(operating, housing=case.housing), model)
     s = path_of_contact(case.pair, path_positions)
-    phase = np.arange(case.mesh_positions) / case.mesh_positions
     # what is asked after the motion takes the same mesh, and ends its keeping
     key = (model, state, path_positions)
-    cycle = samples.cycles.pop(key, None) or Cycle(hot, tuple(case.deviations), s, phase)
+    cycle = samples.cycles.pop(key, None) or Cycle(
+        hot, tuple(case.deviations), s, case.mesh_positions
+    )
     if want == EXCITES:
         samples.cycles[key] = cycle
     cyclic = [name for name in want if name not in BODIES_OF]
