@@ -55,7 +55,7 @@ def mesh_points(
 @lru_cache(maxsize=32)
 def _at(pair: GearPair, phases: bytes, flank: str, extended: bool) -> MeshPoints:
     """Remembered: a heat balance, a row of temperatures, a sweep ask for the same places."""
-    phi = np.frombuffer(phases)
+    phi = phase = np.frombuffer(phases)
     pitch, start = pair.base_pitch, pair.path.a
     ranks = np.arange(-1, int(np.ceil(pair.contact_ratio - 1e-12)) + 1)
     if flank == "drive":
@@ -78,5 +78,6 @@ def _at(pair: GearPair, phases: bytes, flank: str, extended: bool) -> MeshPoints
         np.mod(number, pair.pinion.teeth).astype(np.int64),
         np.mod(following, pair.wheel.teeth).astype(np.int64),
         flank,
+        phase,
     )
     return MeshPoints(s, point, contacts)
