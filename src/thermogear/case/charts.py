@@ -55,7 +55,8 @@ class Chart:
         for side in sorted(set(self.traces.flank), reverse=True):  # drive first
             places = {
                 self.read.tooth[k] - 1: k
-                for k, acts in enumerate(self.traces.flank) if acts == side
+                for k, acts in enumerate(self.traces.flank)
+                if acts == side
             }
             if len(places) < body.teeth:
                 raise InputError(

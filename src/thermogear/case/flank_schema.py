@@ -74,20 +74,19 @@ class EccentricityTable(Table):
 Slope = measure("length", bounds.ADDED, "f_Halpha, > 0 outside at the tip", "3 um")
 Form = measure("length", bounds.RELIEF_AMOUNT, "f_falpha, peak to peak of a wave", "2 um")
 Waves = Annotated[float, Number(low=1.0, high=20.0, example="2.5")]
-MOST_OF_TEETH = bounds.MOST_TEETH
 
 
 class ToothProfilesTable(Table):
     """Slope and form of every tooth on one side of a gear: one value for each, or one for all."""
 
-    slope: Annotated[tuple[float, ...], Several(Slope, most=MOST_OF_TEETH)] = Field(
-        default=(0.0,), title="none"
+    slope: Annotated[tuple[float, ...] | None, Several(Slope, most=bounds.MOST_TEETH)] = Field(
+        default=None, title="none"
     )
-    form: Annotated[tuple[float, ...], Several(Form, most=MOST_OF_TEETH)] = Field(
-        default=(0.0,), title="none"
+    form: Annotated[tuple[float, ...] | None, Several(Form, most=bounds.MOST_TEETH)] = Field(
+        default=None, title="none"
     )
-    phase: Annotated[tuple[float, ...], Several(Turned, most=MOST_OF_TEETH)] = Field(
-        default=(0.0,), title="of the wave at the start of the active profile; 0"
+    phase: Annotated[tuple[float, ...] | None, Several(Turned, most=bounds.MOST_TEETH)] = Field(
+        default=None, title="of the wave at the start of the active profile; 0"
     )
     waves: Waves = Field(default=2.5, title="waves of the form over the active profile; 2.5")
     flank: Flank = Field(default="both", description="drive and back flanks alike")
@@ -96,7 +95,7 @@ class ToothProfilesTable(Table):
 class ToothTable(Table):
     """One tooth that differs: what it has besides all that the gear's other fields say."""
 
-    tooth: Annotated[int, Count(low=1, high=MOST_OF_TEETH, example="7")]
+    tooth: Annotated[int, Count(low=1, high=bounds.MOST_TEETH, example="7")]
     index: Annotated[
         float,
         measure(

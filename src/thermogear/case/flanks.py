@@ -21,7 +21,6 @@ from thermogear.gears.deviations import (
     PitchError,
     PressureAngleError,
     Relief,
-    require_each,
 )
 from thermogear.gears.graded_flanks import WavyProfile, graded_flanks
 from thermogear.gears.pair import GearPair
@@ -51,8 +50,8 @@ def deviations(
     """
     contacts = mesh_points(pair, [0.0]).contacts
     found: list[Deviation] = []
-    for gear, table in (("pinion", file.gears.pinion), ("wheel", file.gears.wheel)):
-        for field, make in (*_given(gear, table), *_of_teeth(gear, file)):
+    for gear in GEARS:
+        for field, make in _given(gear, file, pair):
             try:
                 deviation = make()
                 deviation.gap(contacts)
@@ -69,7 +68,7 @@ def deviations(
             found.append(deviation)
     found += [one for chart in measured for one in _charted(file, pair, chart)]
     found += _graded(file, pair)
-    return tuple(mean_tooth(found) if file.gears.period == "mesh" else found)
+    return tuple(mean_tooth(pair, found) if file.gears.period == "mesh" else found)
 
 
 def first_tooth(file: GearFile, gear: str) -> int:
@@ -77,13 +76,15 @@ def first_tooth(file: GearFile, gear: str) -> int:
     return 0 if file.gears.marks is None else file.gears.marks[GEARS.index(gear)] - 1
 
 
-def _of_teeth(gear: str, file: GearFile) -> Iterator[tuple[str, Callable[[], Deviation]]]:
+def _of_teeth(
+    gear: str, file: GearFile, pair: GearPair
+) -> Iterator[tuple[str, Callable[[], Deviation]]]:
     """(field, maker) of what may differ from tooth to tooth of one gear."""
     table: GearTable = getattr(file.gears, gear)
     first, teeth = first_tooth(file, gear), table.teeth
     if table.pitch_errors is not None or any(one.index for one in table.teeth_differ):
         field = "pitch_errors" if table.pitch_errors is not None else "teeth_differ"
-        yield field, partial(_index, gear, file)
+        yield field, partial(_index, gear, file, pair)
     if (one := table.eccentricity) is not None:
         amount = one.amount if one.amount is not None else 0.5 * (one.run_out or 0.0)
         angle = one.angle - 2.0 * math.pi * first / teeth
@@ -104,11 +105,12 @@ def _of_teeth(gear: str, file: GearFile) -> Iterator[tuple[str, Callable[[], Dev
             yield "teeth_differ", partial(_single_teeth, gear, single, first, teeth)
 
 
-def _index(gear: str, file: GearFile) -> PitchError:
+def _index(gear: str, file: GearFile, pair: GearPair) -> PitchError:
     """Index of every tooth along the line of action [m], in the order of the mesh."""
     table: GearTable = getattr(file.gears, gear)
-    errors = np.array(table.pitch_errors or (0.0,) * table.teeth)
-    require_each("", errors, table)
+    given = PitchError(gear, table.pitch_errors or (0.0,) * table.teeth)
+    given.require_fits(pair)
+    errors = np.array(given.errors)
     if file.gears.pitch_errors_are == "single pitch":
         left, most = float(errors.sum()), CLOSED * table.teeth
         if abs(left) > most:
@@ -139,7 +141,7 @@ def _every_tooth(gear: str, table: ToothProfilesTable, first: int, teeth: int) -
     """Slope and form of every tooth of one side."""
     columns = []
     for name in ("slope", "form", "phase"):
-        values = getattr(table, name)
+        values = getattr(table, name) or (0.0,)
         if len(values) not in (1, teeth):
             raise InputError(
                 name, f"{len(values)} values", allowed=f"one for each of the {teeth} teeth, or one"
@@ -149,9 +151,7 @@ def _every_tooth(gear: str, table: ToothProfilesTable, first: int, teeth: int) -
     return ToothShapes(gear, tuple(_wavy(gear, table, *row) for row in rows))
 
 
-def _single_teeth(
-    gear: str, given: Sequence[ToothTable], first: int, teeth: int
-) -> ToothShapes:
+def _single_teeth(gear: str, given: Sequence[ToothTable], first: int, teeth: int) -> ToothShapes:
     """Slope and form of the teeth that differ on one side, none of the others."""
     found = {}
     for one in given:
@@ -200,9 +200,27 @@ def accuracy(file: GearFile, pair: GearPair) -> int | None:
 def _graded(file: GearFile, pair: GearPair) -> tuple[Deviation, ...]:
     """Seeded profiles of the gears whose own are not given."""
     grade, table = accuracy(file, pair), file.flanks
-    if grade is None or table is None:
+    if table is None or not unmeasured(file):
+        return ()
+    if grade is None:
+        if table.teeth == "drawn":
+            raise InputError(
+                "flanks.teeth",
+                "'drawn'",
+                why="the tables of ISO 1328-1 end before these gears",
+                fix="give pitch_errors and tooth_profiles instead",
+            )
         return ()
     edition, drawn = table.edition, table.teeth == "drawn"
+    for gear in unmeasured(file) if drawn else ():
+        for field in ("eccentricity", "pitch_errors"):
+            if getattr(getattr(file.gears, gear), field) is not None:
+                raise InputError(
+                    f"gears.{gear}.{field}",
+                    'given beside flanks.teeth = "drawn"',
+                    why="a drawn gear has its own",
+                    fix="leave one out, or give tooth_profiles, which are not drawn then",
+                )
     try:
         profiles: tuple[Deviation, ...] = (
             drawn_pair(pair, grade, seed=table.seed, place=table.drawing, edition=edition)
@@ -225,18 +243,25 @@ def _graded(file: GearFile, pair: GearPair) -> tuple[Deviation, ...]:
 
 def unmeasured(file: GearFile) -> list[str]:
     """The gears whose flanks neither a table nor a chart gives."""
+    tables = {"pinion": file.gears.pinion, "wheel": file.gears.wheel}
     return [
         name
-        for name in ("pinion", "wheel")
-        if getattr(file.gears, name).profile is None and getattr(file.flanks, name, None) is None
+        for name, table in tables.items()
+        if table.profile is None
+        and not table.tooth_profiles
+        and getattr(file.flanks, name, None) is None
     ]
 
 
-def _given(gear: str, table: GearTable) -> Iterator[tuple[str, Callable[[], Deviation]]]:
+def _given(
+    gear: str, file: GearFile, pair: GearPair
+) -> Iterator[tuple[str, Callable[[], Deviation]]]:
     """(field, maker) of what one gear's table holds."""
+    table: GearTable = getattr(file.gears, gear)
     for end, relief in (("tip", table.tip_relief), ("root", table.root_relief)):
         if relief is not None:
             yield f"{end}_relief", partial(_relief, gear, end, relief)
+    yield from _of_teeth(gear, file, pair)
     if table.pressure_angle_error is not None:
         yield "pressure_angle_error", partial(PressureAngleError, gear, table.pressure_angle_error)
     if table.profile is not None:

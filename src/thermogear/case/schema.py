@@ -356,6 +356,12 @@ class GearTable(Table):
     )
 
 
+Marks = Annotated[
+    tuple[int, ...],
+    Several(Count(low=1, high=bounds.MOST_TEETH, example="1"), least=2, most=2, single=False),
+]
+
+
 class GearsTable(Table):
     """What both gears share, and the two of them."""
 
@@ -381,7 +387,7 @@ class GearsTable(Table):
     pitch_errors_along: Annotated[str, Choice("line of action", "arc")] = Field(
         default="line of action", title="line of action; arc of the reference circle"
     )
-    marks: Annotated[tuple[int, ...], Several(Count(low=1, high=bounds.MOST_TEETH, example="1"), least=2, most=2, single=False)] | None = Field(
+    marks: Marks | None = Field(
         default=None, title="teeth of pinion and wheel that meet at mesh phase 0; 1 and 1"
     )
     period: Annotated[str, Choice("turn", "mesh")] = Field(

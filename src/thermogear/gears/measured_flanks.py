@@ -100,9 +100,7 @@ class ProfileTraces:
     def single(self, pair: GearPair, trace: int) -> FlankTable:
         """What acts of one trace by itself, as a deviation."""
         row = slice(trace, trace + 1)
-        alone = replace(
-            self, added=self.added[row], flank=self.flank[row], tooth=self.tooth[row]
-        )
+        alone = replace(self, added=self.added[row], flank=self.flank[row], tooth=self.tooth[row])
         gear = pair.pinion if self.gear == "pinion" else pair.wheel
         return alone.flanks(pair)[0].table(self.gear, gear.base_radius)
 

@@ -16,7 +16,6 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from thermogear.base.arrays import Floats
 from thermogear.gears.accuracy import FlankTolerances, flank_tolerances
@@ -70,10 +69,12 @@ class Population:
     least: float = math.sqrt(0.5)
 
 
+Number = float | Floats
+
+
 def _profile(
-    share: Floats, *, slope: ArrayLike, barrel: ArrayLike, wave: ArrayLike, waves: float,
-    phase: ArrayLike,
-) -> Floats:  # fmt: skip
+    share: Floats, *, slope: Number, barrel: Number, wave: Number, waves: float, phase: Number
+) -> Floats:
     """S [m] at shares x of the profile, not yet levelled; arguments of :class:`ToothProfile`."""
     x = np.clip(share, 0.0, 1.0)
     line = slope * (x - 0.5) - barrel * (2.0 * x - 1.0) ** 2
@@ -135,7 +136,7 @@ class GearFigures(NamedTuple):
 
     def shares(self, tolerances: FlankTolerances) -> Floats:
         """Each over its tolerance, in the order of the fields."""
-        return np.asarray(self) / np.asarray(tolerances)
+        return np.asarray(np.array(self) / np.array(tolerances))
 
 
 @lru_cache(maxsize=16)
@@ -177,6 +178,11 @@ def measured(
     """The named gear of ``pair`` with its ``deviations``, measured about its bore on one side.
 
     Those of the mate, and what belongs to no gear, are left aside.
+
+    >>> pair = GearPair(Gear(20, 3e-3), Gear(40, 3e-3))
+    >>> figures = measured(pair, "wheel", [Eccentricity("wheel", amount=10e-6, angle=0.0)])
+    >>> f"{1e6 * figures.cumulative_pitch:.2f} um"
+    '21.28 um'
     """
     at = _probe(pair, name, flank)
     mine = [one for one in deviations if getattr(one, "gear", None) == name]
@@ -193,14 +199,12 @@ class _Side:
     phase: Floats
     waves: float
 
-    def read(self, pair: GearPair, name: str, flank: str) -> Floats:
+    def read(self, pair: GearPair, name: str) -> Floats:
         """S [m] at the points of the probe."""
         gear = pair.pinion if name == "pinion" else pair.wheel
         start, pitch, tip = active_profile(pair, name)
         some = np.arange(MEASURED_TEETH) * gear.teeth // MEASURED_TEETH
-        sizes = {
-            key: getattr(self, key)[some] for key in ("slope", "barrel", "wave", "phase")
-        }
+        sizes = {key: getattr(self, key)[some] for key in ("slope", "barrel", "wave", "phase")}
         x = np.append(_SHARES, (pitch - start) / (tip - start))
         found = _profile(x, waves=self.waves, **sizes)
         return np.append(np.zeros(gear.teeth), found[:, :-1] - found[:, -1:])
@@ -236,6 +240,12 @@ def drawn_gear(
     worse they are made smaller. So the class measured on both sides is ``grade``. A class two
     coarser with the same ``seed`` is the same gear, doubled. Tolerances are not rounded. Raises as
     :func:`~thermogear.gears.accuracy.flank_tolerances`.
+
+    >>> pair = GearPair(Gear(20, 3e-3), Gear(40, 3e-3))
+    >>> drawn = drawn_gear(pair, "pinion", 6, seed=np.random.SeedSequence(1))
+    >>> limits = flank_tolerances(20, 3e-3, grade=6)
+    >>> f"{max(measured(pair, 'pinion', drawn).shares(limits)):.2f} of its tolerance"
+    '0.85 of its tolerance'
     """
     gear = pair.pinion if name == "pinion" else pair.wheel
     limits = flank_tolerances(gear.teeth, gear.module, grade=grade, edition=edition)
@@ -254,7 +264,7 @@ def drawn_gear(
     def shares(flank: str, profiles: float) -> Floats:
         at = _probe(pair, name, flank)
         added = -centre.gap(at)[:, 0] - pitch.gap(at)[:, 0]
-        added += profiles * sides[flank].read(pair, name, flank)
+        added += profiles * sides[flank].read(pair, name)
         return _figures(pair, name, added).shares(limits)
 
     bare, full = shares("back", 0.0), shares("back", 1.0)
@@ -307,9 +317,7 @@ def _rayleigh(rng: np.random.Generator, mean: float) -> float:
     return float(rng.rayleigh(mean * math.sqrt(2.0 / math.pi)))
 
 
-def _side(
-    rng: np.random.Generator, p: Population, limits: FlankTolerances, teeth: int
-) -> _Side:
+def _side(rng: np.random.Generator, p: Population, limits: FlankTolerances, teeth: int) -> _Side:
     """Profiles of one side: what the tool makes on all teeth, and the scatter between them."""
     slope = p.slope * rng.standard_normal() + p.slope_scatter * rng.standard_normal((teeth, 1))
     barrel, wave = rng.normal(*p.barrel), _rayleigh(rng, p.wave)
