@@ -25,6 +25,7 @@ from thermogear.case.points import excitations, points_of
 from thermogear.case.response import VALUES
 from thermogear.case.thermal_state import ThermalState
 from thermogear.gears.deviations import Deviation
+from thermogear.gears.turn import mean_tooth
 from thermogear.mesh.balance import Gearbox, HeatBalance
 from thermogear.mesh.balance_table import LOSSES
 from thermogear.mesh.clearance import PARTS
@@ -145,6 +146,16 @@ class Asked:
         teeth = np.maximum(at.temperatures.pinion_addendum, at.temperatures.wheel_addendum)
         shape = (self.count,)
         return np.broadcast_to(at.oil_temperature, shape), np.broadcast_to(teeth, shape)
+
+    @property
+    def mesh_periods(self) -> int:
+        """After how many of them the pair repeats itself: over so many it is answered."""
+        return self.case.period.mesh_periods
+
+    @cached_property
+    def mean_tooth(self) -> tuple[Deviation, ...]:
+        """The deviations that all teeth share."""
+        return mean_tooth(self.case.pair, self.case.deviations)
 
     def elastic(
         self, state: ThermalState, point: int, deviations: Sequence[Deviation]

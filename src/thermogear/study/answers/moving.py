@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.base.limits import FINE, LOAD_SHARE, PARTING
 from thermogear.base.units import RPM
@@ -201,6 +202,9 @@ def errors(asked: Asked) -> Iterator[Answer]:
         name: 1e6 * np.ptp(cycle["transmission_error"], axis=-1)
         for name, cycle in (("cold", asked.cold), ("hot", asked.hot))
     }
+    # what a shaft turns once is no noise of the mesh: the limit is for what repeats with it
+    turn = asked.mesh_periods
+    with_mesh = 1e6 * np.ptp(_of_the_mesh(asked.hot["transmission_error"], turn), axis=-1)
     for point in asked.points:
         at = asked.at(point)
         words, figures = _allowed_error(asked.case, float(asked.hot["pinion_torque"][point]))
@@ -209,18 +213,26 @@ def errors(asked: Asked) -> Iterator[Answer]:
             yield undecided(ERROR, "transmission_error", why, most=most, at=at)
             continue
         figures |= {name: float(values[point]) for name, values in swing.items()}
+        over = ", over the turn of {turn} mesh periods," * (turn > 1)
+        of_mesh = ", of which {mesh:.2f µm} repeat with the mesh" * (turn > 1)
+        figures |= {"turn": turn, "mesh": float(with_mesh[point])} if turn > 1 else {}
         sentence = (
-            "Static and loaded it is {cold:.2f µm} peak to peak undeformed, {hot:.2f µm} hot; "
-            f"{words}"
+            f"Static and loaded{over} it is {{cold:.2f µm}} peak to peak undeformed, "
+            f"{{hot:.2f µm}} hot{of_mesh}; {words}"
         )
         if point == asked.hardest and (drawn := _drawings(asked)):
             sentence += "; {drawings} drawings of the class have {least:~2 µm} to {greatest:~2 µm}"
             figures |= {"drawings": len(drawn), "least": min(drawn), "greatest": max(drawn)}
-        value = figures["hot"] if np.isfinite(most) else float("nan")
+        value = float(with_mesh[point]) if np.isfinite(most) else float("nan")
         yield answer(
             ERROR, "transmission_error", f"{sentence}.", value, most=most, at=at, figures=figures
         )
     yield _relief(asked)
+
+
+def _of_the_mesh(error: Floats, turn: int) -> Floats:
+    """The mean of an error (point, phase) over the mesh periods of a turn, (point, phase)."""
+    return np.asarray(error.reshape(len(error), turn, -1).mean(axis=1))
 
 
 def _class(case: GearCase) -> tuple[int, str, str]:
@@ -267,9 +279,12 @@ def _drawings(asked: Asked) -> list[float]:
     table = case.file.flanks
     if case.accuracy is None or table is None or asked.model.stiffness != "loaded":
         return []
-    kept = [one for one in case.deviations if not isinstance(one, WavyProfile)]
+    kept = [one for one in asked.mean_tooth if not isinstance(one, WavyProfile)]
     drawn = {one.gear for one in case.deviations if isinstance(one, WavyProfile)}
-    found = [1e6 * float(np.ptp(asked.hot["transmission_error"][asked.hardest]))]
+    if not drawn:
+        return []
+    error = asked.hot["transmission_error"][[asked.hardest]]
+    found = [1e6 * float(np.ptp(_of_the_mesh(error, asked.mesh_periods)))]
     for seed in [seed for seed in range(1, DRAWINGS + 1) if seed != table.seed][: DRAWINGS - 1]:
         flanks = graded_flanks(case.pair, case.accuracy, seed=seed, edition=table.edition)
         taken = (*kept, *(one for one in flanks if one.gear in drawn))
@@ -278,7 +293,10 @@ def _drawings(asked: Asked) -> list[float]:
 
 
 def _relief(asked: Asked) -> Answer:
-    """The best of a few tip reliefs at the hardest point, hot, and the same one undeformed."""
+    """The best of a few tip reliefs at the hardest point, hot, and the same one undeformed.
+
+    Of the mean tooth: relief is cut alike on all.
+    """
     case, point = asked.case, asked.hardest
     if why := asked.still(point):
         return undecided(ERROR, "relief", why)
@@ -298,7 +316,7 @@ def _relief(asked: Asked) -> Answer:
     for number_of, (name, state) in enumerate((("cold", UNDEFORMED), ("hot", HOT))):
         asked.progress("relief", number_of, 2)
         states[name] = [
-            _swing(asked, state, (*case.deviations, *cut), case.mesh_positions) for cut in cuts
+            _swing(asked, state, (*asked.mean_tooth, *cut), case.mesh_positions) for cut in cuts
         ]
     asked.progress("relief", 2, 2)
     cold, hot = (np.array(states[name]) for name in ("cold", "hot"))

@@ -23,7 +23,7 @@ def answers(asked: Asked) -> Iterator[Answer]:
     if not why:
         operating = one_point(case.operating_of(asked.model).point(point), torque)
         hot = HotPair(case.pair, operating, asked.model.override(stiffness="loaded"))
-        mesh, words, figures = HotContact(hot, case.deviations).told(torque)
+        mesh, words, figures = HotContact(hot, asked.mean_tooth).told(torque)
         if lost := int(np.count_nonzero(~mesh.settled)):
             why = f"{lost} of {mesh.settled.size} positions of the loaded contact do not settle"
     if why:
@@ -31,11 +31,12 @@ def answers(asked: Asked) -> Iterator[Answer]:
             yield undecided(SHARE, name, why, at=at)
         return
     ratio = float(mesh.effective_ratio[0, 0])
+    whose = "; of the mean tooth" * (asked.mesh_periods > 1)
     yield answer(
         SHARE,
         "effective_contact_ratio",
         f"Under load {ratio:.2f} tooth pairs carry on average, the effective contact ratio; "
-        "the nominal one is {nominal:.2f}.",
+        f"the nominal one is {{nominal:.2f}}{whose}.",
         ratio,
         at=at,
         figures={"nominal": case.pair.contact_ratio},
@@ -44,7 +45,7 @@ def answers(asked: Asked) -> Iterator[Answer]:
         why = "undercut ends the path, and its edge is not told from the mate's tip corner"
         yield undecided(SHARE, "edge_contact", why, at=at)
         return
-    words = f"{words[:1].upper()}{words[1:] or 'Tip corners carry 0 % of the load'}."
+    words = f"{words[:1].upper()}{words[1:] or 'Tip corners carry 0 % of the load'}{whose}."
     yield answer(
         SHARE,
         "edge_contact",

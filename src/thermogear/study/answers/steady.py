@@ -19,7 +19,7 @@ from thermogear.gears.iso6336 import root_factors, single_contact
 from thermogear.gears.pair import GearPair
 from thermogear.gears.root_stress import root_stress
 from thermogear.heat.transient import HOTTEST
-from thermogear.mesh.elastic import loaded_pair
+from thermogear.mesh.elastic import loaded_pair, turn_phases
 from thermogear.mesh.scuffing_rating import (
     FlashRating,
     IntegralRating,
@@ -405,7 +405,7 @@ def _thin(gear: Gear) -> bool:
 
 
 def root(asked: Asked) -> Iterator[Answer]:
-    """Of both gears, under the shares of the loaded contact over a mesh period."""
+    """Of both gears, under the shares of the loaded contact over the period of the pair."""
     pair, force = asked.case.pair, asked.hot["normal_force"]
     (standard, words), phase = _standard(pair), np.arange(POSITIONS) / POSITIONS
     names = [f"root_{gear.material.name}" for gear in (pair.pinion, pair.wheel)]
@@ -423,8 +423,9 @@ def root(asked: Asked) -> Iterator[Answer]:
         if why:
             yield undecided(ROOT, "root_stress", why, limit=limit, at=at)
             continue
+        every = turn_phases(asked.mesh_periods, phase)
         hot, cold = (
-            root_stress(pair, loaded_pair(elastic).solve(phase), asked.model.loaded.plane)
+            root_stress(pair, loaded_pair(elastic).solve(every), asked.model.loaded.plane)
             for elastic in (
                 asked.elastic(state, point, asked.case.deviations) for state in (HOT, UNDEFORMED)
             )
