@@ -66,10 +66,7 @@ class Clearance:
                     first_touch(mesh_points(self.hot.pair, every, flank), self.deviations).gap,
                     self.mesh_periods,
                 ),
-                *(
-                    _by_period(gap, 1)
-                    for gap in ThermalDeviation(self.hot).gaps(points.contacts)
-                ),
+                *(_by_period(gap, 1) for gap in ThermalDeviation(self.hot).gaps(points.contacts)),
             )
             for flank, points in zip(("drive", "back"), self._points, strict=True)
         )
@@ -89,8 +86,7 @@ class Clearance:
         pair j and 2 b + e_k^c + min_j e_j between the back flanks of pair k.
         """
         drive, back = (
-            np.reshape(sum(parts), (self.hot.count, -1, parts[0].shape[-1]))
-            for parts in self._gaps
+            np.reshape(sum(parts), (self.hot.count, -1, parts[0].shape[-1])) for parts in self._gaps
         )
         return drive, back
 

@@ -26,7 +26,6 @@ from thermogear.heat.thesis_profile import deformed_points, thesis_flank_growth
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating, Temperatures
 
-
 SAME_PLACE = 1e-9
 """Places closer than this part of the base pitch are one."""
 
