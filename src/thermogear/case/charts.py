@@ -44,8 +44,8 @@ class Chart:
         side, acts = self.read.side[trace], self.traces.flank[trace]
         return f"tooth {self.read.tooth[trace]} {side}" + (f" ({acts})" if acts != side else "")
 
-    def every_tooth(self, pair: GearPair, first: int) -> tuple[ToothShapes, ...]:
-        """Each side that was measured, every tooth by itself, from the tooth ``first`` (0: 1) on.
+    def every_tooth(self, pair: GearPair) -> tuple[ToothShapes, ...]:
+        """Each side that was measured, every tooth by itself.
 
         A single trace is smoothed more than the mean of all: its noise is greater. Refused where a
         tooth is missing.
@@ -65,8 +65,8 @@ class Chart:
                     allowed=f'all {body.teeth} teeth with flanks.teeth = "measured"',
                     fix='write teeth = "alike" to take the mean of these',
                 )
-            order = [places[(first + n) % body.teeth] for n in range(body.teeth)]
-            found.append(ToothShapes(self.gear, tuple(self.traces.single(pair, k) for k in order)))
+            shapes = (self.traces.single(pair, places[n]) for n in range(body.teeth))
+            found.append(ToothShapes(self.gear, tuple(shapes)))
         return tuple(found)
 
 

@@ -158,7 +158,8 @@ def _operating(case: GearCase) -> list[Fact]:
 def _held(case: GearCase) -> list[Fact]:
     """What is known beforehand of temperatures that are computed, and of the flanks."""
     found = [_deviation(place, one) for place, one in enumerate(case.deviations, 1)]
-    found += [*_turn(case), *(fact for chart in case.charts for fact in _measured(chart))]
+    single = case.file.flanks is not None and case.file.flanks.teeth == "measured"
+    found += [*_turn(case), *(fact for one in case.charts for fact in _measured(one, single))]
     if not case.computed:
         return found
     group = "temperatures computed from the heat balance"
@@ -213,8 +214,8 @@ def _turn(case: GearCase) -> list[Fact]:
     return found
 
 
-def _measured(chart: Chart) -> list[Fact]:
-    """Each trace's figures and class, then what of them acts."""
+def _measured(chart: Chart, single: bool) -> list[Fact]:
+    """Each trace's figures and class, then what of them acts, ``single`` teeth or their mean."""
     group = f"measured flanks of the {chart.gear}, class of ISO 1328-1:2013"
     found = []
     for flank in chart.flanks:
@@ -224,6 +225,8 @@ def _measured(chart: Chart) -> list[Fact]:
             text = f"f_Halpha {slope:+.2f}, f_falpha {form:.2f}, F_alpha {total:.2f} um: "
             text += "no class" if grade is None else f"class {grade}"
             found.append(Fact(group, chart.hand(place), text))
+    if single:
+        return found
     group = f"measured flanks of the {chart.gear}, what acts"
     for flank in chart.flanks:
         count = chart.traces.flank.count(flank.flank)

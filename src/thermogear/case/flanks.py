@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -21,6 +22,7 @@ from thermogear.gears.deviations import (
     PitchError,
     PressureAngleError,
     Relief,
+    ToothDeviation,
 )
 from thermogear.gears.graded_flanks import WavyProfile, graded_flanks
 from thermogear.gears.pair import GearPair
@@ -43,7 +45,7 @@ def deviations(
 ) -> tuple[Deviation, ...]:
     """Every deviation that the file gives, pinion's first, ``measured`` flanks among them.
 
-    Teeth are numbered from the one that is marked, which meets the mate's at mesh phase 0. What
+    Teeth are numbered as they mesh, from the one that is marked. What
     does not fit the gears (a relief longer than the active profile, pitch errors that are not one
     for each tooth) is refused under its field of the file. With ``gears.period`` "mesh" the
     deviations of the mean tooth.
@@ -68,6 +70,7 @@ def deviations(
             found.append(deviation)
     found += [one for chart in measured for one in _charted(file, pair, chart)]
     found += _graded(file, pair)
+    found = [_from_mark(one, file) for one in found]
     return tuple(mean_tooth(pair, found) if file.gears.period == "mesh" else found)
 
 
@@ -76,19 +79,32 @@ def first_tooth(file: GearFile, gear: str) -> int:
     return 0 if file.gears.marks is None else file.gears.marks[GEARS.index(gear)] - 1
 
 
+def _from_mark(one: Deviation, file: GearFile) -> Deviation:
+    """The deviation with the teeth of its gear numbered from the one that is marked."""
+    first = first_tooth(file, one.gear) if isinstance(one, ToothDeviation) else 0
+    if not first:
+        return one
+    if isinstance(one, PitchError):
+        return replace(one, errors=one.errors[first:] + one.errors[:first])
+    if isinstance(one, ToothShapes):
+        return replace(one, shapes=one.shapes[first:] + one.shapes[:first])
+    if isinstance(one, Eccentricity):
+        teeth = getattr(file.gears, one.gear).teeth
+        return replace(one, angle=one.angle - 2.0 * math.pi * first / teeth)
+    return one
+
+
 def _of_teeth(
     gear: str, file: GearFile, pair: GearPair
 ) -> Iterator[tuple[str, Callable[[], Deviation]]]:
     """(field, maker) of what may differ from tooth to tooth of one gear."""
     table: GearTable = getattr(file.gears, gear)
-    first, teeth = first_tooth(file, gear), table.teeth
     if table.pitch_errors is not None or any(one.index for one in table.teeth_differ):
         field = "pitch_errors" if table.pitch_errors is not None else "teeth_differ"
         yield field, partial(_index, gear, file, pair)
     if (one := table.eccentricity) is not None:
         amount = one.amount if one.amount is not None else 0.5 * (one.run_out or 0.0)
-        angle = one.angle - 2.0 * math.pi * first / teeth
-        yield "eccentricity", partial(Eccentricity, gear, amount=amount, angle=angle)
+        yield "eccentricity", partial(Eccentricity, gear, amount=amount, angle=one.angle)
     sides = [one.flank for one in table.tooth_profiles]
     for place, profiles in enumerate(table.tooth_profiles):
         field = f"tooth_profiles[{place}]"
@@ -98,11 +114,11 @@ def _of_teeth(
                 f"{sides[place]!r} beside {sides[1 - place]!r}",
                 allowed="one table of both sides, or drive and back",
             )
-        yield field, partial(_every_tooth, gear, profiles, first, teeth)
+        yield field, partial(_every_tooth, gear, profiles, table.teeth)
     for flank in FLANKS:
         single = [one for one in table.teeth_differ if one.flank == flank]
         if any(one.slope or one.form for one in single):
-            yield "teeth_differ", partial(_single_teeth, gear, single, first, teeth)
+            yield "teeth_differ", partial(_single_teeth, gear, single, table.teeth)
 
 
 def _index(gear: str, file: GearFile, pair: GearPair) -> PitchError:
@@ -128,7 +144,7 @@ def _index(gear: str, file: GearFile, pair: GearPair) -> PitchError:
         errors = errors * math.cos(file.gears.pressure_angle)
     for one in table.teeth_differ:
         errors[_place(one, table.teeth)] += one.index
-    return PitchError(gear, tuple(np.roll(errors, -first_tooth(file, gear)).tolist()))
+    return PitchError(gear, tuple(errors.tolist()))
 
 
 def _place(one: ToothTable, teeth: int) -> int:
@@ -137,7 +153,7 @@ def _place(one: ToothTable, teeth: int) -> int:
     return one.tooth - 1
 
 
-def _every_tooth(gear: str, table: ToothProfilesTable, first: int, teeth: int) -> ToothShapes:
+def _every_tooth(gear: str, table: ToothProfilesTable, teeth: int) -> ToothShapes:
     """Slope and form of every tooth of one side."""
     columns = []
     for name in ("slope", "form", "phase"):
@@ -146,16 +162,16 @@ def _every_tooth(gear: str, table: ToothProfilesTable, first: int, teeth: int) -
             raise InputError(
                 name, f"{len(values)} values", allowed=f"one for each of the {teeth} teeth, or one"
             )
-        columns.append(np.roll(np.broadcast_to(values, teeth), -first).tolist())
+        columns.append(np.broadcast_to(values, teeth).tolist())
     rows = zip(*columns, strict=True)
     return ToothShapes(gear, tuple(_wavy(gear, table, *row) for row in rows))
 
 
-def _single_teeth(gear: str, given: Sequence[ToothTable], first: int, teeth: int) -> ToothShapes:
+def _single_teeth(gear: str, given: Sequence[ToothTable], teeth: int) -> ToothShapes:
     """Slope and form of the teeth that differ on one side, none of the others."""
     found = {}
     for one in given:
-        place = (_place(one, teeth) - first) % teeth
+        place = _place(one, teeth)
         if place in found:
             raise InputError("", f"tooth {one.tooth} twice", allowed="each tooth of a side once")
         found[place] = _wavy(gear, one, one.slope, one.form, one.phase)
@@ -175,7 +191,7 @@ def _charted(file: GearFile, pair: GearPair, chart: Chart) -> tuple[Deviation, .
     """What a chart's flanks are: the mean of the teeth, or each tooth by itself."""
     if file.flanks is None or file.flanks.teeth != "measured":
         return chart.deviations
-    return chart.every_tooth(pair, first_tooth(file, chart.gear))
+    return chart.every_tooth(pair)
 
 
 def accuracy(file: GearFile, pair: GearPair) -> int | None:

@@ -32,7 +32,7 @@ from thermogear.gears.contact import path_of_contact
 from thermogear.gears.geometry import Gear
 from thermogear.heat.lubrication import grade
 from thermogear.mesh.cycle import Cycle
-from thermogear.mesh.excite import EXCITES, excitations
+from thermogear.mesh.excite import EXCITES, excitations, over_turn
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating, Varied
 from thermogear.mesh.thermal import HotPair
@@ -97,7 +97,11 @@ class Samples:
 
 
 def with_error(springs: Excitations, error: NDArray[np.complex128]) -> Excitations:
-    """``springs`` with coefficients of a kinematic error [m] added, (sample, 1 + harmonic)."""
+    """``springs`` with coefficients of a kinematic error [m] added, (sample, 1 + harmonic).
+
+    Harmonics of the error are those of the mesh frequency, whatever the period of the springs.
+    """
+    error = over_turn(error, springs.mesh_periods)
     width = max(error.shape[1], springs.error.shape[1])
     return replace(springs, error=padded(error, width) + padded(springs.error, width))
 

@@ -115,6 +115,7 @@ def mesh_cycle(
     variables = {
         name: (POINT if name == "status" else TABLE[name][0], values)
         for name, values in cycle.quantities(want).items()
+        if name != "mesh_periods"
     }
     coordinates: dict[str, tuple[tuple[str, ...], ArrayLike]] = {
         "pinion_speed": (POINT, operating.speed),
@@ -176,7 +177,10 @@ class Cycle:
         return np.asarray(np.arange(count) / count)
 
     def quantities(self, want: Collection[str] = ()) -> dict[str, ArrayLike]:
-        """The bare arrays of :func:`mesh_cycle`, SI, in the order of :data:`TABLE`, then status."""
+        """The bare arrays of :func:`mesh_cycle`, SI, in the order of :data:`TABLE`, then status.
+
+        Of a turn ``mesh_periods`` too, (count,).
+        """
         names = _asked(want)
         springs = self.parts if any(name in SPRINGS for name in names) else {}
         left_out = {name for name in SPRINGS if name not in springs}
@@ -185,11 +189,20 @@ class Cycle:
             raise InputError("want", repr(name), allowed=" | ".join(springs), why=why)
         if not self.teeth_differ:
             left_out |= OF_TURN.keys()
+            for name in left_out.intersection(want):
+                rule = (
+                    "all teeth are alike"
+                    if self.mesh_periods == 1
+                    else "the load is shared by a rule"
+                )
+                raise InputError("want", repr(name), why=f"{rule}: no tooth pair differs")
         values = {
             name: of(self)
             for name, (_, of) in TABLE.items()
             if name in names and name not in left_out
         }
+        if self.mesh_periods > 1:
+            values["mesh_periods"] = np.full(self.hot.count, self.mesh_periods)
         return values | {"status": self.status(names)}
 
     # --- along the path ---------------------------------------------------------------------
@@ -275,9 +288,9 @@ class Cycle:
         # a turn is solved only for what is asked
         known = np.ones(self.hot.count, np.bool_)
         if self.mesh_periods == 1 or "curves" in vars(self):
-            known = np.isfinite(self.stiffness).all(axis=1)
+            known &= np.isfinite(self.stiffness).all(axis=1)
         elif "heat" in vars(self):
-            known = self.heat.settled
+            known &= self.heat.settled
         for name, mean in (("rim_stiffness", "rim"), ("bore_clamped_stiffness", "clamped")):
             if name in names:
                 known &= np.isfinite(getattr(self, mean))

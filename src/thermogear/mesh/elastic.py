@@ -53,9 +53,10 @@ def turn_phases(mesh_periods: int, phase: Floats) -> Floats:
 
 
 class MeshCurves(NamedTuple):
-    """Over the mesh phase, all mesh periods one after the other, (count, phases): stiffness [N/m], the error [m] that belongs to it
-    (mean removed; None: heat's alone), the static transmission error under load [m], and the
-    share of the phase in which a tip corner carries, (count,); nan where nothing says.
+    """Over the mesh phase, all mesh periods one after the other, (count, phases): stiffness
+    [N/m], the error [m] that belongs to it (mean removed; None: heat's alone), the static
+    transmission error under load [m], and the share of the phase in which a tip corner carries,
+    (count,); nan where nothing says.
     """
 
     stiffness: Floats

@@ -17,7 +17,7 @@ from thermogear.mesh.friction_path import FrictionPath
 PHASES = 48
 """Phases of the mesh period at which the loaded contact is asked."""
 LOADS = 5
-"""Loads that stand for those of all tooth pairs of a turn at each position: :func:`_of_few_loads`."""
+"""Loads that stand for those of all tooth pairs of a turn at a position, :func:`_of_few_loads`."""
 GAUSS = 12
 """Nodes on each part of the path between two changes of the number of pairs."""
 
@@ -51,8 +51,8 @@ def mesh_heat(
     contact shares the load the way goes on beyond A and E as far as tip corners carry, and the
     integral is the mean over ``phases`` of the sum over all pairs, both of which are periodic
     and continuous; 48 phases give the power of 400 within 0.2 %. Where teeth differ it is the mean
-    over ``phases`` of every mesh period of the turn, all tooth pairs alike. The rules of thumb end at A
-    and E with a step: Gauss's rule between the steps and the pitch point.
+    over ``phases`` of every mesh period of the turn: a mean over all tooth pairs. The rules of
+    thumb end at A and E with a step: Gauss's rule between the steps and the pitch point.
 
     Off the path a corner slides at (omega_1 + omega_2)(s - s_C) to first order in the distance
     from the path's end (the corner moves along the line of action as the involute's point

@@ -1,4 +1,4 @@
-"""How differently the tooth pairs of a turn are loaded: flash, pressure and film, tooth by tooth."""
+"""Flash temperature, pressure and film of the tooth pairs of a turn, one beside another."""
 
 from __future__ import annotations
 
@@ -45,7 +45,8 @@ def spread_of_turn(elastic: ElasticPair, s: Floats, every: PathShare) -> dict[st
     step = max(BLOCK // (count * places), 1)
     for first in range(0, periods, step):
         some = slice(first, first + step)
-        share, edge = (np.reshape(part[:, some], (count, -1)) for part in every)
+        share = every.share[:, some].reshape(count, -1)
+        edge = every.edge[:, some].reshape(count, -1)
         path = FrictionPath(elastic, np.resize(s, share.shape[1]), PathShare(share, edge))
         for name, (of, sign) in WORST.items():
             values = sign * np.broadcast_to(of(path), share.shape).reshape(count, -1, places)
