@@ -73,7 +73,7 @@ def _counts(lanes: LaneTables) -> Whole:
     if not lanes.by_fft:
         return np.array(_COUNTS)
     counts = lanes.mesh_periods * np.array([base * 2**k for k in range(14) for base in (32, 48)])
-    return counts[counts <= max(MOST_OF_TURN, counts[0])]
+    return np.asarray(counts[counts <= max(MOST_OF_TURN, counts[0])])
 
 
 def substeps(lanes: LaneTables, order: int = ORDER) -> Whole:

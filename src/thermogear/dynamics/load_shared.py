@@ -153,5 +153,10 @@ def simulate_shared(
     result.shares[0] = spent / spent.sum()
     result.substeps[0] = steps
     return dataset(
-        result, period=np.array([model.period]), periods=periods, discard=discard, samples=samples
+        result,
+        period=np.array([model.period]),
+        periods=periods,
+        discard=discard,
+        samples=samples,
+        mesh_periods=model.mesh_periods,
     )
