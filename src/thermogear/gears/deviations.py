@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass
 from typing import NamedTuple, Protocol
 
@@ -32,7 +33,8 @@ class Contacts(NamedTuple):
 
     s: distance [m] from N1 of the involutes' meeting point; pinion, wheel: string lengths
     rho_1, rho_2 [m] of the points that touch (a tip corner off the path); pinion_tooth,
-    wheel_tooth: numbers of the teeth, 0 .. z - 1; flank: "drive" or "back".
+    wheel_tooth: numbers of the teeth, 0 .. z - 1; flank: "drive" or "back"; phase (position,): mesh
+    phase [periods], at which each gear has turned by 2 pi phase/z.
     """
 
     pair: GearPair
@@ -42,14 +44,19 @@ class Contacts(NamedTuple):
     pinion_tooth: NDArray[np.int64]
     wheel_tooth: NDArray[np.int64]
     flank: str
+    phase: Floats
 
     def gear(self, name: str) -> Gear:
         """The named gear of the pair."""
-        return self.pair.pinion if name == "pinion" else self.pair.wheel
+        return self.pair.gear(name)
 
     def string(self, name: str) -> Floats:
         """rho [m] on the named gear."""
         return self.pinion if name == "pinion" else self.wheel
+
+    def tooth(self, name: str) -> NDArray[np.int64]:
+        """Numbers of the named gear's teeth."""
+        return self.pinion_tooth if name == "pinion" else self.wheel_tooth
 
 
 def active_profile(pair: GearPair, name: str) -> tuple[float, float, float]:
@@ -66,11 +73,48 @@ def active_profile(pair: GearPair, name: str) -> tuple[float, float, float]:
 
 
 class Deviation(Protocol):
-    """Anything that says the gap [m] it makes at the contacts, shape (..., position, pair)."""
+    """Anything that says the gap [m] it makes at the contacts, shape (..., position, pair).
+
+    One that differs from tooth to tooth is a :class:`ToothDeviation` beside it; all others are
+    alike on every tooth, so that they repeat in each mesh period.
+    """
 
     def gap(self, at: Contacts) -> Floats:
         """e [m], > 0 where material is missing; leading axes are operating points."""
         ...
+
+
+class ToothDeviation(ABC):
+    """A deviation of one ``gear`` that may differ from tooth to tooth, or over its turn."""
+
+    gear: str
+
+    @abstractmethod
+    def gap(self, at: Contacts) -> Floats:
+        """e [m] of each pair by the numbers of its teeth, or by the turn of its gear."""
+
+    @property
+    @abstractmethod
+    def differs(self) -> bool:
+        """Whether it makes the teeth of its gear differ."""
+
+    @abstractmethod
+    def mean(self) -> Deviation:
+        """What is alike on all teeth: its mean over them."""
+
+    @abstractmethod
+    def require_fits(self, pair: GearPair) -> None:
+        """Refuse what has not one value for each tooth of its gear."""
+
+    def _require_each(self, field: str, values: Sequence[object], pair: GearPair) -> None:
+        """Refuse ``values`` that are not one for each tooth."""
+        teeth = pair.gear(self.gear).teeth
+        if len(values) != teeth:
+            raise InputError(
+                f"{self.gear}.{field}",
+                f"{len(values)} values",
+                allowed=f"one for each of the {teeth} teeth",
+            )
 
 
 class FlankShape(ABC):
@@ -153,7 +197,7 @@ class Relief(FlankShape):
 
 
 @dataclass(frozen=True)
-class PitchError:
+class PitchError(ToothDeviation):
     """Index errors of the teeth of one gear, one per tooth.
 
     errors [m] along the line of action: > 0 puts a whole tooth towards its drive side, which
@@ -171,18 +215,24 @@ class PitchError:
         object.__setattr__(self, "errors", tuple(float(e) for e in self.errors))
         bounds.PITCH_ERROR.require("pitch_error.errors", self.errors)
 
+    @property
+    def differs(self) -> bool:
+        """Whether the errors are not all the same."""
+        return len(set(self.errors)) > 1
+
+    def require_fits(self, pair: GearPair) -> None:
+        """Refuse a list that has not one error for each tooth."""
+        self._require_each("pitch_error.errors", self.errors, pair)
+
+    def mean(self) -> PitchError:
+        """All teeth with the mean error."""
+        return PitchError(self.gear, (float(np.mean(self.errors)),) * len(self.errors))
+
     def gap(self, at: Contacts) -> Floats:
         """e = -error on the drive flank, +error on the back flank."""
-        teeth = at.gear(self.gear).teeth
-        if len(self.errors) != teeth:
-            raise InputError(
-                f"{self.gear}.pitch_error.errors",
-                f"{len(self.errors)} values",
-                allowed=f"one for each of the {teeth} teeth",
-            )
-        tooth = at.pinion_tooth if self.gear == "pinion" else at.wheel_tooth
+        self.require_fits(at.pair)
         sign = -1.0 if at.flank == "drive" else 1.0
-        return np.asarray(sign * np.asarray(self.errors)[tooth])
+        return np.asarray(sign * np.asarray(self.errors)[at.tooth(self.gear)])
 
 
 @dataclass(frozen=True)
@@ -242,13 +292,13 @@ class FlankTable(FlankShape):
 
     def taken_off(self, pair: GearPair, rho: Floats) -> Floats:
         """e = -S(r), r = sqrt(r_b^2 + rho^2)."""
-        gear = pair.pinion if self.gear == "pinion" else pair.wheel
+        gear = pair.gear(self.gear)
         radius = np.hypot(gear.base_radius, rho)
         return -_interpolate(radius, np.asarray(self.radius), np.asarray(self.added))
 
     def borders(self, pair: GearPair) -> Floats:
         """Its points, and places close enough to make r(rho) a polynomial to 1e-13 m."""
-        gear = pair.pinion if self.gear == "pinion" else pair.wheel
+        gear = pair.gear(self.gear)
         radius = np.maximum(np.asarray(self.radius), gear.base_radius)
         points = np.sqrt((radius - gear.base_radius) * (radius + gear.base_radius))
         start, _, tip = active_profile(pair, self.gear)

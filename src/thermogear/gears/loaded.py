@@ -172,7 +172,8 @@ def solve_mesh(
     idle = settled & (asked == 0.0)[:, None]
     force[idle] = 0.0
     edge = system.edges * (force > 0.0)
-    pressure = hertz_pressure(force / width, system.places[..., 2], system.reduced[:, None, None])
+    radius = system.places[system.place, :, 2]
+    pressure = hertz_pressure(force / width, radius, system.reduced[:, None, None])
     pressure[edge > 0] = np.nan
 
     def shaped(values: Floats) -> Floats:

@@ -229,6 +229,10 @@ class GearPair:
         deepest = float(np.max(radius * (half - np.angle(point) + axis)))
         return deepest <= _CLEAR * other.module
 
+    def gear(self, name: str) -> Gear:
+        """The gear called "pinion" or "wheel"."""
+        return self.pinion if name == "pinion" else self.wheel
+
     @property
     def ratio(self) -> float:
         """u = z2/z1."""

@@ -125,8 +125,7 @@ class Damage(ABC):
     def _pitches(self, contacts: Contacts) -> Integers:
         """(position, pair): how many pitches ahead of this tooth, towards its loaded flank."""
         teeth = contacts.gear(self.gear).teeth
-        number = contacts.pinion_tooth if self.gear == "pinion" else contacts.wheel_tooth
-        behind = (number - self.tooth + teeth // 2) % teeth - teeth // 2
+        behind = (contacts.tooth(self.gear) - self.tooth + teeth // 2) % teeth - teeth // 2
         return np.asarray(-behind if self.gear == "pinion" else behind)
 
     def softer(

@@ -88,9 +88,12 @@ def first_touch(
     if shapes:
         solve = _shaped if all(isinstance(d, Hashable) for d in shapes) else _shaped.__wrapped__
         extended = bool(np.any((edge > 0) & np.isfinite(gap)))
+        once, place = points.fractions
         gap, edge = solve(
-            contacts.pair, tuple(shapes), contacts.s.shape, contacts.s.tobytes(), extended, spread
+            contacts.pair, tuple(shapes), once.s.shape, once.s.tobytes(), extended, spread
         )
+        if points.shared:
+            gap, edge = gap[..., place, :], edge[..., place, :]
     if points.broken is not None:
         # on the edge of the break, what is taken off counts where that edge is
         there = sum((d.gap(contacts) for d in shapes), start=points.point.gap)

@@ -179,7 +179,7 @@ class WarmUp:
 
     @cached_property
     def half_backlash(self) -> Floats:
-        return np.asarray(self._clearance.half_backlash.min(axis=1))
+        return self._clearance.least
 
     @property
     def margin(self) -> Floats:
@@ -188,8 +188,7 @@ class WarmUp:
 
     def _gap(self, state: State, piece: ArrayLike) -> Floats:
         """Least half backlash [m] of states (count,) in ``piece`` of the duty."""
-        left = self._chain.clearance(self._at(state, piece)).half_backlash
-        return np.asarray(left.min(axis=1))
+        return self._chain.clearance(self._at(state, piece)).least
 
     @cached_property
     def jams(self) -> Floats:
@@ -215,7 +214,7 @@ class WarmUp:
         here = self._chain.clearance(self._at(state, [piece]))
         return Worst(
             time=when,
-            half_backlash=float(here.half_backlash.min()),
+            half_backlash=float(here.least[0]),
             margin=float(
                 here.jam_temperature[0] - np.ravel(here.hot.temperatures.pinion_addendum)[0]
             ),
