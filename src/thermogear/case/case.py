@@ -195,6 +195,16 @@ class GearCase(Case):
         """
         return self if self.period.mesh_periods == 1 else self._with("gears.period", "mesh")
 
+    def unless_stated(self, field: str, value: str) -> GearCase:
+        """The case with ``gears.period`` or ``gears.part`` put to what a study takes by itself.
+
+        The case as it is where its file or an option states the field, or nothing would change.
+        """
+        same = field == "period" and self.period.mesh_periods == 1
+        if same or not self.deviations or field in self.file.gears.model_fields_set:
+            return self
+        return self._with(f"gears.{field}", value)
+
     def assemblies(self) -> tuple[GearCase, ...]:
         """The case put together in every way that makes a difference, its own marks first.
 

@@ -48,7 +48,7 @@ def deviations(
     Teeth are numbered as they mesh, from the one that is marked. What
     does not fit the gears (a relief longer than the active profile, pitch errors that are not one
     for each tooth) is refused under its field of the file. With ``gears.period`` "mesh" the
-    deviations of the mean tooth.
+    deviations of the mean tooth, with ``gears.part`` "nominal" reliefs alone.
     """
     contacts = mesh_points(pair, [0.0]).contacts
     found: list[Deviation] = []
@@ -71,6 +71,8 @@ def deviations(
     found += [one for chart in measured for one in _charted(file, pair, chart)]
     found += _graded(file, pair)
     found = [_from_mark(one, file) for one in found]
+    if file.gears.part == "nominal":
+        found = [deviation for deviation in found if isinstance(deviation, Relief)]
     return tuple(mean_tooth(pair, found) if file.gears.period == "mesh" else found)
 
 

@@ -394,6 +394,10 @@ class GearsTable(Table):
         default="turn",
         title="turn: until all deviations come again; mesh: the mean tooth over one mesh period",
     )
+    part: Annotated[str, Choice("case", "nominal")] = Field(
+        default="case",
+        title="case: flanks as given or drawn; nominal: as designed, with reliefs alone",
+    )
     pinion: GearTable
     wheel: GearTable
 

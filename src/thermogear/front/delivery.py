@@ -21,14 +21,43 @@ if TYPE_CHECKING:
 CSV, HIDDEN = "thermogear.csv", "thermogear.hidden"
 _Command = TypeVar("_Command", bound=Callable[..., Any])
 
-overrides = click.option(
-    "--set",
-    "overrides",
-    multiple=True,
-    metavar="PATH=VALUE",
-    help="Put a value in place of the file's, as gears.pinion.teeth=30; PATH= leaves it out. "
-    "May be repeated.",
-)
+
+def _with_part(
+    context: click.Context, _: click.Parameter, given: tuple[str, ...]
+) -> tuple[str, ...]:
+    """``--set`` and what ``--part`` and ``--turn`` stand for."""
+    turn, part = context.params.pop("turn"), context.params.pop("part")
+    period = () if turn is None else (f"gears.period={'turn' if turn else 'mesh'}",)
+    return (*given, *period, *(() if part is None else (f"gears.part={part}",)))
+
+
+def overrides(command: _Command) -> _Command:
+    """``--set``, and the options that choose the part and its period."""
+    chosen = together(
+        click.option(
+            "--set",
+            "overrides",
+            multiple=True,
+            metavar="PATH=VALUE",
+            callback=_with_part,
+            help="Put a value in place of the file's, as gears.pinion.teeth=30; PATH= leaves it "
+            "out. May be repeated.",
+        ),
+        click.option(
+            "--part",
+            type=click.Choice(["case", "nominal"]),
+            is_eager=True,
+            help="Flanks as CASE has them, or as designed, with reliefs alone.",
+        ),
+        click.option(
+            "--turn/--mean-tooth",
+            default=None,
+            is_eager=True,
+            help="The whole turn of gears whose teeth differ, or their mean tooth over one mesh "
+            "period.",
+        ),
+    )
+    return chosen(command)
 
 
 def _csv_place(context: click.Context, _: click.Parameter, name: str | None) -> None:

@@ -66,7 +66,8 @@ def draw(
     """Draw CASE's gears in mesh: true flanks, cold and hot, the contact points and their load.
 
     Both gears to scale, and the mesh with gaps, growth and deviations enlarged by the factor
-    written above it. A DXF file holds the true outlines in mm on the layers cold and hot.
+    written above it. A DXF file holds the true outlines in mm on the layers cold and hot. Flanks
+    are nominal, with reliefs alone; --part case draws what else CASE gives.
 
     \b
       thermogear draw rig.toml -o gears.svg
@@ -86,7 +87,7 @@ def draw(
         raise InputError("output", output, why=why, fix="name a file")
     if enlarge is not None and not 1.0 <= enlarge <= 1000.0:
         raise InputError("--enlarge", f"{enlarge:g}", allowed="1..1000")
-    read = delivery.load_gears(case, overrides)
+    read = delivery.load_gears(case, overrides).unless_stated("part", "nominal")
 
     from thermogear.case.thermal_state import ThermalState
     from thermogear.study.drawing import drawing

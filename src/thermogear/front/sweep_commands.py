@@ -127,7 +127,7 @@ def bifurcation(
     from thermogear.results.files import claimed
     from thermogear.study.diagrams import case_diagram, overlaid
 
-    read = delivery.load(case, options["overrides"])
+    read = _of_mean_tooth(delivery.load(case, options["overrides"]), options)
     if len(over) != 1:
         raise InputError("over", f"{len(over)} parameters", allowed="one for a diagram")
     name, values = parse_axis(read, over[0])
@@ -206,7 +206,7 @@ def map_(
     from thermogear.results.work import require_space
     from thermogear.study.diagrams import case_map, train_maps, whole_or_spared
 
-    read = delivery.load(case, options["overrides"])
+    read = _of_mean_tooth(delivery.load(case, options["overrides"]), options)
     if len(over) != 2:
         raise InputError("over", f"{len(over)} parameters", allowed="two for a map")
     axes = parse_axes(read, over)
@@ -243,7 +243,7 @@ def basins(
     from thermogear.case.axes import parse_numbers
     from thermogear.study.diagrams import case_basins
 
-    read = delivery.load(case, options["overrides"])
+    read = _of_mean_tooth(delivery.load(case, options["overrides"]), options)
     bundle, state = _choice(read, options)
     train = _train_of(read, options, plane)
     usual = "-2:2:401" if train is None else "-2:2:25"
@@ -337,7 +337,7 @@ def waterfall(
     from thermogear.case.thermal_state import UNDEFORMED
     from thermogear.study.shafts.waterfall import waterfall_plan
 
-    read = delivery.load_gears(case, options["overrides"])
+    read = _of_mean_tooth(delivery.load_gears(case, options["overrides"]), options)
     speeds = grid("rpm", rpm) * RPM
     bundle, state = _choice(read, options)
     named = read
@@ -378,6 +378,17 @@ def _choice(
 # --- running ------------------------------------------------------------------------------
 
 
+def _of_mean_tooth(case: Any, options: dict[str, Any]) -> Any:
+    """The case with the mean tooth of its gears, unless it states its period; a notice says so."""
+    from thermogear.study.declared import mean_tooth_notices
+
+    if case.kind != "gear":
+        return case
+    taken = case.unless_stated("period", "mesh")
+    options["notices"] = tuple(mean_tooth_notices(case, taken))
+    return taken
+
+
 def _estimate_alone(options: dict[str, Any], as_json: bool) -> None:
     if options["only_estimate"] and as_json:
         raise InputError("--json", "beside --estimate", why="an estimate is a sentence")
@@ -414,6 +425,7 @@ def _compute(plan: Plan, directory: Path, title: str, options: dict[str, Any]) -
         about.pop("title", None)
         took = round(time.monotonic() - begun, 3)
         result = finished(data, title).with_(**about, seconds=took)
+        result = replace(result, notices=(*options.get("notices", ()), *result.notices))
         write(delivery.without_hidden(page_of(result)), directory)
     except KeyboardInterrupt:
         if not last:

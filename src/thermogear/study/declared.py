@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import inspect
 import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import Field, dataclass, field, fields
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import Field, dataclass, field, fields, replace
 from functools import partial, wraps
 from importlib import import_module
 from itertools import pairwise
@@ -18,10 +18,12 @@ from numbers import Integral
 from typing import TYPE_CHECKING, Any, ClassVar, ParamSpec, TypeVar
 
 from thermogear.base.errors import InputError
+from thermogear.base.notice import Notice
 from thermogear.base.progress import Progress
 from thermogear.base.units import RPM
 
 if TYPE_CHECKING:
+    from thermogear.case.case import GearCase
     from thermogear.results.result import Result
 
 P = ParamSpec("P")
@@ -54,16 +56,21 @@ class Study:
 
     ``home``: module and name of the function that carries it out; ``of``: what it is a study of,
     the gears or one point of a case. A directory of results may be left out where there are words
-    on it, ``stores``.
+    on it, ``stores``. ``mean_tooth``: it takes one mesh period of gears whose teeth differ, unless
+    the case states otherwise.
     """
 
     kind: ClassVar[str]
     home: ClassVar[str]
     of: ClassVar[str]
     stores: ClassVar[str]
+    mean_tooth: ClassVar[bool]
 
-    def __init_subclass__(cls, kind: str, home: str, of: str = "gears", stores: str = "") -> None:
+    def __init_subclass__(
+        cls, kind: str, home: str, of: str = "gears", stores: str = "", mean_tooth: bool = False
+    ) -> None:
         cls.kind, cls.home, cls.of, cls.stores = kind, home, of, stores
+        cls.mean_tooth = mean_tooth
 
     def __post_init__(self) -> None:
         for each in fields(self):  # type: ignore[arg-type]  # subclasses are dataclasses
@@ -95,6 +102,12 @@ class Study:
         return {name: value for name, value in plain if value is not None}
 
 
+def mean_tooth_notices(case: GearCase, taken: GearCase) -> Iterator[Notice]:
+    """That a study has ``taken`` the mean tooth of a ``case`` whose teeth differ."""
+    if case.period.mesh_periods > taken.period.mesh_periods:
+        yield Notice.of("mean_tooth_taken", mesh_periods=case.period.mesh_periods)
+
+
 def declared(study: type[Study]) -> Callable[[Callable[P, Result]], Callable[P, Result]]:
     """A function whose arguments ``study`` declares: checks them, and stores them as asked."""
     names = {each.name for each in fields(study)}  # type: ignore[arg-type]
@@ -104,13 +117,20 @@ def declared(study: type[Study]) -> Callable[[Callable[P, Result]], Callable[P, 
 
         @wraps(function)
         def studied(*args: P.args, **kwargs: P.kwargs) -> Result:
-            given = signature.bind(*args, **kwargs).arguments
+            bound = signature.bind(*args, **kwargs)
+            given = bound.arguments
+            asked = study(**{name: given[name] for name in names & given.keys()})
+            notices: tuple[Notice, ...] = ()
             if study.of == "gears":
                 from thermogear.case.case import gear_case
 
-                gear_case(next(iter(given.values())))
-            asked = study(**{name: given[name] for name in names & given.keys()})
-            return function(*args, **kwargs).with_(asked=asked.asked({}))
+                subject = next(iter(given))
+                case = gear_case(given[subject])
+                if study.mean_tooth:
+                    given[subject] = case.unless_stated("period", "mesh")
+                    notices = tuple(mean_tooth_notices(case, given[subject]))
+            result = function(*bound.args, **bound.kwargs).with_(asked=asked.asked({}))
+            return replace(result, notices=(*notices, *result.notices))
 
         return studied
 
@@ -351,7 +371,9 @@ class WarmUpSurvey(Study, kind="warmup", home="thermogear.study.warm_up:warm_up_
 
 
 @dataclass(frozen=True, kw_only=True)
-class ReliefSurvey(Study, kind="relief", home="thermogear.study.relief:relief_survey"):
+class ReliefSurvey(
+    Study, kind="relief", mean_tooth=True, home="thermogear.study.relief:relief_survey"
+):
     """Find the tip relief that makes CASE's hot pair run most evenly under load.
 
     Least peak-to-peak static transmission error, drawn against the unrelieved pair; prints the
@@ -423,6 +445,7 @@ class Contact(Study, kind="contact", home="thermogear.study.contact:loaded_surve
 class Sensitivity(
     Study,
     kind="sensitivity",
+    mean_tooth=True,
     home="thermogear.study.sensitivity:sensitivity_around",
     stores="Store the study and its page in DIR.",
 ):
@@ -452,7 +475,9 @@ class Sensitivity(
 
 
 @dataclass(frozen=True)
-class Statics(Study, kind="statics", home="thermogear.study.shafts.statics:statics"):
+class Statics(
+    Study, kind="statics", mean_tooth=True, home="thermogear.study.shafts.statics:statics"
+):
     """Loads of CASE's shafts and bearings at rest under torque, cold and hot.
 
     Bearing loads and clearances, deflection of the shafts, the actual centre distance with its
@@ -465,7 +490,9 @@ COUNT = range(1, 61)
 
 
 @dataclass(frozen=True, kw_only=True)
-class NaturalModes(Study, kind="modes", home="thermogear.study.shafts.modes:modes"):
+class NaturalModes(
+    Study, kind="modes", mean_tooth=True, home="thermogear.study.shafts.modes:modes"
+):
     """Natural frequencies of CASE's drive train, and which part bends in each mode.
 
     Cold and hot, with the bearings' stiffness under load and the mesh at its mean.
@@ -478,7 +505,9 @@ class NaturalModes(Study, kind="modes", home="thermogear.study.shafts.modes:mode
 
 
 @dataclass(frozen=True, kw_only=True)
-class Campbell(Study, kind="campbell", home="thermogear.study.shafts.campbell:campbell"):
+class Campbell(
+    Study, kind="campbell", mean_tooth=True, home="thermogear.study.shafts.campbell:campbell"
+):
     """Critical speeds of CASE's drive train, cold and hot, and what vibrates there.
 
     Natural frequencies over speed with the band of the mesh stiffness; orders of mesh, shafts and
@@ -552,6 +581,7 @@ class Lyapunov(
 class SharedForce(
     Study,
     kind="shared",
+    mean_tooth=True,
     home="thermogear.study.shared_force:shared_results",
     of="point from rest",
 ):

@@ -24,7 +24,7 @@ from thermogear.base.errors import InputError
 from thermogear.base.progress import Progress, silent
 from thermogear.base.stores import read_manifests
 from thermogear.case.base import Case
-from thermogear.case.case import gear_case
+from thermogear.case.case import GearCase, gear_case
 from thermogear.case.family import GearFamily, NumberFamily, Tabulated, family, moving
 from thermogear.case.thermal_state import HOT, StateLike, ThermalState
 from thermogear.results.beside import from_data
@@ -63,7 +63,13 @@ def case_family(
     changes: Mapping[str, float] | None = None,
     train: Train | None = None,
 ) -> GearFamily | NumberFamily | TrainFamily:
-    """The family of a case over ``names``: of its gears alone, or of its drive ``train``."""
+    """The family of a case over ``names``: of its gears alone, or of its drive ``train``.
+
+    Of gears whose teeth differ the mean tooth over one mesh period; without a train the whole turn
+    where the case states ``gears.period``.
+    """
+    if isinstance(case, GearCase):
+        case = case.unless_stated("period", "mesh") if train is None else case.mean_tooth()
     if train is None:
         return family(case, tuple(names), bundle, state, numbers=changes)
     if changes:

@@ -83,7 +83,8 @@ class Asked:
 
     def _part(self, points: list[int]) -> dict[str, NDArray[Any]]:
         """What moves the hot pair at some operating points."""
-        return {name: self.hot[name][points] for name in MOVES}
+        part = {name: self.hot[name][points] for name in MOVES}
+        return part | {"mesh_periods": np.full(len(points), self.mesh_periods)}
 
     @cached_property
     def points(self) -> list[int]:

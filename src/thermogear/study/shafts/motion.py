@@ -19,6 +19,7 @@ from thermogear.base.vocabulary import STATUS, STILL, label, moves
 from thermogear.case.case import GearCase
 from thermogear.dynamics.ladder import Engine
 from thermogear.results.result import Notice
+from thermogear.study.declared import mean_tooth_notices
 from thermogear.study.shafts.moving import MovingTrain, moving, rubbing
 from thermogear.study.shafts.record import (
     PERIODS,
@@ -145,6 +146,7 @@ def train_motion(
     forces at shaft orders. ``coordinates`` of the reduced train, the interface and 16 modes if left
     out. A jammed point or one whose motion diverges is a status.
     """
+    whole, case = case, case.mean_tooth()
     chosen = places_of(case) if places is None else list(places)
     states = settled(case, chosen, progress=progress)
     found = []
@@ -155,7 +157,7 @@ def train_motion(
             out.append(moved(case, one, coordinates=coordinates))
         found.append(out)
     progress("motion of the train", len(states) * len(chosen), len(states) * len(chosen))
-    return _table(case, found), list(_told(found))
+    return _table(case, found), [*mean_tooth_notices(whole, case), *_told(found)]
 
 
 def _table(case: GearCase, found: Sequence[Sequence[Moved]]) -> Dataset:

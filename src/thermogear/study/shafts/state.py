@@ -141,10 +141,10 @@ def settled(
 ) -> list[list[TrainState]]:
     """The drive train at every one of ``places``, in every one of ``states``: [state][place].
 
-    ``model`` of the mesh, the case's first if left out. Raises InputError for a case without
-    shafts and for shafts that nothing holds.
+    ``model`` of the mesh, the case's first if left out. Of gears whose teeth differ the mean tooth.
+    Raises InputError for a case without shafts and for shafts that nothing holds.
     """
-    plan = plan_of(case)
+    plan, case = plan_of(case), case.mean_tooth()
     chosen = case.models[0] if model is None else model
     whole = len(states) * len(places)
     found = []

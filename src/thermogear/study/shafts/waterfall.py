@@ -448,6 +448,7 @@ def waterfall_plan(
 ) -> WaterfallPlan:
     """The plan of :func:`waterfall`; ``block`` speeds are computed, and given out, together."""
     plan_of(case)
+    case = case.mean_tooth()
     axis = np.sort(axis_values("speeds", speeds))
     if axis[0] <= 0.0:
         raise InputError("speeds", f"{axis[0] * 30.0 / np.pi:.6g} rpm", allowed="> 0 rpm")
@@ -485,8 +486,8 @@ def waterfall(
     and clearances are those of one ``operating`` point (from 1, the hardest if left out). Over
     (state, direction, pinion_speed): vibration of mesh and bearing forces, acceleration of the
     housing, and their lines over order; ``apart_...``: stretches on which up and down differ, and
-    whether two motions exist there at a steady speed, between which a run jumps. Raises InputError
-    for a case without shafts.
+    whether two motions exist there at a steady speed, between which a run jumps. Of gears whose
+    teeth differ the mean tooth. Raises InputError for a case without shafts.
     """
     plan = waterfall_plan(
         case, speeds, states=states, operating=operating, duration=duration,
