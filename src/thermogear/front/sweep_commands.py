@@ -8,6 +8,7 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -332,7 +333,6 @@ def waterfall(
     With clearance in teeth and bearings, undeformed and hot. CASE needs [[shafts]] and
     [[bearings]].
     """
-    from dataclasses import replace
 
     from thermogear.case.thermal_state import UNDEFORMED
     from thermogear.study.shafts.waterfall import waterfall_plan
