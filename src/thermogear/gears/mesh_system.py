@@ -36,6 +36,7 @@ from thermogear.gears.tooth import STARTS, flank_point, unit_compliance
 from thermogear.gears.tooth_damage import Damage
 from thermogear.gears.tooth_table import PLANES, tooth_table
 from thermogear.gears.touch import Touch, first_touch
+from thermogear.gears.turn import ToothShapes
 
 BODIES = {
     "bore_clamped": "ring held at the bore: statics",
@@ -304,7 +305,7 @@ def _pressed_touch(points: MeshPoints, deviations: Sequence[Deviation], load: Ar
     Of more than :data:`_MOST_WIDTHS` loads the gaps are interpolated in the half width, which the
     mean of a corner follows in proportion.
     """
-    if not any(isinstance(d, FlankShape) for d in deviations):
+    if not any(isinstance(d, FlankShape | ToothShapes) for d in deviations):
         return first_touch(points, deviations)
     pair = points.contacts.pair
     softness = 4.0 / (np.pi * pair.face_width * pair_reduced_modulus(pair))
