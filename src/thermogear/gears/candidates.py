@@ -8,11 +8,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, nearest
 from thermogear.gears.contact import mirror_position
 from thermogear.gears.corner import ContactPoint, contact_point
 from thermogear.gears.deviations import Contacts
 from thermogear.gears.pair import GearPair
+
+_SAME_FRACTION = 11
+"""Decimals of a mesh period beyond which two phases are at the same place: rounding of 2000."""
 
 
 class MeshPoints(NamedTuple):
@@ -20,12 +24,20 @@ class MeshPoints(NamedTuple):
 
     ``broken``: whose tooth ends below the place where its flank would touch, 1 the wheel's, 2 the
     pinion's, as in :data:`~thermogear.base.vocabulary.EDGE_CONTACT`; None: no tooth does.
+    ``shared``: over several mesh periods the points of each fraction of a phase that occurs, as of
+    period 0, and which of them each position has; None: the positions are their own.
     """
 
     s: NDArray[np.float64]
     point: ContactPoint
     contacts: Contacts
     broken: NDArray[np.int8] | None = None
+    shared: tuple[MeshPoints, NDArray[np.int64]] | None = None
+
+    @property
+    def fractions(self) -> tuple[MeshPoints, NDArray[np.int64]]:
+        """What does not depend on the teeth's numbers, and the place of each position in it."""
+        return self.shared or (self, np.arange(len(self.s)))
 
 
 def mesh_points(
@@ -49,7 +61,34 @@ def mesh_points(
         raise InputError(
             "flank", repr(flank), allowed="drive | back", fix=nearest(flank, ("drive", "back"))
         )
-    return _at(pair, phi.tobytes(), flank, extended)
+    period = np.floor(phi)
+    if np.ptp(period) == 0.0:
+        return _at(pair, phi.tobytes(), flank, extended)
+    fraction = phi - period
+    _, first, place = np.unique(
+        np.round(fraction, _SAME_FRACTION), return_index=True, return_inverse=True
+    )
+    once = _at(pair, fraction[first].tobytes(), flank, extended)
+    return _renumbered(once, phi, place=place, period=period.astype(np.int64))
+
+
+def _renumbered(
+    once: MeshPoints, phi: Floats, *, place: NDArray[np.int64], period: NDArray[np.int64]
+) -> MeshPoints:
+    """The points of each fraction in the mesh periods in which it occurs."""
+    point = ContactPoint(*(values[place] for values in once.point))
+    pair, number, s = once.contacts.pair, period[:, None], once.s[place]
+    contacts = Contacts(
+        pair,
+        s,
+        point.pinion,
+        point.wheel,
+        (once.contacts.pinion_tooth[place] + number) % pair.pinion.teeth,
+        (once.contacts.wheel_tooth[place] + number) % pair.wheel.teeth,
+        once.contacts.flank,
+        phi,
+    )
+    return MeshPoints(s, point, contacts, shared=(once, place))
 
 
 @lru_cache(maxsize=32)

@@ -172,7 +172,8 @@ def solve_mesh(
     idle = settled & (asked == 0.0)[:, None]
     force[idle] = 0.0
     edge = system.edges * (force > 0.0)
-    pressure = hertz_pressure(force / width, system.places[..., 2], system.reduced[:, None, None])
+    radius = system.places[system.place, :, 2]
+    pressure = hertz_pressure(force / width, radius, system.reduced[:, None, None])
     pressure[edge > 0] = np.nan
 
     def shaped(values: Floats) -> Floats:
@@ -351,7 +352,7 @@ def loaded_contact(
         model=choice,
         flank=flank,
     )
-    lead = mesh.deflection.shape[:-1]
+    lead, unloaded = mesh.deflection.shape[:-1], mesh.unloaded
     names = tuple(
         dimensions
         if dimensions is not None
@@ -366,9 +367,9 @@ def loaded_contact(
     along, by_pair = (*names, "mesh_phase"), (*names, "mesh_phase", "pair")
     values: dict[str, tuple[tuple[str, ...], ArrayLike]] = {
         "transmission_error": (along, mesh.deflection),
-        "unloaded_error": (along, mesh.unloaded),
+        "unloaded_error": (along, unloaded),
         "tangent_stiffness": (along, mesh.tangent),
-        "secant_stiffness": (along, mesh.secant),
+        "secant_stiffness": (along, mesh.carried / (mesh.elastic - unloaded)),
         "contact_pairs": (along, loaded),
         "pair_force": (by_pair, mesh.force),
         "load_share": (by_pair, mesh.share),

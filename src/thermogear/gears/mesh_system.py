@@ -36,6 +36,7 @@ from thermogear.gears.tooth import STARTS, flank_point, unit_compliance
 from thermogear.gears.tooth_damage import Damage
 from thermogear.gears.tooth_table import PLANES, tooth_table
 from thermogear.gears.touch import Touch, first_touch
+from thermogear.gears.turn import ToothShapes
 
 BODIES = {
     "bore_clamped": "ring held at the bore: statics",
@@ -185,7 +186,8 @@ class MeshSystem:
     """The compliances and gaps of a mesh at its positions: what the kernel solves.
 
     Built once for a pair, its phases, moduli and deviations; ``lead`` is the shape those (and
-    ``shape``, that of the loads) broadcast to.
+    ``shape``, that of the loads) broadcast to. ``tooth``, ``body`` and ``places`` belong to the
+    fractions of the phases alone; ``place``: which of them each position has.
     """
 
     pair: GearPair
@@ -196,6 +198,7 @@ class MeshSystem:
     tooth: Floats
     body: Floats
     places: Floats
+    place: NDArray[np.int64]
     tooth_modulus: Floats
     body_modulus: Floats
     reduced: Floats
@@ -220,8 +223,11 @@ class MeshSystem:
         load [N]: its Hertzian half width averages the flanks' shapes.
         """
         points = mesh_points(pair, phase, flank, model.extended)
-        points = points if damage is None else damage.touching(points, model.extended)
-        drawn = as_drawn(pair, np.asarray(phase, dtype=float).tobytes(), flank, model, damage)
+        once, place = points.fractions
+        if damage is not None:  # of one tooth: no two mesh periods are alike
+            points = damage.touching(points, model.extended)
+            once, place = points, np.arange(len(points.s))
+        drawn = as_drawn(pair, once.contacts.phase.tobytes(), flank, model, damage)
         positions, count = points.s.shape
         gap, edge = _pressed_touch(points, deviations, load)
         lead = np.broadcast_shapes(
@@ -246,6 +252,7 @@ class MeshSystem:
             tooth=drawn.tooth,
             body=drawn.body,
             places=drawn.places,
+            place=place,
             tooth_modulus=tooth_modulus,
             body_modulus=np.stack([flat(m.body, lead=lead) for m in moduli], axis=-1),
             reduced=reduced_modulus(
@@ -279,6 +286,7 @@ class MeshSystem:
             self.tooth,
             self.body,
             self.places,
+            self.place,
             1.0 / (self.tooth_modulus * width),
             1.0 / (self.body_modulus * width),
             4.0 / (np.pi * width * self.reduced),
@@ -297,7 +305,7 @@ def _pressed_touch(points: MeshPoints, deviations: Sequence[Deviation], load: Ar
     Of more than :data:`_MOST_WIDTHS` loads the gaps are interpolated in the half width, which the
     mean of a corner follows in proportion.
     """
-    if not any(isinstance(d, FlankShape) for d in deviations):
+    if not any(isinstance(d, FlankShape | ToothShapes) for d in deviations):
         return first_touch(points, deviations)
     pair = points.contacts.pair
     softness = 4.0 / (np.pi * pair.face_width * pair_reduced_modulus(pair))

@@ -247,6 +247,7 @@ def share_many(
     tooth: Floats,
     body: Floats,
     places: Floats,
+    place: NDArray[np.int64],
     tooth_softness: Floats,
     body_softness: Floats,
     softness: Floats,
@@ -259,9 +260,10 @@ def share_many(
     """All cases x positions into ``force``, ``delta``, ``stiffness``, ``settled``.
 
     asked [case]: loads, or deflections where ``by_load`` is false; gap [case or 1, position,
-    pair]; tooth [2, position, pair] and body [2, position, pair, pair]: compliances of both
-    gears for unit modulus and width; places [position, pair, 7], softness [case]: 4/(pi b E*),
-    law [case, 6]: see :func:`_approach`; tooth_softness, body_softness [case, 2]: 1/(E b).
+    pair]; tooth [2, place, pair] and body [2, place, pair, pair]: compliances of both gears for
+    unit modulus and width; places [place, pair, 7], softness [case]: 4/(pi b E*), law [case, 6]:
+    see :func:`_approach`; place [position]: that of each position, the same in all mesh periods;
+    tooth_softness, body_softness [case, 2]: 1/(E b).
     A pair whose force F has the lever lambda enters with compliances over lambda_j lambda_k, so
     that ``force`` is its part lambda F of the load, and gap and delta are advances of the pinion.
     """
@@ -270,14 +272,15 @@ def share_many(
     for c in range(cases):
         own = c if gap.shape[0] > 1 else 0
         for p in range(positions):
+            at = place[p]
             for j in range(count):
                 for k in range(count):
                     compliance[j, k] = (
-                        body[0, p, j, k] * body_softness[c, 0]
-                        + body[1, p, j, k] * body_softness[c, 1]
+                        body[0, at, j, k] * body_softness[c, 0]
+                        + body[1, at, j, k] * body_softness[c, 1]
                     )
                 compliance[j, j] += (
-                    tooth[0, p, j] * tooth_softness[c, 0] + tooth[1, p, j] * tooth_softness[c, 1]
+                    tooth[0, at, j] * tooth_softness[c, 0] + tooth[1, at, j] * tooth_softness[c, 1]
                 )
                 # from the positions before: forces change slowly along the path
                 before = force[c, p - 1, j] if p > 0 else 0.0
@@ -289,7 +292,7 @@ def share_many(
                 gap[own, p],
                 compliance,
                 softness[c],
-                places[p],
+                places[at],
                 law[c],
                 force[c, p],
             )

@@ -23,13 +23,18 @@ from numpy.typing import NDArray
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.gears.candidates import MeshPoints
-from thermogear.gears.corner import contact_point, flank_ends, off_path
+from thermogear.gears.corner import ContactPoint, contact_point, flank_ends, off_path
 from thermogear.gears.deviations import GEARS, Deviation, FlankShape
 from thermogear.gears.pair import GearPair
+from thermogear.gears.turn import ToothShapes
 
 _REACH = 0.05
 """Modules: candidates farther from touching than this and the shapes' span keep their corner."""
 _ROUNDING = 1e-15
+_POINTS = 49
+"""Points of a flank at which teeth that differ may touch."""
+_STEPS = 256, 2048
+"""Steps of a flank in which what is taken off is linear: means over a contact; the shapes."""
 _NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(6) / 5.0)
 _TO_POWERS = np.linalg.inv(np.vander(_NODES, increasing=True))
 _APART = 1e-9
@@ -76,21 +81,32 @@ def first_touch(
     >>> f"{first_touch(mesh_points(pair, [0.1])).gap.min():.3f} m"
     '0.000 m'
     """
-    contacts = points.contacts
-    shapes = [d for d in deviations if isinstance(d, FlankShape) and d.acts_on(contacts.flank)]
-    rest = [
-        checked
-        for place, d in enumerate(deviations)
-        for checked in [_checked(place, d, d.gap(contacts))]
-        if not isinstance(d, FlankShape)
-    ]
+    contacts, (once, place) = points.contacts, points.fractions
+    shapes: list[FlankShape | ToothShapes] = []
+    rest: list[Floats] = []
+    for n, d in enumerate(deviations):
+        if isinstance(d, ToothShapes):
+            d.require_fits(contacts.pair)
+            shapes.append(d if d.differs else d.shapes[0])
+        elif isinstance(d, FlankShape):
+            _checked(n, d, d.gap(once.contacts))
+            shapes.append(d)
+        else:
+            rest.append(_checked(n, d, d.gap(contacts)))
+    shapes = [d for d in shapes if d.acts_on(contacts.flank)]
     gap, edge = points.point.gap, _corner_of(contacts.pair, contacts.s)
     if shapes:
-        solve = _shaped if all(isinstance(d, Hashable) for d in shapes) else _shaped.__wrapped__
         extended = bool(np.any((edge > 0) & np.isfinite(gap)))
-        gap, edge = solve(
-            contacts.pair, tuple(shapes), contacts.s.shape, contacts.s.tobytes(), extended, spread
-        )
+        alike = [d for d in shapes if isinstance(d, FlankShape)]
+        if len(alike) < len(shapes):
+            gap, edge = _of_teeth(points, tuple(shapes), extended, spread)
+        else:
+            solve = _shaped if all(isinstance(d, Hashable) for d in shapes) else _shaped.__wrapped__
+            gap, edge = solve(
+                contacts.pair, tuple(alike), once.s.shape, once.s.tobytes(), extended, spread
+            )
+            if points.shared:
+                gap, edge = gap[..., place, :], edge[..., place, :]
     if points.broken is not None:
         # on the edge of the break, what is taken off counts where that edge is
         there = sum((d.gap(contacts) for d in shapes), start=points.point.gap)
@@ -138,49 +154,128 @@ def _shaped(
     s = np.frombuffer(places)
     nominal = contact_point(pair, s, extended)
     lead = np.broadcast_shapes(*(d.taken_off(pair, np.ones(1)).shape[:-1] for d in shapes))
-    ends = flank_ends(pair)
-    (low, high), length = ends[0], pair.line_of_action
     (one, first, span_one, off_one), (two, second, span_two, off_two) = (
-        _polynomials(pair, [d for d in shapes if d.gear == gear], own, string, lead, spread)
-        for gear, own, string in zip(GEARS, ends, (nominal.pinion, nominal.wheel), strict=True)
+        _polynomials(pair, gear, [d for d in shapes if d.gear == gear], string, lead, spread)
+        for gear, string in zip(GEARS, (nominal.pinion, nominal.wheel), strict=True)
     )
     span = span_one + span_two
     gap = nominal.gap + off_one + off_two
     edge = np.tile(_corner_of(pair, s), (len(gap), 1))
-    middle = np.clip(nominal.pinion, low, high)
-    with np.errstate(divide="ignore"):
-        # half as far again as where x^2/(2 rho*) outgrows the span of the shapes
-        softness = 2.0 * span * np.maximum(length - middle, 0.0) / (length * middle)
-    near = (nominal.gap < _REACH * pair.pinion.module + span) & (span > _ROUNDING)
-    touch_many(
-        s,
-        middle,
-        near,
-        1.5 * pair.pinion.base_radius * np.sqrt(softness),
-        np.array(
-            [pair.pinion.base_radius, pair.wheel.base_radius, length, pair.path.a, pair.path.e]
-        ),
-        one,
-        first,
-        two,
-        second,
-        gap,
-        edge,
-    )
-    # off the path what the wheel would fall back is the pinion's advance times its lever
-    gap += np.where(near, nominal.gap, 0.0) * (1.0 - nominal.lever)
-    # the flanks end where a rounding begins, which reaches farther by r_e (1 - cos theta)
-    gap -= nominal.rounding * (1.0 - np.cos(nominal.angle)) * (near & (edge > 0))
-    gap, edge = gap.reshape(*lead, *size), edge.reshape(*lead, *size)
+    where = _looked_at(pair, s, nominal, span)
+    touch_many(*where, one, first, two, second, gap, edge)
+    gap = _ended(gap, edge, nominal, where[2]).reshape(*lead, *size)
+    edge = edge.reshape(*lead, *size)
     gap.setflags(write=False)
     edge.setflags(write=False)
     return Touch(gap, edge)
 
 
+def _looked_at(
+    pair: GearPair, s: Floats, nominal: ContactPoint, span: Floats
+) -> tuple[Floats, Floats, NDArray[np.bool_], Floats, Floats]:
+    """s, middle, near, reach and mesh of ``touch_kernel`` for shapes of a ``span`` [m]."""
+    (low, high), length = flank_ends(pair)[0], pair.line_of_action
+    middle = np.clip(nominal.pinion, low, high)
+    with np.errstate(divide="ignore"):
+        # half as far again as where x^2/(2 rho*) outgrows the span of the shapes
+        softness = 2.0 * span * np.maximum(length - middle, 0.0) / (length * middle)
+    near = (nominal.gap < _REACH * pair.pinion.module + span) & (span > _ROUNDING)
+    radii = pair.pinion.base_radius, pair.wheel.base_radius
+    mesh = np.array([*radii, length, pair.path.a, pair.path.e])
+    return s, middle, near, 1.5 * radii[0] * np.sqrt(softness), mesh
+
+
+def _ended(
+    gap: Floats, edge: NDArray[np.int8], nominal: ContactPoint, near: NDArray[np.bool_]
+) -> Floats:
+    """The gaps of the flanks with what their ends and levers make of them."""
+    # off the path what the wheel would fall back is the pinion's advance times its lever
+    gap += np.where(near, nominal.gap, 0.0) * (1.0 - nominal.lever)
+    # the flanks end where a rounding begins, which reaches farther by r_e (1 - cos theta)
+    gap -= nominal.rounding * (1.0 - np.cos(nominal.angle)) * (near & (edge > 0))
+    return gap
+
+
+def _of_teeth(
+    points: MeshPoints,
+    shapes: tuple[FlankShape | ToothShapes, ...],
+    extended: bool,
+    spread: float,
+) -> Touch:
+    """Gap and edge of flanks that differ from tooth to tooth.
+
+    The advance of plain involutes at :data:`_POINTS` of the flank once for all teeth, and what each
+    tooth takes off there: within 0.1 um of :func:`_shaped` for every pair of teeth.
+    """
+    from thermogear.gears.touch_kernel import advance_many, touch_teeth
+
+    contacts, (shared, place) = points.contacts, points.fractions
+    pair, once = contacts.pair, shared.s
+    solve = _tables if all(isinstance(d, Hashable) for d in shapes) else _tables.__wrapped__
+    (first, second), lead = solve(pair, shapes, spread)
+    nominal = contact_point(pair, once, extended)
+    span = np.ptp(first, axis=-1).max() + np.ptp(second, axis=-1).max()
+    where = _looked_at(pair, once.ravel(), ContactPoint(*(x.ravel() for x in nominal)), span)
+    ends = np.array(flank_ends(pair))
+    nodes = np.zeros((*once.shape, _POINTS, 7))
+    nodes[..., 0], nodes[..., 1], nodes[..., 2] = (
+        x[..., None] for x in (nominal.pinion, nominal.wheel, nominal.gap)
+    )
+    edges = np.repeat(_corner_of(pair, once)[..., None], 2, axis=-1)
+    advance_many(*where, ends[0], ends[1], nodes.reshape(-1, _POINTS, 7), edges.reshape(-1, 2))
+    last = first.shape[-1] - 1.0
+    step = np.diff(ends).ravel() / last
+    nodes[..., :2] = np.clip((nodes[..., :2] - ends[:, 0]) / step, 0.0, last)
+    nodes[..., 5:] /= step
+    path = pair.path
+    part = np.clip((path.e - once) / (path.e - path.a), 0.0, 1.0)
+    whole = (first.shape[1], *contacts.s.shape)
+    gap, edge = np.empty(whole), np.empty(whole, np.int8)
+    teeth = (contacts.pinion_tooth % len(first), contacts.wheel_tooth % len(second))
+    touch_teeth(nodes, edges, part, first, second, place, *teeth, gap, edge)
+    there = ContactPoint(*(x[place] for x in nominal))
+    gap = _ended(gap, edge, there, where[2].reshape(once.shape)[place])
+    return Touch(gap.reshape(*lead, *whole[1:]), edge.reshape(*lead, *whole[1:]))
+
+
+@lru_cache(maxsize=16)
+def _tables(
+    pair: GearPair, shapes: tuple[FlankShape | ToothShapes, ...], spread: float
+) -> tuple[list[Floats], tuple[int, ...]]:
+    """What each tooth of pinion and wheel takes off [m], means over a contact, and ``lead``.
+
+    [tooth, case, step] over the flank in even steps of the string; one row where all are alike.
+    """
+    parts = [shape for d in shapes for shape in (d.shapes if isinstance(d, ToothShapes) else (d,))]
+    lead = np.broadcast_shapes(*(d.taken_off(pair, np.ones(1)).shape[:-1] for d in parts))
+    out = []
+    steps = _STEPS[spread == 0.0] + 1
+    for name, ends in zip(GEARS, flank_ends(pair), strict=True):
+        inside, weights = _averaged(pair, name, np.linspace(*ends, steps), spread)
+        several = [d.shapes for d in shapes if isinstance(d, ToothShapes) and d.gear == name]
+        table = np.zeros((len(several[0]) if several else 1, *lead, steps))
+        for shape in (d for d in shapes if isinstance(d, FlankShape) and d.gear == name):
+            table += shape.taken_off(pair, inside) @ weights
+        for tooth, row in enumerate(zip(*several, strict=True)):
+            for shape in row:
+                table[tooth] += shape.taken_off(pair, inside) @ weights
+        out.append(table.reshape(len(table), -1, steps))
+    return out, lead
+
+
+def _averaged(pair: GearPair, name: str, at: Floats, spread: float) -> tuple[Floats, Floats]:
+    """Strings [m] in the contacts at ``at`` [m], (n, place), and the weights of their mean."""
+    if spread == 0.0:
+        return at[:, None], np.ones(1)
+    ends = flank_ends(pair)[GEARS.index(name)]
+    base = pair.gear(name).base_radius
+    return _pressed(at, ends, base, pair.line_of_action, spread), _WEIGHTS
+
+
 def _polynomials(
     pair: GearPair,
+    name: str,
     shapes: Sequence[FlankShape],
-    ends: tuple[float, float],
     string: Floats,
     lead: tuple[int, ...],
     spread: float,
@@ -189,19 +284,16 @@ def _polynomials(
 
     Between two borders the polynomial meets the shapes, or their means, at six places.
     """
-    low, high = ends
-    gear = pair.pinion if shapes and shapes[0].gear == GEARS[0] else pair.wheel
-    flank = (ends, gear.base_radius, pair.line_of_action, spread)
+    low, high = flank_ends(pair)[GEARS.index(name)]
     places = np.concatenate([np.empty(0), *(d.borders(pair) for d in shapes)])
     places = places[(places > low) & (places < high)]
     if spread > 0.0:
-        places = _pressed(places, *flank)[:, [0, -1]].ravel()
+        places = _averaged(pair, name, places, spread)[0][:, [0, -1]].ravel()
     borders = np.sort([low, *places, high])
     borders = borders[np.diff(borders, prepend=-np.inf) > _APART * (high - low)]
     borders[-1] = high
     nodes = borders[:-1, None] + np.diff(borders)[:, None] * _NODES
-    inside = _pressed(nodes.ravel(), *flank) if spread > 0.0 else nodes.reshape(-1, 1)
-    weights = _WEIGHTS if spread > 0.0 else np.ones(1)
+    inside, weights = _averaged(pair, name, nodes.ravel(), spread)
     values, there = np.zeros((*lead, nodes.size)), np.zeros((*lead, string.size))
     for shape in shapes:
         values += shape.taken_off(pair, inside) @ weights

@@ -19,12 +19,17 @@ from numpy.typing import NDArray
 
 from thermogear.base.arrays import Floats
 from thermogear.base.kernel_cache import compiled
+from thermogear.gears.sharing_kernel import NOUGHT
 
 _MOST_TURNS = 60
 _PLACE = 1e-12
 """String [m] to which borders of the wheel are found on the pinion."""
 _LEVEL = 1e-8
 """dE/drho counted as 0: with d2E/drho2 > 1 /m the gap is exact to 1e-16 m."""
+_AHEAD = 1e-5
+"""Move of the place [m] over which slopes of an advance are taken."""
+_HALVINGS = 5
+"""Of the distance of two nodes, about the least of them."""
 _LAST = 1e-9
 """Newton's step of the gap [m] after which the next would be below its rounding, 1e-16 m."""
 
@@ -255,3 +260,126 @@ def touch_many(
                     two,
                     second[case],
                 )
+
+
+@compiled
+def advance_many(
+    s: Floats,
+    middle: Floats,
+    near: NDArray[np.bool_],
+    reach: Floats,
+    mesh: Floats,
+    one: Floats,
+    two: Floats,
+    nodes: Floats,
+    edge: NDArray[np.int8],
+) -> None:
+    """Advances of plain involutes at many points of their flanks into ``nodes`` and ``edge``.
+
+    s, middle, near, reach [candidate] and mesh as :func:`touch_many` takes them; one, two: both
+    ends [m] of the flanks. nodes [candidate, node, 7]: string rho and sigma [m] of the points that
+    meet, their advance [m], its slope and bend [1/m] by the place s, the slopes of rho and sigma;
+    edge [candidate, 2]: whose tip the first and the last node is. Both ends come twice, outermost
+    as those of the flank that ends there. Candidates that are not near stay as they come.
+    """
+    plain, count = np.zeros((1, 1)), nodes.shape[1]
+    for q in range(s.size):
+        if not near[q]:
+            continue
+        begin, end = max(middle[q] - reach[q], one[0]), min(middle[q] + reach[q], one[-1])
+        tip = _reached(two[-1], begin, s[q], mesh, one, plain)
+        foot = _reached(two[0], end, s[q], mesh, one, plain)
+        low, high = max(begin, tip), min(end, foot)
+        edge[q, 0], edge[q, 1] = 1 * (low > begin), 2 * (end == one[-1] <= foot)
+        for k in range(count):
+            rho = low + (high - low) * min(max(k - 1, 0), count - 3) / (count - 3)
+            value, _, by, kept = _advance(rho, s[q], mesh, one, plain, 0, two, plain, 0)
+            string = math.sqrt(max(_meet(rho, s[q], mesh, one, plain, 0)[3], 0.0))
+            moved, ahead = rho, s[q] + _AHEAD
+            wheels = (k == 0 and low > begin) or (k == count - 1 and high < end)
+            if wheels:  # the end of its flank stays its own, along the pinion's
+                moved = _reached(string, rho, ahead, mesh, one, plain)
+            _, _, later, later_kept = _advance(moved, ahead, mesh, one, plain, 0, two, plain, 0)
+            after = math.sqrt(max(_meet(moved, ahead, mesh, one, plain, 0)[3], 0.0))
+            if wheels:
+                by, later = kept, later_kept
+            nodes[q, k] = rho, string, value, by, later - by, moved - rho, after - string
+            nodes[q, k, 4:] /= _AHEAD
+            if low > high:
+                nodes[q, k, 2] = np.inf
+
+
+@compiled
+def _between(table: Floats, place: float) -> float:
+    """``table`` at ``place``, a number of steps from its begin, linear in between."""
+    k = min(max(int(place), 0), table.size - 2)
+    return float(table[k] + (place - k) * (table[k + 1] - table[k]))
+
+
+@compiled
+def _gap_at(node: Floats, part: float, own: Floats, mate: Floats, gap: float) -> float:
+    """Gap [m] at which the points of one ``node`` touch.
+
+    e = [a + (1 - a') e_1 + a'' x^2/2 + e_2]/(1 - part a'), a the advance, a' and a'' its slope and
+    bend by the place, e_1 and e_2 by the tables ``own`` and ``mate`` where the points are when the
+    pinion's has moved on by x = part ``gap`` - e_1 [m]; ``gap`` inf: as if it had not.
+    """
+    off, shift = _between(own, node[0]), 0.0
+    if gap < math.inf:
+        shift = part * gap - off
+        off = _between(own, node[0] + node[5] * shift)
+    taken = (1.0 - node[3]) * off + _between(mate, node[1] + node[6] * shift)
+    return float((node[2] + taken + 0.5 * node[4] * shift * shift) / (1.0 - part * node[3]))
+
+
+@compiled
+def touch_teeth(
+    nodes: Floats,
+    edges: NDArray[np.int8],
+    part: Floats,
+    first: Floats,
+    second: Floats,
+    place: NDArray[np.int64],
+    pinion: NDArray[np.int64],
+    wheel: NDArray[np.int64],
+    gap: Floats,
+    edge: NDArray[np.int8],
+) -> None:
+    """Gap [m] and edge [case, position, pair] of teeth that differ, the least over the nodes.
+
+    nodes [place, pair, node, 7] and edges [place, pair, 2]: see :func:`advance_many`, strings in
+    steps of the tables; part [place, pair]: of the advance, the pinion's; first, second [tooth,
+    case, step]: what is taken off; place [position]; pinion, wheel [position, pair]: rows of the
+    tables. Gaps to first order at all nodes, to second order between the neighbours of the least.
+    """
+    count = nodes.shape[2]
+    node = np.empty(nodes.shape[3])
+    for c in range(gap.shape[0]):
+        for p in range(place.size):
+            for r in range(gap.shape[2]):
+                own, mate = first[pinion[p, r], c], second[wheel[p, r], c]
+                these, share = nodes[place[p], r], part[place[p], r]
+                least, best = math.inf, NOUGHT
+                # one place alone where the flanks are not near
+                apart = these[0, 0] == these[count - 1, 0]
+                for k in range(1 if apart else count):
+                    if k != 1 and k != count - 2:
+                        value = _gap_at(these[k], share, own, mate, math.inf)
+                        if value < least:
+                            least, best = value, k
+                least = _gap_at(these[best], share, own, mate, least)
+                edge[c, p, r] = edges[place[p], r, min(best, 1)]
+                if 1 < best < count - 2:
+                    edge[c, p, r] = 0
+                    before, here, after = these[best - 1], these[best], these[best + 1]
+                    middle, step = 0.0, 0.5
+                    for _ in range(_HALVINGS):
+                        for x in (middle - step, middle + step):
+                            for n in range(node.size):
+                                bend = before[n] - 2.0 * here[n] + after[n]
+                                node[n] = here[n] + 0.5 * x * (after[n] - before[n] + x * bend)
+                            value = _gap_at(node, share, own, mate, least)
+                            if value < least:
+                                least, middle = value, x
+                        step *= 0.5
+                gap[c, p, r] = least

@@ -134,11 +134,6 @@ class ToothShapes(ToothDeviation):
                 )
 
     @property
-    def flank(self) -> str:
-        """The flanks that have these shapes."""
-        return self.shapes[0].flank
-
-    @property
     def differs(self) -> bool:
         """Whether the shapes are not all the same."""
         return any(shape != self.shapes[0] for shape in self.shapes)
@@ -146,6 +141,10 @@ class ToothShapes(ToothDeviation):
     def require_fits(self, pair: GearPair) -> None:
         """Refuse a list that has not one shape for each tooth."""
         self._require_each("tooth_shapes.shapes", self.shapes, pair)
+
+    def acts_on(self, flank: str) -> bool:
+        """Whether the flanks of that side, "drive" or "back", have these shapes."""
+        return self.shapes[0].acts_on(flank)
 
     def mean(self) -> FlankShape:
         """The mean shape of all teeth."""
