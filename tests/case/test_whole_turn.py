@@ -101,7 +101,7 @@ def test_every_tooth_and_single_teeth_have_their_profiles() -> None:
         'phase="90 deg", flank="back"}]',
     )
     every, single = (one for one in found.deviations if isinstance(one, ToothShapes))
-    assert (every.flank, single.flank) == ("drive", "back")
+    assert (every.shapes[0].flank, single.shapes[0].flank) == ("drive", "back")
     for n, shape in enumerate(every.shapes):
         assert isinstance(shape, WavyProfile)
         assert (shape.slope, shape.form) == pytest.approx((1e-6 * slopes[n], 2e-6), rel=1e-14)
@@ -130,9 +130,6 @@ REFUSED = {
     'gears.wheel.tooth_profiles=[{slope=["1 um", "2 um"]}]':
         "gears.wheel.tooth_profiles[0].slope: got 2 values; allowed one for each of the 40 teeth, "
         "or one",
-    "gears.wheel.tooth_profiles=[{}, {flank='drive'}]":
-        "gears.wheel.tooth_profiles[0].flank: got 'both' beside 'drive'; allowed one table of both "
-        "sides, or drive and back",
     "gears.pinion.teeth_differ=[{tooth=21, slope='1 um'}]":
         "gears.pinion.teeth_differ: got tooth 21; allowed 1..20",
     "gears.pinion.teeth_differ=[{tooth=21, index='1 um'}]":
@@ -278,6 +275,15 @@ def alone_of(found: GearCase, gear: str) -> PitchError:
     return next(one for one in found.deviations if isinstance(one, PitchError) and one.gear == gear)
 
 
+def test_gears_beyond_the_tables_are_not_drawn() -> None:
+    with pytest.raises(InputError) as caught:
+        graded("flanks.teeth=drawn", "gears.module=0.3 mm", "operating.torque=0.1 N m")
+    assert str(caught.value) == (
+        "flanks: got module 0.3 mm; allowed 0.5..70 mm; the range of ISO 1328-1:2013; give "
+        "[transmission_error] harmonics, or measured profiles, instead"
+    )
+
+
 def test_a_gear_that_is_given_is_not_drawn() -> None:
     with pytest.raises(InputError) as caught:
         graded("flanks.teeth=drawn", BOTH[0])
@@ -300,7 +306,7 @@ def test_a_chart_of_every_tooth_acts_tooth_by_tooth(tmp_path: Path) -> None:
     assert mean.period.mesh_periods == 1
     found = own_chart.case(tmp_path, text, more='teeth = "measured"\n')
     (shapes,) = (one for one in found.deviations if isinstance(one, ToothShapes))
-    assert (shapes.gear, shapes.flank) == ("pinion", "drive")
+    assert (shapes.gear, shapes.shapes[0].flank) == ("pinion", "drive")
     ends = np.array([found.pair.path.a, found.pair.path.e])
     rise = [-float(np.diff(one.taken_off(found.pair, ends))[0]) for one in shapes.shapes]
     np.testing.assert_allclose(rise, 1e-6 * slopes, atol=2e-9)

@@ -77,7 +77,7 @@ Waves = Annotated[float, Number(low=1.0, high=20.0, example="2.5")]
 
 
 class ToothProfilesTable(Table):
-    """Slope and form of every tooth on one side of a gear: one value for each, or one for all."""
+    """Slope and form of every tooth: one value for each, or one for all; several tables add up."""
 
     slope: Annotated[tuple[float, ...] | None, Several(Slope, most=bounds.MOST_TEETH)] = Field(
         default=None, title="none"

@@ -105,16 +105,8 @@ def _of_teeth(
     if (one := table.eccentricity) is not None:
         amount = one.amount if one.amount is not None else 0.5 * (one.run_out or 0.0)
         yield "eccentricity", partial(Eccentricity, gear, amount=amount, angle=one.angle)
-    sides = [one.flank for one in table.tooth_profiles]
     for place, profiles in enumerate(table.tooth_profiles):
-        field = f"tooth_profiles[{place}]"
-        if len(sides) > 1 and set(sides) != {"drive", "back"}:
-            raise InputError(
-                f"gears.{gear}.{field}.flank",
-                f"{sides[place]!r} beside {sides[1 - place]!r}",
-                allowed="one table of both sides, or drive and back",
-            )
-        yield field, partial(_every_tooth, gear, profiles, table.teeth)
+        yield f"tooth_profiles[{place}]", partial(_every_tooth, gear, profiles, table.teeth)
     for flank in FLANKS:
         single = [one for one in table.teeth_differ if one.flank == flank]
         if any(one.slope or one.form for one in single):
@@ -202,6 +194,8 @@ def accuracy(file: GearFile, pair: GearPair) -> int | None:
         return table.accuracy
     stiff = min(gear.material.youngs_modulus for gear in (pair.pinion, pair.wheel))
     usual = OF_METAL if stiff > PLASTIC else OF_PLASTICS
+    if table.teeth == "drawn":  # asked for, so refused where it cannot be
+        return usual
     try:
         graded_flanks(pair, usual, seed=table.seed, edition=table.edition)
     except InputError:
@@ -212,16 +206,7 @@ def accuracy(file: GearFile, pair: GearPair) -> int | None:
 def _graded(file: GearFile, pair: GearPair) -> tuple[Deviation, ...]:
     """Seeded profiles of the gears whose own are not given."""
     grade, table = accuracy(file, pair), file.flanks
-    if table is None or not unmeasured(file):
-        return ()
-    if grade is None:
-        if table.teeth == "drawn":
-            raise InputError(
-                "flanks.teeth",
-                "'drawn'",
-                why="the tables of ISO 1328-1 end before these gears",
-                fix="give pitch_errors and tooth_profiles instead",
-            )
+    if grade is None or table is None:
         return ()
     edition, drawn = table.edition, table.teeth == "drawn"
     for gear in unmeasured(file) if drawn else ():

@@ -193,7 +193,9 @@ def drawn_gear(
     '0.87 of its tolerance'
     """
     gear = pair.pinion if name == "pinion" else pair.wheel
-    limits = flank_tolerances(gear.teeth, gear.module, grade=grade, edition=edition)
+    whole = flank_tolerances(gear.teeth, gear.module, grade=grade, edition=edition)
+    # drawn a thousand times too small, so that no raw gear leaves the bounds of a deviation
+    limits = FlankTolerances(*(1e-3 * one for one in whole))
     rng = np.random.default_rng(seed)
     cosine, p = math.cos(gear.pressure_angle), population
     amount = 0.5 * cosine * _rayleigh(rng, p.eccentricity) * limits.cumulative_pitch
@@ -209,11 +211,10 @@ def drawn_gear(
     def shares(flank: str, profiles: float) -> Floats:
         at = _probe(pair, name, flank)
         added = -centre.gap(at)[:, 0] - pitch.gap(at)[:, 0]
-        traces = at.string(name)[gear.teeth :, 0].reshape(MEASURED_TEETH, _POINTS)
+        rho = at.string(name)[gear.teeth : gear.teeth + _POINTS, 0]
         some = at.tooth(name)[gear.teeth :: _POINTS, 0]
-        for place, (rho, tooth) in enumerate(zip(traces, some, strict=True)):
-            trace = slice(gear.teeth + place * _POINTS, gear.teeth + (place + 1) * _POINTS)
-            added[trace] -= profiles * sides[flank][tooth].taken_off(pair, rho)
+        read = [sides[flank][tooth].taken_off(pair, rho) for tooth in some]
+        added[gear.teeth :] -= profiles * np.ravel(read)
         return _figures(pair, name, added).shares(limits)
 
     bare, full = shares("back", 0.0), shares("back", 1.0)
@@ -221,7 +222,7 @@ def drawn_gear(
     # each share is a norm of what is read, so convex in the size of the profiles
     over = full > worst
     back = float(np.min((worst - bare[over]) / (full[over] - bare[over]), initial=1.0))
-    scale = share / worst
+    scale = 1e3 * share / worst
     return (
         replace(centre, amount=scale * centre.amount),
         replace(pitch, errors=tuple(scale * np.asarray(pitch.errors))),
