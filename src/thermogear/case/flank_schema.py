@@ -61,7 +61,7 @@ class EccentricityTable(Table):
     )
     angle: Annotated[float, Turned] = Field(
         default=0.0,
-        description="tooth 1 stands farthest out. From its axis towards tooth 2; decides what the "
+        description="tooth 1 is farthest out. From its axis towards tooth 2; decides what the "
         "eccentricities of both gears, and the errors of single teeth, add up to",
     )
 
@@ -104,7 +104,7 @@ class ToothTable(Table):
             "along the line of action, > 0 towards the drive flank",
             "8 um",
         ),
-    ] = Field(default=0.0, title="none: the whole tooth stands where it did")
+    ] = Field(default=0.0, title="none: the whole tooth stays where it is")
     slope: Annotated[float, Slope] = Field(default=0.0, title="none")
     form: Annotated[float, Form] = Field(default=0.0, title="none")
     phase: Annotated[float, Turned] = Field(default=0.0, title="0")

@@ -381,7 +381,7 @@ class GearsTable(Table):
     )
     pitch_errors_are: Annotated[str, Choice("index", "single pitch")] = Field(
         default="index",
-        title="index: where each tooth stands, > 0 towards its drive flank; single pitch: how much "
+        title="index: where each tooth is, > 0 towards its drive flank; single pitch: how much "
         "farther than a pitch from the tooth before",
     )
     pitch_errors_along: Annotated[str, Choice("line of action", "arc")] = Field(
