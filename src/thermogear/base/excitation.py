@@ -5,13 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base import fourier
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
+from thermogear.base.period import Period
 from thermogear.base.pieces import Pieces
 from thermogear.base.vocabulary import moves
 
@@ -69,6 +72,9 @@ class Periodic:
     def __call__(self, phase: ArrayLike) -> Floats:
         """Values at ``phase`` (in periods, any shape)."""
         phi = np.asarray(phase, dtype=float)
+        if len(self.harmonics) > fourier.MANY:
+            found: Floats = fourier.values(self._row, phi)[0]
+            return found
         if phi.ndim == 0 and self.harmonics and abs(phi) < _FAR:
             return self._one(float(phi))
         total = np.full(phi.shape, self.mean)
@@ -76,6 +82,10 @@ class Periodic:
             if amplitude != 0.0:
                 total = total + (amplitude * np.exp(2j * np.pi * order * phi)).real
         return total
+
+    @cached_property
+    def _row(self) -> NDArray[np.complex128]:
+        return self.columns([self])
 
     def _one(self, phi: float) -> Floats:
         """The value at one phase, to the last digit that of arrays, in a tenth of their time."""
@@ -142,8 +152,9 @@ class Excitation:
     m_e x'' + c x' + k(t) f(x; b') = F + m_e * (-e''),   x = r_b1 theta_1 - r_b2 theta_2 - e(t),
 
     f the dead zone of half width b' = ``half_backlash``. ``stiffness`` k [N/m] and ``error`` e
-    [m] are periodic in the mesh phase; e is the unloaded (kinematic) error, never the loaded
-    transmission error; for perfect gears e = 0. ``reference_half_backlash`` b_c [m] (the cold
+    [m] repeat after ``mesh_periods`` mesh periods, 1 where all teeth are alike; their phase counts
+    these periods. e is the unloaded (kinematic) error, never the loaded transmission error; for
+    perfect gears e = 0. ``reference_half_backlash`` b_c [m] (the cold
     one) is the length scale of the dimensionless equation. ``mean_force`` F [N],
     ``mesh_frequency`` [rad/s], ``inertias`` [kg m^2], ``base_radii`` [m] and ``torques`` [N m]
     of pinion and wheel. ``damping_ratio`` zeta refers to omega_n = sqrt(k_m/m_e), k_m the time
@@ -161,8 +172,10 @@ class Excitation:
     torques: tuple[float, float]
     damping_ratio: float
     friction: FrictionSplit | None = None
+    mesh_periods: int = 1
 
     def __post_init__(self) -> None:
+        Period(self.mesh_periods)
         positive = {
             "stiffness": self.stiffness.mean,
             "half_backlash": self.half_backlash,
@@ -188,6 +201,11 @@ class Excitation:
         """omega_n = sqrt(k_m/m_e) [rad/s]."""
         return float(np.sqrt(self.stiffness.mean / self.equivalent_mass))
 
+    @property
+    def turn_frequency(self) -> float:
+        """How often stiffness and error repeat [rad/s]."""
+        return self.mesh_frequency / self.mesh_periods
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Excitations:
@@ -197,7 +215,8 @@ class Excitations:
     moves, else its other numbers mean nothing. ``stiffness`` and ``error`` are Fourier
     coefficients (point, 1 + harmonic), the mean first, as :class:`Periodic` has them;
     ``inertias``, ``base_radii`` and ``torques`` (point, 2); everything in SI. ``friction``: one
-    for each point, or None where it was not asked for.
+    for each point, or None where it was not asked for. ``mesh_periods``, one number for all points:
+    after so many mesh periods stiffness and error repeat.
     """
 
     status: NDArray[np.int8]
@@ -212,6 +231,7 @@ class Excitations:
     damping_ratio: Floats
     base_radii: Floats
     friction: tuple[FrictionSplit | None, ...] | None = None
+    mesh_periods: int = 1
 
     def __len__(self) -> int:
         return self.status.size
@@ -228,10 +248,15 @@ class Excitations:
         mean = np.where(moves(self.status), self.stiffness[:, 0].real, np.nan)
         return np.sqrt(mean / self.equivalent_mass)
 
+    @property
+    def turn_frequency(self) -> Floats:
+        """How often stiffness and error repeat [rad/s], (point,)."""
+        return self.mesh_frequency / self.mesh_periods
+
     def take(self, index: ArrayLike) -> Excitations:
         """Some of the points, in that order."""
         chosen = np.atleast_1d(np.asarray(index))
-        arrays = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "friction"}
+        arrays = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in _OF_ALL}
         rubbed = self.friction
         if rubbed is not None:
             rubbed = tuple(rubbed[i] for i in np.arange(len(self))[chosen])
@@ -240,7 +265,7 @@ class Excitations:
 
     @classmethod
     def of(cls, rows: Sequence[Excitation]) -> Excitations:
-        """Single ones side by side; all of them move."""
+        """Single ones of one period side by side; all of them move."""
 
         def column(name: str) -> Floats:
             return np.array([getattr(one, name) for one in rows], dtype=float)
@@ -258,18 +283,18 @@ class Excitations:
             damping_ratio=column("damping_ratio"),
             base_radii=column("base_radii"),
             friction=_asked([(one.friction,) for one in rows]),
+            mesh_periods=common_period(rows),
         )
 
     @classmethod
     def joined(cls, parts: Sequence[Excitations]) -> Excitations:
-        """All points of ``parts``, one after the other."""
+        """All points of ``parts``, one after the other; they have one period."""
         if len(parts) == 1:
             return parts[0]
-        made: dict[str, Any] = {}
+        spread = [one.friction or (None,) * len(one) for one in parts]
+        made: dict[str, Any] = {"friction": _asked(spread), "mesh_periods": common_period(parts)}
         for field in fields(cls):
-            if field.name == "friction":
-                spread = (one.friction or (None,) * len(one) for one in parts)
-                made["friction"] = _asked(list(spread))
+            if field.name in made:
                 continue
             given = [getattr(one, field.name) for one in parts]
             if field.name in ("stiffness", "error"):
@@ -304,7 +329,20 @@ class Excitations:
             torques=torques,
             damping_ratio=float(self.damping_ratio[place]),
             friction=None if self.friction is None else self.friction[place],
+            mesh_periods=self.mesh_periods,
         )
+
+
+_OF_ALL = ("friction", "mesh_periods")
+"""Fields of :class:`Excitations` that are no arrays over the points."""
+
+
+def common_period(rows: Sequence[Excitation] | Sequence[Excitations]) -> int:
+    """The period that all ``rows`` have; InputError where they differ."""
+    every = {one.mesh_periods for one in rows}
+    if len(every) != 1:
+        raise InputError("mesh_periods", sorted(every), allowed="one number for all points")
+    return every.pop()
 
 
 def _asked(

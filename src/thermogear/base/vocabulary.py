@@ -126,6 +126,22 @@ QUANTITIES: dict[str, Quantity] = {
     "flash_temperature": Quantity("K", "flash temperature rise", "ΔT_f", "Blok 1937"),
     "flash_temperature_mixed": Quantity("K", "flash temperature rise, lubricated", "ΔT_f"),
     "flash_temperature_dry": Quantity("K", "flash temperature rise, dry", "ΔT_f"),
+    # over a turn: each tooth pair by its worst place along the path
+    **{
+        f"{name}_{key}": Quantity(*meaning)
+        for name, unit, words, worst, bound, sign in (
+            ("flash_temperature", "K", "flash temperature rise", "greatest", "most", "ΔT_f"),
+            ("hertz_pressure", "Pa", "Hertzian pressure", "greatest", "most", "p_H"),
+            ("film_parameter", "1", "film parameter", "least", "least", "Λ"),
+        )
+        for key, meaning in {
+            "median_of_turn": (unit, f"{worst} {words} of a tooth pair, median of the turn", sign),
+            "decile_of_turn": (unit, f"{words} that 90 % of the tooth pairs have at {bound}", sign),
+            f"{worst}_of_turn": (unit, f"{worst} {words} of the turn", sign),
+            "pinion_tooth": ("1", f"pinion tooth of the {worst} {words}, 1 at mesh phase 0"),
+            "wheel_tooth": ("1", f"wheel tooth of the {worst} {words}, 1 at mesh phase 0"),
+        }.items()
+    },
     "pinion_heat_share": Quantity("1", "share of the frictional heat into the pinion", "β₁"),
     "contact_temperature": Quantity("K", "greatest contact temperature of both flanks", "T_c"),
     "pinion_body_temperature": Quantity(
@@ -141,8 +157,8 @@ QUANTITIES: dict[str, Quantity] = {
     "pinion_base_growth": Quantity("m", "radial growth at the pinion's base circle", "u_b1"),
     "wheel_base_growth": Quantity("m", "radial growth at the wheel's base circle", "u_b2"),
     "half_backlash_curve": Quantity("m", "half backlash along the line of action", "b′(φ)"),
-    "half_backlash": Quantity("m", "half backlash, mean over a mesh period", "b′"),
-    "least_half_backlash": Quantity("m", "half backlash, least over a mesh period", "b′_min"),
+    "half_backlash": Quantity("m", "half backlash, mean over the mesh phase", "b′"),
+    "least_half_backlash": Quantity("m", "half backlash, least over the mesh phase", "b′_min"),
     **{
         f"half_backlash_by_{name}": Quantity("m", f"what {words} to the cold half backlash")
         for name, words in (

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base import fourier
 from thermogear.base.arrays import Floats, Whole
 from thermogear.base.errors import InputError
 from thermogear.dynamics.kernels.affine import BEHIND, add_harmonics, prepare
@@ -25,13 +26,20 @@ Bytes = NDArray[np.uint8]
 ORDER = 12
 BLOCK = 128
 _COUNTS = tuple(base * 2**k for k in range(11) for base in (32, 48))
+MOST_OF_TURN = 400_000
+"""Sub-steps of a turn at most: a lane's maps then take some 600 MB."""
+ROOM = 2**19
+"""Sub-steps of all lanes of a block at most: what their maps take bounds the memory."""
 
 
 def _bounds(lanes: LaneTables, name: str) -> tuple[Floats, Floats]:
     """Per lane: a bound of |p| over the period and of |dp/dphi| (without the jumps)."""
-    coefficients = np.abs(getattr(lanes, name))
-    size = coefficients.sum(axis=1)
-    rate = 2.0 * np.pi * coefficients @ np.arange(coefficients.shape[1])
+    if lanes.by_fft:
+        size, rate = (fourier.bound(getattr(lanes, name), order) for order in (0, 1))
+    else:
+        coefficients = np.abs(getattr(lanes, name))
+        size = coefficients.sum(axis=1)
+        rate = 2.0 * np.pi * coefficients @ np.arange(coefficients.shape[1])
     for lane, piece in enumerate(getattr(lanes, name + "_pieces")):
         if piece is not None:
             size[lane] += max(sum(abs(c) for c in row) for row in piece.coefficients)
@@ -46,6 +54,26 @@ def _powers(width: int, order: int) -> Floats:
     """(q pi/N)^(order - 1) of every harmonic q and every allowed count N of sub-steps."""
     turn = np.pi / np.array(_COUNTS)
     return np.asarray((np.arange(width)[:, None] * turn) ** (order - 1))
+
+
+def _tail(lanes: LaneTables, name: str, counts: Whole, order: int) -> Floats:
+    """A bound of |d^(order-1) p/du^(order-1)|, u from -1 to 1 over a sub-step: (lane, count)."""
+    coefficients = getattr(lanes, name)
+    if lanes.by_fft:
+        bound = fourier.bound(coefficients, order - 1)
+        fine = counts > 2 * coefficients.shape[1]
+        return np.asarray(np.where(fine, bound[:, None] / (2.0 * counts) ** (order - 1), np.inf))
+    # summed rank by rank: no sum may depend on the other lanes
+    powers = _powers(coefficients.shape[1], order)
+    return np.asarray(np.sum(np.abs(coefficients)[:, :, None] * powers, axis=1))
+
+
+def _counts(lanes: LaneTables) -> Whole:
+    """The numbers of sub-steps a period that are allowed: the same for every mesh period."""
+    if not lanes.by_fft:
+        return np.array(_COUNTS)
+    counts = lanes.mesh_periods * np.array([base * 2**k for k in range(14) for base in (32, 48)])
+    return counts[counts <= max(MOST_OF_TURN, counts[0])]
 
 
 def substeps(lanes: LaneTables, order: int = ORDER) -> Whole:
@@ -63,15 +91,12 @@ def substeps(lanes: LaneTables, order: int = ORDER) -> Whole:
         ]
     )
     scale = lanes.half_backlash + strongest / mean
-    counts = np.array(_COUNTS)
+    counts = _counts(lanes)
     half = lanes.period[:, None] / (2.0 * counts)
     allowed = 2e-17 * factorial(order + 1)
     good = half * np.maximum(np.sqrt(stiffest), lanes.damping)[:, None] <= 0.3
     for name, size in (("stiffness", np.ones(len(lanes))), ("force", scale)):
-        coefficients = np.abs(getattr(lanes, name))
-        # summed rank by rank: no sum may depend on the other lanes
-        tail = np.sum(coefficients[:, :, None] * _powers(coefficients.shape[1], order), axis=1)
-        good &= half**2 * tail <= allowed * size[:, None]
+        good &= half**2 * _tail(lanes, name, counts, order) <= allowed * size[:, None]
     needed = np.where(good.any(axis=1), counts[np.argmax(good, axis=1)], 0)
     if np.all(needed):
         return needed
@@ -79,7 +104,7 @@ def substeps(lanes: LaneTables, order: int = ORDER) -> Whole:
     raise InputError(
         "frequency",
         2.0 * np.pi / lanes.period[lane],
-        why=f"the exact maps would need more than {_COUNTS[-1]} sub-steps a period",
+        why=f"the exact maps would need more than {counts[-1]} sub-steps a period",
         fix="use method='rk4'",
     )
 
@@ -197,6 +222,8 @@ def _taylor(lanes: LaneTables, name: str, centres: Floats, half: Floats, order: 
     """Coefficients in u about the centre of every sub-step: (sub-step, lane, order + 1)."""
     coefficients = getattr(lanes, name)
     pieces: tuple[Pieces | None, ...] = getattr(lanes, name + "_pieces")
+    if lanes.by_fft and np.ptp(half) == 0.0:
+        return fourier.taylor(coefficients, centres.size, order)
     if len(lanes) == 1 and pieces[0] is None:
         return _of_one(coefficients.tobytes(), centres.tobytes(), half.tobytes(), order)
     out = _of_harmonics(coefficients, centres, half, order)
@@ -236,9 +263,16 @@ def _of_harmonics(
     return out
 
 
+def _widths(lanes: LaneTables, borders: Floats) -> Floats:
+    """Widths of the sub-steps; those of a turn without jumps equal to the last bit."""
+    widths = np.diff(borders)
+    even = lanes.by_fft and np.ptp(widths) * widths.size < 1e-6
+    return np.full(widths.size, 1.0 / widths.size) if even else widths
+
+
 def prepare_maps(lanes: LaneTables, borders: Floats, marks: Bytes, order: int = ORDER) -> ExactMaps:
     """The maps of ``lanes`` on the sub-steps between ``borders`` (phases from 0 to 1)."""
-    widths = np.diff(borders)
+    widths = _widths(lanes, borders)
     centres = borders[:-1] + 0.5 * widths
     half = 0.5 * widths[:, None] * lanes.period
     size, rate = _bounds(lanes, "force")
@@ -289,7 +323,7 @@ def maps_moved(
     ``maps`` are those of ``lanes``. The numbers of the equation change at the rate
     sum(weight * neighbour) over ``around``; how the maps change with them is exact.
     """
-    width = np.diff(maps.borders)
+    width = _widths(lanes, maps.borders)
     centres = maps.borders[:-1] + 0.5 * width
 
     def rate(name: str) -> float:
@@ -394,7 +428,7 @@ def layouts(
             count = -(-count // samples) * samples
         borders, marks = _borders(count, jumps, samples)
         index = np.array([i for i, k in enumerate(keys) if k == key])
-        parts = -(-index.size // block)
+        parts = -(-index.size // max(1, min(block, ROOM // count)))
         for part in range(parts):
             # every so many-th lane: neighbours are alike, and blocks should cost the same
             yield index[part::parts], borders, marks
