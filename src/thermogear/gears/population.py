@@ -51,6 +51,11 @@ class Population:
     ``waves``: one tool makes them alike on all teeth, but for ``form_scatter`` of their heights
     and ``phase_scatter`` [rad]. ``least``: the worst of the gear's deviations over its tolerance is
     evenly drawn from there to 1; 1/sqrt(2) is where the next better class begins.
+
+    >>> pair = GearPair(Gear(20, 3e-3), Gear(40, 3e-3))
+    >>> centred, *_ = drawn_pair(pair, 6, seed=1, population=Population(eccentricity=0.0))
+    >>> centred.differs
+    False
     """
 
     eccentricity: float = 0.55
@@ -240,7 +245,7 @@ def drawn_pair(
     edition: str = "2013",
     population: Population = Population(),
 ) -> tuple[Deviation, ...]:
-    """Both gears of the drawing number ``place``: any of them by itself, whatever is drawn beside.
+    """Both gears of the drawing number ``place``, sizes in [m]; the same whatever else is drawn.
 
     Drawing n has the n-th child of ``seed`` (:meth:`numpy.random.SeedSequence.spawn`), each gear a
     child of that, pinion first.
