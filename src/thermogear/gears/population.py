@@ -223,7 +223,7 @@ def drawn_gear(
         return _figures(pair, name, added).shares(limits)
 
     bare, full = shares("back", 0.0), shares("back", 1.0)
-    worst = max(*shares("drive", 1.0), *bare)
+    worst = float(max(*shares("drive", 1.0), *bare))
     # each share is a norm of what is read, so convex in the size of the profiles
     over = full > worst
     back = float(np.min((worst - bare[over]) / (full[over] - bare[over]), initial=1.0))
