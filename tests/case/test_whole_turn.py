@@ -111,7 +111,7 @@ def test_every_tooth_and_single_teeth_have_their_profiles() -> None:
     assert third.waves == 3.5
     assert third.phase == pytest.approx(0.5 * math.pi, rel=1e-14)
     assert single.shapes[:2] == single.shapes[3:5]
-    assert single.shapes[0] == WavyProfile("pinion", slope=0.0, form=0.0, waves=3.5, flank="back")
+    assert single.shapes[0] == WavyProfile("pinion", slope=0.0, flank="back")
     errors = np.zeros(Z1)
     errors[2] = 8e-6
     np.testing.assert_allclose(alone(found, PitchError).errors, errors, rtol=1e-14)
@@ -142,6 +142,8 @@ REFUSED = {
     "gears.pitch_errors_along='chord'":
         "gears.pitch_errors_along: got 'chord'; allowed line of action | arc; write for "
         'instance "line of action"',
+    "gears.pinion.teeth_differ=[{tooth=2, slope=['1 um', '2 um']}]":
+        "gears.pinion.teeth_differ.slope: got 2 values; allowed one",
     "gears.marks=[21, 1]": "gears.marks[0]: got 21; allowed 1..20",
     "gears.marks=[1]":
         "gears.marks: got a list of 1; allowed 2 entries; write for instance [1, 1]",

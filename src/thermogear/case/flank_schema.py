@@ -92,7 +92,7 @@ class ToothProfilesTable(Table):
     flank: Flank = Field(default="both", description="drive and back flanks alike")
 
 
-class ToothTable(Table):
+class ToothTable(ToothProfilesTable):
     """One tooth that differs: what it has besides all that the gear's other fields say."""
 
     tooth: Annotated[int, Count(low=1, high=bounds.MOST_TEETH, example="7")]
@@ -105,11 +105,6 @@ class ToothTable(Table):
             "8 um",
         ),
     ] = Field(default=0.0, title="none: the whole tooth stays where it is")
-    slope: Annotated[float, Slope] = Field(default=0.0, title="none")
-    form: Annotated[float, Form] = Field(default=0.0, title="none")
-    phase: Annotated[float, Turned] = Field(default=0.0, title="0")
-    waves: Waves = Field(default=2.5, title="2.5")
-    flank: Flank = Field(default="both", title="of slope and form; both")
 
 
 Charts = Annotated[

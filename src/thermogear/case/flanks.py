@@ -18,6 +18,7 @@ from thermogear.gears.deviations import (
     FLANKS,
     GEARS,
     Deviation,
+    FlankShape,
     FlankTable,
     PitchError,
     PressureAngleError,
@@ -150,29 +151,21 @@ def _every_tooth(gear: str, table: ToothProfilesTable, teeth: int) -> ToothShape
     columns = {name: getattr(table, name) or (0.0,) for name in ("slope", "form", "phase")}
     for name, values in columns.items():
         if len(values) not in (1, teeth):
-            raise InputError(
-                name, f"{len(values)} values", allowed=f"one for each of the {teeth} teeth, or one"
-            )
+            each = f"one for each of the {teeth} teeth, or " * (teeth > 1)
+            raise InputError(name, f"{len(values)} values", allowed=f"{each}one")
     rows = zip(*(np.broadcast_to(one, teeth).tolist() for one in columns.values()), strict=True)
-    return ToothShapes(gear, tuple(_wavy(gear, table, *row) for row in rows))
+    made = partial(WavyProfile, gear, waves=table.waves, flank=table.flank)
+    return ToothShapes(gear, tuple(made(**dict(zip(columns, row, strict=True))) for row in rows))
 
 
 def _single_teeth(gear: str, given: Sequence[ToothTable], teeth: int) -> ToothShapes:
     """Slope and form of the teeth that differ on one side, none of the others."""
-    shapes = [_wavy(gear, given[0], 0.0, 0.0, 0.0)] * teeth
+    shapes: list[FlankShape] = [WavyProfile(gear, slope=0.0, flank=given[0].flank)] * teeth
     for place, one in enumerate(given):
         if one.tooth in [other.tooth for other in given[:place]]:
             raise InputError("", f"tooth {one.tooth} twice", allowed="each tooth of a side once")
-        shapes[_place(one, teeth)] = _wavy(gear, one, one.slope, one.form, one.phase)
+        (shapes[_place(one, teeth)],) = _every_tooth(gear, one, 1).shapes
     return ToothShapes(gear, tuple(shapes))
-
-
-def _wavy(
-    gear: str, table: ToothProfilesTable | ToothTable, slope: float, form: float, phase: float
-) -> WavyProfile:
-    return WavyProfile(
-        gear, slope=slope, form=form, phase=phase, waves=table.waves, flank=table.flank
-    )
 
 
 def _charted(file: GearFile, pair: GearPair, chart: Chart) -> tuple[Deviation, ...]:

@@ -16,10 +16,13 @@ from functools import lru_cache
 
 import numpy as np
 
+from thermogear.base import bounds
 from thermogear.base.arrays import Floats
+from thermogear.base.errors import InputError, require_choice
 from thermogear.gears.accuracy import FlankTolerances, flank_tolerances
 from thermogear.gears.contact import mirror_position
 from thermogear.gears.deviations import (
+    FLANKS,
     GEARS,
     Contacts,
     Deviation,
@@ -71,6 +74,14 @@ class Population:
     phase_scatter: float = math.radians(43.0)
     least: float = math.sqrt(0.5)
 
+    def __post_init__(self) -> None:
+        for name, value in vars(self).items():
+            if not (np.all(np.isfinite(value)) and np.all(np.asarray(value) >= 0.0)):
+                raise InputError(f"population.{name}", value, allowed="finite, >= 0")
+        if min(self.orders, default=1) < 1 or self.least > 1.0:
+            got = f"orders {self.orders}, least {self.least:g}"
+            raise InputError("population", got, allowed="orders from 1 on, least 0..1")
+
 
 @dataclass(frozen=True)
 class ToothProfile(FlankShape):
@@ -90,6 +101,15 @@ class ToothProfile(FlankShape):
     waves: float
     phase: float
     flank: str = "both"
+
+    def __post_init__(self) -> None:
+        require_choice("tooth_profile.gear", self.gear, GEARS)
+        require_choice("tooth_profile.flank", self.flank, FLANKS)
+        for name in ("slope", "barrel", "wave"):
+            bounds.ADDED.require(f"tooth_profile.{name}", getattr(self, name))
+        if not (math.isfinite(self.phase) and 0.0 <= self.waves <= 20.0):
+            got = f"{self.waves:g} waves of phase {self.phase:g}"
+            raise InputError("tooth_profile.waves", got, allowed="0..20, of finite phase")
 
     def taken_off(self, pair: GearPair, rho: Floats) -> Floats:
         """e = -S."""
