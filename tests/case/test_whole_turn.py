@@ -207,6 +207,8 @@ def test_assemblies_differ_and_are_all() -> None:
     assert len(found) == math.gcd(Z1, Z2)
     assert found[0].file.gears.marks is None
     assert [one.file.gears.marks for one in found[1:]] == [(1, k) for k in range(2, 21)]
+    fields = [{one.field for one in each.assumptions} for each in found]
+    assert ["gears.marks" in each for each in fields] == [True] + [False] * 19
     sizes = {round(1e9 * float(np.ptp(gap(one)[:, 1])), 6) for one in found[:6]}
     assert len(sizes) == 6
     assert case(*BOTH[:1]).assemblies() == (case(*BOTH[:1]).assemblies()[0],)

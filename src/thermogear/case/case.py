@@ -214,7 +214,8 @@ class GearCase(Case):
         """The case with a field put to the ``value`` that a file would hold."""
         changes = (*(pair for pair in self.overrides if pair[0] != field), (field, value))
         made = case_of(overridden(self.data, ((field, value),)), self.text, changes, told=False)
-        return replace(gear_case(made), assumptions=self.assumptions)
+        kept = tuple(one for one in self.assumptions if one.field != field)
+        return replace(gear_case(made), assumptions=kept)
 
     @property
     def measured_class(self) -> int | None:
