@@ -27,7 +27,7 @@ from thermogear.base.toml import overridden, pairs, tables
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.case import build as parts
 from thermogear.case.allowed import gear_parameter, gear_reader
-from thermogear.case.assumptions import Assumption, assumptions, unstated
+from thermogear.case.assumptions import LEFT, Assumption, assumptions
 from thermogear.case.backlash import Backlash
 from thermogear.case.base import Case, Simulation
 from thermogear.case.build import TemperatureRule
@@ -224,7 +224,8 @@ class GearCase(Case):
         """The case with a field put to the ``value`` that a file would hold."""
         changes = (*(pair for pair in self.overrides if pair[0] != field), (field, value))
         made = case_of(overridden(self.data, ((field, value),)), self.text, changes, told=False)
-        return replace(gear_case(made), assumptions=self.assumptions)
+        kept = tuple(one for one in self.assumptions if one.field != field)
+        return replace(gear_case(made), assumptions=kept)
 
     @property
     def measured_class(self) -> int | None:
@@ -454,10 +455,10 @@ def case_of(
     found = assumptions(data, read, _decided(case))
     if case.assembly_count > 1 and read.gears.marks is None:
         found += (
-            unstated(
+            Assumption(
                 "gears.marks",
                 "1, 1",
-                "tooth 1 meets tooth 1 at mesh phase 0. One of "
+                f"{LEFT}tooth 1 meets tooth 1 at mesh phase 0. One of "
                 f"{case.assembly_count} assemblies; decides which errors meet",
             ),
         )

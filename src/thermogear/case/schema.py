@@ -341,8 +341,8 @@ class GearTable(Table):
         Several(measure("length", bounds.PITCH_ERROR, example="3 um"), least=1, most=2000),
     ] = Field(default=None, title="one for each tooth, in the order in which they mesh; none")
     eccentricity: EccentricityTable | None = Field(default=None, title="none: centred on the bore")
-    tooth_profiles: Annotated[tuple[ToothProfilesTable, ...], Field(max_length=2)] = Field(
-        default=(), title="slope and form of every tooth, a table for each side; none"
+    tooth_profiles: Annotated[tuple[ToothProfilesTable, ...], Field(max_length=20)] = Field(
+        default=(), title="slope and form of every tooth; none"
     )
     teeth_differ: Annotated[tuple[ToothTable, ...], Field(max_length=bounds.MOST_TEETH)] = Field(
         default=(), title="single teeth beside all others; none"
@@ -381,7 +381,7 @@ class GearsTable(Table):
     )
     pitch_errors_are: Annotated[str, Choice("index", "single pitch")] = Field(
         default="index",
-        title="index: where each tooth stands, > 0 towards its drive flank; single pitch: how much "
+        title="index: where each tooth is, > 0 towards its drive flank; single pitch: how much "
         "farther than a pitch from the tooth before",
     )
     pitch_errors_along: Annotated[str, Choice("line of action", "arc")] = Field(

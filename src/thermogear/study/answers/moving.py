@@ -292,12 +292,13 @@ def _drawings(asked: Asked) -> list[float]:
     """Static error [um] peak to peak at the hardest point, hot, of drawn flanks and of others.
 
     The flanks of the case first, then other seeds of the same class, as many in all as
-    :data:`DRAWINGS`, each at up to :data:`POSITIONS` phases; empty where nothing is drawn, or where
-    the model's springs do not feel flanks.
+    :data:`DRAWINGS`, each at up to :data:`POSITIONS` phases; empty where nothing is drawn, or whole
+    gears are, whose turns differ, or where the model's springs do not feel flanks.
     """
     case = asked.case
     table = case.file.flanks
-    if case.accuracy is None or table is None or asked.model.stiffness != "loaded":
+    whole = table is not None and table.teeth == "drawn"
+    if case.accuracy is None or table is None or whole or asked.model.stiffness != "loaded":
         return []
     kept = [one for one in asked.mean_tooth if not isinstance(one, WavyProfile)]
     drawn = {one.gear for one in case.deviations if isinstance(one, WavyProfile)}
