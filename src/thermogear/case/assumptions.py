@@ -91,6 +91,11 @@ _NUMBERS = re.compile(
 _LEFT = "not in the file; the default: "
 
 
+def unstated(field: str, value: str, why: str) -> Assumption:
+    """A default that acts in some cases alone: its field, what it is, why."""
+    return Assumption(field, value, f"{_LEFT}{why}")
+
+
 def assumptions(
     data: dict[str, Any], file: BaseModel, decided: Mapping[str, str] = MappingProxyType({})
 ) -> tuple[Assumption, ...]:

@@ -6,8 +6,10 @@ nothing of TOML, texts or units any more.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -20,11 +22,12 @@ from thermogear.base.errors import InputError
 from thermogear.base.excitation import Periodic
 from thermogear.base.materials import MATERIALS, Material
 from thermogear.base.parameters import NUMBERS
+from thermogear.base.period import Period
 from thermogear.base.toml import overridden, pairs, tables
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.case import build as parts
 from thermogear.case.allowed import gear_parameter, gear_reader
-from thermogear.case.assumptions import Assumption, assumptions
+from thermogear.case.assumptions import Assumption, assumptions, unstated
 from thermogear.case.backlash import Backlash
 from thermogear.case.base import Case, Simulation
 from thermogear.case.build import TemperatureRule
@@ -32,7 +35,7 @@ from thermogear.case.charts import Chart, charts, enclosed
 from thermogear.case.dimensionless import Point, points_of
 from thermogear.case.dimensionless_schema import DimensionlessFile
 from thermogear.case.examples import example_text
-from thermogear.case.flanks import accuracy, deviations
+from thermogear.case.flanks import accuracy, deviations, first_tooth, unmeasured
 from thermogear.case.gearbox import Reading, gearbox, heated
 from thermogear.case.ranges import in_proportion, warn_of_temperatures, warn_of_torque
 from thermogear.case.refusals import complaints, together
@@ -43,8 +46,8 @@ from thermogear.case.shafts import train_plan
 from thermogear.case.source import case_text, folder_of
 from thermogear.case.units import shown
 from thermogear.gears.deviations import Deviation
-from thermogear.gears.graded_flanks import WavyProfile
 from thermogear.gears.pair import GearPair
+from thermogear.gears.turn import turn_period
 from thermogear.heat.gearbox import Surroundings, fluid_from
 from thermogear.mesh.balance import Gearbox, HeatBalance, heat_balance
 from thermogear.mesh.cycle import mesh_cycle
@@ -56,16 +59,15 @@ def decided(
     pair: GearPair,
     backlash: Backlash,
     around: Surroundings,
-    deviations: Sequence[Deviation],
     accuracy: int | None,
+    graded: list[str],
 ) -> dict[str, str]:
     """Field -> the value that replaces it, with its unit."""
     found = {
         "gears.centre_distance": shown(pair.centre_distance, "length"),
         "backlash.value": f"{shown(2.0 * backlash.half, 'length')}, total, normal",
     }
-    grades = {one.gear for one in deviations if isinstance(one, WavyProfile)}
-    known = "" if accuracy is None else f"{accuracy}, {' and '.join(sorted(grades))}"
+    known = "" if accuracy is None else f"{accuracy}, {' and '.join(graded)}"
     found["flanks.accuracy"] = known or "none: the tables of ISO 1328-1 end before these gears"
     found |= {
         "gearbox.housing_area": shown(around.housing_area, "area", 3),
@@ -174,6 +176,45 @@ class GearCase(Case):
         data = overridden(self.data, changes)
         kept = tuple(pair for pair in self.overrides if pair[0] not in dict(changes))
         return gear_case(case_of(data, self.text, (*kept, *changes), told=told))
+
+    @cached_property
+    def period(self) -> Period:
+        """After how many mesh periods the deviations come again."""
+        return turn_period(self.pair, self.deviations)
+
+    def tooth_number(self, gear: str, place: int) -> int:
+        """The number, from 1, in the file of the ``place``-th tooth, from 0, that meshes."""
+        teeth = (self.pair.pinion if gear == "pinion" else self.pair.wheel).teeth
+        return (first_tooth(self.file, gear) + place) % teeth + 1
+
+    def mean_tooth(self) -> GearCase:
+        """The case over one mesh period, with the deviations that all teeth share.
+
+        It stays so in whatever is read from its tables and overrides; the case itself where its
+        period is one mesh.
+        """
+        return self if self.period.mesh_periods == 1 else self._with("gears.period", "mesh")
+
+    def assemblies(self) -> tuple[GearCase, ...]:
+        """The case put together in every way that makes a difference, its own marks first.
+
+        gcd(z1, z2) ways where the teeth of both gears differ; one else: all teeth meet anyhow.
+        """
+        first = self.tooth_number("pinion", 0)
+        marks = [f"[{first}, {self.tooth_number('wheel', k)}]" for k in range(self.assembly_count)]
+        return (self, *(self._with("gears.marks", one) for one in marks[1:]))
+
+    @property
+    def assembly_count(self) -> int:
+        """How many assemblies of the gears differ."""
+        teeth = (self.pair.pinion.teeth, self.pair.wheel.teeth)
+        return math.gcd(*teeth) if "hunting_tooth" in self.period.orders else 1
+
+    def _with(self, field: str, value: str) -> GearCase:
+        """The case with a field put to the ``value`` that a file would hold."""
+        changes = (*(pair for pair in self.overrides if pair[0] != field), (field, value))
+        made = case_of(overridden(self.data, ((field, value),)), self.text, changes, told=False)
+        return replace(gear_case(made), assumptions=self.assumptions)
 
     @property
     def measured_class(self) -> int | None:
@@ -401,6 +442,15 @@ def case_of(
     if not told:
         return case
     found = assumptions(data, read, _decided(case))
+    if case.assembly_count > 1 and read.gears.marks is None:
+        found += (
+            unstated(
+                "gears.marks",
+                "1, 1",
+                "tooth 1 meets tooth 1 at mesh phase 0. One of "
+                f"{case.assembly_count} assemblies; decides which errors meet",
+            ),
+        )
     if read.gears.face_width is not None:  # one for both is no default of each
         found = tuple(one for one in found if not one.field.endswith(".face_width"))
     return replace(case, assumptions=found)
@@ -408,7 +458,8 @@ def case_of(
 
 def _decided(case: GearCase) -> dict[str, str]:
     around = case.gearbox.surroundings
-    found = decided(case.pair, case.cold_backlash, around, case.deviations, case.accuracy)
+    graded = unmeasured(case.file)
+    found = decided(case.pair, case.cold_backlash, around, case.accuracy, graded)
     if len(case.charts) == 2:
         found["flanks.accuracy"] = found["flanks.seed"] = "none: both gears are measured"
     return found

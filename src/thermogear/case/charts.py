@@ -21,6 +21,7 @@ from thermogear.gears.deviations import FlankTable
 from thermogear.gears.geometry import Gear
 from thermogear.gears.measured_flanks import MeasuredFlank, ProfileTraces, roll_path
 from thermogear.gears.pair import GearPair
+from thermogear.gears.turn import ToothShapes
 
 GEARS = ("pinion", "wheel")
 _CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f]")
@@ -42,6 +43,31 @@ class Chart:
         """A trace's name: tooth and side as the file has them, and what the side does."""
         side, acts = self.read.side[trace], self.traces.flank[trace]
         return f"tooth {self.read.tooth[trace]} {side}" + (f" ({acts})" if acts != side else "")
+
+    def every_tooth(self, pair: GearPair) -> tuple[ToothShapes, ...]:
+        """Each side that was measured, every tooth by itself.
+
+        A single trace is smoothed more than the mean of all: its noise is greater. Refused where a
+        tooth is missing.
+        """
+        body = pair.pinion if self.gear == "pinion" else pair.wheel
+        found = []
+        for side in sorted(set(self.traces.flank), reverse=True):  # drive first
+            places = {
+                self.read.tooth[k] - 1: k
+                for k, acts in enumerate(self.traces.flank)
+                if acts == side
+            }
+            if len(places) < body.teeth:
+                raise InputError(
+                    f"flanks.{self.gear}",
+                    f"traces of {len(places)} teeth, {side} flank",
+                    allowed=f'all {body.teeth} teeth with flanks.teeth = "measured"',
+                    fix='write teeth = "alike" to take the mean of these',
+                )
+            shapes = (self.traces.single(pair, places[n]) for n in range(body.teeth))
+            found.append(ToothShapes(self.gear, tuple(shapes)))
+        return tuple(found)
 
 
 def enclosed(text: str, data: dict[str, Any], folder: Path) -> str:

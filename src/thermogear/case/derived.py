@@ -14,9 +14,12 @@ from thermogear.case.base import Case
 from thermogear.case.case import DimensionlessCase, GearCase
 from thermogear.case.charts import Chart
 from thermogear.case.units import shown
+from thermogear.gears.accuracy import flank_class
 from thermogear.gears.deviations import Deviation
 from thermogear.gears.geometry import Gear
 from thermogear.gears.graded_flanks import WavyProfile
+from thermogear.gears.population import measured
+from thermogear.gears.turn import Eccentricity
 from thermogear.heat.lubrication import kinematic_viscosity
 from thermogear.shafts.train import SHAFTS
 
@@ -155,7 +158,8 @@ def _operating(case: GearCase) -> list[Fact]:
 def _held(case: GearCase) -> list[Fact]:
     """What is known beforehand of temperatures that are computed, and of the flanks."""
     found = [_deviation(place, one) for place, one in enumerate(case.deviations, 1)]
-    found += [fact for chart in case.charts for fact in _measured(chart)]
+    single = case.file.flanks is not None and case.file.flanks.teeth == "measured"
+    found += [*_turn(case), *(fact for one in case.charts for fact in _measured(one, single))]
     if not case.computed:
         return found
     group = "temperatures computed from the heat balance"
@@ -174,16 +178,40 @@ def _held(case: GearCase) -> list[Fact]:
 
 
 def _deviation(place: int, one: Deviation) -> Fact:
-    """What is known of a deviation without a mesh: slope and form of a drawn flank."""
+    """What is known of a deviation without a mesh: sizes of an eccentricity, of a drawn flank."""
     group = "deviations of the flanks"
+    if isinstance(one, Eccentricity):
+        return Fact(group, f"{one.gear}, eccentricity", 1e6 * one.amount, "um")
     if not isinstance(one, WavyProfile):
         return Fact(group, str(place), type(one).__name__)
     text = f"f_Halpha {1e6 * one.slope:+.2f}, f_falpha {1e6 * one.form:.2f} um, drawn"
     return Fact(group, f"{one.gear}, {one.flank} flank", text)
 
 
-def _measured(chart: Chart) -> list[Fact]:
-    """Each trace's figures and class, then what of them acts."""
+def _turn(case: GearCase) -> list[Fact]:
+    """Period, orders and classes of gears whose teeth differ; nothing of those alike."""
+    period, pair = case.period, case.pair
+    if period.mesh_periods == 1:
+        return []
+    turns = pair.wheel.teeth // math.gcd(pair.pinion.teeth, pair.wheel.teeth)
+    counts = {"mesh periods": period.mesh_periods}
+    counts |= {f"order of the {k.replace('_', ' ')}": v for k, v in period.orders.items()}
+    counts |= {"turns of the pinion until the same teeth meet": turns}
+    counts |= {"assemblies that differ": case.assembly_count}
+    found = [Fact("period of all deviations", name, count) for name, count in counts.items()]
+    for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
+        for flank in ("drive", "back"):
+            figures = measured(pair, name, case.deviations, flank)
+            grade = flank_class(gear.teeth, gear.module, figures=figures, rounded=False)
+            sizes = zip(("f_p", "F_p", "f_Halpha", "f_falpha", "F_alpha"), figures, strict=True)
+            text = ", ".join(f"{word} {1e6 * size:.2f}" for word, size in sizes)
+            text += f" um: {'no class' if grade is None else f'class {grade}'}"
+            found.append(Fact(f"{name} about its bore", f"{flank} flanks", text))
+    return found
+
+
+def _measured(chart: Chart, single: bool) -> list[Fact]:
+    """Each trace's figures and class, then what of them acts, ``single`` teeth or their mean."""
     group = f"measured flanks of the {chart.gear}, class of ISO 1328-1:2013"
     found = []
     for flank in chart.flanks:
@@ -193,6 +221,8 @@ def _measured(chart: Chart) -> list[Fact]:
             text = f"f_Halpha {slope:+.2f}, f_falpha {form:.2f}, F_alpha {total:.2f} um: "
             text += "no class" if grade is None else f"class {grade}"
             found.append(Fact(group, chart.hand(place), text))
+    if single:
+        return found
     group = f"measured flanks of the {chart.gear}, what acts"
     for flank in chart.flanks:
         count = chart.traces.flank.count(flank.flank)

@@ -23,7 +23,7 @@ from thermogear.case.units import read_quantity
 
 LARGEST = 400_000
 """Characters of a chart's file, at most: more than any chart has points."""
-MOST_TRACES = 64
+MOST_TRACES = 400
 POSITIONS = {
     "diameter": "length",
     "radius": "length",

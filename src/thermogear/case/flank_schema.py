@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from thermogear.base import bounds
 from thermogear.base.errors import InputError, short
-from thermogear.case.fields import Choice, Count, Reader, Several, Words, measure
-from thermogear.case.table import Table
+from thermogear.case.fields import Choice, Count, Measure, Number, Reader, Several, Words, measure
+from thermogear.case.table import Table, one_of
 
 Flank = Annotated[str, Choice("drive", "back", "both")]
 
@@ -45,6 +45,71 @@ class ProfileTable(Table):
         Several(measure("length", bounds.ADDED, example="-3 um"), least=2, most=5000, single=False),
     ]
     flank: Flank = Field(default="both", description="drive and back flanks alike")
+
+
+Turned = Measure("angle", "-360 deg", "360 deg", example="90 deg")
+
+
+class EccentricityTable(Table):
+    """Teeth about another centre than the bore: the amount, or the radial run-out of twice that."""
+
+    amount: Annotated[float | None, measure("length", bounds.ECCENTRICITY, example="10 um")] = (
+        Field(default=None, title="half the run-out")
+    )
+    run_out: Annotated[float | None, Measure("length", "0 um", "2000 um", example="20 um")] = Field(
+        default=None, title="F_r of ISO 1328-2, about the bore: twice the amount"
+    )
+    angle: Annotated[float, Turned] = Field(
+        default=0.0,
+        description="tooth 1 stands farthest out. From its axis towards tooth 2; decides what the "
+        "eccentricities of both gears, and the errors of single teeth, add up to",
+    )
+
+    @model_validator(mode="after")
+    def _once(self) -> EccentricityTable:
+        one_of(self, "amount", "run_out")
+        return self
+
+
+Slope = measure("length", bounds.ADDED, "f_Halpha, > 0 outside at the tip", "3 um")
+Form = measure("length", bounds.RELIEF_AMOUNT, "f_falpha, peak to peak of a wave", "2 um")
+Waves = Annotated[float, Number(low=1.0, high=20.0, example="2.5")]
+
+
+class ToothProfilesTable(Table):
+    """Slope and form of every tooth on one side of a gear: one value for each, or one for all."""
+
+    slope: Annotated[tuple[float, ...] | None, Several(Slope, most=bounds.MOST_TEETH)] = Field(
+        default=None, title="none"
+    )
+    form: Annotated[tuple[float, ...] | None, Several(Form, most=bounds.MOST_TEETH)] = Field(
+        default=None, title="none"
+    )
+    phase: Annotated[tuple[float, ...] | None, Several(Turned, most=bounds.MOST_TEETH)] = Field(
+        default=None, title="of the wave at the start of the active profile; 0"
+    )
+    waves: Waves = Field(default=2.5, title="waves of the form over the active profile; 2.5")
+    flank: Flank = Field(default="both", description="drive and back flanks alike")
+
+
+class ToothTable(Table):
+    """One tooth that differs: what it has besides all that the gear's other fields say."""
+
+    tooth: Annotated[int, Count(low=1, high=bounds.MOST_TEETH, example="7")]
+    index: Annotated[
+        float,
+        measure(
+            "length",
+            bounds.PITCH_ERROR,
+            "along the line of action, > 0 towards the drive flank",
+            "8 um",
+        ),
+    ] = Field(default=0.0, title="none: the whole tooth stands where it did")
+    slope: Annotated[float, Slope] = Field(default=0.0, title="none")
+    form: Annotated[float, Form] = Field(default=0.0, title="none")
+    phase: Annotated[float, Turned] = Field(default=0.0, title="0")
+    waves: Waves = Field(default=2.5, title="2.5")
+    flank: Flank = Field(default="both", title="of slope and form; both")
 
 
 Charts = Annotated[
@@ -86,6 +151,14 @@ class FlanksTable(Table):
         "plastics. Decides the transmission error that excites the vibration",
     )
     edition: Annotated[str, Choice("2013", "1995")] = Field(default="2013", title="of ISO 1328-1")
+    teeth: Annotated[str, Choice("alike", "drawn", "measured")] = Field(
+        default="alike",
+        title="alike. drawn: whole gears of the class, eccentric, each tooth its own; measured: "
+        "each tooth as its chart has it",
+    )
+    drawing: Annotated[int, Count(low=0, high=10**6, example="0")] = Field(
+        default=0, title="which of the drawings of one seed, with teeth = drawn; 0"
+    )
     seed: Annotated[int, Count(low=0, high=2**31 - 1, example="1")] = Field(
         default=1,
         description="one drawing of the flanks of the class; another seed decides for other flanks "

@@ -2,23 +2,32 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from functools import partial
+
+import numpy as np
 
 from thermogear.base.errors import InputError
 from thermogear.case.charts import Chart
-from thermogear.case.flank_schema import ReliefTable
+from thermogear.case.flank_schema import ReliefTable, ToothProfilesTable, ToothTable
 from thermogear.case.schema import GearFile, GearTable
 from thermogear.gears.candidates import mesh_points
 from thermogear.gears.deviations import (
+    FLANKS,
+    GEARS,
     Deviation,
     FlankTable,
     PitchError,
     PressureAngleError,
     Relief,
+    ToothDeviation,
 )
-from thermogear.gears.graded_flanks import graded_flanks
+from thermogear.gears.graded_flanks import WavyProfile, graded_flanks
 from thermogear.gears.pair import GearPair
+from thermogear.gears.population import drawn_pair
+from thermogear.gears.turn import Eccentricity, ToothShapes, mean_tooth
 
 OF_METAL, OF_PLASTICS = 6, 9
 """Accuracy classes of ISO 1328-1 taken where none is given: ground steel 4 to 6, plastic cut 8 to
@@ -27,34 +36,158 @@ PLASTIC = 30e9
 """Young's modulus [Pa] below which a gear is one of plastic."""
 
 
+CLOSED = 0.5e-6
+"""What single pitch deviations may add up to, for each tooth [m]: they are rounded (ours)."""
+
+
 def deviations(
     file: GearFile, pair: GearPair, measured: Sequence[Chart] = ()
 ) -> tuple[Deviation, ...]:
     """Every deviation that the file gives, pinion's first, ``measured`` flanks among them.
 
-    What does not fit the gears (a relief longer than the active profile, pitch errors that are
-    not one for each tooth) is refused under its field of the file.
+    Teeth are numbered as they mesh, from the one that is marked. What
+    does not fit the gears (a relief longer than the active profile, pitch errors that are not one
+    for each tooth) is refused under its field of the file. With ``gears.period`` "mesh" the
+    deviations of the mean tooth.
     """
     contacts = mesh_points(pair, [0.0]).contacts
     found: list[Deviation] = []
-    for gear, table in (("pinion", file.gears.pinion), ("wheel", file.gears.wheel)):
-        for field, make in _given(gear, table):
+    for gear in GEARS:
+        for field, make in _given(gear, file, pair):
             try:
                 deviation = make()
                 deviation.gap(contacts)
             except InputError as error:
                 inner = error.field.rsplit(".", 1)[-1]
-                part = f".{inner}" if inner in ("amount", "length", "radius", "added") else ""
+                parts = ("amount", "length", "radius", "added", "slope", "form", "phase")
                 raise type(error)(
-                    f"gears.{gear}.{field}{part}",
+                    f"gears.{gear}.{field}{f'.{inner}' if inner in parts else ''}",
                     error.got,
                     allowed=error.allowed,
                     why=error.why,
                     fix=error.fix,
                 ) from error
             found.append(deviation)
-    found += [one for chart in measured for one in chart.deviations]
-    return (*found, *_graded(file, pair))
+    found += [one for chart in measured for one in _charted(file, pair, chart)]
+    found += _graded(file, pair)
+    found = [_from_mark(one, file) for one in found]
+    return tuple(mean_tooth(pair, found) if file.gears.period == "mesh" else found)
+
+
+def first_tooth(file: GearFile, gear: str) -> int:
+    """Which tooth, from 0, of the named gear is marked: number 0 of the mesh."""
+    return 0 if file.gears.marks is None else file.gears.marks[GEARS.index(gear)] - 1
+
+
+def _from_mark(one: Deviation, file: GearFile) -> Deviation:
+    """The deviation with the teeth of its gear numbered from the one that is marked."""
+    first = first_tooth(file, one.gear) if isinstance(one, ToothDeviation) else 0
+    if not first:
+        return one
+    if isinstance(one, PitchError):
+        return replace(one, errors=one.errors[first:] + one.errors[:first])
+    if isinstance(one, ToothShapes):
+        return replace(one, shapes=one.shapes[first:] + one.shapes[:first])
+    if isinstance(one, Eccentricity):
+        teeth = getattr(file.gears, one.gear).teeth
+        return replace(one, angle=one.angle - 2.0 * math.pi * first / teeth)
+    return one
+
+
+def _of_teeth(
+    gear: str, file: GearFile, pair: GearPair
+) -> Iterator[tuple[str, Callable[[], Deviation]]]:
+    """(field, maker) of what may differ from tooth to tooth of one gear."""
+    table: GearTable = getattr(file.gears, gear)
+    if table.pitch_errors is not None or any(one.index for one in table.teeth_differ):
+        field = "pitch_errors" if table.pitch_errors is not None else "teeth_differ"
+        yield field, partial(_index, gear, file, pair)
+    if (one := table.eccentricity) is not None:
+        amount = one.amount if one.amount is not None else 0.5 * (one.run_out or 0.0)
+        yield "eccentricity", partial(Eccentricity, gear, amount=amount, angle=one.angle)
+    sides = [one.flank for one in table.tooth_profiles]
+    for place, profiles in enumerate(table.tooth_profiles):
+        field = f"tooth_profiles[{place}]"
+        if len(sides) > 1 and set(sides) != {"drive", "back"}:
+            raise InputError(
+                f"gears.{gear}.{field}.flank",
+                f"{sides[place]!r} beside {sides[1 - place]!r}",
+                allowed="one table of both sides, or drive and back",
+            )
+        yield field, partial(_every_tooth, gear, profiles, table.teeth)
+    for flank in FLANKS:
+        single = [one for one in table.teeth_differ if one.flank == flank]
+        if any(one.slope or one.form for one in single):
+            yield "teeth_differ", partial(_single_teeth, gear, single, table.teeth)
+
+
+def _index(gear: str, file: GearFile, pair: GearPair) -> PitchError:
+    """Index of every tooth along the line of action [m], in the order of the mesh."""
+    table: GearTable = getattr(file.gears, gear)
+    given = PitchError(gear, table.pitch_errors or (0.0,) * table.teeth)
+    given.require_fits(pair)
+    errors = np.array(given.errors)
+    if file.gears.pitch_errors_are == "single pitch":
+        left, most = float(errors.sum()), CLOSED * table.teeth
+        if abs(left) > most:
+            raise InputError(
+                "",
+                f"single pitch deviations that add up to {1e6 * left:.4g} um",
+                allowed=f"{-1e6 * most:.4g}..{1e6 * most:.4g} um",
+                why="after a whole turn the pitches close",
+                fix='are they positions of the teeth? then gears.pitch_errors_are = "index"',
+            )
+        # a tooth farther from the one before lies farther back in the sense of turning
+        index = np.cumsum(errors - errors.mean()) * (-1.0 if gear == "pinion" else 1.0)
+        errors = index - index.mean()
+    if file.gears.pitch_errors_along == "arc":
+        errors = errors * math.cos(file.gears.pressure_angle)
+    for one in table.teeth_differ:
+        errors[_place(one, table.teeth)] += one.index
+    return PitchError(gear, tuple(errors.tolist()))
+
+
+def _place(one: ToothTable, teeth: int) -> int:
+    if one.tooth > teeth:
+        raise InputError("", f"tooth {one.tooth}", allowed=f"1..{teeth}")
+    return one.tooth - 1
+
+
+def _every_tooth(gear: str, table: ToothProfilesTable, teeth: int) -> ToothShapes:
+    """Slope and form of every tooth of one side."""
+    columns = {name: getattr(table, name) or (0.0,) for name in ("slope", "form", "phase")}
+    for name, values in columns.items():
+        if len(values) not in (1, teeth):
+            raise InputError(
+                name, f"{len(values)} values", allowed=f"one for each of the {teeth} teeth, or one"
+            )
+    rows = zip(*(np.broadcast_to(one, teeth).tolist() for one in columns.values()), strict=True)
+    return ToothShapes(gear, tuple(_wavy(gear, table, *row) for row in rows))
+
+
+def _single_teeth(gear: str, given: Sequence[ToothTable], teeth: int) -> ToothShapes:
+    """Slope and form of the teeth that differ on one side, none of the others."""
+    shapes = [_wavy(gear, given[0], 0.0, 0.0, 0.0)] * teeth
+    for place, one in enumerate(given):
+        if one.tooth in [other.tooth for other in given[:place]]:
+            raise InputError("", f"tooth {one.tooth} twice", allowed="each tooth of a side once")
+        shapes[_place(one, teeth)] = _wavy(gear, one, one.slope, one.form, one.phase)
+    return ToothShapes(gear, tuple(shapes))
+
+
+def _wavy(
+    gear: str, table: ToothProfilesTable | ToothTable, slope: float, form: float, phase: float
+) -> WavyProfile:
+    return WavyProfile(
+        gear, slope=slope, form=form, phase=phase, waves=table.waves, flank=table.flank
+    )
+
+
+def _charted(file: GearFile, pair: GearPair, chart: Chart) -> tuple[Deviation, ...]:
+    """What a chart's flanks are: the mean of the teeth, or each tooth by itself."""
+    if file.flanks is None or file.flanks.teeth != "measured":
+        return chart.deviations
+    return chart.every_tooth(pair)
 
 
 def accuracy(file: GearFile, pair: GearPair) -> int | None:
@@ -63,7 +196,7 @@ def accuracy(file: GearFile, pair: GearPair) -> int | None:
     Left out it is 6 for metal, 9 for plastics, and none where the tables of ISO 1328-1 end.
     """
     table = file.flanks
-    if table is None or not _unmeasured(file):
+    if table is None or not unmeasured(file):
         return None
     if table.accuracy is not None:
         return table.accuracy
@@ -79,10 +212,33 @@ def accuracy(file: GearFile, pair: GearPair) -> int | None:
 def _graded(file: GearFile, pair: GearPair) -> tuple[Deviation, ...]:
     """Seeded profiles of the gears whose own are not given."""
     grade, table = accuracy(file, pair), file.flanks
-    if grade is None or table is None:
+    if table is None or not unmeasured(file):
         return ()
+    if grade is None:
+        if table.teeth == "drawn":
+            raise InputError(
+                "flanks.teeth",
+                "'drawn'",
+                why="the tables of ISO 1328-1 end before these gears",
+                fix="give pitch_errors and tooth_profiles instead",
+            )
+        return ()
+    edition, drawn = table.edition, table.teeth == "drawn"
+    for gear in unmeasured(file) if drawn else ():
+        for field in ("eccentricity", "pitch_errors"):
+            if getattr(getattr(file.gears, gear), field) is not None:
+                raise InputError(
+                    f"gears.{gear}.{field}",
+                    'given beside flanks.teeth = "drawn"',
+                    why="a drawn gear has its own",
+                    fix="leave one out, or give tooth_profiles, which are not drawn then",
+                )
     try:
-        profiles = graded_flanks(pair, grade, seed=table.seed, edition=table.edition)
+        profiles: tuple[Deviation, ...] = (
+            drawn_pair(pair, grade, seed=table.seed, place=table.drawing, edition=edition)
+            if drawn
+            else graded_flanks(pair, grade, seed=table.seed, edition=edition)
+        )
     except InputError as error:
         inner = error.field.rpartition(".")[2]
         field = {"grade": "flanks.accuracy", "edition": "flanks.edition"}.get(inner, "flanks")
@@ -94,25 +250,30 @@ def _graded(file: GearFile, pair: GearPair) -> tuple[Deviation, ...]:
             why=error.why,
             fix="give [transmission_error] harmonics, or measured profiles, instead",
         ) from error
-    return tuple(one for one in profiles if one.gear in _unmeasured(file))
+    return tuple(one for one in profiles if getattr(one, "gear", None) in unmeasured(file))
 
 
-def _unmeasured(file: GearFile) -> list[str]:
+def unmeasured(file: GearFile) -> list[str]:
     """The gears whose flanks neither a table nor a chart gives."""
+    tables = {"pinion": file.gears.pinion, "wheel": file.gears.wheel}
     return [
         name
-        for name in ("pinion", "wheel")
-        if getattr(file.gears, name).profile is None and getattr(file.flanks, name, None) is None
+        for name, table in tables.items()
+        if table.profile is None
+        and not table.tooth_profiles
+        and getattr(file.flanks, name, None) is None
     ]
 
 
-def _given(gear: str, table: GearTable) -> Iterator[tuple[str, Callable[[], Deviation]]]:
+def _given(
+    gear: str, file: GearFile, pair: GearPair
+) -> Iterator[tuple[str, Callable[[], Deviation]]]:
     """(field, maker) of what one gear's table holds."""
+    table: GearTable = getattr(file.gears, gear)
     for end, relief in (("tip", table.tip_relief), ("root", table.root_relief)):
         if relief is not None:
             yield f"{end}_relief", partial(_relief, gear, end, relief)
-    if table.pitch_errors is not None:
-        yield "pitch_errors", partial(PitchError, gear, table.pitch_errors)
+    yield from _of_teeth(gear, file, pair)
     if table.pressure_angle_error is not None:
         yield "pressure_angle_error", partial(PressureAngleError, gear, table.pressure_angle_error)
     if table.profile is not None:

@@ -39,6 +39,8 @@ class NewCase:
     oil_temperature: str | None = None
     backlash: str | None = None
     accuracy: int | None = None
+    drawn_teeth: bool = False
+    run_out: tuple[str, str] | None = None
     pinion_flanks: str | None = None
     wheel_flanks: str | None = None
     allow_undercut: bool = False
@@ -82,6 +84,7 @@ class NewCase:
                 line("tip_rounding", self.tip_rounding, "radius of the tip's edges"),
                 line("tip_chamfer", self.tip_chamfer, "height that it takes off the tip"),
                 line("material", material and material[place]),
+                line("eccentricity", self.run_out and {"run_out": self.run_out[place]}),
                 line("allow_undercut", self.allow_undercut or None, "may shorten the contact"),
             )
         oil = line("name", self.oil or "ISO VG 100")
@@ -94,6 +97,7 @@ class NewCase:
         found += table(
             "flanks",
             line("accuracy", self.accuracy, "class of ISO 1328-1"),
+            line("teeth", "drawn" if self.drawn_teeth else None, "each tooth its own"),
             line("pinion", self.pinion_flanks, "inspection chart, beside this file"),
             line("wheel", self.wheel_flanks),
         )

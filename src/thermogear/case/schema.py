@@ -33,10 +33,13 @@ from thermogear.case.fields import (
     measure,
 )
 from thermogear.case.flank_schema import (
+    EccentricityTable,
     EnclosedTable,
     FlanksTable,
     ProfileTable,
     ReliefTable,
+    ToothProfilesTable,
+    ToothTable,
 )
 from thermogear.case.gearbox_schema import GearboxTable
 from thermogear.case.sensor_schema import SensorsTable
@@ -336,7 +339,14 @@ class GearTable(Table):
     pitch_errors: Annotated[
         tuple[float, ...] | None,
         Several(measure("length", bounds.PITCH_ERROR, example="3 um"), least=1, most=2000),
-    ] = Field(default=None, title="one for each tooth; none")
+    ] = Field(default=None, title="one for each tooth, in the order in which they mesh; none")
+    eccentricity: EccentricityTable | None = Field(default=None, title="none: centred on the bore")
+    tooth_profiles: Annotated[tuple[ToothProfilesTable, ...], Field(max_length=2)] = Field(
+        default=(), title="slope and form of every tooth, a table for each side; none"
+    )
+    teeth_differ: Annotated[tuple[ToothTable, ...], Field(max_length=bounds.MOST_TEETH)] = Field(
+        default=(), title="single teeth beside all others; none"
+    )
     pressure_angle_error: Annotated[
         float | None, measure("angle", bounds.ANGLE_ERROR, example="0.02 deg")
     ] = Field(default=None, title="none")
@@ -344,6 +354,12 @@ class GearTable(Table):
     allow_undercut: StrictBool = Field(
         default=False, title="undercut that shortens the path of contact is refused unless true"
     )
+
+
+Marks = Annotated[
+    tuple[int, ...],
+    Several(Count(low=1, high=bounds.MOST_TEETH, example="1"), least=2, most=2, single=False),
+]
 
 
 class GearsTable(Table):
@@ -363,8 +379,31 @@ class GearsTable(Table):
         description="basic rack of ISO 53, its fillet as round as fits. Decides how tall and how "
         "stiff the teeth are",
     )
+    pitch_errors_are: Annotated[str, Choice("index", "single pitch")] = Field(
+        default="index",
+        title="index: where each tooth stands, > 0 towards its drive flank; single pitch: how much "
+        "farther than a pitch from the tooth before",
+    )
+    pitch_errors_along: Annotated[str, Choice("line of action", "arc")] = Field(
+        default="line of action", title="line of action; arc of the reference circle"
+    )
+    marks: Marks | None = Field(
+        default=None, title="teeth of pinion and wheel that meet at mesh phase 0; 1 and 1"
+    )
+    period: Annotated[str, Choice("turn", "mesh")] = Field(
+        default="turn",
+        title="turn: until all deviations come again; mesh: the mean tooth over one mesh period",
+    )
     pinion: GearTable
     wheel: GearTable
+
+    @model_validator(mode="after")
+    def _marked(self) -> GearsTable:
+        teeth = (self.pinion.teeth, self.wheel.teeth)
+        for place, (mark, most) in enumerate(zip(self.marks or (), teeth, strict=False)):
+            if mark > most:
+                raise InputError(f"marks[{place}]", mark, allowed=f"1..{most}")
+        return self
 
     @model_validator(mode="after")
     def _wide(self) -> GearsTable:
@@ -656,6 +695,18 @@ class GearFile(Table):
         for name, most in (("bearings", MOST_BEARINGS), ("discs", MOST_DISCS)):
             require_few(data.get(name), name, most)
         return data
+
+    @model_validator(mode="after")
+    def _one_eccentricity(self) -> GearFile:
+        for place, one in enumerate(self.shafts):
+            if one.eccentricity and getattr(self.gears, one.gear).eccentricity is not None:
+                raise InputError(
+                    f"shafts[{place}].eccentricity",
+                    f"one beside [gears.{one.gear}.eccentricity]",
+                    why="both say where the teeth stand to the axis",
+                    fix="leave one out",
+                )
+        return self
 
     @model_validator(mode="after")
     def _oil_follows(self) -> GearFile:

@@ -54,6 +54,12 @@ NEEDED = {
 @click.option(
     "--accuracy", type=int, metavar="CLASS", help="Accuracy class of the flanks, ISO 1328-1; 6."
 )
+@click.option(
+    "--drawn-teeth", is_flag=True, help="Whole gears of the class: eccentric, every tooth its own."
+)
+@click.option(
+    "--run-out", nargs=2, metavar="LENGTH LENGTH", help="Radial run-out of pinion and wheel; none."
+)
 @click.option("--pinion-flanks", metavar="CSV", help="Inspection chart of the pinion's flanks.")
 @click.option("--wheel-flanks", metavar="CSV", help="The wheel's; each replaces the class.")
 @click.option(

@@ -110,12 +110,15 @@ def flank_tolerances(
     return FlankTolerances(*(value * _STEP ** (grade - 5) * _UM for value in values))
 
 
-def flank_class(teeth: int, module: float, *, figures: tuple[float, float, float]) -> int | None:
-    """The best class of ISO 1328-1:2013 that lets a profile deviate so far.
+def flank_class(
+    teeth: int, module: float, *, figures: tuple[float, ...], rounded: bool = True
+) -> int | None:
+    """The best class of ISO 1328-1:2013 that lets a profile, or a whole gear, deviate so far.
 
-    ``figures``: f_Halpha, f_falpha, F_alpha [m], signs left aside; each is held against the
-    rounded tolerance. None where class 11 is exceeded, or the gear leaves the standard's range;
-    ``module`` [m].
+    ``figures``: f_Halpha, f_falpha, F_alpha [m], with f_p, F_p before them where pitches are
+    measured, signs left aside; each is held against the tolerance, ``rounded`` as the standard
+    prints it. None where class 11 is exceeded, or the gear leaves the standard's range; ``module``
+    [m].
 
     >>> flank_class(20, 4e-3, figures=(5e-6, 7e-6, 9e-6))
     5
@@ -123,9 +126,10 @@ def flank_class(teeth: int, module: float, *, figures: tuple[float, float, float
     low, high = _GRADES["2013"]
     for grade in range(low, high + 1):
         try:
-            limits = flank_tolerances(teeth, module, grade=grade).rounded()[2:]
+            exact = flank_tolerances(teeth, module, grade=grade)
         except InputError:
             return None
+        limits = (exact.rounded() if rounded else exact)[-len(figures) :]
         if all(abs(got) <= most for got, most in zip(figures, limits, strict=True)):
             return grade
     return None

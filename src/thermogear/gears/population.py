@@ -1,0 +1,287 @@
+"""Whole gears of an accuracy class, drawn: eccentricity, pitch and the profile of every tooth.
+
+A class bounds deviations and does not say how they lie, and no public numbers say how much of their
+tolerances real gears use, or how much the teeth of one gear have in common. So the population is an
+assumption of ours, with its parameters as arguments (:class:`Population`). What is not assumed is
+the class: a drawn gear is measured as ISO 1328-1 measures, about its bore, and scaled so that it is
+a gear of the class and not of a better one.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import KW_ONLY, dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+
+from thermogear.base.arrays import Floats
+from thermogear.gears.accuracy import FlankTolerances, flank_tolerances
+from thermogear.gears.contact import mirror_position
+from thermogear.gears.deviations import (
+    GEARS,
+    Contacts,
+    Deviation,
+    FlankShape,
+    PitchError,
+    active_profile,
+)
+from thermogear.gears.graded_flanks import profile_figures
+from thermogear.gears.pair import GearPair
+from thermogear.gears.turn import Eccentricity, ToothShapes
+
+MEASURED_TEETH = 4
+"""Teeth whose profiles are measured, evenly around the gear. Source: ISO 1328-1:2013, at least 3
+or 4 are usual."""
+_POINTS = 65  # of a profile that is measured: 16 or more for each of four waves
+
+
+@dataclass(frozen=True, kw_only=True)
+class Population:
+    """How the gears of a class differ; sizes are shares of the tolerances of the class.
+
+    ``eccentricity``: mean of 2 e/cos(alpha) over F_pT, of random direction (both coordinates
+    normal, e a Rayleigh variable). ``index``: standard deviation of each tooth's index over f_pT;
+    ``orders``: with a wave of each order q around the gear, its amplitude a Rayleigh variable of
+    mean ``order`` f_pT/q. ``slope``: standard deviation over f_HalphaT of the slope that all teeth
+    have, ``slope_scatter`` of each tooth's own. ``barrel``: mean and standard deviation over
+    f_falphaT of the height of a parabola over the profile, > 0 full in the middle; ``wave``: mean
+    amplitude (Rayleigh) over f_falphaT of a sine with a number of waves evenly drawn from
+    ``waves``: one tool makes them alike on all teeth, but for ``form_scatter`` of their heights
+    and ``phase_scatter`` [rad]. ``least``: the worst of the gear's deviations over its tolerance is
+    evenly drawn from there to 1; 1/sqrt(2) is where the next better class begins.
+    """
+
+    eccentricity: float = 0.55
+    index: float = 0.22
+    orders: tuple[int, ...] = (2, 3)
+    order: float = 0.15
+    slope: float = 0.40
+    slope_scatter: float = 0.08
+    barrel: tuple[float, float] = (0.25, 0.125)
+    wave: float = 0.25
+    waves: tuple[float, float] = (1.5, 4.0)
+    form_scatter: float = 0.12
+    phase_scatter: float = math.radians(43.0)
+    least: float = math.sqrt(0.5)
+
+
+@dataclass(frozen=True)
+class ToothProfile(FlankShape):
+    """The profile of one tooth: a slope, a barrel and a wave of one tool.
+
+    S(x) = slope (x - 1/2) - barrel (2 x - 1)^2 + wave sin(2 pi waves x + phase), less its value at
+    the pitch point, where the pitch is measured; x from 0 at the start of the active profile to 1
+    at the tip along the line of action, constant beyond. ``slope``, ``barrel`` and ``wave`` [m],
+    ``phase`` [rad]; > 0 is material outside at the tip, in the middle.
+    """
+
+    gear: str
+    _: KW_ONLY
+    slope: float
+    barrel: float
+    wave: float
+    waves: float
+    phase: float
+    flank: str = "both"
+
+    def taken_off(self, pair: GearPair, rho: Floats) -> Floats:
+        """e = -S."""
+        start, pitch, tip = active_profile(pair, self.gear)
+        x = np.clip((np.append(np.ravel(rho), pitch) - start) / (tip - start), 0.0, 1.0)
+        added = self.slope * (x - 0.5) - self.barrel * (2.0 * x - 1.0) ** 2
+        added += self.wave * np.sin(2.0 * math.pi * self.waves * x + self.phase)
+        return np.asarray(added[-1] - added[:-1].reshape(np.shape(rho)))
+
+    def scaled(self, by: float) -> ToothProfile:
+        """The same shape, ``by`` times as large."""
+        sizes = {name: by * getattr(self, name) for name in ("slope", "barrel", "wave")}
+        return replace(self, **sizes)
+
+    def borders(self, pair: GearPair) -> Floats:
+        """Ends of the active profile and every tenth of a wave in between."""
+        start, _, tip = active_profile(pair, self.gear)
+        return np.linspace(start, tip, math.ceil(10.0 * self.waves) + 1)
+
+
+class GearFigures(FlankTolerances):
+    """What ISO 1328-1 measures on one side of a gear, about its bore [m].
+
+    single_pitch f_p and cumulative_pitch F_p of all teeth, arcs of the reference circle;
+    profile_slope f_Halpha, profile_form f_falpha and profile_total F_alpha, the greatest of
+    :data:`MEASURED_TEETH` teeth over the active profile.
+    """
+
+    def shares(self, tolerances: FlankTolerances) -> Floats:
+        """Each over its tolerance, in the order of the fields."""
+        return np.asarray(np.array(self) / np.array(tolerances))
+
+
+@lru_cache(maxsize=16)
+def _probe(pair: GearPair, name: str, flank: str) -> Contacts:
+    """Where a machine touches a gear: all teeth at the pitch point, then profiles of some.
+
+    On the base tangent, as the mate does: each point where it comes to the line of action.
+    """
+    gear = pair.pinion if name == "pinion" else pair.wheel
+    start, pitch, tip = active_profile(pair, name)
+    profile = np.linspace(start, tip, _POINTS)
+    some = np.arange(MEASURED_TEETH) * gear.teeth // MEASURED_TEETH
+    tooth = np.concatenate([np.arange(gear.teeth), np.repeat(some, _POINTS)])[:, None]
+    rho = np.append(np.full(gear.teeth, pitch), np.tile(profile, MEASURED_TEETH))[:, None]
+    s = rho if name == "pinion" else pair.line_of_action - rho
+    travel = (s - pair.path.a) / pair.base_pitch
+    if flank == "back":  # runs against the drive flanks and joins the wheel's next tooth
+        mirror = (mirror_position(pair) - 2.0 * pair.path.a) / pair.base_pitch
+        travel = mirror - float(name == "wheel") - travel
+    phase = (tooth + travel)[:, 0]
+    return Contacts(pair, s, s, pair.line_of_action - s, tooth, tooth, flank, phase)
+
+
+def _figures(pair: GearPair, name: str, added: Floats) -> GearFigures:
+    """The figures of what was read, ``added`` S [m], at the points of :func:`_probe`."""
+    gear = pair.pinion if name == "pinion" else pair.wheel
+    arc = added[: gear.teeth] / math.cos(gear.pressure_angle)
+    traces = added[gear.teeth :].reshape(MEASURED_TEETH, _POINTS)
+    slope, form, total = np.abs(
+        [profile_figures(position=np.arange(_POINTS), added=trace) for trace in traces]
+    ).max(axis=0)
+    steps = np.abs(np.diff(np.append(arc, arc[0])))
+    return GearFigures(float(steps.max()), float(np.ptp(arc)), *map(float, (slope, form, total)))
+
+
+def measured(
+    pair: GearPair, name: str, deviations: Iterable[Deviation], flank: str = "drive"
+) -> GearFigures:
+    """The named gear of ``pair`` with its ``deviations``, measured about its bore on one side.
+
+    Those of the mate, and what belongs to no gear, are left aside.
+
+    >>> pair = GearPair(Gear(20, 3e-3), Gear(40, 3e-3))
+    >>> figures = measured(pair, "wheel", [Eccentricity("wheel", amount=10e-6, angle=0.0)])
+    >>> f"{1e6 * figures.cumulative_pitch:.2f} um"
+    '21.28 um'
+    """
+    at = _probe(pair, name, flank)
+    mine = [one for one in deviations if getattr(one, "gear", None) == name]
+    return _figures(pair, name, -sum((one.gap(at)[:, 0] for one in mine), np.zeros(at.s.size)))
+
+
+def drawn_gear(
+    pair: GearPair,
+    name: str,
+    grade: int,
+    *,
+    seed: np.random.SeedSequence,
+    edition: str = "2013",
+    population: Population = Population(),
+) -> tuple[Eccentricity, PitchError, ToothShapes, ToothShapes]:
+    """One gear of a class, drawn: its eccentricity, index, profiles of drive and back flanks.
+
+    The index moves a whole tooth, so that both of its flanks have it; the profiles of the two sides
+    are drawn by themselves. The worst of the deviations over its tolerance is drawn evenly from
+    ``population.least`` to 1; the drive flank decides, where the back flank's profiles would be
+    worse they are made smaller. So the class measured on both sides is ``grade``. A class two
+    coarser with the same ``seed`` is the same gear, doubled. Tolerances are not rounded. Raises as
+    :func:`~thermogear.gears.accuracy.flank_tolerances`.
+
+    >>> pair = GearPair(Gear(20, 3e-3), Gear(40, 3e-3))
+    >>> drawn = drawn_gear(pair, "pinion", 6, seed=np.random.SeedSequence(1))
+    >>> limits = flank_tolerances(20, 3e-3, grade=6)
+    >>> f"{max(measured(pair, 'pinion', drawn).shares(limits)):.2f} of its tolerance"
+    '0.87 of its tolerance'
+    """
+    gear = pair.pinion if name == "pinion" else pair.wheel
+    limits = flank_tolerances(gear.teeth, gear.module, grade=grade, edition=edition)
+    rng = np.random.default_rng(seed)
+    cosine, p = math.cos(gear.pressure_angle), population
+    amount = 0.5 * cosine * _rayleigh(rng, p.eccentricity) * limits.cumulative_pitch
+    centre = Eccentricity(name, amount=amount, angle=rng.uniform(0.0, 2.0 * math.pi))
+    around = 2.0 * math.pi * np.arange(gear.teeth) / gear.teeth
+    index = p.index * rng.standard_normal(gear.teeth)
+    for q in p.orders:
+        index += _rayleigh(rng, p.order) / q * np.sin(q * around + rng.uniform(0.0, 2.0 * math.pi))
+    pitch = PitchError(name, tuple(cosine * limits.single_pitch * (index - index.mean())))
+    sides = {flank: _side(rng, p, limits, gear.teeth, name, flank) for flank in ("drive", "back")}
+    share = rng.uniform(p.least, 1.0)
+
+    def shares(flank: str, profiles: float) -> Floats:
+        at = _probe(pair, name, flank)
+        added = -centre.gap(at)[:, 0] - pitch.gap(at)[:, 0]
+        traces = at.string(name)[gear.teeth :, 0].reshape(MEASURED_TEETH, _POINTS)
+        some = at.tooth(name)[gear.teeth :: _POINTS, 0]
+        for place, (rho, tooth) in enumerate(zip(traces, some, strict=True)):
+            trace = slice(gear.teeth + place * _POINTS, gear.teeth + (place + 1) * _POINTS)
+            added[trace] -= profiles * sides[flank][tooth].taken_off(pair, rho)
+        return _figures(pair, name, added).shares(limits)
+
+    bare, full = shares("back", 0.0), shares("back", 1.0)
+    worst = max(*shares("drive", 1.0), *bare)
+    # each share is a norm of what is read, so convex in the size of the profiles
+    over = full > worst
+    back = float(np.min((worst - bare[over]) / (full[over] - bare[over]), initial=1.0))
+    scale = share / worst
+    return (
+        replace(centre, amount=scale * centre.amount),
+        replace(pitch, errors=tuple(scale * np.asarray(pitch.errors))),
+        ToothShapes(name, tuple(one.scaled(scale) for one in sides["drive"])),
+        ToothShapes(name, tuple(one.scaled(scale * back) for one in sides["back"])),
+    )
+
+
+def drawn_pair(
+    pair: GearPair,
+    grade: int,
+    *,
+    seed: int,
+    place: int = 0,
+    edition: str = "2013",
+    population: Population = Population(),
+) -> tuple[Deviation, ...]:
+    """Both gears of the drawing number ``place``: any of them by itself, whatever is drawn beside.
+
+    Drawing n has the n-th child of ``seed`` (:meth:`numpy.random.SeedSequence.spawn`), each gear a
+    child of that, pinion first.
+
+    >>> pair = GearPair(Gear(20, 3e-3), Gear(40, 3e-3))
+    >>> len(drawn_pair(pair, 6, seed=1))
+    8
+    """
+    return tuple(
+        one
+        for number, name in enumerate(GEARS)
+        for one in drawn_gear(
+            pair,
+            name,
+            grade,
+            seed=np.random.SeedSequence(seed, spawn_key=(place, number)),
+            edition=edition,
+            population=population,
+        )
+    )
+
+
+def _rayleigh(rng: np.random.Generator, mean: float) -> float:
+    return float(rng.rayleigh(mean * math.sqrt(2.0 / math.pi)))
+
+
+def _side(
+    rng: np.random.Generator, p: Population, limits: FlankTolerances, teeth: int, *of: str
+) -> tuple[ToothProfile, ...]:
+    """Profiles of one side ``of`` (gear, flank): what the tool makes, and the scatter of teeth."""
+    slope = p.slope * rng.standard_normal() + p.slope_scatter * rng.standard_normal(teeth)
+    barrel, wave = rng.normal(*p.barrel), _rayleigh(rng, p.wave)
+    waves, phase = rng.uniform(*p.waves), rng.uniform(0.0, 2.0 * math.pi)
+    heights = 1.0 + p.form_scatter * rng.standard_normal((2, teeth))
+    columns = {
+        "slope": slope * limits.profile_slope,
+        "barrel": barrel * limits.profile_form * heights[0],
+        "wave": wave * limits.profile_form * heights[1],
+        "phase": phase + p.phase_scatter * rng.standard_normal(teeth),
+    }
+    rows = zip(*(column.tolist() for column in columns.values()), strict=True)
+    return tuple(
+        ToothProfile(of[0], waves=waves, flank=of[1], **dict(zip(columns, row, strict=True)))
+        for row in rows
+    )
