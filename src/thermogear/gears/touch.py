@@ -202,7 +202,7 @@ def _of_teeth(
     """Gap and edge of flanks that differ from tooth to tooth.
 
     The advance of plain involutes at :data:`_POINTS` of the flank once for all teeth, and what each
-    tooth takes off there: within 0.1 um of :func:`_shaped` for every pair of teeth.
+    tooth takes off there. Where a pair may carry within 4e-5 modules of :func:`_shaped`.
     """
     from thermogear.gears.touch_kernel import advance_many, touch_teeth
 
