@@ -10,7 +10,6 @@ import xarray as xr
 
 from conftest import Compared
 from thermogear import Gear, GearPair, InputError, MeshModel, Operating, Temperatures, mesh_cycle
-from thermogear.base.errors import ValidityWarning
 from thermogear.base.materials import ZERO_CELSIUS, lubricant
 from thermogear.base.vocabulary import FLAGS, QUANTITIES, STATUS
 from thermogear.gears.deviations import FlankTable, PitchError
@@ -315,7 +314,7 @@ def test_a_pitch_circle_outside_the_teeth_leaves_the_cycle_whole(hot_rig: Operat
     np.testing.assert_allclose(warm / cold, 1.0 - 3.3e-4 * 110.0, rtol=4e-3)
 
 
-def test_pitch_errors_are_said_to_reach_one_mesh_period_alone(
+def test_one_pitch_error_of_all_teeth_shifts_and_changes_nothing(
     rig: GearPair, hot_rig: Operating
 ) -> None:
     whole = PitchError("pinion", (1e-6,) * 25)
@@ -323,8 +322,7 @@ def test_pitch_errors_are_said_to_reach_one_mesh_period_alone(
     np.testing.assert_allclose(
         shifted["mesh_stiffness"].values, mesh_cycle(rig, hot_rig)["mesh_stiffness"], rtol=1e-9
     )
-    with pytest.warns(ValidityWarning, match="pitch errors: the mesh cycle holds one mesh period"):
-        mesh_cycle(rig, hot_rig, deviations=[PitchError("pinion", (1e-6,) + (0.0,) * 24)])
+    assert "mesh_periods" not in shifted.attrs
 
 
 def test_a_contact_that_does_not_settle_is_a_status(

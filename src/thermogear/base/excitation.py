@@ -10,8 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base import fourier
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
+from thermogear.base.period import Period
 from thermogear.base.pieces import Pieces
 from thermogear.base.vocabulary import moves
 
@@ -53,10 +55,8 @@ class Periodic:
         values = np.asarray(samples, dtype=float)
         if values.ndim != 1 or values.size < 1 or not np.all(np.isfinite(values)):
             raise InputError("samples", values.shape, allowed="a finite 1-D array, one period")
-        spectrum = np.fft.rfft(values) / values.size
-        most = (values.size - 1) // 2
-        kept = most if harmonics is None else min(harmonics, most)
-        return cls(float(spectrum[0].real), tuple(2.0 * spectrum[1 : kept + 1]))
+        row = fourier_rows(values[None], values.size if harmonics is None else harmonics)[0]
+        return cls(float(row[0].real), tuple(row[1:]))
 
     @staticmethod
     def columns(rows: Sequence[Periodic]) -> NDArray[np.complex128]:
@@ -69,6 +69,8 @@ class Periodic:
     def __call__(self, phase: ArrayLike) -> Floats:
         """Values at ``phase`` (in periods, any shape)."""
         phi = np.asarray(phase, dtype=float)
+        if len(self.harmonics) > fourier.MANY:
+            return np.asarray(fourier.values(self.columns([self]), phi)[0])[()]
         if phi.ndim == 0 and self.harmonics and abs(phi) < _FAR:
             return self._one(float(phi))
         total = np.full(phi.shape, self.mean)
@@ -142,8 +144,9 @@ class Excitation:
     m_e x'' + c x' + k(t) f(x; b') = F + m_e * (-e''),   x = r_b1 theta_1 - r_b2 theta_2 - e(t),
 
     f the dead zone of half width b' = ``half_backlash``. ``stiffness`` k [N/m] and ``error`` e
-    [m] are periodic in the mesh phase; e is the unloaded (kinematic) error, never the loaded
-    transmission error; for perfect gears e = 0. ``reference_half_backlash`` b_c [m] (the cold
+    [m] repeat after ``mesh_periods`` mesh periods, 1 where all teeth are alike; their phase counts
+    these periods. e is the unloaded (kinematic) error, never the loaded transmission error; for
+    perfect gears e = 0. ``reference_half_backlash`` b_c [m] (the cold
     one) is the length scale of the dimensionless equation. ``mean_force`` F [N],
     ``mesh_frequency`` [rad/s], ``inertias`` [kg m^2], ``base_radii`` [m] and ``torques`` [N m]
     of pinion and wheel. ``damping_ratio`` zeta refers to omega_n = sqrt(k_m/m_e), k_m the time
@@ -161,8 +164,10 @@ class Excitation:
     torques: tuple[float, float]
     damping_ratio: float
     friction: FrictionSplit | None = None
+    mesh_periods: int = 1
 
     def __post_init__(self) -> None:
+        Period(self.mesh_periods)
         positive = {
             "stiffness": self.stiffness.mean,
             "half_backlash": self.half_backlash,
@@ -197,7 +202,8 @@ class Excitations:
     moves, else its other numbers mean nothing. ``stiffness`` and ``error`` are Fourier
     coefficients (point, 1 + harmonic), the mean first, as :class:`Periodic` has them;
     ``inertias``, ``base_radii`` and ``torques`` (point, 2); everything in SI. ``friction``: one
-    for each point, or None where it was not asked for.
+    for each point, or None where it was not asked for. ``mesh_periods``, one number for all points:
+    after so many mesh periods stiffness and error repeat.
     """
 
     status: NDArray[np.int8]
@@ -212,6 +218,7 @@ class Excitations:
     damping_ratio: Floats
     base_radii: Floats
     friction: tuple[FrictionSplit | None, ...] | None = None
+    mesh_periods: int = 1
 
     def __len__(self) -> int:
         return self.status.size
@@ -231,7 +238,7 @@ class Excitations:
     def take(self, index: ArrayLike) -> Excitations:
         """Some of the points, in that order."""
         chosen = np.atleast_1d(np.asarray(index))
-        arrays = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "friction"}
+        arrays = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in _OF_ALL}
         rubbed = self.friction
         if rubbed is not None:
             rubbed = tuple(rubbed[i] for i in np.arange(len(self))[chosen])
@@ -240,7 +247,7 @@ class Excitations:
 
     @classmethod
     def of(cls, rows: Sequence[Excitation]) -> Excitations:
-        """Single ones side by side; all of them move."""
+        """Single ones of one period side by side; all of them move."""
 
         def column(name: str) -> Floats:
             return np.array([getattr(one, name) for one in rows], dtype=float)
@@ -258,18 +265,18 @@ class Excitations:
             damping_ratio=column("damping_ratio"),
             base_radii=column("base_radii"),
             friction=_asked([(one.friction,) for one in rows]),
+            mesh_periods=common_period(rows),
         )
 
     @classmethod
     def joined(cls, parts: Sequence[Excitations]) -> Excitations:
-        """All points of ``parts``, one after the other."""
+        """All points of ``parts``, one after the other; they have one period."""
         if len(parts) == 1:
             return parts[0]
-        made: dict[str, Any] = {}
+        spread = [one.friction or (None,) * len(one) for one in parts]
+        made: dict[str, Any] = {"friction": _asked(spread), "mesh_periods": common_period(parts)}
         for field in fields(cls):
-            if field.name == "friction":
-                spread = (one.friction or (None,) * len(one) for one in parts)
-                made["friction"] = _asked(list(spread))
+            if field.name in made:
                 continue
             given = [getattr(one, field.name) for one in parts]
             if field.name in ("stiffness", "error"):
@@ -304,7 +311,20 @@ class Excitations:
             torques=torques,
             damping_ratio=float(self.damping_ratio[place]),
             friction=None if self.friction is None else self.friction[place],
+            mesh_periods=self.mesh_periods,
         )
+
+
+_OF_ALL = ("friction", "mesh_periods")
+"""Fields of :class:`Excitations` that are no arrays over the points."""
+
+
+def common_period(rows: Sequence[Excitation] | Sequence[Excitations]) -> int:
+    """The period that all ``rows`` have; InputError where they differ."""
+    every = {one.mesh_periods for one in rows}
+    if len(every) != 1:
+        raise InputError("mesh_periods", sorted(every), allowed="one number for all points")
+    return every.pop()
 
 
 def _asked(

@@ -126,6 +126,22 @@ QUANTITIES: dict[str, Quantity] = {
     "flash_temperature": Quantity("K", "flash temperature rise", "ΔT_f", "Blok 1937"),
     "flash_temperature_mixed": Quantity("K", "flash temperature rise, lubricated", "ΔT_f"),
     "flash_temperature_dry": Quantity("K", "flash temperature rise, dry", "ΔT_f"),
+    # over a turn: each tooth pair by its worst place along the path
+    **{
+        f"{name}_{key}": Quantity(*meaning)
+        for name, unit, words, worst, bound, sign in (
+            ("flash_temperature", "K", "flash temperature rise", "greatest", "most", "ΔT_f"),
+            ("hertz_pressure", "Pa", "Hertzian pressure", "greatest", "most", "p_H"),
+            ("film_parameter", "1", "film parameter", "least", "least", "Λ"),
+        )
+        for key, meaning in {
+            "median_of_turn": (unit, f"{worst} {words} of a tooth pair, median of the turn", sign),
+            "decile_of_turn": (unit, f"{words} that 90 % of the tooth pairs have at {bound}", sign),
+            f"{worst}_of_turn": (unit, f"{worst} {words} of the turn", sign),
+            "pinion_tooth": ("1", f"pinion tooth of the {worst} {words}, 1 at mesh phase 0"),
+            "wheel_tooth": ("1", f"wheel tooth of the {worst} {words}, 1 at mesh phase 0"),
+        }.items()
+    },
     "pinion_heat_share": Quantity("1", "share of the frictional heat into the pinion", "β₁"),
     "contact_temperature": Quantity("K", "greatest contact temperature of both flanks", "T_c"),
     "pinion_body_temperature": Quantity(
@@ -141,8 +157,8 @@ QUANTITIES: dict[str, Quantity] = {
     "pinion_base_growth": Quantity("m", "radial growth at the pinion's base circle", "u_b1"),
     "wheel_base_growth": Quantity("m", "radial growth at the wheel's base circle", "u_b2"),
     "half_backlash_curve": Quantity("m", "half backlash along the line of action", "b′(φ)"),
-    "half_backlash": Quantity("m", "half backlash, mean over a mesh period", "b′"),
-    "least_half_backlash": Quantity("m", "half backlash, least over a mesh period", "b′_min"),
+    "half_backlash": Quantity("m", "half backlash, mean over the mesh phase", "b′"),
+    "least_half_backlash": Quantity("m", "half backlash, least over the mesh phase", "b′_min"),
     **{
         f"half_backlash_by_{name}": Quantity("m", f"what {words} to the cold half backlash")
         for name, words in (
@@ -388,13 +404,16 @@ FASTER_RULE = (
 """What proves the labels of maps, diagrams, basins and run-ups."""
 
 
-def label_words(name: str, *, followed: int, starts: int) -> str:
+def label_words(name: str, *, followed: int, starts: int, mesh_periods: int = 1) -> str:
     """What a reader sees of a label: "chaotic for 32 268 periods, 16 starts", else the name.
 
     ``followed`` periods were run from each of ``starts`` starts and none closed; 0: not known.
+    Where ``mesh_periods`` are a turn, after which a pair of gears repeats itself, an orbit closes
+    after turns: "period 6 of the turn".
     """
     if name != "chaotic" or followed <= 0:
-        return name
+        of_turn = mesh_periods > 1 and name.startswith("period-")
+        return f"{name.replace('-', ' ')} of the turn" if of_turn else name
     length = f"{followed:,}".replace(",", " ")
     return f"chaotic for {length} periods, {starts} start{'s' * (starts > 1)}"
 
@@ -406,8 +425,9 @@ def told_labels(data: Dataset) -> NDArray[np.str_]:
         data[name].values if name in data else np.zeros(names.shape)
         for name in ("followed_periods", "followed_starts")
     ]
+    of = int(data.attrs.get("mesh_periods", 1))
     told = [
-        label_words(str(name), followed=int(periods), starts=int(starts))
+        label_words(str(name), followed=int(periods), starts=int(starts), mesh_periods=of)
         for name, periods, starts in zip(names.flat, seen[0].flat, seen[1].flat, strict=True)
     ]
     return np.array(told, dtype=np.str_).reshape(names.shape)

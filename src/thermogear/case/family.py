@@ -480,7 +480,7 @@ class Tabulated:
         error = mix(a.error, b.error)
         force = mix(a.force, b.force)
         mesh = mix(self.points.mesh_frequency[place], self.points.mesh_frequency[place + 1])
-        frequency = mesh / rate
+        frequency = mesh / rate / self.points.mesh_periods
         ranks = np.arange(error.shape[1])
         with np.errstate(invalid="ignore"):  # a point without a gap has no lengths
             push = error * (ranks * frequency[:, None]) ** 2 / length[:, None]
@@ -496,6 +496,7 @@ class Tabulated:
             force=push,
             stiffness_pieces=a.flat.stiffness_pieces,
             force_pieces=a.flat.force_pieces,
+            mesh_periods=a.mesh_periods,
         )
         hot = mix(a.half_backlash, b.half_backlash)
         return Points(flat, status, length, rate, stiffness, force, error, mesh, hot)

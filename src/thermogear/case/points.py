@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base import fourier
 from thermogear.base.arrays import Dataset, Floats, Whole
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import Excitations, Periodic
@@ -27,8 +28,9 @@ class Points:
     ``status`` as :data:`~thermogear.base.vocabulary.STATUS`; where it is one of ``STILL`` the lane
     is a placeholder. ``length`` b_c [m], ``rate`` omega_n [rad/s], ``stiffness`` mean k_m [N/m],
     ``force`` mean F [N], ``error`` Fourier coefficients of e [m] (point, harmonic),
-    ``mesh_frequency`` [rad/s], ``half_backlash`` hot b' [m]. Without gears (:meth:`plain`) lengths,
-    rates and stiffness are 1, the mesh frequency 0.
+    ``mesh_frequency`` [rad/s], ``half_backlash`` hot b' [m]; the tables repeat after
+    :attr:`mesh_periods`. Without gears (:meth:`plain`) lengths, rates and stiffness are 1, the mesh
+    frequency 0.
     """
 
     flat: Lanes
@@ -50,6 +52,11 @@ class Points:
             np.zeros((len(lanes), 1), complex), none, lanes.half_backlash,
         )  # fmt: skip
 
+    @property
+    def mesh_periods(self) -> int:
+        """After so many mesh periods stiffness and error repeat."""
+        return self.flat.mesh_periods
+
     def lanes(self) -> Lanes:
         """The dimensionless lanes."""
         return self.flat
@@ -64,6 +71,7 @@ class Points:
             stiffness=Periodic(float(stiffness[0].real), tuple(stiffness[1:])),
             force=Periodic(float(force[0].real), tuple(force[1:])),
             half_backlash=float(lane.half_backlash[place]),
+            mesh_periods=lane.mesh_periods,
         )
 
     @property
@@ -77,7 +85,9 @@ class Points:
         return ~moves(self.status)
 
     def kinematic(self, phase: Floats) -> Floats:
-        """e [m] at ``phase`` [mesh periods], (point, phase)."""
+        """e [m] at ``phase`` [periods of the tables], (point, phase)."""
+        if self.flat.by_fft:
+            return fourier.values(self.error, phase)
         ranks = np.arange(self.error.shape[1])
         waves = np.exp(2j * np.pi * np.multiply.outer(ranks, phase))
         # one product a point: the same to the last bit in every batch
@@ -132,6 +142,7 @@ def points_of(found: Excitations) -> Points:
         ).lanes()
         nan = np.full(count, np.nan)
         none = np.full((count, 1), np.nan, complex)
+        idle = replace(idle, mesh_periods=found.mesh_periods)
         return Points(idle, found.status.astype(np.int8), nan, nan, nan, nan, none, nan, nan)
     status = found.status.astype(np.int8)
     if still.any():
@@ -139,7 +150,7 @@ def points_of(found: Excitations) -> Points:
         found = found.take(np.where(still, int(np.argmin(still)), np.arange(count)))
     length, mean = found.reference_half_backlash, found.stiffness[:, 0].real
     rate = found.natural_frequency
-    frequency = found.mesh_frequency / rate
+    frequency = found.mesh_frequency / found.mesh_periods / rate
     # d/dtau = (w/2 pi) d/dphi
     ranks = np.arange(found.error.shape[1])
     bent: NDArray[np.complex128] = found.error * (2j * np.pi * ranks) ** 2
@@ -155,6 +166,7 @@ def points_of(found: Excitations) -> Points:
         force=force,
         stiffness_pieces=none_at_all,
         force_pieces=none_at_all,
+        mesh_periods=found.mesh_periods,
     )
     return Points(
         lanes,
@@ -174,11 +186,10 @@ def largest_fluctuation(points: Points) -> Floats:
 
     k = k_m (1 + s w(t)) with the pair's own w: s = -1/min w; infinite without fluctuation.
     """
-    waves = points.flat.stiffness[:, 1:]
-    count = 8 * (waves.shape[1] + 1)
-    turns = np.outer(np.arange(1, waves.shape[1] + 1), np.arange(count) / count)
-    least = (waves @ np.exp(2j * np.pi * turns)).real.min(axis=1)
-    mean = points.flat.stiffness[:, 0].real
+    waves = points.flat.stiffness.copy()
+    mean = waves[:, 0].real.copy()
+    waves[:, 0] = 0.0
+    least = fourier.sampled(waves, 8 * waves.shape[1]).min(axis=1)
     return np.asarray(np.divide(mean, -least, out=np.full(mean.size, np.inf), where=least < 0.0))
 
 
@@ -199,7 +210,7 @@ def on_numbers(points: Points, numbers: dict[str, Floats]) -> Points:
         points = replace(points, flat=replace(points.flat, stiffness=stiffness))
     flat, mesh, hot = points.flat, points.mesh_frequency, points.half_backlash
     if "frequency" in numbers:
-        flat = replace(flat, period=2.0 * np.pi / numbers["frequency"])
+        flat = replace(flat, period=flat.mesh_periods * (2.0 * np.pi / numbers["frequency"]))
         mesh = numbers["frequency"] * points.rate
     if "half_backlash" in numbers:
         flat = replace(flat, half_backlash=numbers["half_backlash"].copy())

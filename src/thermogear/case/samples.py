@@ -32,7 +32,7 @@ from thermogear.gears.contact import path_of_contact
 from thermogear.gears.geometry import Gear
 from thermogear.heat.lubrication import grade
 from thermogear.mesh.cycle import Cycle
-from thermogear.mesh.excite import EXCITES, excitations
+from thermogear.mesh.excite import EXCITES, excitations, over_turn
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating, Varied
 from thermogear.mesh.thermal import HotPair
@@ -97,7 +97,11 @@ class Samples:
 
 
 def with_error(springs: Excitations, error: NDArray[np.complex128]) -> Excitations:
-    """``springs`` with coefficients of a kinematic error [m] added, (sample, 1 + harmonic)."""
+    """``springs`` with coefficients of a kinematic error [m] added, (sample, 1 + harmonic).
+
+    Harmonics of the error are those of the mesh frequency, whatever the period of the springs.
+    """
+    error = over_turn(error, springs.mesh_periods)
     width = max(error.shape[1], springs.error.shape[1])
     return replace(springs, error=padded(error, width) + padded(springs.error, width))
 
@@ -376,10 +380,11 @@ def _cycle(
         operating = case.operating_at(temperature, model)
     hot = HotPair(case.pair, replace(operating, housing=case.housing), model)
     s = path_of_contact(case.pair, path_positions)
-    phase = np.arange(case.mesh_positions) / case.mesh_positions
     # what is asked after the motion takes the same mesh, and ends its keeping
     key = (model, state, path_positions)
-    cycle = samples.cycles.pop(key, None) or Cycle(hot, tuple(case.deviations), s, phase)
+    cycle = samples.cycles.pop(key, None) or Cycle(
+        hot, tuple(case.deviations), s, case.mesh_positions
+    )
     if want == EXCITES:
         samples.cycles[key] = cycle
     cyclic = [name for name in want if name not in BODIES_OF]

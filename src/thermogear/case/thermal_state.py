@@ -21,7 +21,7 @@ from thermogear.case.units import read_quantity
 from thermogear.gears.contact import path_of_contact
 from thermogear.mesh.balance import HeatBalance
 from thermogear.mesh.balance_table import OF_OIL, STATED, blanked
-from thermogear.mesh.cycle import Cycle, warn_of_pitch
+from thermogear.mesh.cycle import Cycle
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair
@@ -164,13 +164,10 @@ class ThermalState:
         self, case: GearCase, model: MeshModel, want: Sequence[str]
     ) -> dict[str, NDArray[Any]]:
         """What :meth:`cycle` holds of ``want``, of the points and the status, as bare arrays."""
-        warn_of_pitch(case.deviations)
         at = replace(self.operating(case, model), housing=case.housing)
         s = path_of_contact(case.pair, case.path_positions)
-        phase = np.arange(case.mesh_positions) / case.mesh_positions
-        hot = HotPair(case.pair, at, model)
-        made = Cycle(hot, tuple(case.deviations), s, phase).quantities(want)
-        found = {name: np.asarray(values) for name, values in made.items()}
+        cycle = Cycle(HotPair(case.pair, at, model), case.deviations, s, case.mesh_positions)
+        found = {name: np.asarray(values) for name, values in cycle.quantities(want).items()}
         found |= {"pinion_speed": at.speed, "pinion_torque": at.torque}
         balance = self.balance(case, model)
         if balance is None:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base import fourier
 from thermogear.base.arrays import Floats, Whole
 from thermogear.base.errors import InputError
 from thermogear.dynamics.kernels.affine import BEHIND, add_harmonics, prepare
@@ -25,13 +26,21 @@ Bytes = NDArray[np.uint8]
 ORDER = 12
 BLOCK = 128
 _COUNTS = tuple(base * 2**k for k in range(11) for base in (32, 48))
+_OF_TURN = np.array([base * 2**k for k in range(14) for base in (32, 48)])
+MOST_OF_TURN = 400_000
+"""Sub-steps of a turn at most: a lane's maps then take some 600 MB."""
+ROOM = 2**19
+"""Sub-steps of all lanes of a block at most: what their maps take bounds the memory."""
 
 
 def _bounds(lanes: LaneTables, name: str) -> tuple[Floats, Floats]:
     """Per lane: a bound of |p| over the period and of |dp/dphi| (without the jumps)."""
-    coefficients = np.abs(getattr(lanes, name))
-    size = coefficients.sum(axis=1)
-    rate = 2.0 * np.pi * coefficients @ np.arange(coefficients.shape[1])
+    if lanes.by_fft:
+        size, rate = (fourier.bound(getattr(lanes, name), order) for order in (0, 1))
+    else:
+        coefficients = np.abs(getattr(lanes, name))
+        size = coefficients.sum(axis=1)
+        rate = 2.0 * np.pi * coefficients @ np.arange(coefficients.shape[1])
     for lane, piece in enumerate(getattr(lanes, name + "_pieces")):
         if piece is not None:
             size[lane] += max(sum(abs(c) for c in row) for row in piece.coefficients)
@@ -64,13 +73,21 @@ def substeps(lanes: LaneTables, order: int = ORDER) -> Whole:
     )
     scale = lanes.half_backlash + strongest / mean
     counts = np.array(_COUNTS)
+    if lanes.by_fft:
+        counts = lanes.mesh_periods * _OF_TURN
+        counts = counts[counts <= max(MOST_OF_TURN, counts[0])]
     half = lanes.period[:, None] / (2.0 * counts)
     allowed = 2e-17 * factorial(order + 1)
     good = half * np.maximum(np.sqrt(stiffest), lanes.damping)[:, None] <= 0.3
     for name, size in (("stiffness", np.ones(len(lanes))), ("force", scale)):
-        coefficients = np.abs(getattr(lanes, name))
-        # summed rank by rank: no sum may depend on the other lanes
-        tail = np.sum(coefficients[:, :, None] * _powers(coefficients.shape[1], order), axis=1)
+        coefficients = getattr(lanes, name)
+        if lanes.by_fft:
+            bound = fourier.bound(coefficients, order - 1)[:, None]
+            tail = bound / (2.0 * counts) ** (order - 1)
+        else:
+            # summed rank by rank: no sum may depend on the other lanes
+            powers = _powers(coefficients.shape[1], order)
+            tail = np.sum(np.abs(coefficients)[:, :, None] * powers, axis=1)
         good &= half**2 * tail <= allowed * size[:, None]
     needed = np.where(good.any(axis=1), counts[np.argmax(good, axis=1)], 0)
     if np.all(needed):
@@ -79,7 +96,7 @@ def substeps(lanes: LaneTables, order: int = ORDER) -> Whole:
     raise InputError(
         "frequency",
         2.0 * np.pi / lanes.period[lane],
-        why=f"the exact maps would need more than {_COUNTS[-1]} sub-steps a period",
+        why=f"the exact maps would need more than {counts[-1]} sub-steps a period",
         fix="use method='rk4'",
     )
 
@@ -197,6 +214,8 @@ def _taylor(lanes: LaneTables, name: str, centres: Floats, half: Floats, order: 
     """Coefficients in u about the centre of every sub-step: (sub-step, lane, order + 1)."""
     coefficients = getattr(lanes, name)
     pieces: tuple[Pieces | None, ...] = getattr(lanes, name + "_pieces")
+    if lanes.by_fft and np.ptp(half) < 1e-6 * half[0]:
+        return fourier.taylor(coefficients, centres.size, order)
     if len(lanes) == 1 and pieces[0] is None:
         return _of_one(coefficients.tobytes(), centres.tobytes(), half.tobytes(), order)
     out = _of_harmonics(coefficients, centres, half, order)
@@ -394,7 +413,7 @@ def layouts(
             count = -(-count // samples) * samples
         borders, marks = _borders(count, jumps, samples)
         index = np.array([i for i, k in enumerate(keys) if k == key])
-        parts = -(-index.size // block)
+        parts = -(-index.size // max(1, min(block, ROOM // count)))
         for part in range(parts):
             # every so many-th lane: neighbours are alike, and blocks should cost the same
             yield index[part::parts], borders, marks

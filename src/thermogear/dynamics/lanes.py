@@ -61,4 +61,4 @@ def mixed(one: Lanes, other: Lanes, share: float) -> Lanes:
         raise InputError("lanes", "tables that differ", allowed="as many harmonics, the same jumps")
     rows = {n: (1.0 - share) * getattr(one, n) + share * getattr(other, n) for n in names}
     pieces = {n: getattr(one, n) for n in ("stiffness_pieces", "force_pieces")}
-    return Lanes(**rows, **pieces)
+    return Lanes(**rows, **pieces, mesh_periods=one.mesh_periods)

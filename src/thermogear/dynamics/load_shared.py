@@ -12,6 +12,7 @@ from thermogear.base.errors import InputError
 from thermogear.base.excitation import Excitation, Periodic
 from thermogear.base.pair_springs import PairSprings
 from thermogear.dynamics.kernels.shared import advance_shared
+from thermogear.dynamics.models import require
 from thermogear.dynamics.outcome import Result, dataset
 
 NO_ERROR = Periodic(0.0)
@@ -28,7 +29,8 @@ class LoadSharedModel:
 
     y [m] displacement of the pinion's base circle over the wheel's less the kinematic error,
     positive on the drive side; ``half_backlash`` b [m] the cold one, because heat is in
-    S_j as a deviation; ``mass`` m [kg], ``damping`` c [N s/m], ``mesh_frequency`` [rad/s],
+    S_j as a deviation; ``mass`` m [kg], ``damping`` c [N s/m], ``mesh_frequency`` [rad/s], the
+    tables repeat after ``mesh_periods`` mesh periods,
     ``force`` F [N] with -m e'' of the kinematic error in it; ``drive`` and ``back`` flanks.
     Where the one-spring form opens and closes the whole mesh at once, here pairs touch and
     leave by themselves: the stiffness depends on the load.
@@ -41,15 +43,11 @@ class LoadSharedModel:
     force: Periodic
     drive: PairSprings
     back: PairSprings
+    mesh_periods: int = 1
 
     def __post_init__(self) -> None:
-        for name in ("mass", "mesh_frequency", "half_backlash"):
-            value = float(getattr(self, name))
-            object.__setattr__(self, name, value)
-            if not (np.isfinite(value) and value > 0.0):
-                raise InputError(name, value, allowed="> 0, finite")
-        if not (np.isfinite(self.damping) and self.damping >= 0.0):
-            raise InputError("damping", self.damping, allowed=">= 0, finite")
+        for name in ("mass", "mesh_frequency", "half_backlash", "damping"):
+            require(self, name, positive=name != "damping", floor=True)
 
     @classmethod
     def from_excitation(
@@ -65,7 +63,7 @@ class LoadSharedModel:
         springs. The excitation's own stiffness gives no more than c = 2 zeta sqrt(k_m m_e).
         """
         mass = excitation.equivalent_mass
-        turn = excitation.mesh_frequency / (2.0 * np.pi)
+        turn = excitation.mesh_frequency / (2.0 * np.pi * excitation.mesh_periods)
         return cls(
             mass,
             2.0 * excitation.damping_ratio * mass * excitation.natural_frequency,
@@ -74,12 +72,13 @@ class LoadSharedModel:
             error.derivative(2) * (-mass * turn**2) + excitation.mean_force,
             drive,
             back,
+            excitation.mesh_periods,
         )
 
     @property
     def period(self) -> float:
-        """Mesh period [s]."""
-        return 2.0 * np.pi / self.mesh_frequency
+        """Period of the tables [s]: ``mesh_periods`` mesh periods."""
+        return self.mesh_periods * (2.0 * np.pi / self.mesh_frequency)
 
     def mesh_force(self, y: ArrayLike, phase: ArrayLike) -> Floats:
         """Force of the teeth [N] at ``y`` [m] and mesh ``phase``; negative on the back flanks."""
@@ -148,5 +147,10 @@ def simulate_shared(
     result.shares[0] = spent / spent.sum()
     result.substeps[0] = steps
     return dataset(
-        result, period=np.array([model.period]), periods=periods, discard=discard, samples=samples
+        result,
+        period=np.array([model.period]),
+        periods=periods,
+        discard=discard,
+        samples=samples,
+        mesh_periods=model.mesh_periods,
     )

@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike
 
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
-from thermogear.base.excitation import Excitation, Periodic
+from thermogear.base.excitation import Excitation, Periodic, common_period
+from thermogear.base.period import Period
 from thermogear.dynamics.lanes import Lanes
 from thermogear.dynamics.tables import Pieces, Table, stack
 
@@ -42,7 +43,7 @@ class ClearanceModel(Protocol):
         """Flat parameter arrays, one entry per lane."""
 
 
-def _checked(owner: object, name: str, *, positive: bool = False, floor: bool = False) -> None:
+def require(owner: object, name: str, *, positive: bool = False, floor: bool = False) -> None:
     """Finite, and > 0 or >= 0 where asked; scalars stay scalars."""
     values = np.asarray(getattr(owner, name), dtype=float)
     allowed = "> 0, finite" if positive else ">= 0, finite" if floor else "finite"
@@ -85,11 +86,11 @@ class TorsionalModel:
     thermal_stiffness: ArrayLike = 0.0
 
     def __post_init__(self) -> None:
-        _checked(self, "damping_ratio", floor=True)
-        _checked(self, "frequency", positive=True)
+        require(self, "damping_ratio", floor=True)
+        require(self, "frequency", positive=True)
         for name in ("stiffness_amplitude", "mean_force", "force_amplitude", "thermal_stiffness"):
-            _checked(self, name)
-        _checked(self, "half_backlash", positive=True)
+            require(self, name)
+        require(self, "half_backlash", positive=True)
         stiffness = np.asarray(self.thermal_stiffness, dtype=float)
         if np.any(stiffness <= -1.0):
             raise InputError(
@@ -159,7 +160,8 @@ class DeadZoneModel:
     ``damping_ratio`` zeta >= 0 (the natural frequency is 1 when the mean of k is 1),
     ``frequency`` w > 0, ``stiffness`` and ``force``: :class:`Periodic` (any number of
     harmonics) or :class:`Pieces` (with jumps), ``half_backlash`` b > 0. Each may be a sequence;
-    sequences of one common length are lanes.
+    sequences of one common length are lanes. ``mesh_periods``: so many mesh periods are one
+    period, 1 where all teeth are alike.
 
     >>> k, force = Periodic(1.0, (0.1,)), Periodic(0.1, (0.05,))
     >>> model = DeadZoneModel(damping_ratio=0.05, frequency=0.5, stiffness=k, force=force)
@@ -172,12 +174,12 @@ class DeadZoneModel:
     stiffness: Table | Sequence[Table]
     force: Table | Sequence[Table]
     half_backlash: ArrayLike = 1.0
+    mesh_periods: int = 1
 
     def __post_init__(self) -> None:
-        _checked(self, "damping_ratio", floor=True)
-        _checked(self, "frequency", positive=True)
-        _checked(self, "half_backlash", positive=True)
+        Period(self.mesh_periods)
         for name in ("damping_ratio", "frequency", "half_backlash"):
+            require(self, name, positive=name != "damping_ratio", floor=True)
             if np.ndim(getattr(self, name)) > 1:
                 raise InputError(name, f"{np.ndim(getattr(self, name))} axes", allowed="0 or 1")
         for name in ("stiffness", "force"):
@@ -255,6 +257,7 @@ class DeadZoneModel:
             force=force,
             stiffness_pieces=stiffness_pieces,
             force_pieces=force_pieces,
+            mesh_periods=self.mesh_periods,
         )
 
 
@@ -262,8 +265,9 @@ def from_excitation(excitation: Excitation | Sequence[Excitation]) -> DeadZoneMo
     """The dimensionless equation of one gear pair, or of several operating points as lanes.
 
     X = x/b_c, tau = omega_n t, omega_n = sqrt(k_m/m_e):
-    k = k(t)/k_m, B' = b'/b_c, w = omega_mesh/omega_n,
-    F = F_m^/(k_m b_c) - e''/b_c with ' = d/dtau, so that e = e_a cos gives F_h = (e_a/b_c) w^2.
+    k = k(t)/k_m, B' = b'/b_c, w = omega_mesh/(L omega_n) where stiffness and error repeat after
+    L ``mesh_periods``, F = F_m^/(k_m b_c) - e''/b_c with ' = d/dtau, so that with L = 1
+    e = e_a cos gives F_h = (e_a/b_c) w^2.
 
     Takes excitations in SI (``mesh_frequency`` [rad/s]); returns a model of one lane for one
     excitation, of as many lanes for a sequence.
@@ -273,7 +277,7 @@ def from_excitation(excitation: Excitation | Sequence[Excitation]) -> DeadZoneMo
     force: list[Table] = []
     numbers: list[tuple[float, float, float]] = []
     for row in rows:
-        frequency = row.mesh_frequency / row.natural_frequency
+        frequency = row.mesh_frequency / row.mesh_periods / row.natural_frequency
         length = row.reference_half_backlash
         mean = row.stiffness.mean
         # d/dtau = (w/2 pi) d/dphi
@@ -281,22 +285,15 @@ def from_excitation(excitation: Excitation | Sequence[Excitation]) -> DeadZoneMo
         stiffness.append(row.stiffness * (1.0 / mean))
         force.append(acceleration * -1.0 + row.mean_force / (mean * length))
         numbers.append((row.damping_ratio, frequency, row.half_backlash / length))
-    if isinstance(excitation, Excitation):
-        damping, omega, backlash = numbers[0]
-        return DeadZoneModel(
-            damping_ratio=damping,
-            frequency=omega,
-            stiffness=stiffness[0],
-            force=force[0],
-            half_backlash=backlash,
-        )
-    columns = np.array(numbers).T
+    single = isinstance(excitation, Excitation)
+    damping, omega, backlash = numbers[0] if single else np.array(numbers).T
     return DeadZoneModel(
-        damping_ratio=columns[0],
-        frequency=columns[1],
-        stiffness=stiffness,
-        force=force,
-        half_backlash=columns[2],
+        damping_ratio=damping,
+        frequency=omega,
+        stiffness=stiffness[0] if single else stiffness,
+        force=force[0] if single else force,
+        half_backlash=backlash,
+        mesh_periods=common_period(rows),
     )
 
 
@@ -311,9 +308,9 @@ class PairModel:
     The angles are the vibration about the steady rotation. ``inertias`` [kg m^2],
     ``base_radii`` [m], ``torques`` T1 (driving the pinion) and T2 (load on the wheel) [N m],
     ``stiffness`` k [N/m] and ``error`` e [m] over the mesh phase, ``damping`` c [N s/m],
-    ``half_backlash`` b' [m], ``mesh_frequency`` [rad/s]. State (theta1, theta2, theta1',
-    theta2'). With balanced torques, T1/r_b1 = T2/r_b2, the momentum
-    I1 theta1'/r_b1 + I2 theta2'/r_b2 is constant.
+    ``half_backlash`` b' [m], ``mesh_frequency`` [rad/s]; tables repeat after ``mesh_periods``
+    mesh periods. State (theta1, theta2, theta1', theta2'). With balanced torques,
+    T1/r_b1 = T2/r_b2, the momentum I1 theta1'/r_b1 + I2 theta2'/r_b2 is constant.
 
     >>> pair = PairModel(
     ...     inertias=(2e-3, 2e-3), base_radii=(0.04, 0.04), torques=(100.0, 100.0),
@@ -332,6 +329,7 @@ class PairModel:
     damping: float
     half_backlash: float
     mesh_frequency: float
+    mesh_periods: int = 1
 
     def __post_init__(self) -> None:
         for name in ("inertias", "base_radii", "torques"):
@@ -341,9 +339,8 @@ class PairModel:
                 raise InputError(name, pair, allowed="two finite numbers")
             if name != "torques" and min(pair) <= 0.0:
                 raise InputError(name, pair, allowed="> 0")
-        _checked(self, "damping", floor=True)
-        _checked(self, "half_backlash", positive=True)
-        _checked(self, "mesh_frequency", positive=True)
+        for name in ("damping", "half_backlash", "mesh_frequency"):
+            require(self, name, positive=name != "damping", floor=True)
         if self.stiffness.mean <= 0.0:
             raise InputError("stiffness", self.stiffness.mean, allowed="a mean > 0")
 
@@ -360,12 +357,13 @@ class PairModel:
             2.0 * excitation.damping_ratio * mass * excitation.natural_frequency,
             excitation.half_backlash,
             excitation.mesh_frequency,
+            excitation.mesh_periods,
         )
 
     @property
     def period(self) -> float:
-        """Mesh period [s]."""
-        return 2.0 * np.pi / self.mesh_frequency
+        """Period of the tables [s]: ``mesh_periods`` mesh periods."""
+        return self.mesh_periods * (2.0 * np.pi / self.mesh_frequency)
 
     @property
     def equivalent_mass(self) -> float:
@@ -428,10 +426,11 @@ class PairModel:
         acceleration = self.error.derivative(2) * (1.0 / self.period**2)
         return DeadZoneModel(
             damping_ratio=self.damping / (2.0 * mass),
-            frequency=self.mesh_frequency,
+            frequency=self.mesh_frequency / self.mesh_periods,
             stiffness=self.stiffness * (1.0 / mass),
             force=acceleration * -1.0 + self.mean_force / mass,
             half_backlash=self.half_backlash,
+            mesh_periods=self.mesh_periods,
         )
 
     def lanes(self) -> Lanes:

@@ -13,6 +13,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike
 
+from thermogear.base import fourier
 from thermogear.base.arrays import Complexes, Floats
 from thermogear.base.excitation import Periodic
 from thermogear.base.pieces import Pieces as Pieces
@@ -26,6 +27,7 @@ class LaneTables:
 
     ``stiffness`` and ``force`` are Fourier coefficients of shape (lane, harmonic), column 0 the
     mean; ``stiffness_pieces`` and ``force_pieces`` add jumps, lane by lane (None: none).
+    ``mesh_periods``: so many mesh periods are one ``period`` of every lane.
     """
 
     period: Floats
@@ -35,9 +37,27 @@ class LaneTables:
     force: Complexes
     stiffness_pieces: tuple[Pieces | None, ...]
     force_pieces: tuple[Pieces | None, ...]
+    mesh_periods: int = 1
 
     def __len__(self) -> int:
         return int(self.period.size)
+
+    @property
+    def mesh_period(self) -> Floats:
+        """Time of one mesh period, (lane,)."""
+        return self.period / self.mesh_periods
+
+    @property
+    def unit(self) -> Floats:
+        """Scales of (x, x') for distances: b and 2 pi b over the mesh period, (lane, 2)."""
+        speed = 2.0 * np.pi * self.half_backlash / self.mesh_period
+        return np.stack([self.half_backlash, speed], axis=1)
+
+    @property
+    def by_fft(self) -> bool:
+        """Whether the tables go by FFT: those of a turn, and all of very many harmonics."""
+        width = max(self.stiffness.shape[1], self.force.shape[1])
+        return self.mesh_periods > 1 or width > fourier.MANY + 1
 
     def take(self, index: ArrayLike) -> Self:
         """The lanes of ``index``, in that order."""
@@ -50,6 +70,7 @@ class LaneTables:
             force=self.force[chosen],
             stiffness_pieces=tuple(self.stiffness_pieces[i] for i in chosen),
             force_pieces=tuple(self.force_pieces[i] for i in chosen),
+            mesh_periods=self.mesh_periods,
         )
 
     def jumps(self, lane: int) -> tuple[float, ...]:
@@ -64,7 +85,9 @@ class LaneTables:
         phi = np.asarray(phase, dtype=float)
         total = np.empty((*phi.shape, len(self)))
         total[...] = coefficients[:, 0].real
-        for order in range(1, coefficients.shape[1]):
+        if self.by_fft:
+            total[...] = np.moveaxis(fourier.values(coefficients, phi), 0, -1)
+        for order in range(1, 1 if self.by_fft else coefficients.shape[1]):
             turned = np.mod(order * phi, 1.0)[..., None]
             row = coefficients[:, order]
             # real arithmetic: the mirror and scaling by two stay exact to the last bit

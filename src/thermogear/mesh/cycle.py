@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import warnings
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
@@ -12,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.arrays import Dataset, Floats
-from thermogear.base.errors import InputError, ValidityWarning, nearest
+from thermogear.base.errors import InputError, nearest
 from thermogear.base.vocabulary import NO_OIL_BATH, STATUS, label
 from thermogear.gears.contact import (
     entrainment_velocity,
@@ -20,7 +19,7 @@ from thermogear.gears.contact import (
     path_of_contact,
     sliding_velocity,
 )
-from thermogear.gears.deviations import Deviation, PitchError
+from thermogear.gears.deviations import Deviation
 from thermogear.gears.geometry import Gear
 from thermogear.gears.pair import GearPair
 from thermogear.heat.expansion import base_circle_growth
@@ -28,12 +27,23 @@ from thermogear.heat.gearbox import body_radius
 from thermogear.heat.losses import efficiency
 from thermogear.heat.temperature import conduction_power, contact_temperature
 from thermogear.mesh.clearance import PARTS, Clearance
-from thermogear.mesh.elastic import ElasticPair, MeshCurves, elastic_pair, mean_stiffness_of_body
+from thermogear.mesh.elastic import (
+    TURN_POSITIONS,
+    ElasticPair,
+    MeshCurves,
+    PathShare,
+    elastic_pair,
+    mean_share,
+    mean_stiffness_of_body,
+    tooth_pair_shares,
+    turn_phases,
+)
 from thermogear.mesh.friction_path import FrictionPath
 from thermogear.mesh.mesh_heat import MeshHeat, mesh_heat
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair, thesis_thermal_stiffness
+from thermogear.mesh.turn_spread import OF_TURN, spread_of_turn
 
 PATH = ("operating", "path_position")
 PHASE = ("operating", "mesh_phase")
@@ -75,8 +85,13 @@ def mesh_cycle(
 
     ``deviations`` of the flanks (relief, profile, ...) enter the loaded contact and the clearance
     (:func:`~thermogear.mesh.clearance.Clearance`); the cold half backlash is that of the flanks
-    without them. The cycle is one mesh period: pitch errors, which differ from tooth to tooth,
-    enter with the teeth of the first period alone, and a warning says so. ``model`` defaults to
+    without them. Where teeth differ or a gear is eccentric
+    (:func:`~thermogear.gears.turn.turn_period`) the cycle is the whole turn: ``mesh_phase`` runs
+    over its L mesh periods, the attribute ``mesh_periods``, with :data:`TURN_POSITIONS` positions
+    each; the half backlash and the jams are those of the tightest tooth pairs of the turn; losses
+    and what is along the path are of the mean over all tooth pairs, the latter at the mean of their
+    load shares; and :data:`OF_TURN` say how flash temperature, Hertz pressure and film differ
+    between the tooth pairs, each by its worst place along the path. ``model`` defaults to
     :meth:`MeshModel.consistent`. Zero torque gives zero contact and flash; zero speed gives
     zero flash; the pitch point has its limit values. Warns outside the ranges of the sources;
     raises InputError for fewer than 2 positions.
@@ -94,13 +109,13 @@ def mesh_cycle(
     for name, count in (("path_positions", path_positions), ("mesh_positions", mesh_positions)):
         if count < 2:
             raise InputError(name, count, allowed=">= 2")
-    warn_of_pitch(deviations)
     hot = HotPair(pair, operating, MeshModel.consistent() if model is None else model)
     s = path_of_contact(pair, path_positions)
-    phase = np.arange(mesh_positions) / mesh_positions
+    cycle = Cycle(hot, tuple(deviations), s, mesh_positions)
     variables = {
         name: (POINT if name == "status" else TABLE[name][0], values)
-        for name, values in Cycle(hot, tuple(deviations), s, phase).quantities(want).items()
+        for name, values in cycle.quantities(want).items()
+        if name != "mesh_periods"
     }
     coordinates: dict[str, tuple[tuple[str, ...], ArrayLike]] = {
         "pinion_speed": (POINT, operating.speed),
@@ -111,7 +126,7 @@ def mesh_cycle(
         coordinates |= {"path_position": (ALONG, s), "pinion_radius": (ALONG, r1)}
         coordinates["wheel_radius"] = (ALONG, r2)
     if any("mesh_phase" in dims for dims, _ in variables.values()):
-        coordinates["mesh_phase"] = (("mesh_phase",), phase)
+        coordinates["mesh_phase"] = (("mesh_phase",), turn_phases(cycle.mesh_periods, cycle.phase))
     points = pair.path
     return label(
         variables,
@@ -121,19 +136,9 @@ def mesh_cycle(
             "choices": json.dumps(hot.model.choices()),
             "path_points": json.dumps({k.upper(): v for k, v in points._asdict().items()}),
             "contact_ratio": pair.contact_ratio,
+            **({"mesh_periods": cycle.mesh_periods} if cycle.mesh_periods > 1 else {}),
         },
     )
-
-
-def warn_of_pitch(deviations: Sequence[Deviation]) -> None:
-    """ValidityWarning where a cycle of ``deviations`` leaves out what differs between teeth."""
-    if any(isinstance(d, PitchError) and np.ptp(d.errors) > 0.0 for d in deviations):
-        warnings.warn(
-            "pitch errors: the mesh cycle holds one mesh period, in which the first teeth alone "
-            "stand; ask loaded_contact for phases of a whole revolution",
-            ValidityWarning,
-            stacklevel=3,
-        )
 
 
 def _asked(want: Collection[str]) -> Collection[str]:
@@ -148,37 +153,78 @@ def _asked(want: Collection[str]) -> Collection[str]:
 class Cycle:
     """What the quantities of one cycle are made of, each computed when first asked for.
 
-    At path positions ``s`` [m] and mesh ``phase``.
+    At path positions ``s`` [m] and ``positions`` of the mesh period, :data:`TURN_POSITIONS` of each
+    where it is not the only one.
     """
 
     hot: HotPair
     deviations: tuple[Deviation, ...]
     s: Floats
-    phase: Floats
+    positions: int
 
     @cached_property
     def elastic(self) -> ElasticPair:
         return elastic_pair(self.hot, self.deviations)
 
+    @property
+    def mesh_periods(self) -> int:
+        return self.elastic.mesh_periods
+
+    @property
+    def phase(self) -> Floats:
+        """Of one mesh period."""
+        count = self.positions if self.mesh_periods == 1 else TURN_POSITIONS
+        return np.asarray(np.arange(count) / count)
+
     def quantities(self, want: Collection[str] = ()) -> dict[str, ArrayLike]:
-        """The bare arrays of :func:`mesh_cycle`, SI, in the order of :data:`TABLE`, then status."""
+        """The bare arrays of :func:`mesh_cycle`, SI, in the order of :data:`TABLE`, then status.
+
+        Of a turn ``mesh_periods`` too, (count,).
+        """
         names = _asked(want)
         springs = self.parts if any(name in SPRINGS for name in names) else {}
-        for name in want:
-            if name in SPRINGS and name not in springs:
-                why = f"model.tooth = {self.hot.model.tooth} has other springs"
-                raise InputError("want", repr(name), allowed=" | ".join(springs), why=why)
+        left_out = {name for name in SPRINGS if name not in springs}
+        for name in left_out.intersection(want):
+            why = f"model.tooth = {self.hot.model.tooth} has other springs"
+            raise InputError("want", repr(name), allowed=" | ".join(springs), why=why)
+        if not self.teeth_differ:
+            left_out |= OF_TURN.keys()
+            for name in left_out.intersection(want):
+                rule = (
+                    "all teeth are alike"
+                    if self.mesh_periods == 1
+                    else "the load is shared by a rule"
+                )
+                raise InputError("want", repr(name), why=f"{rule}: no tooth pair differs")
         values = {
             name: of(self)
             for name, (_, of) in TABLE.items()
-            if name in names and (name in springs or name not in SPRINGS)
+            if name in names and name not in left_out
         }
+        if self.mesh_periods > 1:
+            values["mesh_periods"] = np.full(self.hot.count, self.mesh_periods)
         return values | {"status": self.status(names)}
 
     # --- along the path ---------------------------------------------------------------------
+    @property
+    def teeth_differ(self) -> bool:
+        """Whether tooth pairs carry different loads: rules of thumb for sharing feel no flank."""
+        return self.mesh_periods > 1 and self.hot.model.sharing == "loaded"
+
+    @cached_property
+    def shares(self) -> PathShare:
+        """Of every tooth pair of the turn, (count, tooth pair, positions)."""
+        return tooth_pair_shares(self.elastic, self.s)
+
     @cached_property
     def path(self) -> FrictionPath:
-        return FrictionPath(self.elastic, self.s)
+        mean = mean_share(self.shares) if self.teeth_differ else None
+        return FrictionPath(self.elastic, self.s, mean)
+
+    @cached_property
+    def of_turn(self) -> dict[str, Floats]:
+        """:data:`OF_TURN`; nan where the loaded contact is not known."""
+        return spread_of_turn(self.elastic, self.s, self.shares)
 
     @cached_property
     def heat(self) -> MeshHeat:
@@ -206,7 +252,8 @@ class Cycle:
     def thermal(self) -> Floats:
         if self.hot.model.thermal_stiffness != "thesis":
             return np.zeros_like(self.curves.stiffness)
-        return thesis_thermal_stiffness(self.hot, self.phase, self.elastic.pair_stiffness)
+        found = thesis_thermal_stiffness(self.hot, self.phase, self.elastic.pair_stiffness)
+        return np.tile(found, self.mesh_periods)
 
     @cached_property
     def stiffness(self) -> Floats:
@@ -216,9 +263,9 @@ class Cycle:
     def gap(self) -> Clearance:
         return Clearance(self.hot, self.phase, self.elastic.deviations)
 
-    @cached_property
+    @property
     def least(self) -> Floats:
-        return np.asarray(self.gap.half_backlash.min(axis=1))
+        return self.gap.least
 
     @cached_property
     def rim(self) -> Floats:
@@ -238,11 +285,16 @@ class Cycle:
         """Where the gap is used up, and where what is asked for is not known."""
         bath = np.where(self.hot.operating.no_bath, NO_OIL_BATH, STATUS.index("ok"))
         found = np.where(self.least > 0.0, bath, STATUS.index("jammed"))
-        known = np.isfinite(self.stiffness).all(axis=1)
+        # a turn is solved only for what is asked
+        known = np.ones(self.hot.count, np.bool_)
+        if self.mesh_periods == 1 or "curves" in vars(self):
+            known &= np.isfinite(self.stiffness).all(axis=1)
+        elif "heat" in vars(self):
+            known &= self.heat.settled
         for name, mean in (("rim_stiffness", "rim"), ("bore_clamped_stiffness", "clamped")):
             if name in names:
                 known &= np.isfinite(getattr(self, mean))
-        if any(name in CONTACT or name == "edge_contact" for name in names):
+        if any(name in CONTACT or name == "edge_contact" or name in OF_TURN for name in names):
             known &= self.path.settled
         return np.where(known, found, STATUS.index("not_converged"))
 
@@ -401,5 +453,6 @@ TABLE: dict[str, tuple[tuple[str, ...], Made]] = {
     "jam_temperature": (POINT, lambda c: c.gap.jam_temperature),
     "proportional_jam_temperature": (POINT, lambda c: c.gap.proportional_jam_temperature),
     "edge_contact_share": (POINT, lambda c: c.curves.edge_share),
+    **{name: (POINT, partial(_one_of, lambda c: c.of_turn, name)) for name in OF_TURN},
 }
 """Every stored quantity, in the order of storage: its dimensions and what it is made of."""

@@ -31,6 +31,7 @@ from thermogear.gears.deviations import Deviation, FlankShape
 from thermogear.gears.geometry import Gear
 from thermogear.gears.outline import LAND, outline, span_over_teeth
 from thermogear.gears.pair import GearPair
+from thermogear.gears.turn import mean_tooth
 from thermogear.mesh.clearance import Clearance
 from thermogear.mesh.elastic import LoadedPair, elastic_pair
 from thermogear.mesh.model import MeshModel
@@ -64,10 +65,13 @@ def drawn_gears(
     ``drive_gap`` and ``back_gap``, nan where the pair cannot touch.
 
     Growth is that of :func:`~thermogear.heat.expansion.flank_growth` whatever flank the ``model``
-    has; load share, body, housing and bore are the model's.
+    has; load share, body, housing and bore are the model's. All teeth are drawn alike: where they
+    differ or a gear is eccentric, flanks, shares and gaps are those of the mean tooth
+    (:func:`~thermogear.gears.turn.mean_tooth`).
     ``phases`` of the mesh period, one axis; ``fineness`` times as many points.
     """
     model = model.override(flank="growth")
+    given, deviations = deviations, mean_tooth(pair, deviations)
     phase = np.asarray(phases, dtype=float)
     hots = {name: HotPair(pair, at, model) for name, at in states.items()}
     first = next(iter(hots.values()))
@@ -81,7 +85,7 @@ def drawn_gears(
         for name, hot in hots.items()
     }
     drive = mesh_points(pair, phase)
-    gaps = {name: Clearance(hot, phase, tuple(deviations)).gaps for name, hot in hots.items()}
+    gaps = {name: Clearance(hot, phase, deviations).gaps for name, hot in hots.items()}
     lag = np.stack([one.min(axis=-1) for one, _ in gaps.values()])
     drive_gap = np.stack([one for one, _ in gaps.values()]) - lag[..., None]
     back_gap = np.stack([two for _, two in gaps.values()]) + lag[..., None]
@@ -113,7 +117,7 @@ def drawn_gears(
     ]
     circles = ("base", "pitch", "tip", "root", "form", "bore")
     angle = pair.operating_pressure_angle
-    skipped = sorted({type(d).__name__ for d in deviations if not isinstance(d, FlankShape)})
+    skipped = sorted({type(d).__name__ for d in given if not isinstance(d, FlankShape)})
     return label(
         {
             "tight_radius": (curve, np.stack([one.radius for one in tight]), "m",

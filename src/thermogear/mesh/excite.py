@@ -95,7 +95,8 @@ def excitations(
     the model has one). e(t) is the kinematic ``transmission_error`` [m] plus the cycle's
     ``spring_error``, the error that belongs to that stiffness (deviations and heat in it), both
     over the mesh phase; the loaded transmission error never enters, so that elasticity is not
-    counted twice.
+    counted twice. Harmonics are those of the mesh frequency: of a turn of L mesh periods the
+    tables keep L times as many orders.
     The half backlash is its mean over the phase, the length scale the cold one. ``inertias``
     [kg m^2], two or (operating, 2), default to solid discs of pitch radius; ``damping_ratio`` is a
     number or one for each point. Torques balance: T2 = T1 z2/z1. ``friction`` of the teeth by
@@ -121,11 +122,11 @@ def excitations(
         raise InputError("friction", f"{len(friction)} of them", allowed=f"{count}, as the points")
     status = np.asarray(cycle["status"], dtype=np.int8)
     moving = moves(status)
-    samples = {}
+    samples, periods = {}, mesh_periods_of(cycle)
     for name in ("mesh_stiffness", "spring_error"):
         values = np.asarray(cycle[name], dtype=float)
-        samples[name] = fourier_rows(np.where(moving[:, None], values, 1.0), harmonics)
-    given = Periodic.columns([transmission_error])
+        samples[name] = fourier_rows(np.where(moving[:, None], values, 1.0), harmonics * periods)
+    given = over_turn(Periodic.columns([transmission_error]), periods)
     heat = samples["spring_error"]
     width = max(given.shape[1], heat.shape[1])
     torque = np.asarray(cycle["pinion_torque"], dtype=float)
@@ -142,4 +143,23 @@ def excitations(
         damping_ratio=np.broadcast_to(np.asarray(damping_ratio, dtype=float), (count,)),
         base_radii=np.broadcast_to([pair.pinion.base_radius, pair.wheel.base_radius], (count, 2)),
         friction=None if friction is None else tuple(friction),
+        mesh_periods=periods,
     )
+
+
+def mesh_periods_of(cycle: Dataset | Mapping[str, NDArray[Any]]) -> int:
+    """After how many mesh periods a cycle comes again."""
+    if "mesh_periods" in cycle:
+        return int(np.nanmax(cycle["mesh_periods"]))
+    return int(getattr(cycle, "attrs", {}).get("mesh_periods", 1))
+
+
+def over_turn(rows: NDArray[np.complex128], mesh_periods: int) -> NDArray[np.complex128]:
+    """Fourier coefficients (row, 1 + harmonic) of a mesh period as those of a turn of many.
+
+    >>> over_turn(np.array([[5.0 + 0j, 1.0, 2.0]]), 2).real
+    array([[5., 0., 1., 0., 2.]])
+    """
+    found = np.zeros((len(rows), 1 + mesh_periods * (rows.shape[1] - 1)), complex)
+    found[:, ::mesh_periods] = rows
+    return found

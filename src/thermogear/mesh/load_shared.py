@@ -17,6 +17,7 @@ from thermogear.gears.deviations import Deviation
 from thermogear.gears.loaded import LoadedMesh, solve_mesh
 from thermogear.gears.stiffness import Moduli
 from thermogear.gears.touch import first_touch
+from thermogear.gears.turn import mean_tooth
 from thermogear.mesh.elastic import LoadedPair
 from thermogear.mesh.thermal import HotPair, ThermalDeviation
 
@@ -43,10 +44,11 @@ def pair_springs(
     carries its exact share with its exact slope, and their sum is the mesh's tangent
     stiffness. A pair that the mean load leaves free takes touch and slope from the first
     greater load that reaches it. Heat and ``deviations`` are in S_j with their mean, so that
-    the backlash used with them is the cold one. The force begins where the tightest pair touches
-    (:func:`~thermogear.gears.touch.first_touch`), halfway to the mean load's deflection the
-    springs take over: free play and jam are those of
-    :func:`~thermogear.mesh.clearance.Clearance`.
+    the backlash used with them is the cold one. Where teeth differ or a gear is eccentric the
+    springs are those of the mean tooth (:func:`~thermogear.gears.turn.mean_tooth`): of one mesh
+    period, whose spread over the turn they do not know. The force begins where the tightest pair
+    touches (:func:`~thermogear.gears.touch.first_touch`), halfway to the mean load's deflection the
+    springs take over: free play and jam are those of :func:`~thermogear.mesh.clearance.Clearance`.
 
     ``operating`` the place of the operating point in ``hot``, ``flank`` "drive" or "back",
     ``positions`` samples of the mesh phase. Raises InputError for a torque of 0, where no load
@@ -68,6 +70,7 @@ def pair_springs(
     phase = local if flank == "drive" else offset - local
     # away from whole phases, where rounding decides which pair enters
     phase = phase + (1e-12 if flank == "drive" else -1e-12)
+    deviations = mean_tooth(pair, deviations)
     small = np.array([1.0 - RELATIVE_STEP, 1.0, 1.0 + RELATIVE_STEP])
     loads = mean * np.concatenate([small, LADDER])
     solved = contact_at(hot, operating, loads, phase, deviations, flank=flank)
@@ -96,6 +99,7 @@ def contact_at(
     """The loaded contact of one operating point's moduli and heat under any ``loads`` [N].
 
     Shapes of the flanks are averaged over the half width of the point's own load at all of them.
+    Whole mesh periods of ``phase`` choose the teeth.
     """
     one = replace(hot, operating=hot.operating.point(operating))
     moduli = [

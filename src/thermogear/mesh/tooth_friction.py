@@ -15,6 +15,7 @@ from thermogear.base.excitation import FrictionSplit
 from thermogear.base.pieces import Pieces
 from thermogear.gears.deviations import Deviation
 from thermogear.gears.pair import GearPair
+from thermogear.gears.turn import mean_tooth
 from thermogear.mesh.elastic import ElasticPair, LoadedPair, PathShare, elastic_pair
 from thermogear.mesh.friction_path import FrictionPath
 from thermogear.mesh.model import MeshModel
@@ -61,8 +62,9 @@ def friction_split(
     ceases to carry; between them polynomials, halved until they are within ``accuracy`` of the
     greatest value, or the piece is 1/256 of its interval (laws that rise without bound towards the
     pitch point). ``model`` defaults to :meth:`MeshModel.consistent`. Friction of the back flank is
-    not in them. None where the loaded contact does not settle. Raises InputError at a speed of 0,
-    where the sense of sliding is not known.
+    not in them. Where teeth differ or a gear is eccentric they are those of the mean tooth
+    (:func:`~thermogear.gears.turn.mean_tooth`) over one mesh period. None where the loaded contact
+    does not settle. Raises InputError at a speed of 0, where the sense of sliding is not known.
 
     >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
     >>> warm = Temperatures.uniform(353.15, reference=293.15)
@@ -85,9 +87,9 @@ def friction_split(
     if not 0.0 < accuracy < 1.0:
         raise InputError("accuracy", accuracy, allowed="0 < accuracy < 1")
     chosen = MeshModel.consistent() if model is None else model
-    found = []
+    found, alike = [], mean_tooth(pair, deviations)
     for place in range(operating.speed.size):
-        own = elastic_pair(HotPair(pair, operating.point(place), chosen), tuple(deviations))
+        own = elastic_pair(HotPair(pair, operating.point(place), chosen), alike)
         found.append(_split(own, accuracy))
     return tuple(found)
 

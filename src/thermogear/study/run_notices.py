@@ -20,7 +20,6 @@ from thermogear.case.case import GearCase
 from thermogear.case.derived import Fact
 from thermogear.case.derived import facts as case_facts
 from thermogear.case.thesis_cases import of_the_thesis
-from thermogear.gears.deviations import PitchError
 from thermogear.gears.iso6336 import iso6336_stiffness
 from thermogear.mesh.model import CHOICES
 from thermogear.results.beside import from_data
@@ -138,8 +137,6 @@ def _deviations(case: GearCase) -> Iterator[Notice]:
     deaf = [m.name for m in case.models if m.stiffness != "loaded"]
     if deaf:
         yield Notice.of("deviations_not_felt", bundles=deaf)
-    if any(isinstance(d, PitchError) and np.ptp(d.errors) > 0.0 for d in case.deviations):
-        yield Notice.of("pitch_errors_of_one_period")
 
 
 def _jammed(case: GearCase, mesh: Dataset) -> Iterator[Notice]:

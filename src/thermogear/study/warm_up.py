@@ -288,9 +288,7 @@ def _steady(case: GearCase, duty: Duty, factors: Mapping[str, float]) -> Dataset
 
 def _least_gap(case: GearCase, pair: HotPair) -> Floats:
     """Least half backlash over the mesh phase [m], (count,)."""
-    return np.asarray(
-        Clearance(pair, np.arange(PHASES) / PHASES, case.deviations).half_backlash.min(axis=1)
-    )
+    return Clearance(pair, np.arange(PHASES) / PHASES, case.deviations).least
 
 
 def _worst(case: GearCase, course: WarmUp, steady: Dataset) -> dict[str, Any]:
