@@ -13,7 +13,7 @@ from thermogear.analysis.continuation import continuation
 from thermogear.analysis.diagram import diagram_plan, orbit_diagram
 from thermogear.analysis.family import ModelFamily
 from thermogear.analysis.orbits import periodic_orbit
-from thermogear.analysis.settle import CHAOTIC, PERIODIC, units_of
+from thermogear.analysis.settle import CHAOTIC, PERIODIC
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import Periodic
 from thermogear.dynamics.models import DeadZoneModel, TorsionalModel
@@ -114,7 +114,7 @@ def test_every_stretch_on_which_an_orbit_runs_on_gives_its_middle(scale, axis):
         half_backlash=scale,
     )
     values = np.linspace(0.60, 0.71, 12)
-    unit = units_of(replace(model, frequency=float(values[7])).lanes())[0]
+    unit = replace(model, frequency=float(values[7])).lanes().unit[0]
     drift = 0.01 * np.arange(12)[:, None] * unit
     drift[7:, axis] += (JUMP + 0.005 - 0.01) * unit[axis]  # one jump a little too far
     near, far = scale * np.array([[1.1, 0.5], [-0.3, -0.4]])

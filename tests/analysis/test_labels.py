@@ -17,7 +17,6 @@ from thermogear.analysis.orbits import periodic_orbit
 from thermogear.analysis.proof import Label, periodic, proves_chaos
 from thermogear.base.errors import InputError
 from thermogear.base.vocabulary import label_words
-from thermogear.dynamics.exact_map import scales
 from thermogear.dynamics.integrate import simulate
 from thermogear.dynamics.models import TorsionalModel
 from thermogear.dynamics.return_map import return_map
@@ -322,7 +321,7 @@ def test_a_window_is_on_the_orbit_when_it_is_near_and_comes_nearer():
         mean_force=0.017,
         force_amplitude=-1.16,
     )
-    lane, unit = model.lanes(), scales(model.lanes())
+    lane, unit = model.lanes(), model.lanes().unit[0]
     orbit = periodic_orbit(model, 2, (1.13, -0.28))
     assert orbit.stable
     steps = np.arange(-31, 1)

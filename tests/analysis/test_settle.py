@@ -17,7 +17,6 @@ from thermogear.analysis.settle import (
     multipliers_of,
     polish,
     settle,
-    units_of,
 )
 from thermogear.base.errors import InputError
 from thermogear.base.vocabulary import STATUS
@@ -278,16 +277,16 @@ def test_newton_lane_by_lane_ends_on_the_orbits_and_tells_who_did_not_get_there(
     ((_, prepared),) = bundles(lanes)
     maps = prepared()
     guess = np.array([[1.15, 0.0], [1.1, -0.3], [0.9, 0.4]])
-    point, residual = polish(maps, guess, 2, units_of(lanes), most=20)
+    point, residual = polish(maps, guess, 2, lanes.unit, most=20)
     assert np.all(residual[:2] < 1e-12)
     for lane in range(3):
         alone = return_map(lanes.take(lane))
         visit = alone.visit(point[lane], 2)
-        gap = np.max(np.abs(visit.points[-1] - point[lane]) / units_of(lanes)[lane])
+        gap = np.max(np.abs(visit.points[-1] - point[lane]) / lanes.unit[lane])
         assert residual[lane] == pytest.approx(gap, abs=1e-13)
     # no step is longer than a half backlash
-    one, far = polish(maps, guess - 40.0, 2, units_of(lanes), most=2)
-    assert np.all(np.abs(one - (guess - 40.0)) / units_of(lanes) <= 1.0 + 1e-12)
+    one, far = polish(maps, guess - 40.0, 2, lanes.unit, most=2)
+    assert np.all(np.abs(one - (guess - 40.0)) / lanes.unit <= 1.0 + 1e-12)
     assert np.all(far > 1e-3)
 
 

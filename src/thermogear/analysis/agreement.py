@@ -42,9 +42,10 @@ SAME = 1e-6
 class Told:
     """What a start settles on: its ``name`` and ``period`` n (0: none), the ``reason`` in words.
 
-    ``discarded`` periods went by before; ``orbit`` where one proves it. ``starts`` that differ by
-    rounding share the label; of a chaotic motion all of them were ``followed`` so many periods and
-    none closed: an estimate, for chaos may end later.
+    ``discarded`` mesh periods went by before; ``orbit`` where one proves it. ``starts`` that differ
+    by rounding share the label; of a chaotic motion all of them were ``followed`` so many periods
+    and none closed: an estimate, for chaos may end later. ``mesh_periods`` are one period: 1, or
+    those of a turn, of which n is then a count.
     """
 
     name: str
@@ -55,11 +56,17 @@ class Told:
     _: KW_ONLY
     followed: int = 0
     starts: int = 1
+    mesh_periods: int = 1
 
     @property
     def words(self) -> str:
         """The name, and for chaos how long and from how many starts it was seen."""
-        return label_words(self.name, followed=self.followed, starts=self.starts)
+        return label_words(
+            self.name,
+            followed=self.followed,
+            starts=self.starts,
+            mesh_periods=self.mesh_periods,
+        )
 
     def alike(self, other: Told) -> bool:
         """Whether two labels are of one motion: the same name and, with orbits, the same orbit.

@@ -22,7 +22,7 @@ from thermogear.analysis.continuation import GAP, Branch, continuation
 from thermogear.analysis.family import Family, dimension_of, model_at
 from thermogear.analysis.orbits import Orbit, shoot
 from thermogear.analysis.section import lanes_of
-from thermogear.analysis.settle import PERIODIC, units_of
+from thermogear.analysis.settle import PERIODIC
 from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.errors import ConvergenceError
 from thermogear.dynamics.plane import plane_of
@@ -107,7 +107,7 @@ def _seeds(
     """One orbit out of every stretch of a sweep on which period and place run on."""
     values = data[parameter].values
     longer = dimension_of(family) != 2
-    unit = units_of(lanes_of(family(values[:, None]))) if not longer else np.ones((values.size, 2))
+    unit = lanes_of(family(values[:, None])).unit if not longer else np.ones((values.size, 2))
     for n in range(1, most_period + 1):
         for direction in range(data.sizes["direction"]):
             for start in range(data.sizes["start"]):

@@ -28,15 +28,19 @@ from thermogear.analysis.agreement import (
 from thermogear.analysis.any_motion import settle
 from thermogear.analysis.lyapunov import Lyapunov, lyapunov_exponents
 from thermogear.analysis.proof import NEAR_BORDER, Label, closing, periodic, proves_chaos, returned
-from thermogear.analysis.section import lanes_of, starts_of, units_of
+from thermogear.analysis.section import lanes_of, starts_of
 from thermogear.analysis.walk import Search
 from thermogear.base.arrays import Floats
 from thermogear.base.bounds import whole
 from thermogear.base.errors import InputError
+from thermogear.base.period import turns
 from thermogear.dynamics.blocks import Progress
 from thermogear.dynamics.lanes import Lanes
 from thermogear.dynamics.models import ClearanceModel
 from thermogear.dynamics.return_map import ReturnMap, return_map
+
+LEAST_OF_TURN = 8
+"""Turns after which an orbit may close are searched for at least."""
 
 
 def label(
@@ -159,7 +163,12 @@ def labels(
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> list[Label]:
-    """:func:`label` for every lane of ``model``; ``progress`` counts finished lanes."""
+    """:func:`label` for every lane of ``model``; ``progress`` counts finished lanes.
+
+    Of lanes whose period is a turn ``discard``, ``cap``, ``follow`` and ``batch_periods`` count
+    mesh periods and are rounded up to turns; ``max_period`` counts turns: no more than fit four
+    times into ``cap``, or :data:`LEAST_OF_TURN`.
+    """
     for name, value, least in (
         ("max_period", max_period, 1), ("discard", discard, 1), ("starts", starts, 2),
         ("follow", follow, 1),
@@ -167,11 +176,17 @@ def labels(
         whole(name, value, least=least)
     lanes = lanes_of(model)
     start = starts_of(initial_state, len(lanes))
+    of = lanes.mesh_periods
+    if of > 1:
+        max_period = min(max_period, max(cap // (4 * of), LEAST_OF_TURN))
     search = _Search(
-        max_period, discard, cap, near_border, batches, batch_periods, starts, follow, threads
+        max_period, discard, cap, near_border, batches, batch_periods, starts, follow, threads, of
     )
     found, top = _settle(lanes, start, search, progress)
-    return _confirmed(lanes, start, found, top, search, progress)
+    return [
+        replace(one, mesh_periods=of)
+        for one in _confirmed(lanes, start, found, top, search, progress)
+    ]
 
 
 @dataclass(frozen=True)
@@ -185,6 +200,7 @@ class _Search:
     starts: int
     follow: int
     threads: int | None
+    mesh_periods: int
 
     def judge(self, lane: Lanes, window: Floats, elapsed: int) -> tuple[Label | None, bool]:
         """:func:`periodic` within the bounds of this search."""
@@ -197,11 +213,15 @@ class _Search:
         )
 
     def rounds(self, most: int) -> Iterator[int]:
-        """Lengths of the rounds: ``discard`` periods and a window, then doubling."""
+        """Lengths of the rounds: ``discard`` mesh periods and a window, then doubling.
+
+        In periods of the lanes; ``most`` in mesh periods.
+        """
         elapsed, length = 0, self.discard
         while elapsed < most:
-            yield length + 2 * self.max_period
-            elapsed += length + 2 * self.max_period
+            count = turns(length, of=self.mesh_periods) + 2 * self.max_period
+            yield count
+            elapsed += count * self.mesh_periods
             length *= 2
 
 
@@ -217,7 +237,7 @@ def _settle(
     for length in search.rounds(search.cap):
         group = lanes.take(waiting).ensemble(state[waiting], threads=search.threads, parting=True)
         window = group.run(length, keep=2 * search.max_period)
-        elapsed += length
+        elapsed += length * search.mesh_periods
         state[waiting] = group.state
         top[waiting] = np.fmax(top[waiting], level[waiting] + group.top)
         level[waiting] += group.level
@@ -280,7 +300,7 @@ def _confirmed(
     chaotic = np.array([one.name == "chaotic" for one in found], dtype=bool)
     asked = np.array([i for i, one in enumerate(found) if one.name != "undecided"], dtype=int)
     parted, own = asked[(top > np.log(PARTED))[asked] | chaotic[asked]], np.flatnonzero(chaotic)
-    unit = np.stack([lanes.half_backlash, 2 * np.pi * lanes.half_backlash / lanes.period], axis=1)
+    unit = lanes.unit
     owner = np.repeat(parted, search.starts - 2)
     beside = np.tile(directions(count=search.starts - 2, dimension=2), (parted.size, 1))
     near = start[owner] + APART * np.maximum(unit, np.abs(start))[owner] * beside
@@ -325,7 +345,7 @@ def _follow(
         if waiting.size == 0:
             break
         mine = owner[waiting]
-        elapsed += length
+        elapsed += length * search.mesh_periods
         parting = elapsed >= last
         group = lanes.take(mine).ensemble(
             state[waiting], threads=search.threads, refine=refine, parting=parting
@@ -341,7 +361,7 @@ def _follow(
             if verdict is None:
                 open_.append(waiting[row])
                 lively[waiting[row]] = group.level[row] > 0.0 and not closing(
-                    window[row] / units_of(one)[0], search.max_period
+                    window[row] / one.unit[0], search.max_period
                 )
             else:
                 ends[lane].append(End(verdict, elapsed))

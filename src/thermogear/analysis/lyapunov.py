@@ -19,9 +19,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.section import lanes_of, starts_of
+from thermogear.analysis.settle import ALIGN
 from thermogear.base.arrays import Floats
 from thermogear.base.bounds import whole
 from thermogear.base.errors import InputError
+from thermogear.base.period import turns
 from thermogear.dynamics.blocks import Pace, Progress, run_blocks
 from thermogear.dynamics.bundle import Bundle, bundles
 from thermogear.dynamics.lanes import Lanes
@@ -74,6 +76,7 @@ def _block(
     means: Floats,
     ends: Floats,
     length: int,
+    align: int,
     pace: Pace,
 ) -> None:
     mine = prepared()
@@ -82,7 +85,7 @@ def _block(
         crowd.run(count)
     # the tangent turns into its own direction before it is counted
     crowd.aim()
-    crowd.stretch(min(50, length))
+    crowd.stretch(min(align, length))
     for batch in range(means.shape[1]):
         total = np.zeros(index.size)
         for _, count in pace.chunks(length, lanes=index.size):
@@ -106,6 +109,7 @@ def lyapunov_exponents(
 ) -> list[Lyapunov]:
     """:func:`lyapunov_exponent` of every lane of ``model``; ``refine`` times the sub-steps.
 
+    Of lanes whose period is a turn ``discard`` and ``batch_periods`` are rounded up to turns.
     ``model`` may be a sequence of models with return maps, states of one length.
     """
     for name, value, least in (
@@ -122,10 +126,13 @@ def lyapunov_exponents(
         sections = [return_map(one) for one in lanes]
         start = starts_of(initial_state, len(lanes), dimension=sections[0].dimension)
         sums = np.array([np.log(one.determinant(1)) / one.period for one in sections])
+    # where a period is a turn, the counts of mesh periods are rounded up to turns
+    of = lanes.mesh_periods if isinstance(lanes, Lanes) else 1
+    discard, batch_periods, align = (turns(n, of=of) for n in (discard, batch_periods, ALIGN))
     means = np.full((len(lanes), batches), np.nan)
     ends = np.full(start.shape, np.nan)
     work = [
-        partial(_block, prepared, index, start, discard, means, ends, batch_periods)
+        partial(_block, prepared, index, start, discard, means, ends, batch_periods, align)
         for index, prepared in bundles(lanes, refine=refine)
     ]
     total = len(lanes) * (discard + batches * batch_periods)

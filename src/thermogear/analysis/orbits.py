@@ -22,10 +22,13 @@ from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.dynamics.lanes import Lanes
 from thermogear.dynamics.return_map import ReturnMap, return_map
 
+SAMPLES = 2**17
+"""Samples along a turn at most, unless a mesh period would have fewer than 64."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Orbit:
-    """A closed orbit of ``period`` mesh periods, of a model with states of any length d.
+    """A closed orbit of ``period`` periods of its model, which has states of any length d.
 
     ``model`` it belongs to with its return map ``section``, ``points`` (period, d) on the section,
     ``jacobian`` D P^n at the first of them, ``residual`` |P^n z - z| in units of the map (of one
@@ -85,7 +88,7 @@ class Orbit:
 
     @property
     def minimal_period(self) -> int:
-        """The smallest number of mesh periods after which the orbit closes."""
+        """The smallest number of periods after which the orbit closes."""
         unit = self.section.unit
         for lag in range(1, self.period):
             if self.period % lag == 0:
@@ -94,16 +97,26 @@ class Orbit:
                     return lag
         return self.period
 
+    def sampling(self, per_period: int) -> int:
+        """Samples a mesh period: ``per_period``, of long turns fewer, :data:`SAMPLES` in all."""
+        of = self.lanes.mesh_periods
+        return per_period if of == 1 else min(per_period, max(SAMPLES // of, 64))
+
     def samples(self, per_period: int = 256) -> tuple[Floats, Floats, Floats]:
-        """Phase (in periods), x and x' along the whole orbit at uniform phases."""
-        visit = return_map(self.lanes, per_period).visit(self.state, self.period, sampled=True)
-        phase = np.arange(self.period * per_period) / per_period
+        """Phase (in mesh periods), x and x' along the whole orbit at uniform phases.
+
+        :meth:`sampling` of ``per_period`` in each mesh period.
+        """
+        count = self.sampling(per_period)
+        turn = count * self.lanes.mesh_periods
+        visit = return_map(self.lanes, turn).visit(self.state, self.period, sampled=True)
+        phase = np.arange(self.period * turn) / count
         return phase, visit.samples[:, 0], visit.samples[:, 1]
 
     def extremes(self, per_period: int = 256) -> tuple[float, float]:
         """Least and largest x on the orbit, between the samples too."""
         _, x, v = self.samples(per_period)
-        step = float(self.lanes.period[0]) / per_period
+        step = float(self.lanes.mesh_period[0]) / self.sampling(per_period)
         x1, v1 = np.roll(x, -1), np.roll(v, -1)
         low, high = float(x.min()), float(x.max())
         for i in np.flatnonzero(v * v1 < 0.0):
@@ -121,16 +134,25 @@ class Orbit:
         """max |k f| over the mean of k f on the orbit (1 for a quasi-static, constant mesh).
 
         The mean of the elastic force equals the mean of F(t) on every closed orbit. Infinite
-        when that mean is 0.
+        when that mean is 0. Over a turn the greatest is that of the parabola through three samples.
         """
         phase, x, _ = self.samples(per_period)
-        stiffness = self.lanes.values("stiffness", np.mod(phase, 1.0))[:, 0]
+        of = self.lanes.mesh_periods
+        once = self.lanes.values("stiffness", phase[: phase.size // self.period] / of)[:, 0]
+        stiffness = np.tile(once, self.period)
         b = float(self.lanes.half_backlash[0])
         force = stiffness * (x - np.clip(x, -b, b))
         mean = float(self.lanes.force[0, 0].real)
         piece = self.lanes.force_pieces[0]
         mean += 0.0 if piece is None else piece.mean
-        return float(np.max(np.abs(force)) / abs(mean)) if mean != 0.0 else float("inf")
+        size = np.abs(force)
+        greatest = float(size.max())
+        if of > 1:
+            top = int(size.argmax())
+            a, c = float(size[top - 1]), float(size[(top + 1) % size.size])
+            bend = 2.0 * greatest - a - c
+            greatest += (a - c) ** 2 / (8.0 * bend) if bend > 0.0 else 0.0
+        return greatest / abs(mean) if mean != 0.0 else float("inf")
 
 
 def multipliers(jacobian: Floats, determinant: float) -> Complexes:
@@ -151,7 +173,8 @@ def multipliers(jacobian: Floats, determinant: float) -> Complexes:
     if square < 0.0:
         return np.array([complex(half, np.sqrt(-square)), complex(half, -np.sqrt(-square))])
     large = half + np.copysign(np.sqrt(square), half)
-    return np.array([large, determinant / large], complex)
+    # over a long turn both may lie below the least number
+    return np.array([large, determinant / large if large else 0.0], complex)
 
 
 def shoot(
@@ -232,7 +255,9 @@ def closed(
 def periodic_orbit(
     model: object, period: int = 1, guess: ArrayLike = (0.0, 0.0), *, tolerance: float = 1e-13
 ) -> Orbit:
-    """The orbit of ``period`` mesh periods near ``guess`` = (x, x') at phase 0, stable or not.
+    """The orbit of ``period`` periods of ``model`` near ``guess`` = (x, x') at phase 0.
+
+    Stable or not; a period is a mesh period, or the turn of a model whose tables repeat after one.
 
     Newton shooting on the event-exact return map P with its variational equations: P^n(s) = s,
     multipliers the eigenvalues of D P^n. States (x, x') are in the units of the model: pure numbers

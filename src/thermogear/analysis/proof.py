@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from thermogear.analysis.agreement import Told
 from thermogear.analysis.lyapunov import Lyapunov
 from thermogear.analysis.orbits import Orbit, shoot
-from thermogear.analysis.section import units_of
 from thermogear.base.arrays import Floats
 from thermogear.dynamics.lanes import Lanes
 from thermogear.dynamics.return_map import return_map
@@ -60,7 +59,7 @@ def periodic(
     """The label the last sections support, and whether no lag comes near closing."""
     if not np.all(np.isfinite(window)):
         return Label("diverged", 0, "|x| > 1e6 half backlashes or not finite", elapsed), False
-    unit = units_of(lane)[0]
+    unit = lane.unit[0]
     scaled = window / unit
     gaps = [
         float(np.max(np.abs(scaled[-lag:] - scaled[-2 * lag : len(scaled) - lag])))
@@ -83,7 +82,8 @@ def periodic(
         orbit = shorter
     points = orbit.points / unit
     largest = float(np.max(np.abs(orbit.multipliers)))
-    shown = f"largest Floquet multiplier {_shown(orbit)} over {period} period{'s' * (period > 1)}"
+    counted = ("period" if lane.mesh_periods == 1 else "turn") + "s" * (period > 1)
+    shown = f"largest Floquet multiplier {_shown(orbit)} over {period} {counted}"
     # the window against the orbit, in step: its last state is the orbit's first point
     if not _on(points, scaled):
         return None, False
@@ -115,7 +115,7 @@ def returned(lane: Lanes, window: Floats, first: Label, elapsed: int) -> Label |
     """The label ``first`` where the last sections lie on its orbit, in any of its phases."""
     if first.orbit is None:
         return None
-    unit = units_of(lane)[0]
+    unit = lane.unit[0]
     scaled, points = window / unit, first.orbit.points / unit
     place = int(np.argmin(np.max(np.abs(points - scaled[-1]), axis=1)))
     turned = np.roll(points, -place, axis=0)

@@ -30,11 +30,6 @@ def plain(model: object) -> object:
     return lanes_of(model) if callable(getattr(model, "lanes", None)) else model
 
 
-def units_of(lanes: Lanes) -> NDArray[np.float64]:
-    """Scales of (x, x') for distances, lane by lane: b and 2 pi b/T, (lane, 2)."""
-    return np.stack([lanes.half_backlash, 2.0 * np.pi * lanes.half_backlash / lanes.period], axis=1)
-
-
 def starts_of(initial_state: ArrayLike, lanes: int, *, dimension: int = 2) -> NDArray[np.float64]:
     """Start states (lane, d) from one state or one per lane."""
     start = np.asarray(initial_state, dtype=float)

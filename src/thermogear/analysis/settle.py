@@ -18,10 +18,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.analysis.orbits import multipliers
-from thermogear.analysis.section import units_of as units_of
 from thermogear.base.arrays import Flags, Floats, Whole
 from thermogear.base.bounds import require_share, whole
 from thermogear.base.errors import InputError
+from thermogear.base.period import turns
 from thermogear.base.plan import Alive, keep_going
 from thermogear.base.vocabulary import STILL
 from thermogear.dynamics.bundle import Bundle, bundles
@@ -31,6 +31,8 @@ LABELS = ("undecided", "periodic", "chaotic", "diverged", *STILL)
 """Meaning of the label codes 0, 1, 2, ...; the last ones have no motion."""
 UNDECIDED, PERIODIC, CHAOTIC, DIVERGED, JAMMED = range(5)
 TRIES = 4
+ALIGN = 50
+"""Mesh periods in which a tangent turns into its own direction."""
 WATCHED = 128
 """Mesh periods after its label over which the contact of a chaotic motion is told."""
 
@@ -67,6 +69,20 @@ class Rule:
         if self.cap < self.first:
             raise InputError("rule.cap", self.cap, allowed=f">= first = {self.first}")
 
+    def turned(self, mesh_periods: int) -> Rule:
+        """The same rule, its counts of mesh periods as turns of ``mesh_periods``.
+
+        At least three turns before a proof is tried, eight for an exponent.
+        """
+        if mesh_periods == 1:
+            return self
+        counts = {
+            name: max(turns(getattr(self, name), of=mesh_periods), least)
+            for name, least in (("first", 3), ("cap", 24), ("chaos_periods", 8))
+        }
+        counts["batches"] = min(self.batches, counts["chaos_periods"])
+        return _OfTurn(**(vars(self) | counts))
+
     def full(self) -> Rule:
         """The same proofs after one long run, nothing given up early."""
         return replace(self, early=False)
@@ -81,6 +97,13 @@ class Rule:
         return lengths
 
 
+class _OfTurn(Rule):
+    """A rule that counts turns; few of them prove as much as many mesh periods."""
+
+    def __post_init__(self) -> None:
+        """The rule it is made of is checked already."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Settled:
     """One entry per lane.
@@ -89,7 +112,7 @@ class Settled:
     orbit where the trajectory is, ``multiplier`` (lane, d) complex, ``lyapunov`` per unit
     time with its ``lyapunov_error`` (exact, error 0, for periodic lanes), ``losses`` and
     ``impacts`` per orbit (NaN without one), ``shares`` of time in back, free and drive (in chaos
-    those of :data:`WATCHED` periods, of one mass alone), ``used`` periods run,
+    those of :data:`WATCHED` periods, of one mass alone), ``used`` mesh periods run,
     ``state`` (lane, d) at the end, ``sections`` (lane, keep, d) the last ones, on the orbit
     itself for periodic lanes.
     """
@@ -202,6 +225,8 @@ def multipliers_of(jacobian: Floats, *, determinant: Floats) -> NDArray[np.compl
     with np.errstate(all="ignore"):
         out[:, 0] = np.where(turning, half + 1j * root, large)
         out[:, 1] = np.where(turning, half - 1j * root, determinant / large)
+    # both below the least number, over a long turn
+    out[large == 0.0] = 0.0
     return out
 
 
@@ -216,19 +241,28 @@ def settle(
 
     ``lanes`` are those of one mass, or models of any dimension d that have a return map.
     Each lane's result depends on that lane alone, to the last bit. ``alive`` is called between
-    rounds; it raises to end the work.
+    rounds; it raises to end the work. Where a lane's period is a turn, ``rule`` counts mesh
+    periods, rounded up to turns, and the result turns.
     """
+    mesh_periods = lanes.mesh_periods if isinstance(lanes, Lanes) else 1
+    rule = rule.turned(mesh_periods)
     result = Settled.empty(len(lanes), keep=keep, dimension=start.shape[1])
     for index, prepared in bundles(lanes):
-        result.put(index, settle_block(prepared(), start[index], rule, keep, alive))
+        block = _Block(prepared(), start[index], rule, keep, mesh_periods)
+        result.put(index, _settled(block, alive))
     return result
 
 
 class _Block:
     """Lanes of one layout on their way to a label."""
 
-    def __init__(self, maps: Bundle, start: Floats, rule: Rule, keep: int) -> None:
+    def __init__(
+        self, maps: Bundle, start: Floats, rule: Rule, keep: int, mesh_periods: int
+    ) -> None:
         self.maps = maps
+        self.mesh_periods = mesh_periods
+        # periods in which a tangent turns into its own direction, and over which chaos is watched
+        self.align, self.watched = (turns(n, of=mesh_periods) for n in (ALIGN, WATCHED))
         self.rule = rule
         self.keep = keep
         self.unit = maps.unit
@@ -262,27 +296,20 @@ class _Block:
         return sections[-want:].transpose(2, 0, 1), stretch
 
 
-def settle_block(
-    maps: Bundle,
-    start: Floats,
-    rule: Rule,
-    keep: int = 0,
-    alive: Alive = keep_going,
-) -> Settled:
+def _settled(block: _Block, alive: Alive) -> Settled:
     """:func:`settle` for lanes that run together."""
-    block = _Block(maps, start, rule, keep)
+    rule, align = block.rule, block.align
     elapsed = 0
     rounds = rule.rounds()
     for number, length in enumerate(rounds):
         alive()
-        align = 50
         measured = 0
         if length >= rule.chaos_periods + align:
             measured = length if rule.early else max(rule.chaos_periods, length // 3) + align
         window, stretch = block.window(length, measured)
         elapsed += length
         active = block.active
-        block.result.used[active] = elapsed
+        block.result.used[active] = elapsed * block.mesh_periods
         block.result.state[active] = block.crowd.state
         last = number == len(rounds) - 1
         done = _verdicts(block, window, stretch[align:] if measured else stretch, last)
@@ -335,9 +362,9 @@ def _verdicts(block: _Block, window: Floats, stretch: Floats, last: bool) -> Fla
         rows = np.flatnonzero(chaotic)
         # more masses take too long with their variational equations: their families watch them
         if rows.size and window.shape[2] == 2:
-            run = block.maps.take(rows).visit(window[rows, -1], WATCHED)
+            run = block.maps.take(rows).visit(window[rows, -1], block.watched)
             lanes = active[rows]
-            result.shares[lanes] = run.spent / (WATCHED * block.period[lanes])[:, None]
+            result.shares[lanes] = run.spent / (block.watched * block.period[lanes])[:, None]
     if block.keep:
         rows = np.flatnonzero((done | last) & (result.label[active] != PERIODIC))
         count = min(block.keep, window.shape[1])
@@ -411,8 +438,9 @@ def _accept(
     result.period[chosen] = n
     result.point[chosen] = run.points[ok, 0]
     result.multiplier[chosen] = mu[ok]
-    with np.errstate(divide="ignore"):
-        result.lyapunov[chosen] = (np.log(size) / (n * block.period[lanes]))[ok]
+    # over a long turn the modulus may lie below the least number: the exponent is then a bound
+    size = np.maximum(size, np.finfo(float).smallest_subnormal)
+    result.lyapunov[chosen] = (np.log(size) / (n * block.period[lanes]))[ok]
     result.lyapunov_error[chosen] = 0.0
     result.losses[chosen] = run.losses[ok]
     result.impacts[chosen] = run.impacts[ok]

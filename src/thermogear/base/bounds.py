@@ -116,7 +116,8 @@ def _is_number(value: object) -> bool:
 def whole(name: str, value: float, *, least: int) -> int:
     """``value`` as the whole number that it is; refused below ``least`` or where it is none."""
     if not (_is_number(value) and least <= value < np.inf and int(value) == value):
-        raise InputError(name, value, allowed=f"a whole number >= {least}")
+        got = value if np.ndim(value) == 0 else f"{np.size(value)} values"
+        raise InputError(name, got, allowed=f"a whole number >= {least}")
     return int(value)
 
 

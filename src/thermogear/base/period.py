@@ -53,3 +53,12 @@ class Period:
     def frequency(self, mesh_frequency: float) -> float:
         """How often the period repeats [the unit of ``mesh_frequency``]."""
         return mesh_frequency / self.mesh_periods
+
+
+def turns(mesh_periods: int, *, of: int) -> int:
+    """How many turns ``of`` so many mesh periods hold ``mesh_periods``, the last one whole.
+
+    >>> turns(500, of=1), turns(500, of=945), turns(0, of=35)
+    (500, 1, 0)
+    """
+    return -(-mesh_periods // of)

@@ -404,13 +404,16 @@ FASTER_RULE = (
 """What proves the labels of maps, diagrams, basins and run-ups."""
 
 
-def label_words(name: str, *, followed: int, starts: int) -> str:
+def label_words(name: str, *, followed: int, starts: int, mesh_periods: int = 1) -> str:
     """What a reader sees of a label: "chaotic for 32 268 periods, 16 starts", else the name.
 
     ``followed`` periods were run from each of ``starts`` starts and none closed; 0: not known.
+    Where ``mesh_periods`` are a turn, after which a pair of gears repeats itself, an orbit closes
+    after turns: "period 6 of the turn".
     """
     if name != "chaotic" or followed <= 0:
-        return name
+        of_turn = mesh_periods > 1 and name.startswith("period-")
+        return f"{name.replace('-', ' ')} of the turn" if of_turn else name
     length = f"{followed:,}".replace(",", " ")
     return f"chaotic for {length} periods, {starts} start{'s' * (starts > 1)}"
 
@@ -422,8 +425,9 @@ def told_labels(data: Dataset) -> NDArray[np.str_]:
         data[name].values if name in data else np.zeros(names.shape)
         for name in ("followed_periods", "followed_starts")
     ]
+    of = int(data.attrs.get("mesh_periods", 1))
     told = [
-        label_words(str(name), followed=int(periods), starts=int(starts))
+        label_words(str(name), followed=int(periods), starts=int(starts), mesh_periods=of)
         for name, periods, starts in zip(names.flat, seen[0].flat, seen[1].flat, strict=True)
     ]
     return np.array(told, dtype=np.str_).reshape(names.shape)

@@ -193,24 +193,20 @@ def _turn(case: GearCase) -> list[Fact]:
     period, pair = case.period, case.pair
     if period.mesh_periods == 1:
         return []
-    group = "period of all deviations"
-    found = [Fact(group, "mesh periods", period.mesh_periods)]
-    found += [
-        Fact(group, f"order of the {name.replace('_', ' ')}", order)
-        for name, order in period.orders.items()
-    ]
     turns = pair.wheel.teeth // math.gcd(pair.pinion.teeth, pair.wheel.teeth)
-    found.append(Fact(group, "turns of the pinion until the same teeth meet", turns))
-    if case.assembly_count > 1:
-        found.append(Fact(group, "assemblies that differ", case.assembly_count))
+    counts = {"mesh periods": period.mesh_periods}
+    counts |= {f"order of the {k.replace('_', ' ')}": v for k, v in period.orders.items()}
+    counts |= {"turns of the pinion until the same teeth meet": turns}
+    counts |= {"assemblies that differ": case.assembly_count}
+    found = [Fact("period of all deviations", name, count) for name, count in counts.items()]
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
         for flank in ("drive", "back"):
             figures = measured(pair, name, case.deviations, flank)
-            words = ("f_p", "F_p", "f_Halpha", "f_falpha", "F_alpha")
-            sizes = ", ".join(f"{w} {1e6 * v:.2f}" for w, v in zip(words, figures, strict=True))
             grade = flank_class(gear.teeth, gear.module, figures=figures, rounded=False)
-            known = "no class" if grade is None else f"class {grade}"
-            found.append(Fact(f"{name} about its bore", f"{flank} flanks", f"{sizes} um: {known}"))
+            sizes = zip(("f_p", "F_p", "f_Halpha", "f_falpha", "F_alpha"), figures, strict=True)
+            text = ", ".join(f"{word} {1e6 * size:.2f}" for word, size in sizes)
+            text += f" um: {'no class' if grade is None else f'class {grade}'}"
+            found.append(Fact(f"{name} about its bore", f"{flank} flanks", text))
     return found
 
 

@@ -155,28 +155,24 @@ def _place(one: ToothTable, teeth: int) -> int:
 
 def _every_tooth(gear: str, table: ToothProfilesTable, teeth: int) -> ToothShapes:
     """Slope and form of every tooth of one side."""
-    columns = []
-    for name in ("slope", "form", "phase"):
-        values = getattr(table, name) or (0.0,)
+    columns = {name: getattr(table, name) or (0.0,) for name in ("slope", "form", "phase")}
+    for name, values in columns.items():
         if len(values) not in (1, teeth):
             raise InputError(
                 name, f"{len(values)} values", allowed=f"one for each of the {teeth} teeth, or one"
             )
-        columns.append(np.broadcast_to(values, teeth).tolist())
-    rows = zip(*columns, strict=True)
+    rows = zip(*(np.broadcast_to(one, teeth).tolist() for one in columns.values()), strict=True)
     return ToothShapes(gear, tuple(_wavy(gear, table, *row) for row in rows))
 
 
 def _single_teeth(gear: str, given: Sequence[ToothTable], teeth: int) -> ToothShapes:
     """Slope and form of the teeth that differ on one side, none of the others."""
-    found = {}
-    for one in given:
-        place = _place(one, teeth)
-        if place in found:
+    shapes = [_wavy(gear, given[0], 0.0, 0.0, 0.0)] * teeth
+    for place, one in enumerate(given):
+        if one.tooth in [other.tooth for other in given[:place]]:
             raise InputError("", f"tooth {one.tooth} twice", allowed="each tooth of a side once")
-        found[place] = _wavy(gear, one, one.slope, one.form, one.phase)
-    plain = _wavy(gear, given[0], 0.0, 0.0, 0.0)
-    return ToothShapes(gear, tuple(found.get(place, plain) for place in range(teeth)))
+        shapes[_place(one, teeth)] = _wavy(gear, one, one.slope, one.form, one.phase)
+    return ToothShapes(gear, tuple(shapes))
 
 
 def _wavy(

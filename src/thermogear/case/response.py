@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from math import gcd
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 
 from thermogear.analysis.settle import Rule
 from thermogear.base.arrays import Floats
+from thermogear.base.period import turns
 from thermogear.base.plan import Alive, Arrays, Variable, keep_going
 from thermogear.base.vocabulary import moves
 from thermogear.case.points import Points
@@ -42,6 +44,20 @@ class Recording:
     samples: int = 128
     order_step: float = 0.5
     highest_order: float = 10.0
+
+    def turned(self, mesh_periods: int, *, lines: bool) -> Recording:
+        """The same record, in periods that are turns of ``mesh_periods``, rounded up.
+
+        With ``lines`` in so many of them that every order kept is a line.
+        """
+        if mesh_periods == 1:
+            return self
+        count = turns(self.periods, of=mesh_periods)
+        steps = round(1.0 / self.order_step) if lines else 1
+        whole = steps // gcd(steps, mesh_periods)
+        return replace(
+            self, periods=-(-count // whole) * whole, samples=self.samples * mesh_periods
+        )
 
     @property
     def orders(self) -> Floats:
@@ -94,8 +110,10 @@ def respond(
     """Figures of the motion that goes on from ``state`` (point, 2) at phase 0; NaN where jammed.
 
     DTE = x + e with x the relative displacement of the flanks from the middle of the gap; the
-    mesh force is the elastic one, k f(x), over its mean for the dynamic factor.
+    mesh force is the elastic one, k f(x), over its mean for the dynamic factor. ``record`` counts
+    mesh periods, whole turns where the lanes repeat after one.
     """
+    record = record.turned(points.mesh_periods, lines=lines)
     count = len(points.status)
     found: dict[str, NDArray[Any]] = {name: np.full(count, np.nan) for name in VALUES}
     if lines:
@@ -146,6 +164,9 @@ def _figures(
     }
     if lines:
         found["dte_line"] = order_amplitudes(
-            dte, samples_per_period=record.samples, periods=record.periods, orders=record.orders
+            dte,
+            samples_per_period=record.samples,
+            periods=record.periods,
+            orders=record.orders * points.mesh_periods,
         )
     return found

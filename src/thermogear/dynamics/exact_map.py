@@ -27,18 +27,20 @@ def _prepared(
     lanes: LaneTables, index: Whole, borders: Floats, marks: NDArray[np.uint8]
 ) -> ExactBundle:
     mine = lanes.take(index)
-    return ExactBundle(
-        exact.prepare_maps(mine, borders, marks), period=mine.period, damping=mine.damping
-    )
+    maps = exact.prepare_maps(mine, borders, marks)
+    return ExactBundle(maps, period=mine.period, damping=mine.damping, mesh_period=mine.mesh_period)
 
 
 class ExactBundle:
     """The return maps of lanes that share their sub-steps; a state is (x, x')."""
 
-    def __init__(self, maps: exact.ExactMaps, *, period: Floats, damping: Floats) -> None:
+    def __init__(
+        self, maps: exact.ExactMaps, *, period: Floats, damping: Floats, mesh_period: Floats
+    ) -> None:
         self.maps = maps
         self.period = period
         self.damping = damping
+        self.mesh_period = mesh_period
 
     def __len__(self) -> int:
         return int(self.period.size)
@@ -50,9 +52,9 @@ class ExactBundle:
 
     @property
     def unit(self) -> Floats:
-        """Scales of (x, x') for distances: b and 2 pi b/T, (lane, 2)."""
+        """Scales of (x, x') for distances: b and 2 pi b over the mesh period, (lane, 2)."""
         b = self.maps.backlash
-        return np.stack([b, 2.0 * np.pi * b / self.period], axis=1)
+        return np.stack([b, 2.0 * np.pi * b / self.mesh_period], axis=1)
 
     def determinant(self, periods: int) -> Floats:
         """det D P^n = exp(-c T n) of every trajectory: (lane,)."""
@@ -61,7 +63,10 @@ class ExactBundle:
     def take(self, index: Whole) -> ExactBundle:
         """The maps of some lanes, in the order of ``index``."""
         return ExactBundle(
-            self.maps.take(index), period=self.period[index], damping=self.damping[index]
+            self.maps.take(index),
+            period=self.period[index],
+            damping=self.damping[index],
+            mesh_period=self.mesh_period[index],
         )
 
     def crowd(self, start: Floats) -> ExactCrowd:
@@ -101,11 +106,11 @@ class ExactCrowd:
         return exact.advance(self.bundle.maps, self._inner, periods)[0]
 
     def aim(self, direction: Floats | None = None) -> None:
-        """Give every lane a tangent ``direction`` (lane, 2), else (1, 2 pi/T)."""
+        """Give every lane a tangent ``direction`` (lane, 2), else (1, 2 pi over a mesh period)."""
         inner = self._inner
         inner.fresh_tangent()
         if direction is None:
-            inner.tangent[2] = 2.0 * np.pi / self.bundle.period
+            inner.tangent[2] = 2.0 * np.pi / self.bundle.mesh_period
         else:
             inner.tangent[0], inner.tangent[2] = direction[:, 0], direction[:, 1]
 
@@ -139,12 +144,6 @@ class ExactCrowd:
         inner.region[seats] = begin.region
 
 
-def scales(lanes: LaneTables) -> Floats:
-    """Scales of (x, x') for distances, of the first lane: b and 2 pi b/period."""
-    backlash = float(lanes.half_backlash[0])
-    return np.array([backlash, 2.0 * np.pi * backlash / float(lanes.period[0])])
-
-
 Rates = tuple[Floats, Floats, float]
 
 
@@ -164,6 +163,7 @@ class ExactMap:
         self.maps = exact.prepare_maps(lanes, borders, marks)
         self.period = float(lanes.period[0])
         self.backlash = float(lanes.half_backlash[0])
+        self._unit: Floats = lanes.unit[0]
 
     @property
     def dimension(self) -> int:
@@ -172,8 +172,8 @@ class ExactMap:
 
     @property
     def unit(self) -> Floats:
-        """Scales of (x, x') for distances: b and 2 pi b/period."""
-        return scales(self.lanes)
+        """Scales of (x, x') for distances: b and 2 pi b over the mesh period."""
+        return self._unit
 
     def distance(self, one: Floats, other: Floats) -> Floats:
         """Largest component of the difference in units of :attr:`unit`, over leading axes."""
@@ -292,7 +292,7 @@ class Ensemble:
             maps = exact.prepare_maps(self.lanes.take(index), borders, marks)
             state = self._states[number]
             if self.parting:
-                turn = 2.0 * np.pi / self.lanes.period[index]
+                turn = 2.0 * np.pi / self.lanes.mesh_period[index]
                 state.tangent[0] = 1.0 / np.hypot(1.0, turn)
                 state.tangent[2] = turn / np.hypot(1.0, turn)
             for first, count in pace.chunks(periods, lanes=index.size):

@@ -14,6 +14,7 @@ from thermogear import __version__
 from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.bounds import whole
 from thermogear.base.errors import InputError, nearest
+from thermogear.base.period import turns
 from thermogear.dynamics import adaptive, exact
 from thermogear.dynamics.blocks import Pace, Progress, run_blocks
 from thermogear.dynamics.kernels.rk4 import advance_rk4
@@ -185,6 +186,8 @@ def simulate(
 ) -> Dataset:
     """Run ``model`` for ``discard`` + ``periods`` mesh periods from phase 0.
 
+    Where the tables of ``model`` repeat after a turn of many mesh periods, both counts are rounded
+    up to whole turns; samples, steps and phases are of the mesh period all the same.
     ``model``: :class:`TorsionalModel`, :class:`DeadZoneModel` (lanes side by side),
     :class:`PairModel`, :class:`LoadSharedModel`, or anything with ``derivative(t, y)`` and
     ``period``: of two states they are x and x'; of more each is stored by its name in the model's
@@ -257,7 +260,11 @@ def simulate(
 
 @dataclass(frozen=True, kw_only=True)
 class _Run:
-    """How a model is run: counts, the method and why it was taken, precision, tolerances."""
+    """How a model is run: counts, the method and why it was taken, precision, tolerances.
+
+    ``periods`` and ``discard`` count periods of the model, each ``mesh_periods``, and ``steps`` and
+    ``samples`` are those of one of them.
+    """
 
     periods: int
     discard: int
@@ -267,17 +274,21 @@ class _Run:
     tolerances: tuple[float, float]
     method: str
     reason: str
+    mesh_periods: int = 1
 
     @classmethod
     def of(cls, model: object, method: str, **asked: Any) -> _Run:
         """What was ``asked`` for, with the method chosen; refuses what does not go together."""
         chosen, reason = _choose(model, method)
-        run = cls(method=chosen, reason=reason, **asked)
+        of = int(getattr(model, "mesh_periods", 1))
+        counts = {name: turns(asked[name], of=of) for name in ("periods", "discard")}
+        counts |= {name: asked[name] * of for name in ("steps", "samples")}
+        run = cls(method=chosen, reason=reason, mesh_periods=of, **(asked | counts))
         if chosen == "rk4" and run.samples and run.steps % run.samples:
             raise InputError(
                 "samples_per_period",
-                run.samples,
-                allowed=f"a divisor of steps_per_period = {run.steps}",
+                asked["samples"],
+                allowed=f"a divisor of steps_per_period = {asked['steps']}",
             )
         if run.precision not in ("float64", "float32"):
             raise InputError("precision", repr(run.precision), allowed="'float64' | 'float32'")
@@ -295,9 +306,10 @@ class _Run:
     @property
     def settings(self) -> dict[str, object]:
         """What is stored of them."""
-        found: dict[str, object] = {"discard": self.discard, "periods": self.periods}
+        of = self.mesh_periods
+        found: dict[str, object] = {"discard": self.discard * of, "periods": self.periods * of}
         if self.method == "rk4":
-            found |= {"steps_per_period": self.steps, "precision": self.precision}
+            found |= {"steps_per_period": self.steps // of, "precision": self.precision}
         if self.method == "adaptive":
             found |= {"rtol": self.tolerances[0], "atol": self.tolerances[1]}
         return found
@@ -329,7 +341,7 @@ def _batch(
             partial(_adaptive_lane, lanes, lane, run, starts, result) for lane in range(len(lanes))
         ]
     run_blocks(work, len(lanes) * (run.periods + run.discard), threads=threads, progress=progress)
-    return dataset(result, period=lanes.period, **run.counts)
+    return dataset(result, period=lanes.period, **run.counts, mesh_periods=run.mesh_periods)
 
 
 def _give_units(data: Dataset, *, si: bool) -> None:
@@ -375,7 +387,9 @@ def _free(model: object, start: Floats, run: _Run) -> Dataset:
         within = np.tile(np.arange(run.samples) / max(run.samples, 1), run.periods)
         result.samples[0] = np.stack(relative(within * float(period), path.T))
         result.sections[0] = np.stack(relative(np.zeros(run.periods + 1), sections.T))
-    data = dataset(result, period=np.array([float(period)]), **run.counts)
+    data = dataset(
+        result, period=np.array([float(period)]), **run.counts, mesh_periods=run.mesh_periods
+    )
     if start.size == 2:
         return data
     data = _with_states(data, model, sections=sections, path=path)

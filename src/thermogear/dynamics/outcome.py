@@ -25,14 +25,27 @@ class Result:
 
 
 def dataset(
-    result: Result, *, period: NDArray[np.float64], periods: int, discard: int, samples: int
+    result: Result,
+    *,
+    period: NDArray[np.float64],
+    periods: int,
+    discard: int,
+    samples: int,
+    mesh_periods: int = 1,
 ) -> Dataset:
+    """The arrays of ``result`` with their names; ``periods``, ``discard`` and ``samples`` of them
+    are of the model, which repeats after ``mesh_periods``; stored phases count mesh periods."""
     import xarray as xr
 
     lanes = period.size
+    period, discard, samples = (
+        period / mesh_periods,
+        discard * mesh_periods,
+        samples // mesh_periods,
+    )
     good = np.all(np.isfinite(result.sections), axis=(1, 2))
-    phase = np.arange(periods * samples) / samples if samples else np.empty(0)
-    turns = np.arange(periods + 1)
+    phase = np.arange(periods * mesh_periods * samples) / samples if samples else np.empty(0)
+    turns = np.arange(periods + 1) * mesh_periods
     data = xr.Dataset(
         {
             "x": (

@@ -104,7 +104,12 @@ def simulate_pair(
     result.samples[0] = np.stack(model.displacement(within * model.period, path.T))
     result.sections[0] = np.stack(model.displacement(np.zeros(periods + 1), kept.T))
     data = dataset(
-        result, period=np.array([model.period]), periods=periods, discard=discard, samples=samples
+        result,
+        period=np.array([model.period]),
+        periods=periods,
+        discard=discard,
+        samples=samples,
+        mesh_periods=model.mesh_periods,
     )
     for position, name in enumerate(("theta1", "theta2", "omega1", "omega2")):
         attributes = _angle_attributes(name)

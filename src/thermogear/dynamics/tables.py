@@ -43,6 +43,17 @@ class LaneTables:
         return int(self.period.size)
 
     @property
+    def mesh_period(self) -> Floats:
+        """Time of one mesh period, (lane,)."""
+        return self.period / self.mesh_periods
+
+    @property
+    def unit(self) -> Floats:
+        """Scales of (x, x') for distances: b and 2 pi b over the mesh period, (lane, 2)."""
+        speed = 2.0 * np.pi * self.half_backlash / self.mesh_period
+        return np.stack([self.half_backlash, speed], axis=1)
+
+    @property
     def by_fft(self) -> bool:
         """Whether the tables go by FFT: those of a turn, and all of very many harmonics."""
         width = max(self.stiffness.shape[1], self.force.shape[1])

@@ -13,7 +13,6 @@ import math
 from collections.abc import Iterable
 from dataclasses import KW_ONLY, dataclass, replace
 from functools import lru_cache
-from typing import NamedTuple
 
 import numpy as np
 
@@ -36,7 +35,6 @@ MEASURED_TEETH = 4
 """Teeth whose profiles are measured, evenly around the gear. Source: ISO 1328-1:2013, at least 3
 or 4 are usual."""
 _POINTS = 65  # of a profile that is measured: 16 or more for each of four waves
-_SHARES = np.linspace(0.0, 1.0, _POINTS)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,18 +67,6 @@ class Population:
     least: float = math.sqrt(0.5)
 
 
-Number = float | Floats
-
-
-def _profile(
-    share: Floats, *, slope: Number, barrel: Number, wave: Number, waves: float, phase: Number
-) -> Floats:
-    """S [m] at shares x of the profile, not yet levelled; arguments of :class:`ToothProfile`."""
-    x = np.clip(share, 0.0, 1.0)
-    line = slope * (x - 0.5) - barrel * (2.0 * x - 1.0) ** 2
-    return np.asarray(line + wave * np.sin(2.0 * math.pi * waves * x + phase))
-
-
 @dataclass(frozen=True)
 class ToothProfile(FlankShape):
     """The profile of one tooth: a slope, a barrel and a wave of one tool.
@@ -103,16 +89,15 @@ class ToothProfile(FlankShape):
     def taken_off(self, pair: GearPair, rho: Floats) -> Floats:
         """e = -S."""
         start, pitch, tip = active_profile(pair, self.gear)
-        x = (np.append(np.ravel(rho), pitch) - start) / (tip - start)
-        added = _profile(
-            x,
-            slope=self.slope,
-            barrel=self.barrel,
-            wave=self.wave,
-            waves=self.waves,
-            phase=self.phase,
-        )
+        x = np.clip((np.append(np.ravel(rho), pitch) - start) / (tip - start), 0.0, 1.0)
+        added = self.slope * (x - 0.5) - self.barrel * (2.0 * x - 1.0) ** 2
+        added += self.wave * np.sin(2.0 * math.pi * self.waves * x + self.phase)
         return np.asarray(added[-1] - added[:-1].reshape(np.shape(rho)))
+
+    def scaled(self, by: float) -> ToothProfile:
+        """The same shape, ``by`` times as large."""
+        sizes = {name: by * getattr(self, name) for name in ("slope", "barrel", "wave")}
+        return replace(self, **sizes)
 
     def borders(self, pair: GearPair) -> Floats:
         """Ends of the active profile and every tenth of a wave in between."""
@@ -120,19 +105,13 @@ class ToothProfile(FlankShape):
         return np.linspace(start, tip, math.ceil(10.0 * self.waves) + 1)
 
 
-class GearFigures(NamedTuple):
+class GearFigures(FlankTolerances):
     """What ISO 1328-1 measures on one side of a gear, about its bore [m].
 
     single_pitch f_p and cumulative_pitch F_p of all teeth, arcs of the reference circle;
     profile_slope f_Halpha, profile_form f_falpha and profile_total F_alpha, the greatest of
     :data:`MEASURED_TEETH` teeth over the active profile.
     """
-
-    single_pitch: float
-    cumulative_pitch: float
-    profile_slope: float
-    profile_form: float
-    profile_total: float
 
     def shares(self, tolerances: FlankTolerances) -> Floats:
         """Each over its tolerance, in the order of the fields."""
@@ -166,7 +145,7 @@ def _figures(pair: GearPair, name: str, added: Floats) -> GearFigures:
     arc = added[: gear.teeth] / math.cos(gear.pressure_angle)
     traces = added[gear.teeth :].reshape(MEASURED_TEETH, _POINTS)
     slope, form, total = np.abs(
-        [profile_figures(position=_SHARES, added=trace) for trace in traces]
+        [profile_figures(position=np.arange(_POINTS), added=trace) for trace in traces]
     ).max(axis=0)
     steps = np.abs(np.diff(np.append(arc, arc[0])))
     return GearFigures(float(steps.max()), float(np.ptp(arc)), *map(float, (slope, form, total)))
@@ -187,40 +166,6 @@ def measured(
     at = _probe(pair, name, flank)
     mine = [one for one in deviations if getattr(one, "gear", None) == name]
     return _figures(pair, name, -sum((one.gap(at)[:, 0] for one in mine), np.zeros(at.s.size)))
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class _Side:
-    """Profiles of all teeth on one side: arrays of shape (tooth, 1), see :class:`ToothProfile`."""
-
-    slope: Floats
-    barrel: Floats
-    wave: Floats
-    phase: Floats
-    waves: float
-
-    def read(self, pair: GearPair, name: str) -> Floats:
-        """S [m] at the points of the probe."""
-        gear = pair.pinion if name == "pinion" else pair.wheel
-        start, pitch, tip = active_profile(pair, name)
-        some = np.arange(MEASURED_TEETH) * gear.teeth // MEASURED_TEETH
-        sizes = {key: getattr(self, key)[some] for key in ("slope", "barrel", "wave", "phase")}
-        x = np.append(_SHARES, (pitch - start) / (tip - start))
-        found = _profile(x, waves=self.waves, **sizes)
-        return np.append(np.zeros(gear.teeth), found[:, :-1] - found[:, -1:])
-
-    def shapes(self, name: str, flank: str, scale: float) -> ToothShapes:
-        """The profiles as a deviation, ``scale`` times as large."""
-        rows = np.hstack([scale * self.slope, scale * self.barrel, scale * self.wave, self.phase])
-        return ToothShapes(
-            name,
-            tuple(
-                ToothProfile(
-                    name, slope=a, barrel=b, wave=c, waves=self.waves, phase=d, flank=flank
-                )
-                for a, b, c, d in rows.tolist()
-            ),
-        )
 
 
 def drawn_gear(
@@ -258,13 +203,17 @@ def drawn_gear(
     for q in p.orders:
         index += _rayleigh(rng, p.order) / q * np.sin(q * around + rng.uniform(0.0, 2.0 * math.pi))
     pitch = PitchError(name, tuple(cosine * limits.single_pitch * (index - index.mean())))
-    sides = {flank: _side(rng, p, limits, gear.teeth) for flank in ("drive", "back")}
+    sides = {flank: _side(rng, p, limits, gear.teeth, name, flank) for flank in ("drive", "back")}
     share = rng.uniform(p.least, 1.0)
 
     def shares(flank: str, profiles: float) -> Floats:
         at = _probe(pair, name, flank)
         added = -centre.gap(at)[:, 0] - pitch.gap(at)[:, 0]
-        added += profiles * sides[flank].read(pair, name)
+        traces = at.string(name)[gear.teeth :, 0].reshape(MEASURED_TEETH, _POINTS)
+        some = at.tooth(name)[gear.teeth :: _POINTS, 0]
+        for place, (rho, tooth) in enumerate(zip(traces, some, strict=True)):
+            trace = slice(gear.teeth + place * _POINTS, gear.teeth + (place + 1) * _POINTS)
+            added[trace] -= profiles * sides[flank][tooth].taken_off(pair, rho)
         return _figures(pair, name, added).shares(limits)
 
     bare, full = shares("back", 0.0), shares("back", 1.0)
@@ -276,8 +225,8 @@ def drawn_gear(
     return (
         replace(centre, amount=scale * centre.amount),
         replace(pitch, errors=tuple(scale * np.asarray(pitch.errors))),
-        sides["drive"].shapes(name, "drive", scale),
-        sides["back"].shapes(name, "back", scale * back),
+        ToothShapes(name, tuple(one.scaled(scale) for one in sides["drive"])),
+        ToothShapes(name, tuple(one.scaled(scale * back) for one in sides["back"])),
     )
 
 
@@ -317,16 +266,22 @@ def _rayleigh(rng: np.random.Generator, mean: float) -> float:
     return float(rng.rayleigh(mean * math.sqrt(2.0 / math.pi)))
 
 
-def _side(rng: np.random.Generator, p: Population, limits: FlankTolerances, teeth: int) -> _Side:
-    """Profiles of one side: what the tool makes on all teeth, and the scatter between them."""
-    slope = p.slope * rng.standard_normal() + p.slope_scatter * rng.standard_normal((teeth, 1))
+def _side(
+    rng: np.random.Generator, p: Population, limits: FlankTolerances, teeth: int, *of: str
+) -> tuple[ToothProfile, ...]:
+    """Profiles of one side ``of`` (gear, flank): what the tool makes, and the scatter of teeth."""
+    slope = p.slope * rng.standard_normal() + p.slope_scatter * rng.standard_normal(teeth)
     barrel, wave = rng.normal(*p.barrel), _rayleigh(rng, p.wave)
     waves, phase = rng.uniform(*p.waves), rng.uniform(0.0, 2.0 * math.pi)
-    heights = 1.0 + p.form_scatter * rng.standard_normal((teeth, 2))
-    return _Side(
-        slope=slope * limits.profile_slope,
-        barrel=barrel * limits.profile_form * heights[:, :1],
-        wave=wave * limits.profile_form * heights[:, 1:],
-        phase=phase + p.phase_scatter * rng.standard_normal((teeth, 1)),
-        waves=float(waves),
+    heights = 1.0 + p.form_scatter * rng.standard_normal((2, teeth))
+    columns = {
+        "slope": slope * limits.profile_slope,
+        "barrel": barrel * limits.profile_form * heights[0],
+        "wave": wave * limits.profile_form * heights[1],
+        "phase": phase + p.phase_scatter * rng.standard_normal(teeth),
+    }
+    rows = zip(*(column.tolist() for column in columns.values()), strict=True)
+    return tuple(
+        ToothProfile(of[0], waves=waves, flank=of[1], **dict(zip(columns, row, strict=True)))
+        for row in rows
     )

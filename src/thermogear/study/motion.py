@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from thermogear.analysis.labels import labels
 from thermogear.analysis.proof import Label
 from thermogear.base.arrays import Floats
+from thermogear.base.period import turns
 from thermogear.base.vocabulary import STATUS, STILL
 from thermogear.case.base import Simulation
 from thermogear.case.points import Points
@@ -31,7 +32,8 @@ class Motion:
     """Settled motion of ``points`` lanes; numbers are dimensionless (X = x/b_c, omega_n t).
 
     Arrays have the lane first: ``displacement``, ``velocity`` (lane, sample) at ``phase`` (in
-    mesh periods); ``section_displacement``, ``section_velocity`` (lane, section);
+    mesh periods, of which the model repeats after ``mesh_periods``);
+    ``section_displacement``, ``section_velocity`` (lane, section);
     ``line_amplitude`` (lane, order) at ``order``. Lanes that diverged are NaN.
     """
 
@@ -39,6 +41,7 @@ class Motion:
     order: Floats
     discarded: int
     periods: int
+    mesh_periods: int
     values: dict[str, NDArray[np.generic]]
 
     @property
@@ -57,7 +60,8 @@ def follow(
 
     The transient thrown away is the longest any lane's label needed, at least
     ``simulation.discard`` periods and at most ``most_discarded``. With ``error`` e (lane, sample)
-    over one mesh period the movement of one base circle against the other, x + e, is told too.
+    over one period of the model, a mesh period or a turn, the movement of one base circle against
+    the other, x + e, is told too. All counts are of mesh periods, rounded up to whole turns.
     """
     state = simulation.initial_state
     found = labels(
@@ -71,8 +75,10 @@ def follow(
         simulation.discard,
         min(max(one.discarded for one in found), simulation.most_discarded),
     )
-    # an even number of periods holds the half-order line exactly
-    periods = 2 * ((simulation.periods + 1) // 2)
+    # an even number of mesh periods, in whole turns, holds the half-order line exactly
+    of = int(getattr(model, "mesh_periods", 1))
+    periods = turns(simulation.periods, of=of) * of
+    periods += periods % 2 * of
     data = simulate(
         model,
         periods=periods,
@@ -108,7 +114,7 @@ def follow(
         **proofs(found),
     }
     if error is not None:
-        whole = x + np.tile(error, periods)
+        whole = x + np.tile(error, periods // of)
         values["dte_peak_to_peak"] = np.ptp(whole, axis=1)
         values["dte_line"] = amplitude_spectrum(whole, float(simulation.samples)).amplitudes[
             :, kept
@@ -118,6 +124,7 @@ def follow(
         order=spectrum.frequencies[kept],
         discarded=discard,
         periods=periods,
+        mesh_periods=of,
         values=values,
     )
 
@@ -180,7 +187,8 @@ def follow_gears(
         return None
     present = points.take(alive)
     length, rate = present.length, present.rate
-    error = present.kinematic(np.arange(simulation.samples) / simulation.samples)
+    count = simulation.samples * points.mesh_periods
+    error = present.kinematic(np.arange(count) / count)
     motion = follow(present, simulation, advance, error / length[:, None])
     scales: dict[str, Any] = {"velocity": length * rate, "section_velocity": length * rate}
     plain = {"contact_loss_share", "back_impacts", "status", "label", "label_reason", *PROOFS}

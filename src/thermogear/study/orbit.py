@@ -33,6 +33,8 @@ SAMPLES = 256
 HIGHEST_ORDER = 20.0
 LEAST_LINE = 1e-12
 """Lines below this part of the greatest are rounding."""
+LINES_OF_TURN = 200
+"""Lines told of an orbit over a turn, the greatest; all are stored."""
 ROUNDS = 10
 
 
@@ -145,7 +147,7 @@ def told_orbit(
     length, rate = float(points.length[0]), float(points.rate[0])
     hertz = float(points.mesh_frequency[0] / (2.0 * np.pi))
     phase, x, v = orbit.samples(SAMPLES)
-    spectrum = amplitude_spectrum(x, float(SAMPLES))
+    spectrum = amplitude_spectrum(x, float(orbit.sampling(SAMPLES)))
     kept = spectrum.frequencies <= HIGHEST_ORDER
     order = spectrum.frequencies[kept]
     amplitude = spectrum.amplitudes[kept]
@@ -153,7 +155,7 @@ def told_orbit(
     shares = orbit.time_share
     factor = orbit.dynamic_load_factor()
     mu = orbit.multipliers
-    period_time = float(orbit.lanes.period[0]) / rate
+    period_time, of = float(orbit.lanes.mesh_period[0]) / rate, orbit.lanes.mesh_periods
     speed = length * rate
     variables: dict[str, Any] = {
         "time": (("sample",), phase * period_time),
@@ -182,7 +184,10 @@ def told_orbit(
     data["phase"] = (("sample",), phase, {"units": "1", "long_name": "time in mesh periods"})
     if not points.gears:
         _without_units(data)
-    shown = (order > 0.0) & (amplitude > LEAST_LINE * max(float(amplitude[1:].max()), 1e-300))
+    least = LEAST_LINE * max(float(amplitude[1:].max()), 1e-300)
+    if of > 1:
+        least = max(least, float(np.sort(amplitude[1:])[-LINES_OF_TURN:][0]) * (1.0 - 1e-12))
+    shown = (order > 0.0) & (amplitude > least)
     lines = [
         {
             "order": float(q),
@@ -196,10 +201,13 @@ def told_orbit(
         "title": point.title,
         "parameters": point.parameters,
         "units": "SI" if points.gears else "dimensionless",
-        "label": f"period-{orbit.minimal_period}",
+        "label": label_words(
+            f"period-{orbit.minimal_period}", followed=0, starts=1, mesh_periods=of
+        ),
         "settles_there": None if proof is None else str(proof),
         "reason": None if proof is None else proof.reason,
         "period": orbit.period,
+        **({"mesh_periods": of} if of > 1 else {}),
         "state": [float(c) for c in orbit.state],
         "points": [[float(c) for c in p] for p in orbit.points],
         "state_si": [float(orbit.state[0] * length), float(orbit.state[1] * speed)]
@@ -286,7 +294,7 @@ def lyapunov_results(
         raise ConvergenceError("lyapunov: the motion diverges (|x| > 1e6 half backlashes)")
     value = float(values.mean())
     error = float(values.std(ddof=1) / np.sqrt(values.size))
-    rate, period = float(point.points.rate[0]), float(point.points.flat.period[0])
+    rate, period = float(point.points.rate[0]), float(point.points.flat.mesh_period[0])
     dimension = 1.0 + value / abs(total - value) if value > 0.0 else 0.0
     half = values.size // 2
     ran = discard + values.size * batch_periods
@@ -298,7 +306,7 @@ def lyapunov_results(
     # a positive mean says nothing of how long chaos lasts
     end = label(point.points, initial_state=state, discard=128, cap=512, starts=2, follow=1)
     if end.orbit is not None and not calm:
-        verdict = f"not chaotic at its end: period {end.period} after {ran} periods"
+        verdict = f"not chaotic at its end: {end.words.replace('-', ' ')} after {ran} periods"
         notices.append(Notice.of("exponent_of_transient"))
     data = labelled(
         {

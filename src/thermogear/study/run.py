@@ -284,6 +284,7 @@ def _motion_attributes(motion: Motion, case: Case) -> dict[str, Any]:
         "window": "rectangular, whole mesh periods",
         "periods": motion.periods,
         "discarded": motion.discarded,
+        **({"mesh_periods": motion.mesh_periods} if motion.mesh_periods > 1 else {}),
         "initial_state": list(case.simulation.initial_state),
     }
 

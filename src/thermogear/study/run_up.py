@@ -17,7 +17,6 @@ from thermogear.analysis.branches import with_branches, with_branches_of_states
 from thermogear.analysis.family import axis_values
 from thermogear.analysis.follow import Leap, follow
 from thermogear.analysis.outcome import outcome_arrays, outcome_variables, settle_with_status
-from thermogear.analysis.section import units_of
 from thermogear.analysis.settle import PERIODIC, Rule, Settled
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
@@ -304,7 +303,7 @@ class _Run:
         both = self._settled(point.take(np.zeros(len(starts), int)), np.array(starts))
         found = both.part(slice(0, 1))
         if len(starts) > 1 and _period(found) > 0:
-            apart = np.abs(both.sections[1] - both.sections[0][-1]) / units_of(point.flat)
+            apart = np.abs(both.sections[1] - both.sections[0][-1]) / point.flat.unit
             self.early = int(not np.max(apart, axis=-1).min() < APART)
         if first:
             self._stand(speed, found)
@@ -377,8 +376,9 @@ class _Run:
 
     def _size(self, speed: float, state: Floats) -> float:
         """Peak to peak transmission error of the motion at ``state``."""
-        record = replace(self.plan.record, periods=max(LISTED_PERIOD, 1) * 4)
-        found = respond(self._single(speed), state[None], record, lines=False)
+        point = self._single(speed)
+        record = replace(self.plan.record, periods=LISTED_PERIOD * max(4, point.mesh_periods))
+        found = respond(point, state[None], record, lines=False)
         return float(found["dte_peak_to_peak"][0])
 
 

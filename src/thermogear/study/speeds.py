@@ -19,6 +19,7 @@ from thermogear.analysis.settle import CHAOTIC, UNDECIDED, WATCHED
 from thermogear.analysis.side_by_side import Motions, motions_along
 from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.excitation import Excitations
+from thermogear.base.period import turns
 from thermogear.base.units import RPM
 from thermogear.base.vocabulary import NO_COUNT, label
 from thermogear.case.points import Points, points_of
@@ -172,7 +173,8 @@ def look(mesh: Excitations, *, teeth: int, own: Floats) -> Speeds:
     motions = motions_along(lanes.flat, starts_of(lanes))
     found = figures_of(lanes, motions)
     columns: dict[str, ArrayLike] = {name: found[name] for name in VALUES}
-    columns |= {"period": motions.period, "label_code": motions.label, "state": motions.state}
+    closed = motions.period * lanes.mesh_periods
+    columns |= {"period": closed, "label_code": motions.label, "state": motions.state}
     columns["pinion_speed"] = lanes.mesh_frequency[motions.lane] / teeth
     return Speeds(columns, float(ratio[1] / ratio[0] - 1.0), np.unique(own))
 
@@ -186,9 +188,11 @@ def figures_of(points: Points, motions: Motions) -> dict[str, Floats]:
     """
     lanes = points.take(motions.lane)
     found = respond(lanes, motions.state, RECORD, lines=False)
-    long = (motions.label == CHAOTIC) | (motions.period > RECORD.periods)
+    of = points.mesh_periods
+    long = (motions.label == CHAOTIC) | (motions.period > turns(RECORD.periods, of=of))
     if long.any():
-        more = respond(lanes.take(np.flatnonzero(long)), motions.state[long], LONG, lines=False)
+        record = replace(LONG, periods=max(LONG.periods, of * int(motions.period[long].max())))
+        more = respond(lanes.take(np.flatnonzero(long)), motions.state[long], record, lines=False)
         for name, values in more.items():
             found[name][long] = values
     unknown = (motions.label == UNDECIDED) | (found["dynamic_factor"] < LEAST_FACTOR)
