@@ -198,6 +198,16 @@ def test_a_high_tooth_is_the_one_that_is_pressed_most() -> None:
     np.testing.assert_allclose(share[inside] + partner, 1.0, atol=0.02)
 
 
+def test_a_turn_without_load_or_at_rest_has_its_limits() -> None:
+    still = mesh_cycle(SMALL, at(speed=0.0), MODEL, deviations=errors(SMALL), path_positions=11)
+    idle = mesh_cycle(SMALL, at([0.0]), MODEL, deviations=errors(SMALL), path_positions=11)
+    for cycle, film in ((still, 0.0), (idle, np.inf)):
+        assert cycle["flash_temperature_greatest_of_turn"].item() == 0.0
+        assert cycle["film_parameter_median_of_turn"].item() == film
+        assert cycle["frictional_power"].item() == 0.0
+        assert cycle["status"].item() == 0
+
+
 def test_only_what_is_asked_of_a_turn_is_solved() -> None:
     cycle = Cycle(HotPair(SMALL, at(), MODEL), tuple(errors(SMALL)), np.array([SMALL.path.c]), 96)
     cycle.quantities(("least_half_backlash", "jam_temperature", "frictional_power"))
@@ -205,7 +215,7 @@ def test_only_what_is_asked_of_a_turn_is_solved() -> None:
     rule = MODEL.override(sharing="equal")
     other = Cycle(HotPair(SMALL, at(), rule), tuple(errors(SMALL)), np.array([SMALL.path.c]), 96)
     assert not set(OF_TURN) & set(other.quantities())
-    with pytest.raises(InputError, match="hertz_pressure_wheel_tooth"):
+    with pytest.raises(InputError, match="sharing = equal"):
         other.quantities(["hertz_pressure_wheel_tooth"])
 
 

@@ -150,7 +150,7 @@ def points_of(found: Excitations) -> Points:
         found = found.take(np.where(still, int(np.argmin(still)), np.arange(count)))
     length, mean = found.reference_half_backlash, found.stiffness[:, 0].real
     rate = found.natural_frequency
-    frequency = found.turn_frequency / rate
+    frequency = found.mesh_frequency / found.mesh_periods / rate
     # d/dtau = (w/2 pi) d/dphi
     ranks = np.arange(found.error.shape[1])
     bent: NDArray[np.complex128] = found.error * (2j * np.pi * ranks) ** 2

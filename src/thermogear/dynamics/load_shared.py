@@ -11,8 +11,8 @@ from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import Excitation, Periodic
 from thermogear.base.pair_springs import PairSprings
-from thermogear.base.period import Period
 from thermogear.dynamics.kernels.shared import advance_shared
+from thermogear.dynamics.models import require
 from thermogear.dynamics.outcome import Result, dataset
 
 NO_ERROR = Periodic(0.0)
@@ -46,14 +46,8 @@ class LoadSharedModel:
     mesh_periods: int = 1
 
     def __post_init__(self) -> None:
-        Period(self.mesh_periods)
-        for name in ("mass", "mesh_frequency", "half_backlash"):
-            value = float(getattr(self, name))
-            object.__setattr__(self, name, value)
-            if not (np.isfinite(value) and value > 0.0):
-                raise InputError(name, value, allowed="> 0, finite")
-        if not (np.isfinite(self.damping) and self.damping >= 0.0):
-            raise InputError("damping", self.damping, allowed=">= 0, finite")
+        for name in ("mass", "mesh_frequency", "half_backlash", "damping"):
+            require(self, name, positive=name != "damping", floor=True)
 
     @classmethod
     def from_excitation(
@@ -69,7 +63,7 @@ class LoadSharedModel:
         springs. The excitation's own stiffness gives no more than c = 2 zeta sqrt(k_m m_e).
         """
         mass = excitation.equivalent_mass
-        turn = excitation.turn_frequency / (2.0 * np.pi)
+        turn = excitation.mesh_frequency / (2.0 * np.pi * excitation.mesh_periods)
         return cls(
             mass,
             2.0 * excitation.damping_ratio * mass * excitation.natural_frequency,

@@ -50,8 +50,8 @@ class LaneTables:
     @property
     def unit(self) -> Floats:
         """Scales of (x, x') for distances: b and 2 pi b over the mesh period, (lane, 2)."""
-        b = self.half_backlash
-        return np.stack([b, 2.0 * np.pi * b / self.mesh_period], axis=1)
+        speed = 2.0 * np.pi * self.half_backlash / self.mesh_period
+        return np.stack([self.half_backlash, speed], axis=1)
 
     @property
     def by_fft(self) -> bool:

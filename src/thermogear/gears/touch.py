@@ -85,15 +85,12 @@ def first_touch(
     shapes: list[FlankShape | ToothShapes] = []
     rest: list[Floats] = []
     for n, d in enumerate(deviations):
-        if isinstance(d, ToothShapes):
-            d.require_fits(contacts.pair)
-            shapes.append(d if d.differs else d.shapes[0])
-        elif isinstance(d, FlankShape):
-            _checked(n, d, d.gap(once.contacts))
-            shapes.append(d)
-        else:
+        if not isinstance(d, FlankShape | ToothShapes):
             rest.append(_checked(n, d, d.gap(contacts)))
-    shapes = [d for d in shapes if d.acts_on(contacts.flank)]
+            continue
+        _checked(n, d, d.gap(once.contacts))
+        if d.acts_on(contacts.flank):
+            shapes.append(d.shapes[0] if isinstance(d, ToothShapes) and not d.differs else d)
     gap, edge = points.point.gap, _corner_of(contacts.pair, contacts.s)
     if shapes:
         extended = bool(np.any((edge > 0) & np.isfinite(gap)))
@@ -205,7 +202,7 @@ def _of_teeth(
     """Gap and edge of flanks that differ from tooth to tooth.
 
     The advance of plain involutes at :data:`_POINTS` of the flank once for all teeth, and what each
-    tooth takes off there: within 0.1 um of :func:`_shaped` for every pair of teeth.
+    tooth takes off there. Where a pair may carry within 4e-5 modules of :func:`_shaped`.
     """
     from thermogear.gears.touch_kernel import advance_many, touch_teeth
 

@@ -290,7 +290,8 @@ def advance_many(
         tip = _reached(two[-1], begin, s[q], mesh, one, plain)
         foot = _reached(two[0], end, s[q], mesh, one, plain)
         low, high = max(begin, tip), min(end, foot)
-        edge[q, 0], edge[q, 1] = 1 * (low > begin), 2 * (end == one[-1] <= foot)
+        edge[q, 1] = 2 * (end == one[-1] <= foot)
+        edge[q, 0] = edge[q, 1] if low == high else 1 * (low > begin)
         for k in range(count):
             rho = low + (high - low) * min(max(k - 1, 0), count - 3) / (count - 3)
             value, _, by, kept = _advance(rho, s[q], mesh, one, plain, 0, two, plain, 0)
