@@ -435,7 +435,7 @@ def advance(
     """
     lanes = state.x.size
     sections = np.empty((periods, 2, lanes))
-    stretch = np.empty((periods if normalise else 0, lanes))
+    stretch = np.zeros((periods if normalise else 0, lanes))
     samples = np.empty((periods * maps.marked if sampled else 0, 2, lanes))
     width, room = maps.order + 1, maps.curves.shape[2]
     carried, table, p, scratch = _aligned(
