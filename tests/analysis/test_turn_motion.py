@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from said import numbers
 from thermogear import (
     Excitation,
     Gear,
@@ -90,8 +91,11 @@ def test_an_unstable_turn_settles_to_six_turns() -> None:
     """The orbit that closes after one turn of 35 mesh periods has a multiplier of -2.80."""
     truth = TRUTH["motion_hunting_loss"]
     found = label(model("motion_hunting_loss"), initial_state=(1.2, 0.0))
-    assert (found.name, str(found)) == ("period-6", "period 6 of the turn")
-    assert found.reason == "largest Floquet multiplier -0.306319 over 6 turns"
+    assert (found.name, found.mesh_periods) == ("period-6", 35)
+    # "period 6 of the turn", and not a period-6 of the mesh
+    assert str(found) != found.name
+    assert numbers(str(found)) == [6.0]
+    assert numbers(found.reason) == pytest.approx([-0.306319, 6.0], abs=1e-6)
     orbit = found.orbit
     assert orbit is not None
     away = orbit.section.distance(orbit.points, np.array(truth["settled"]["start"]))
@@ -116,7 +120,8 @@ def test_tables_by_fft_and_term_by_term_move_alike() -> None:
 def test_alike_teeth_move_as_in_one_mesh_period(mesh_periods: int) -> None:
     once, turn = from_excitation(excited()), from_excitation(excited(mesh_periods))
     one, other = (label(m, initial_state=START) for m in (once, turn))
-    assert (str(one), str(other)) == ("period-1", "period 1 of the turn")
+    assert (str(one), one.name, other.name) == ("period-1", "period-1", "period-1")
+    assert str(other) != other.name
     assert one.orbit is not None
     assert other.orbit is not None
     assert other.orbit.state == pytest.approx(one.orbit.state, abs=1e-9)

@@ -27,6 +27,7 @@ def test_the_committed_table_of_turns_is_that_of_this_trial() -> None:
     text = trial.PAGE.read_text("utf-8")
     assert text.startswith(trial.HEAD)
     assert {float(trial.SEED), float(len(trial.LENGTHS))} <= set(numbers(text))
-    lengths = [int(line.split("|")[2]) for line in text.splitlines() if line.startswith("| ")][1:]
+    rows = [line for line in text.splitlines() if line.startswith("| ")][1:]
+    lengths = [int(row.split("|")[2]) for row in rows]
     assert sum(length > 1500 for length in lengths) == 3
     assert sum(length > 500 for length in lengths) == 5
