@@ -238,12 +238,11 @@ class Excitations:
     def take(self, index: ArrayLike) -> Excitations:
         """Some of the points, in that order."""
         chosen = np.atleast_1d(np.asarray(index))
-        arrays = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in _OF_ALL}
         rubbed = self.friction
         if rubbed is not None:
             rubbed = tuple(rubbed[i] for i in np.arange(len(self))[chosen])
-        some = {name: array[chosen] for name, array in arrays.items()}
-        return replace(self, **some, friction=rubbed)
+        arrays = [field.name for field in fields(self) if field.name not in _OF_ALL]
+        return replace(self, **{n: getattr(self, n)[chosen] for n in arrays}, friction=rubbed)
 
     @classmethod
     def of(cls, rows: Sequence[Excitation]) -> Excitations:
@@ -290,11 +289,10 @@ class Excitations:
         """One point by itself; None where it does not move."""
         if not moves(self.status[place]):
             return None
-        tables = (
+        stiffness, error = (
             Periodic(float(row[0].real), tuple(row[1:]))
             for row in (self.stiffness[place], self.error[place])
         )
-        stiffness, error = tables
         inertias, radii, torques = (
             (float(both[place, 0]), float(both[place, 1]))
             for both in (self.inertias, self.base_radii, self.torques)

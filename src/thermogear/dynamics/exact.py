@@ -26,7 +26,7 @@ Bytes = NDArray[np.uint8]
 ORDER = 12
 BLOCK = 128
 _COUNTS = tuple(base * 2**k for k in range(11) for base in (32, 48))
-_OF_TURN = np.array([base * 2**k for k in range(14) for base in (32, 48)])
+_OF_TURN = np.array([base * 2**k for k in range(14) for base in (32, 40, 48, 56)])
 MOST_OF_TURN = 400_000
 """Sub-steps of a turn at most: a lane's maps then take some 600 MB."""
 ROOM = 2**19
@@ -403,9 +403,11 @@ def layouts(
     """Blocks of lanes with equal sub-steps: their indices, the borders, the sampled borders.
 
     The sub-steps of a lane depend on that lane alone, so results do not depend on company.
-    ``refine`` multiplies their number: another rounding of the same motion.
+    ``refine`` multiplies their number: another rounding of the same motion. Of a turn, whose maps
+    are large, it adds a quarter each time.
     """
-    needed = substeps(lanes) * refine
+    needed = substeps(lanes)
+    needed = needed * (3 + refine) // 4 if lanes.by_fft else needed * refine
     keys = [(int(needed[i]), lanes.jumps(i)) for i in range(len(lanes))]
     for key in sorted(set(keys)):
         count, jumps = key
@@ -435,7 +437,7 @@ def advance(
     """
     lanes = state.x.size
     sections = np.empty((periods, 2, lanes))
-    stretch = np.empty((periods if normalise else 0, lanes))
+    stretch = np.zeros((periods if normalise else 0, lanes))
     samples = np.empty((periods * maps.marked if sampled else 0, 2, lanes))
     width, room = maps.order + 1, maps.curves.shape[2]
     carried, table, p, scratch = _aligned(

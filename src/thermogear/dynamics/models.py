@@ -402,10 +402,9 @@ class PairModel:
         The wheel takes none of it in the rigid mode: the momentum is zero.
         """
         (i1, i2), (r1, r2) = self.inertias, self.base_radii
-        total = np.array([x + float(self.error(0.0)), 0.0])
-        total[1] = v + float(self.error.derivative()(0.0)) / self.period
         weight = self.equivalent_mass * np.array([r1 / i1, -r2 / i2])
-        return np.concatenate([weight * total[0], weight * total[1]])
+        rate = v + float(self.error.derivative()(0.0)) / self.period
+        return np.concatenate([weight * (x + float(self.error(0.0))), weight * rate])
 
     def derivative(self, t: float, y: ArrayLike) -> Floats:
         """Time derivative of the state (theta1, theta2, theta1', theta2')."""

@@ -106,14 +106,5 @@ def stack(tables: Iterable[Table]) -> tuple[Complexes, tuple[Pieces | None, ...]
     ((2, 2), (None, None))
     """
     rows = list(tables)
-    width = 1 + max((len(t.harmonics) for t in rows if isinstance(t, Periodic)), default=0)
-    coefficients = np.zeros((len(rows), width), complex)
-    pieces: list[Pieces | None] = []
-    for lane, table in enumerate(rows):
-        if isinstance(table, Pieces):
-            pieces.append(table)
-        else:
-            pieces.append(None)
-            coefficients[lane, 0] = table.mean
-            coefficients[lane, 1 : 1 + len(table.harmonics)] = table.harmonics
-    return coefficients, tuple(pieces)
+    series = [one if isinstance(one, Periodic) else Periodic(0.0) for one in rows]
+    return Periodic.columns(series), tuple(one if isinstance(one, Pieces) else None for one in rows)
