@@ -335,7 +335,7 @@ def _gap_at(node: Floats, part: float, own: Floats, mate: Floats, gap: float) ->
 def _at_nodes(table: Floats, nodes: Floats, part: Floats, column: int) -> Floats:
     """What each tooth adds to the gap at each node to first order [m], [tooth, place, pair, node].
 
-    table [tooth, step] of the gear whose string stands in that ``column`` of ``nodes``.
+    table [tooth, step] of the gear whose string is in that ``column`` of ``nodes``.
     """
     out = np.empty((table.shape[0], *nodes.shape[:3]))
     for q, r, k in np.ndindex(nodes.shape[:3]):
