@@ -56,6 +56,11 @@ class Touch(NamedTuple):
     edge: NDArray[np.int8]
 
 
+_KEPT: dict[Hashable, Touch] = {}
+_MOST_KEPT = 4
+"""Touches of teeth that differ, remembered: one mesh cycle asks for the same several times."""
+
+
 def first_touch(
     points: MeshPoints, deviations: Sequence[Deviation] = (), spread: float = 0.0
 ) -> Touch:
@@ -95,13 +100,18 @@ def first_touch(
     if shapes:
         extended = bool(np.any((edge > 0) & np.isfinite(gap)))
         alike = [d for d in shapes if isinstance(d, FlankShape)]
+        hashable = all(isinstance(d, Hashable) for d in shapes)
         if len(alike) < len(shapes):
-            gap, edge = _of_teeth(points, tuple(shapes), extended, spread)
+            phases = contacts.phase.tobytes()
+            key = (contacts.pair, contacts.flank, phases, tuple(shapes), extended, spread)
+            kept = _KEPT if hashable else {}
+            touch = kept.get(key) or _of_teeth(points, tuple(shapes), extended, spread)
+            kept[key] = gap, edge = touch
+            if len(kept) > _MOST_KEPT:
+                kept.pop(next(iter(kept)), None)
         else:
-            solve = _shaped if all(isinstance(d, Hashable) for d in shapes) else _shaped.__wrapped__
-            gap, edge = solve(
-                contacts.pair, tuple(alike), once.s.shape, once.s.tobytes(), extended, spread
-            )
+            given = (contacts.pair, tuple(alike), once.s.shape, once.s.tobytes(), extended, spread)
+            gap, edge = (_shaped if hashable else _shaped.__wrapped__)(*given)
             if points.shared:
                 gap, edge = gap[..., place, :], edge[..., place, :]
     if points.broken is not None:
@@ -160,7 +170,8 @@ def _shaped(
     edge = np.tile(_corner_of(pair, s), (len(gap), 1))
     where = _looked_at(pair, s, nominal, span)
     touch_many(*where, one, first, two, second, gap, edge)
-    gap = _ended(gap, edge, nominal, where[2]).reshape(*lead, *size)
+    gained, lost = _at_ends(nominal, where[2])
+    gap = (gap + gained - lost * (edge > 0)).reshape(*lead, *size)
     edge = edge.reshape(*lead, *size)
     gap.setflags(write=False)
     edge.setflags(write=False)
@@ -182,15 +193,12 @@ def _looked_at(
     return s, middle, near, 1.5 * radii[0] * np.sqrt(softness), mesh
 
 
-def _ended(
-    gap: Floats, edge: NDArray[np.int8], nominal: ContactPoint, near: NDArray[np.bool_]
-) -> Floats:
-    """The gaps of the flanks with what their ends and levers make of them."""
+def _at_ends(nominal: ContactPoint, near: NDArray[np.bool_]) -> tuple[Floats, Floats]:
+    """What the gap of the flanks gains off the path, and loses where an edge touches [m]."""
     # off the path what the wheel would fall back is the pinion's advance times its lever
-    gap += np.where(near, nominal.gap, 0.0) * (1.0 - nominal.lever)
+    gained = np.where(near, nominal.gap, 0.0) * (1.0 - nominal.lever)
     # the flanks end where a rounding begins, which reaches farther by r_e (1 - cos theta)
-    gap -= nominal.rounding * (1.0 - np.cos(nominal.angle)) * (near & (edge > 0))
-    return gap
+    return gained, nominal.rounding * (1.0 - np.cos(nominal.angle)) * near
 
 
 def _of_teeth(
@@ -229,9 +237,10 @@ def _of_teeth(
     whole = (first.shape[1], *contacts.s.shape)
     gap, edge = np.empty(whole), np.empty(whole, np.int8)
     teeth = (contacts.pinion_tooth % len(first), contacts.wheel_tooth % len(second))
-    touch_teeth(nodes, edges, part, first, second, place, *teeth, gap, edge)
-    there = ContactPoint(*(x[place] for x in nominal))
-    gap = _ended(gap, edge, there, where[2].reshape(once.shape)[place])
+    more = _at_ends(nominal, where[2].reshape(once.shape))
+    touch_teeth(nodes, edges, part, first, second, place, *teeth, *more, gap, edge)
+    gap.setflags(write=False)
+    edge.setflags(write=False)
     return Touch(gap.reshape(*lead, *whole[1:]), edge.reshape(*lead, *whole[1:]))
 
 

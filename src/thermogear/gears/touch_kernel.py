@@ -335,7 +335,7 @@ def _gap_at(node: Floats, part: float, own: Floats, mate: Floats, gap: float) ->
 def _at_nodes(table: Floats, nodes: Floats, part: Floats, column: int) -> Floats:
     """What each tooth adds to the gap at each node to first order [m], [tooth, place, pair, node].
 
-    table [tooth, step] of the gear whose string stands in that ``column`` of ``nodes``.
+    table [tooth, step] of the gear whose string is in that ``column`` of ``nodes``.
     """
     out = np.empty((table.shape[0], *nodes.shape[:3]))
     for q, r, k in np.ndindex(nodes.shape[:3]):
@@ -356,6 +356,8 @@ def touch_teeth(
     place: NDArray[np.int64],
     pinion: NDArray[np.int64],
     wheel: NDArray[np.int64],
+    gained: Floats,
+    lost: Floats,
     gap: Floats,
     edge: NDArray[np.int8],
 ) -> None:
@@ -364,7 +366,8 @@ def touch_teeth(
     nodes [place, pair, node, 7] and edges [place, pair, 2]: see :func:`advance_many`, strings in
     steps of the tables; part [place, pair]: of the advance, the pinion's; first, second [tooth,
     case, step]: what is taken off; place [position]; pinion, wheel [position, pair]: rows of the
-    tables. Gaps to first order at all nodes, to second order between the neighbours of the least.
+    tables; gained, lost [place, pair]: what is added, and taken off again on an edge. Gaps to first
+    order at all nodes, to second order between the neighbours of the least.
     """
     count = nodes.shape[2]
     node = np.empty(nodes.shape[3])
@@ -404,4 +407,4 @@ def touch_teeth(
                             if value < least:
                                 least, middle = value, x
                         step *= 0.5
-                gap[c, p, r] = least
+                gap[c, p, r] = least + gained[q, r] - lost[q, r] * (edge[c, p, r] > 0)
