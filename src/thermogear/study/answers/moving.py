@@ -183,7 +183,7 @@ def loads(asked: Asked) -> Iterator[Answer]:
                 " as its teeth are numbered, {smallest:.2f} to {largest:.2f} in {assemblies} of "
                 "its {possible} assemblies"
             )
-            figures |= _spread(asked, asked.assemblies[1])
+            figures |= _spread(asked, asked.assemblies[1], figures["own"])
         sentence = f"The vibration computed gives {gives}; ISO 6336-1 {words}."
         yield answer(LOADS, "dynamic_factor", sentence, figures["own"], figures=figures, **about)
 
@@ -232,7 +232,7 @@ def errors(asked: Asked) -> Iterator[Answer]:
                 "; {assemblies} of its {possible} assemblies have {smallest:.2f µm} to "
                 "{largest:.2f µm}: state gears.marks"
             )
-            figures |= _spread(asked, 1e6 * asked.assemblies[0])
+            figures |= _spread(asked, 1e6 * asked.assemblies[0], figures["hot"])
         value = float(with_mesh[point]) if np.isfinite(most) else float("nan")
         yield answer(
             ERROR, "transmission_error", f"{sentence}.", value, most=most, at=at, figures=figures
@@ -240,8 +240,9 @@ def errors(asked: Asked) -> Iterator[Answer]:
     yield _relief(asked)
 
 
-def _spread(asked: Asked, values: Floats) -> dict[str, float]:
-    """Least and greatest of the assemblies' ``values``, and how many there are."""
+def _spread(asked: Asked, others: Floats, value: float) -> dict[str, float]:
+    """Least and greatest of the assemblies: the ``value`` of the case's own, and the ``others``."""
+    values = np.append(others, value)
     return {
         "smallest": float(np.nanmin(values)),
         "largest": float(np.nanmax(values)),
