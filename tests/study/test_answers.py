@@ -391,6 +391,12 @@ def test_the_gain_of_a_relief_is_that_of_its_sentence() -> None:
     assert one.value == pytest.approx(100.0 * (1.0 - after / before), abs=0.5)
 
 
+def test_a_relief_of_the_root_alone_leaves_the_tips_to_be_relieved() -> None:
+    root = "gears.pinion.root_relief={amount='1 um', length='1 mm'}"
+    found = asked_of(read(root), moving.errors)["relief"]
+    assert found.value is not None
+
+
 @pytest.mark.parametrize("name", CASES)
 def test_no_sentence_contradicts_the_data_beside_it(name: str) -> None:
     assert list(WORDS.contradictions(result_of(name))) == []

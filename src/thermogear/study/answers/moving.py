@@ -282,7 +282,7 @@ def _relief(asked: Asked) -> Answer:
     case, point = asked.case, asked.hardest
     if why := asked.still(point):
         return undecided(ERROR, "relief", why)
-    if any(isinstance(one, Relief) for one in case.deviations):
+    if any(isinstance(one, Relief) and one.end == "tip" for one in case.deviations):
         return answer(
             ERROR, "relief", "The flanks have one; `thermogear relief` looks for a better.",
             float("nan"), verdict=FINE,
@@ -317,7 +317,8 @@ def _relief(asked: Asked) -> Answer:
         "{after:.2f µm} hot; the best one undeformed, {undeformed:.1f µm}, leaves "
         "{left:.2f µm} hot."
         if gain >= 1.0
-        else "No tip relief of both gears makes it smaller, hot: the flanks themselves decide."
+        else "None of the linear tip reliefs tried, alike on both gears, makes it smaller, hot; "
+        "`thermogear relief` looks among all amounts and lengths."
     )
     units = dict.fromkeys(figures, "µm")
     return answer(ERROR, "relief", sentence, gain, at=asked.at(point), figures=figures, units=units)
