@@ -317,7 +317,7 @@ def _relief(asked: Asked) -> Answer:
         "{after:.2f µm} hot; the best one undeformed, {undeformed:.1f µm}, leaves "
         "{left:.2f µm} hot."
         if gain >= 1.0
-        else "None of the linear tip reliefs tried, alike on both gears, makes it smaller, hot; "
+        else "Of the linear tip reliefs tried, alike on both gears, no one makes it smaller, hot; "
         "`thermogear relief` looks among all amounts and lengths."
     )
     units = dict.fromkeys(figures, "µm")
