@@ -163,7 +163,7 @@ def loads(asked: Asked) -> Iterator[Answer]:
         at = asked.at(point)
         every = asked.motion["dynamic_factor"][point]
         rested, every = bool(np.isfinite(every[0])), every[np.isfinite(every)]
-        words, figures = _rated_factor(asked, point)
+        words, figures = rated_factor(asked, point)
         rated = figures.get("factor", np.inf)
         limit = "dynamic_factor" if rated < PARTING else "parting"
         about = {"limit": limit, "most": min(rated, PARTING), "at": at}
@@ -183,7 +183,7 @@ def loads(asked: Asked) -> Iterator[Answer]:
         yield answer(LOADS, "dynamic_factor", sentence, figures["own"], figures=figures, **about)
 
 
-def _rated_factor(asked: Asked, point: int) -> tuple[str, dict[str, Any]]:
+def rated_factor(asked: Asked, point: int) -> tuple[str, dict[str, Any]]:
     """What method B says of a point, in words with their figures; why not where it does not."""
     torque, speed = (float(asked.hot[f"pinion_{n}"][point]) for n in ("torque", "speed"))
     grade, edition, whose = _class(asked.case)
