@@ -291,7 +291,7 @@ UNITS = {
     "rpm": "main there own strong looked ranges",
     "%": "off most pinion_load wheel_load pinion_part wheel_part",
     "": "wetted more_wetted top limit motions factor own ratio grade drawings points of more stage "
-        "safety unsettled speeds nominal open form notch",
+        "safety unsettled speeds nominal open form notch rated",
 }  # fmt: skip
 """Unit -> the figures that have it; one name may stand in several answers with other units."""
 
