@@ -37,7 +37,7 @@ from thermogear.study.answers.asked import (
     undecided,
 )
 from thermogear.study.answers.moving import rated_factor
-from thermogear.study.scuffing import load_stage, not_steel, steel
+from thermogear.study.scuffing import borne_by, load_stage, not_steel, steel
 from thermogear.study.warm_up import FLAT, least_between, no_bath_from
 
 MESH, HEAT, GAP = "Does it mesh?", "How hot does it run?", "What is left of the backlash?"
@@ -254,11 +254,6 @@ def gap(asked: Asked) -> Iterator[Answer]:
             | ({"borne": borne} if beyond or burnt else {}),
         )
     yield _worst_moment(asked)
-
-
-def borne_by(pair: GearPair) -> tuple[float, str]:
-    """Temperature [K] beyond which nothing is said of a jam, and why: of both gears the lower."""
-    return min(gear.material.bears for gear in (pair.pinion, pair.wheel))
 
 
 def _worst_moment(asked: Asked) -> Answer:
