@@ -189,7 +189,6 @@ def test_splitting_every_element_changes_little(gear: Gear) -> None:
 @pytest.mark.parametrize(
     ("gear", "string", "factor"),
     [
-        (PINION, 22.725e-3, 2.490),
         (Gear(25, 4e-3, profile_shift=0.8, bore_radius=20e-3), 26.599e-3, 2.085),
     ],
 )
