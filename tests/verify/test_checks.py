@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from conftest import Compared
+from gear_compliance import gear_compliance
 from thermogear.base.errors import InputError
 from thermogear.gears.geometry import Gear, Rack
 from thermogear.gears.mesh_system import LoadedModel
@@ -16,7 +17,6 @@ from thermogear.verify import (
     check_growth,
     check_stiffness,
     finite_flank_growth,
-    gear_compliance,
     inner_phases,
     pair_stiffness,
 )

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from gear_compliance import gear_compliance
 from thermogear.base.errors import InputError
 from thermogear.gears.geometry import Gear, Rack
 from thermogear.gears.tooth_mesh import (
@@ -18,7 +19,6 @@ from thermogear.gears.tooth_mesh import (
     plain_across,
     tooth_mesh,
 )
-from thermogear.verify import gear_compliance
 from thermogear.verify.elements import ReferencePatch, library
 from thermogear.verify.sector import FlankSector
 
