@@ -412,8 +412,10 @@ def _decided(case: GearCase) -> dict[str, str]:
     around = case.gearbox.surroundings
     found = decided(case.pair, case.cold_backlash, around, case.deviations, case.accuracy)
     choices = [model.choices() for model in case.models]
-    for name in choices[0]:
-        found[f"model.{name}"] = " and ".join(dict.fromkeys(str(one[name]) for one in choices))
+    found |= {
+        f"model.{name}": " and ".join(dict.fromkeys(str(one[name]) for one in choices))
+        for name in choices[0]
+    }
     if len(case.charts) == 2:
         found["flanks.accuracy"] = found["flanks.seed"] = "none: both gears are measured"
     return found

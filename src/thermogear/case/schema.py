@@ -554,8 +554,7 @@ def _model_table() -> type[Table]:
     }
     for name, words in DECIDES.items():
         kind = kinds.get(name) or Annotated[str | None, Choice(*CHOICES[name])]
-        text = f"{OF_BUNDLE}. Decides {words}"
-        fields[name] = (kind, Field(default=None, description=text))
+        fields[name] = (kind, Field(default=None, description=f"{OF_BUNDLE}. Decides {words}"))
     words = "The model: one bundle of choices or both, then single choices in place of theirs."
     return create_model("ModelTable", __base__=Table, __doc__=words, **fields)
 

@@ -201,8 +201,8 @@ def _notices(
             yield Notice.of("edge_of_undercut", **where)
         else:
             top = loads.isel(loads.argmax(...))
-            whose = str(top["gear"].values)
-            yield Notice.of("edge_contact_at_most", **where, gear=whose, load=top.item())
+            where |= {"gear": str(top["gear"].values), "load": top.item()}
+            yield Notice.of("edge_contact_at_most", **where)
     if at.yields(at.under(contact["load"].values[None, :], phase=UNIFORM)).any():
         yield Notice.of("edge_settles")
     if lost:

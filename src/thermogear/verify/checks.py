@@ -141,8 +141,9 @@ def check_root(pair: GearPair, gear: str, density: Density | None = None) -> tup
     t = single_contact(pair)[GEARS.index(gear)]
     sector = FlankSector(at, 0.05 * at.module, 3 * (density or Density()).refinement)
     load = sector.pressed(0.5 * at.base_radius * t**2, half_width=0.12 * at.module)
-    finite = at.module * sector.root_stress(load)[0].max()
-    return float(root_table(at).stress(t).max()), float(finite)
+    return float(root_table(at).stress(t).max()), at.module * float(
+        sector.root_stress(load)[0].max()
+    )
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
