@@ -122,8 +122,8 @@ def test_an_edge_of_plastic_is_not_held_to_the_limit_of_steel() -> None:
     at = contact(*sizes, "gears.pinion.material=POM")
     assert not at.yields(at.under(np.array([[400.0]]), phase=UNIFORM))[..., 0].any()
     words = at.told(5.0)[1]
-    assert words.endswith("; what an edge of POM bears is not known")
-    assert "is not known" not in contact(*sizes).told(5.0)[1]
+    assert "POM" in words
+    assert "known" not in contact(*sizes).told(5.0)[1]
 
 
 def test_a_survey_tells_of_the_hot_pair_what_is_told_of_one_load() -> None:

@@ -141,14 +141,17 @@ def optimise_tip_relief(
     }
     unrelieved = float(np.ptp(plain))
     most = 3.0 * float(plain.mean() - plain.min() + np.ptp(plain)) if largest is None else largest
-    most = min(most, RELIEF_AMOUNT.most)
-    shortest = max(_SHORTEST * pair.base_pitch, RELIEF_LENGTH.least)
     # as a case file has it, to a nanometre, it is still no longer than the active profile
-    longest = 1e-9 * np.floor(1e9 * (pair.path.e - pair.path.a))
+    shortest, longest = (
+        max(_SHORTEST * pair.base_pitch, RELIEF_LENGTH.least),
+        1e-9 * np.floor(1e9 * (pair.path.e - pair.path.a)),
+    )
 
     def sizes(x: Floats) -> tuple[Floats, Floats]:
         whole = np.clip(np.repeat(x, 2, axis=-1) if symmetric else x, 0.0, 1.0)
-        return most * whole[..., :2], shortest + (longest - shortest) * whole[..., 2:]
+        return min(most, RELIEF_AMOUNT.most) * whole[..., :2], shortest + (
+            longest - shortest
+        ) * whole[..., 2:]
 
     def reliefs(x: Floats) -> list[Relief]:
         return [
