@@ -39,7 +39,7 @@ from thermogear.case.flanks import accuracy, deviations, first_tooth, unmeasured
 from thermogear.case.gearbox import Reading, gearbox, heated
 from thermogear.case.ranges import in_proportion, warn_of_temperatures, warn_of_torque
 from thermogear.case.refusals import complaints, together
-from thermogear.case.schema import PICTURES, GearFile
+from thermogear.case.schema import OF_BUNDLE, PICTURES, GearFile
 from thermogear.case.sensor_schema import SensorsTable
 from thermogear.case.shaft_plan import TrainPlan
 from thermogear.case.shafts import train_plan
@@ -464,6 +464,8 @@ def case_of(
         )
     if read.gears.face_width is not None:  # one for both is no default of each
         found = tuple(one for one in found if not one.field.endswith(".face_width"))
+    if "bundle" in read.model.model_fields_set:  # who names a bundle names its choices
+        found = tuple(one for one in found if not one.default.startswith(OF_BUNDLE))
     return replace(case, assumptions=found)
 
 
@@ -471,6 +473,11 @@ def _decided(case: GearCase) -> dict[str, str]:
     around = case.gearbox.surroundings
     graded = unmeasured(case.file)
     found = decided(case.pair, case.cold_backlash, around, case.accuracy, graded)
+    choices = [model.choices() for model in case.models]
+    found |= {
+        f"model.{name}": " and ".join(dict.fromkeys(str(one[name]) for one in choices))
+        for name in choices[0]
+    }
     if len(case.charts) == 2:
         found["flanks.accuracy"] = found["flanks.seed"] = "none: both gears are measured"
     return found

@@ -57,7 +57,7 @@ from thermogear.case.shaft_schema import (
 from thermogear.case.table import Below, Body, Length, Table, not_both, one_of
 from thermogear.heat.friction import LAWS, LUBRICATED
 from thermogear.heat.law_parameters import parameters, ranges, require_known
-from thermogear.mesh.model import CHOICES
+from thermogear.mesh.model import CHOICES, DECIDES
 
 
 def _reader(name: str, laws: Sequence[object]) -> Any:
@@ -577,22 +577,27 @@ class TransmissionErrorTable(Table):
         return self
 
 
+OF_BUNDLE = "as the bundle has it"
+"""Of a choice of the model that is left out."""
+
+
 def _model_table() -> type[Table]:
     fields: dict[str, Any] = {
         "bundle": (
             Annotated[str, Choice("both", "consistent", "thesis")],
-            Field(default="consistent", title="consistent: units, energy and limits close"),
-        ),
-        "dry_coefficient": (
-            Annotated[float | None, Number(low=0.001, high=1.0, example="0.2")],
-            Field(default=None, title="as the bundle has it"),
+            Field(
+                default="consistent",
+                description="units, energy and limits close. Decides what the choices below are",
+            ),
         ),
     }
-    for name, known in CHOICES.items():
-        kind: Any = Annotated[str | None, Choice(*known)]
-        if name == "friction":
-            kind = Annotated[FrictionTable | None, FRICTION]
-        fields[name] = (kind, Field(default=None, title="as the bundle has it"))
+    kinds: dict[str, Any] = {
+        "friction": Annotated[FrictionTable | None, FRICTION],
+        "dry_coefficient": Annotated[float | None, Number(low=0.001, high=1.0, example="0.2")],
+    }
+    for name, words in DECIDES.items():
+        kind = kinds.get(name) or Annotated[str | None, Choice(*CHOICES[name])]
+        fields[name] = (kind, Field(default=None, description=f"{OF_BUNDLE}. Decides {words}"))
     words = "The model: one bundle of choices or both, then single choices in place of theirs."
     return create_model("ModelTable", __base__=Table, __doc__=words, **fields)
 

@@ -162,7 +162,7 @@ def loads(asked: Asked) -> Iterator[Answer]:
         at = asked.at(point)
         every = asked.motion["dynamic_factor"][point]
         rested, every = bool(np.isfinite(every[0])), every[np.isfinite(every)]
-        words, figures = _rated_factor(asked, point)
+        words, figures = rated_factor(asked, point)
         rated = figures.get("factor", np.inf)
         limit = "dynamic_factor" if rated < PARTING else "parting"
         about = {"limit": limit, "most": min(rated, PARTING), "at": at}
@@ -188,7 +188,7 @@ def loads(asked: Asked) -> Iterator[Answer]:
         yield answer(LOADS, "dynamic_factor", sentence, figures["own"], figures=figures, **about)
 
 
-def _rated_factor(asked: Asked, point: int) -> tuple[str, dict[str, Any]]:
+def rated_factor(asked: Asked, point: int) -> tuple[str, dict[str, Any]]:
     """What method B says of a point, in words with their figures; why not where it does not."""
     torque, speed = (float(asked.hot[f"pinion_{n}"][point]) for n in ("torque", "speed"))
     grade, edition, whose = _class(asked.case)
@@ -322,7 +322,7 @@ def _relief(asked: Asked) -> Answer:
     case, point = asked.case, asked.hardest
     if why := asked.still(point):
         return undecided(ERROR, "relief", why)
-    if any(isinstance(one, Relief) for one in case.deviations):
+    if any(isinstance(one, Relief) and one.end == "tip" for one in case.deviations):
         return answer(
             ERROR, "relief", "The flanks have one; `thermogear relief` looks for a better.",
             float("nan"), verdict=FINE,
@@ -357,7 +357,8 @@ def _relief(asked: Asked) -> Answer:
         "{after:.2f µm} hot; the best one undeformed, {undeformed:.1f µm}, leaves "
         "{left:.2f µm} hot."
         if gain >= 1.0
-        else "No tip relief of both gears makes it smaller, hot: the flanks themselves decide."
+        else "Of the linear tip reliefs tried, alike on both gears, no one makes it smaller, hot; "
+        "`thermogear relief` looks among all amounts and lengths."
     )
     units = dict.fromkeys(figures, "µm")
     return answer(ERROR, "relief", sentence, gain, at=asked.at(point), figures=figures, units=units)
