@@ -209,17 +209,18 @@ def integrated(
     numbers = np.array([mass, damping, at.mean_force, at.half_backlash, step])
     state = np.array([start[0] + e[0], start[1] + rate[0]])
     forces = np.empty(count // 2)
-    found: list[tuple[float, float]] = []
+    turns_done: list[tuple[float, float]] = []
     while True:
         lost = _turn(k, e, rate, numbers, state, forces)
-        found.append((float(np.abs(forces).max()) / at.mean_force, lost / time_of_turn))
-        if len(found) < turns + 2 * period:
+        turns_done.append((float(np.abs(forces).max()) / at.mean_force, lost / time_of_turn))
+        if len(turns_done) < turns + 2 * period:
             continue
         last, before = (
-            max(one[0] for one in part) for part in (found[-period:], found[-2 * period : -period])
+            max(one[0] for one in part)
+            for part in (turns_done[-period:], turns_done[-2 * period : -period])
         )
-        if abs(last / before - 1.0) < 1e-5 or len(found) >= 20 * (turns + 2 * period):
-            return last, float(np.mean([one[1] for one in found[-period:]]))
+        if abs(last / before - 1.0) < 1e-5 or len(turns_done) >= 20 * (turns + 2 * period):
+            return last, float(np.mean([one[1] for one in turns_done[-period:]]))
 
 
 def compared(drawn: Drawn) -> Compared | None:
@@ -229,9 +230,9 @@ def compared(drawn: Drawn) -> Compared | None:
     statics = time.process_time()
     length, speed = at.reference_half_backlash, at.reference_half_backlash * at.natural_frequency
     start = (at.half_backlash + at.mean_force / at.stiffness.mean, 0.0)
-    told = label(from_excitation(at), initial_state=(start[0] / length, 0.0))
-    orbit = told.orbit
-    if orbit is None or told.name == "undecided":
+    motion = label(from_excitation(at), initial_state=(start[0] / length, 0.0))
+    orbit = motion.orbit
+    if orbit is None or motion.name == "undecided":
         return None
     factor, loss = orbit.dynamic_load_factor(), max(1.0 - float(orbit.shares[2]), 0.0)
     done = time.process_time()
@@ -239,16 +240,16 @@ def compared(drawn: Drawn) -> Compared | None:
     turns = math.ceil(
         math.log(1e4) * drawn.ratio / (2.0 * math.pi * drawn.damping * at.mesh_periods)
     )
-    own = integrated(at, turns, start, told.period)
-    apart = abs(own[0] / factor - 1.0) > FACTOR or abs(own[1] - loss) > LOSS
+    stepped = integrated(at, turns, start, motion.period)
+    apart = abs(stepped[0] / factor - 1.0) > FACTOR or abs(stepped[1] - loss) > LOSS
     if apart:
         there = (float(orbit.state[0]) * length, float(orbit.state[1]) * speed)
-        own = integrated(at, turns, there, told.period)
+        stepped = integrated(at, turns, there, motion.period)
     finer = math.nan
     if at.mesh_periods <= FINER_UP_TO:
-        finer, _ = integrated(drawn.excitation(*FINER), turns, start, told.period)
+        finer, _ = integrated(drawn.excitation(*FINER), turns, start, motion.period)
     return Compared(
-        drawn, told, (factor, own[0]), (loss, own[1]), finer, apart,
+        drawn, motion, (factor, stepped[0]), (loss, stepped[1]), finer, apart,
         (statics - begun, done - statics),
     )  # fmt: skip
 
@@ -257,10 +258,10 @@ def all_compared(count: int | None = None) -> Iterator[Compared | None]:
     """Pair after pair, None for one that does not close: the last ``count`` of them, or all."""
     random = np.random.default_rng(SEED)
     for least, most in LENGTHS[-count:] if count else LENGTHS:
-        found = None
-        while found is None:
-            found = compared(draw(random, least, most))
-            yield found
+        pair = None
+        while pair is None:
+            pair = compared(draw(random, least, most))
+            yield pair
 
 
 HEAD = f"""# Pairs with pitch errors: the exact engine over a turn against other steps
@@ -281,17 +282,17 @@ and factor.
 """
 
 
-def page(found: list[Compared], open_: int) -> str:
+def page(pairs: list[Compared], open_: int) -> str:
     """The page of all pairs, ``open_`` of which did not close."""
-    worst = max(one.factor_error for one in found)
-    loss = max(one.loss_error for one in found)
-    tables = [abs(one.finer / one.factors[1] - 1.0) for one in found if math.isfinite(one.finer)]
-    beyond = sum(one.factor_error > FACTOR or one.loss_error > LOSS for one in found)
-    apart = sum(one.apart for one in found)
-    rows = "\n".join(one.row for one in found)
+    worst = max(one.factor_error for one in pairs)
+    loss = max(one.loss_error for one in pairs)
+    tables = [abs(one.finer / one.factors[1] - 1.0) for one in pairs if math.isfinite(one.finer)]
+    beyond = sum(one.factor_error > FACTOR or one.loss_error > LOSS for one in pairs)
+    apart = sum(one.apart for one in pairs)
+    rows = "\n".join(one.row for one in pairs)
     return f"""{HEAD}{rows}
 
-{len(found)} pairs. Worst: dynamic factor {100 * worst:.3f} % apart (allowed {100 * FACTOR:g} %),
+{len(pairs)} pairs. Worst: dynamic factor {100 * worst:.3f} % apart (allowed {100 * FACTOR:g} %),
 share of contact loss {100 * loss:.3f} % of the time (allowed {100 * LOSS:g} %); {beyond} pairs
 beyond. From the same start {apart} ended on another motion and were compared from the orbit
 itself. The motions of {open_} more pairs that were drawn did not close by their labels; others
@@ -303,14 +304,14 @@ were drawn for them. Finer tables change the factor by {100 * float(np.median(ta
 def main() -> None:
     """Print every pair, and without a number of pairs write the page."""
     count = int(sys.argv[1]) if len(sys.argv) > 1 else None
-    found, open_ = [], 0
+    pairs, open_ = [], 0
     for one in all_compared(count):
         if one is None:
             open_ += 1
             continue
-        found.append(one)
+        pairs.append(one)
         print(one.row, flush=True)
-    text = page(found, open_)
+    text = page(pairs, open_)
     print(text[text.rindex("\n\n") :].strip())
     if count is None:
         PAGE.write_text(text, encoding="utf-8")

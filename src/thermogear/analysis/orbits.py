@@ -150,9 +150,8 @@ class Orbit:
             x = (x[:, None] + t * (c1 + t * (c2 + t * c3))).ravel()
         count = x.size // self.period
         once = self.lanes.values("stiffness", np.arange(count) / count)[:, 0]
-        stiffness = np.tile(once, self.period)
         b = float(self.lanes.half_backlash[0])
-        force = stiffness * (x - np.clip(x, -b, b))
+        force = np.tile(once, self.period) * (x - np.clip(x, -b, b))
         mean = float(self.lanes.force[0, 0].real)
         piece = self.lanes.force_pieces[0]
         mean += 0.0 if piece is None else piece.mean

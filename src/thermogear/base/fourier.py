@@ -45,11 +45,11 @@ def taylor(coefficients: Complexes, count: int, order: int) -> Floats:
     """
     reach = 1j * np.pi / count * np.arange(coefficients.shape[-1])
     spectrum = coefficients * np.exp(reach)
-    found = np.empty((count, len(coefficients), order + 1))
+    table = np.empty((count, len(coefficients), order + 1))
     for m in range(order + 1):
         spectrum = spectrum * (reach / m) if m else spectrum
-        found[:, :, m] = sampled(spectrum, count).T
-    return found
+        table[:, :, m] = sampled(spectrum, count).T
+    return table
 
 
 def values(coefficients: Complexes, phase: Floats) -> Floats:
@@ -62,8 +62,8 @@ def values(coefficients: Complexes, phase: Floats) -> Floats:
     count = round(1.0 / step) if 1.0 / MOST < step <= 0.5 else 1
     place = np.rint(flat * count)
     if np.all(np.abs(flat - place / count) <= 1e-13):
-        found = sampled(coefficients, count)[:, place.astype(np.int64) % count]
+        rows = sampled(coefficients, count)[:, place.astype(np.int64) % count]
     else:
         waves = 2j * np.pi * np.arange(coefficients.shape[-1])
-        found = np.stack([(coefficients @ np.exp(waves * at)).real for at in flat], axis=-1)
-    return np.asarray(found.reshape(len(coefficients), *np.shape(phase)))
+        rows = np.stack([(coefficients @ np.exp(waves * at)).real for at in flat], axis=-1)
+    return np.asarray(rows.reshape(len(coefficients), *np.shape(phase)))

@@ -106,5 +106,5 @@ def stack(tables: Iterable[Table]) -> tuple[Complexes, tuple[Pieces | None, ...]
     ((2, 2), (None, None))
     """
     rows = list(tables)
-    series = [one if isinstance(one, Periodic) else Periodic(0.0) for one in rows]
-    return Periodic.columns(series), tuple(one if isinstance(one, Pieces) else None for one in rows)
+    series = [table if isinstance(table, Periodic) else Periodic(0.0) for table in rows]
+    return Periodic.columns(series), tuple(t if isinstance(t, Pieces) else None for t in rows)
