@@ -472,8 +472,8 @@ class _Chain:
     def mesh(self, state: State) -> Floats:
         """Friction power [W], its share into the pinion and conductance [W/K], (count, 3)."""
         elastic = self._elastic(self.operating(state))
-        long = max(TURN_POSITIONS // elastic.mesh_periods, LEAST_PHASES)
-        means = mesh_heat(elastic, min(HEAT_PHASES, long))
+        phases = max(TURN_POSITIONS // elastic.mesh_periods, LEAST_PHASES)
+        means = mesh_heat(elastic, min(HEAT_PHASES, phases))
         if not means.settled.all():
             count = int(np.count_nonzero(~means.settled))
             raise ConvergenceError(
