@@ -29,6 +29,7 @@ from thermogear.mesh.friction_path import FrictionPath
 from thermogear.mesh.mesh_heat import mesh_heat
 from thermogear.mesh.thermal import HotPair
 from thermogear.mesh.turn_spread import OF_TURN
+from thermogear.mesh.warm_up import Duty, warm_up
 
 OIL = lubricant("FVA3")
 MODEL = MeshModel.consistent()
@@ -124,6 +125,20 @@ def test_heat_is_that_of_all_tooth_pairs_one_by_one() -> None:
         again = mesh_heat(elastic, share=found.share)
         for one, other in zip(found, again, strict=True):
             np.testing.assert_array_equal(one, other)
+
+
+def test_a_warm_up_ends_at_the_balance_and_its_clearance_is_the_tightest() -> None:
+    flanks = errors(SMALL, 6e-6)
+    duty = Duty.steady(300.0, 40.0, ambient=293.15)
+    course = warm_up(SMALL, duty, OIL, 60e-6, deviations=flanks, moments=6)
+    balance = heat_balance(SMALL, 300.0, 40.0, OIL, 60e-6, deviations=flanks, from_hot=False)
+    end = course.temperatures["oil"][-1]
+    assert end == pytest.approx(balance.operating.oil_temperature[0], abs=0.1)
+    hot = HotPair(SMALL, course.operating.point(course.time.size - 1), MODEL)
+    gap = Clearance(hot, np.arange(240) / 240, flanks)
+    assert course.half_backlash[-1] == pytest.approx(gap.half_backlash.min(), rel=1e-12)
+    alike = warm_up(SMALL, duty, OIL, 60e-6, deviations=flanks[:0], moments=6)
+    assert end > alike.temperatures["oil"][-1] + 0.1
 
 
 def test_the_least_clearance_is_that_of_the_tightest_pair_and_jams_where_it_is_said_to() -> None:

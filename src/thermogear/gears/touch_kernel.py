@@ -373,6 +373,8 @@ def touch_teeth(
     node = np.empty(nodes.shape[3])
     advance = nodes[..., 2] / (1.0 - np.expand_dims(part, 2) * nodes[..., 3])
     advance[..., 1] = advance[..., count - 2] = np.inf
+    # one place alone where the flanks are not near
+    several = np.where(nodes[..., 0, 0] == nodes[..., count - 1, 0], 1, count)
     for c in range(gap.shape[0]):
         firsts, seconds = (
             _at_nodes(first[:, c], nodes, part, 0),
@@ -381,16 +383,13 @@ def touch_teeth(
         for p in range(place.size):
             q = place[p]
             for r in range(gap.shape[2]):
-                added, other = firsts[pinion[p, r], q, r], seconds[wheel[p, r], q, r]
-                own, mate = first[pinion[p, r], c], second[wheel[p, r], c]
-                these, share = nodes[q, r], part[q, r]
+                i, j = pinion[p, r], wheel[p, r]
                 least, best = math.inf, NOUGHT
-                # one place alone where the flanks are not near
-                apart = these[0, 0] == these[count - 1, 0]
-                for k in range(1 if apart else count):
-                    value = advance[q, r, k] + added[k] + other[k]
+                for k in range(several[q, r]):
+                    value = advance[q, r, k] + firsts[i, q, r, k] + seconds[j, q, r, k]
                     if value < least:
                         least, best = value, k
+                own, mate, these, share = first[i, c], second[j, c], nodes[q, r], part[q, r]
                 if least < math.inf:
                     least = _gap_at(these[best], share, own, mate, least)
                 edge[c, p, r] = edges[q, r, min(best, 1)]
