@@ -22,12 +22,50 @@ from thermogear.views.style import (
 )
 from thermogear.views.typesetting import axis_label, operating_names, plain, shown
 
+MOST_POINTS = 2000
+"""Points of a curve over the mesh phase."""
+FEWEST = 24
+"""Points in a mesh period that show its course; where fewer are left, its extremes are drawn."""
+
 
 def axis_of(
     name: str, words: str | None = None, *, low: float | None = None, high: float | None = None
 ) -> Axis:
     """The axis of a stored quantity: its words, symbol and unit."""
     return Axis(axis_label(name, words), low=low, high=high)
+
+
+def phase_panel(data: Dataset, y: Axis) -> Panel:
+    """A panel over one mesh period, or over all mesh periods of a turn."""
+    x = axis_of("mesh_phase", "mesh phase", low=0.0, high=float(mesh_periods(data)))
+    return Panel(x, y)
+
+
+def mesh_periods(data: Dataset) -> int:
+    """The mesh periods over which ``mesh_phase`` runs."""
+    return int(data["mesh_phase"].values[-1]) + 1
+
+
+def draw_phase(panel: Panel, data: Dataset, values: Floats, **look: Any) -> None:
+    """``values`` over the mesh phase of ``data`` in at most :data:`MOST_POINTS` points.
+
+    Every so many samples where :data:`FEWEST` of a mesh period are left; else a band from the
+    least to the greatest of each mesh period, or of as many as it takes.
+    """
+    x, of = shown(data, "mesh_phase"), mesh_periods(data)
+    if shows_course(x.size, of):
+        step = -(-x.size // MOST_POINTS)
+        panel.curve(x[::step], values[::step], **look)
+        return
+    cuts = np.arange(0, x.size, x.size // of * -(-of // (MOST_POINTS // 2)))
+    low, high = np.minimum.reduceat(values, cuts), np.maximum.reduceat(values, cuts)
+    kept = {name: look[name] for name in ("colour", "label") if name in look}
+    panel.band(x[cuts], low=low, high=high, opacity=0.5, **kept)
+
+
+def shows_course(samples: int, of: int) -> bool:
+    """Whether the drawn ones of so many samples show the course of each ``of`` mesh periods."""
+    return samples >= FEWEST * of * -(-samples // MOST_POINTS)
 
 
 def along_path(data: Dataset, y: Axis, *, letters: bool = True) -> Panel:
@@ -93,14 +131,20 @@ def draw_by_operating(
 def draw_by_bundle(
     panel: Panel, data: Dataset, name: str, x: Floats, *, colour: str, what: str = ""
 ) -> None:
-    """``name`` over ``x`` at the first operating point, one line style per bundle."""
+    """``name`` over ``x`` at the first operating point, one line style per bundle.
+
+    Over the mesh phase by :func:`draw_phase`.
+    """
     bundles = names_of(data, "bundle")
     values = shown(data.isel(operating=0) if "operating" in data.dims else data, name)
     for place, bundle in enumerate(bundles):
         if np.isfinite(values[place]).any():
             words = plain(f"{what}, {bundle}" if what else bundle)
             dash = bundle_line(bundles, place)
-            panel.curve(x, values[place], colour=colour, dash=dash, label=words)
+            if "mesh_phase" in data[name].dims:
+                draw_phase(panel, data, values[place], colour=colour, dash=dash, label=words)
+            else:
+                panel.curve(x, values[place], colour=colour, dash=dash, label=words)
 
 
 def draw_by_both(
