@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -22,12 +21,11 @@ from thermogear.gears.deviations import (
     PitchError,
     PressureAngleError,
     Relief,
-    ToothDeviation,
 )
 from thermogear.gears.graded_flanks import WavyProfile, graded_flanks
 from thermogear.gears.pair import GearPair
 from thermogear.gears.population import drawn_pair
-from thermogear.gears.turn import Eccentricity, ToothShapes, mean_tooth
+from thermogear.gears.turn import Eccentricity, ToothShapes, mean_tooth, numbered_from
 
 OF_METAL, OF_PLASTICS = 6, 9
 """Accuracy classes of ISO 1328-1 taken where none is given: ground steel 4 to 6, plastic cut 8 to
@@ -70,7 +68,8 @@ def deviations(
             found.append(deviation)
     found += [one for chart in measured for one in _charted(file, pair, chart)]
     found += _graded(file, pair)
-    found = [_from_mark(one, file) for one in found]
+    first = {gear: first_tooth(file, gear) for gear in GEARS}
+    found = [numbered_from(pair, deviation, **first) for deviation in found]
     if file.gears.part == "nominal":
         found = [deviation for deviation in found if isinstance(deviation, Relief)]
     return tuple(mean_tooth(pair, found) if file.gears.period == "mesh" else found)
@@ -79,21 +78,6 @@ def deviations(
 def first_tooth(file: GearFile, gear: str) -> int:
     """Which tooth, from 0, of the named gear is marked: number 0 of the mesh."""
     return 0 if file.gears.marks is None else file.gears.marks[GEARS.index(gear)] - 1
-
-
-def _from_mark(one: Deviation, file: GearFile) -> Deviation:
-    """The deviation with the teeth of its gear numbered from the one that is marked."""
-    first = first_tooth(file, one.gear) if isinstance(one, ToothDeviation) else 0
-    if not first:
-        return one
-    if isinstance(one, PitchError):
-        return replace(one, errors=one.errors[first:] + one.errors[:first])
-    if isinstance(one, ToothShapes):
-        return replace(one, shapes=one.shapes[first:] + one.shapes[:first])
-    if isinstance(one, Eccentricity):
-        teeth = getattr(file.gears, one.gear).teeth
-        return replace(one, angle=one.angle - 2.0 * math.pi * first / teeth)
-    return one
 
 
 def _of_teeth(

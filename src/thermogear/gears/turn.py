@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 
@@ -25,9 +26,12 @@ from thermogear.gears.deviations import (
     Contacts,
     Deviation,
     FlankShape,
+    PitchError,
     ToothDeviation,
 )
 from thermogear.gears.pair import GearPair
+
+T = TypeVar("T")
 
 
 def tooth_angle(pair: GearPair, name: str) -> float:
@@ -180,6 +184,35 @@ class MeanShape(FlankShape):
     def borders(self, pair: GearPair) -> Floats:
         """Those of all shapes."""
         return np.unique(np.concatenate([shape.borders(pair) for shape in self.shapes]))
+
+
+def numbered_from(
+    pair: GearPair, deviation: Deviation, *, pinion: int = 0, wheel: int = 0
+) -> Deviation:
+    """The ``deviation`` with tooth ``pinion`` and ``wheel``, from 0, of their gears as tooth 0.
+
+    Another assembly, unless gcd(z1, z2) divides the difference of both numbers.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(30, 4e-3))
+    >>> errors = PitchError("pinion", (1e-6, 3e-6) * 10)
+    >>> f"{1e6 * numbered_from(pair, errors, pinion=1).errors[0]:.1f} um"
+    '3.0 um'
+    """
+    if not isinstance(deviation, ToothDeviation):
+        return deviation
+    first = pinion if deviation.gear == "pinion" else wheel
+    if isinstance(deviation, PitchError):
+        return replace(deviation, errors=_rolled(deviation.errors, first))
+    if isinstance(deviation, ToothShapes):
+        return replace(deviation, shapes=_rolled(deviation.shapes, first))
+    if isinstance(deviation, Eccentricity):
+        step = 2.0 * math.pi / pair.gear(deviation.gear).teeth
+        return replace(deviation, angle=deviation.angle - step * first)
+    return deviation
+
+
+def _rolled(values: tuple[T, ...], first: int) -> tuple[T, ...]:
+    return values[first:] + values[:first]
 
 
 def turn_period(pair: GearPair, deviations: Sequence[Deviation]) -> Period:

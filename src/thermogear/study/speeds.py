@@ -15,9 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.analysis.settle import CHAOTIC, UNDECIDED, WATCHED
+from thermogear.analysis.settle import CHAOTIC, PERIODIC, UNDECIDED, WATCHED
 from thermogear.analysis.side_by_side import APART, Motions, motions_along
-from thermogear.analysis.turns import TurnLanes, TurnTables, follow_turns
 from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.excitation import Excitations
 from thermogear.base.period import turns
@@ -25,6 +24,7 @@ from thermogear.base.units import RPM
 from thermogear.base.vocabulary import NO_COUNT, label
 from thermogear.case.points import Points, points_of
 from thermogear.case.response import Recording, respond
+from thermogear.dynamics.turns import TurnLanes, TurnTables, follow_turns
 
 LOWEST, HIGHEST, STEP = 0.05, 1.8, 0.025
 """Mesh over natural frequency, and the step of it. At the lowest the twentieth harmonic of the
@@ -245,7 +245,7 @@ def _over_the_turn(points: Points, starts: Floats) -> dict[str, Floats]:
             "contact_loss_share": motions.lost,
             "mesh_force_min": force[:, 1],
             "period": motions.period,
-            "label": motions.label,
+            "label": np.where(motions.period > 0, PERIODIC, UNDECIDED),
             "x": motions.state[:, 0],
             "v": motions.state[:, 1],
         }

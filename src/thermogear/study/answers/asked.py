@@ -15,6 +15,7 @@ from thermogear.analysis.settle import UNDECIDED
 from thermogear.analysis.side_by_side import RULE
 from thermogear.base.arrays import Floats
 from thermogear.base.display import worded
+from thermogear.base.excitation import fourier_rows
 from thermogear.base.limits import LIMITS, NO_LIMIT
 from thermogear.base.progress import Progress
 from thermogear.base.units import RPM, ZERO_CELSIUS
@@ -23,9 +24,9 @@ from thermogear.case.case import GearCase
 from thermogear.case.duty import chosen_point, point_duty
 from thermogear.case.points import excitations, points_of
 from thermogear.case.response import VALUES
-from thermogear.case.thermal_state import ThermalState
+from thermogear.case.thermal_state import HOT, ThermalState
 from thermogear.gears.deviations import Deviation
-from thermogear.gears.turn import mean_tooth
+from thermogear.gears.turn import mean_tooth, numbered_from
 from thermogear.mesh.balance import Gearbox, HeatBalance
 from thermogear.mesh.balance_table import LOSSES
 from thermogear.mesh.clearance import PARTS
@@ -62,6 +63,11 @@ WARMEST_USUAL = ZERO_CELSIUS + 120.0
 MOST_WETTED = 0.5
 """The other end of the band in which the wetted share of a gear is guessed (ours)."""
 NO_BATH = "it rests on an oil bath that cannot exist"
+MOST_ASSEMBLIES = 8
+"""Assemblies of gears whose teeth differ that are computed (chosen)."""
+POSITIONS = 60
+"""Phases of a mesh period at which another drawing or assembly is solved: enough for two figures of
+its error (:data:`~thermogear.mesh.elastic.TURN_POSITIONS` move it by some percent)."""
 WARM_UP_TOLERANCE = 0.1
 """Error [K] of temperatures."""
 
@@ -238,6 +244,39 @@ class Asked:
         found = look(mesh, teeth=self.case.pair.pinion.teeth, own=self.case.stated.speed)
         self.progress("speeds", 1, 1)
         return found
+
+    @cached_property
+    def assemblies(self) -> tuple[Floats, Floats]:
+        """Static error [m] peak to peak and dynamic factor, greatest of the motions, of assemblies.
+
+        Of the hardest point, hot as it is: at most :data:`MOST_ASSEMBLIES` of those that gears of a
+        common divisor can be put together in, evenly chosen, the case's own first. Empty where
+        there is one alone, or the case states its marks; nan where nothing settles.
+        """
+        case, count = self.case, self.case.assembly_count
+        if count == 1 or case.file.gears.marks is not None:
+            return np.empty(0), np.empty(0)
+        mesh = excitations(case, self._part([self.hardest]))
+        phase = np.arange(POSITIONS) / POSITIONS
+        errors, factors = [], []
+        for wheel in np.linspace(0, count, min(count, MOST_ASSEMBLIES), endpoint=False).astype(int):
+            flanks = [
+                numbered_from(case.pair, deviation, wheel=int(wheel))
+                for deviation in case.deviations
+            ]
+            curves = self.elastic(HOT, self.hardest, flanks).over(phase)
+            errors.append(float(np.ptp(curves.transmission_error)))
+            highest = min(case.harmonics, POSITIONS // 2 - 1) * self.mesh_periods
+            here = points_of(
+                replace(
+                    mesh,
+                    stiffness=fourier_rows(curves.stiffness, highest),
+                    error=fourier_rows(np.asarray(curves.spring_error), highest),
+                )
+            )
+            _, figures = motions_of(here, starts_of(here))
+            factors.append(float(np.nanmax(figures["dynamic_factor"], initial=-np.inf)))
+        return np.array(errors), np.where(np.isfinite(factors), factors, np.nan)
 
     def slow(self, point: int) -> bool:
         """Whether the pair turns so slowly that no motion is followed."""

@@ -19,7 +19,7 @@ from thermogear.gears.dynamic_factor import dynamic_factor
 from thermogear.gears.graded_flanks import WavyProfile, graded_flanks
 from thermogear.gears.iso6336 import iso6336_stiffness
 from thermogear.results.answer import Answer
-from thermogear.study.answers.asked import Asked, answer, undecided
+from thermogear.study.answers.asked import POSITIONS, Asked, answer, undecided
 from thermogear.study.speeds import LOST, Speeds, told
 
 SPEEDS = "At which speeds does it resonate?"
@@ -31,8 +31,6 @@ OF_SPEEDS = {"ranges": "rpm", "looked": "rpm", "there": "rpm", "strong": "rpm", 
 """Units of figures that not every sentence states."""
 DRAWINGS = 16
 """Drawings of flanks of one class whose errors are told."""
-POSITIONS = 60
-"""Mesh phases at which another drawing is solved: enough for two figures of its error."""
 RELIEFS = (0.25, 0.5, 0.75, 1.0, 1.25, 1.5)
 """Tip reliefs that are tried, over the mean deflection of the loaded teeth."""
 
@@ -180,6 +178,12 @@ def loads(asked: Asked) -> Iterator[Answer]:
             figures |= {"motions": every.tolist()}
             others = ", ".join(f"{{motions[{n}]:.2f}}" for n in range(1, every.size))
             gives = f"{{motions[0]:.2f}} from rest, {others} in another motion at the same speed"
+        if point == asked.hardest and asked.assemblies[1].size:
+            gives += (
+                " as its teeth are numbered, {smallest:.2f} to {largest:.2f} in {assemblies} of "
+                "its {possible} assemblies"
+            )
+            figures |= _spread(asked, asked.assemblies[1])
         sentence = f"The vibration computed gives {gives}; ISO 6336-1 {words}."
         yield answer(LOADS, "dynamic_factor", sentence, figures["own"], figures=figures, **about)
 
@@ -223,11 +227,27 @@ def errors(asked: Asked) -> Iterator[Answer]:
         if point == asked.hardest and (drawn := _drawings(asked)):
             sentence += "; {drawings} drawings of the class have {least:~2 µm} to {greatest:~2 µm}"
             figures |= {"drawings": len(drawn), "least": min(drawn), "greatest": max(drawn)}
+        if point == asked.hardest and asked.assemblies[0].size:
+            sentence += (
+                "; {assemblies} of its {possible} assemblies have {smallest:.2f µm} to "
+                "{largest:.2f µm}: state gears.marks"
+            )
+            figures |= _spread(asked, 1e6 * asked.assemblies[0])
         value = float(with_mesh[point]) if np.isfinite(most) else float("nan")
         yield answer(
             ERROR, "transmission_error", f"{sentence}.", value, most=most, at=at, figures=figures
         )
     yield _relief(asked)
+
+
+def _spread(asked: Asked, values: Floats) -> dict[str, float]:
+    """Least and greatest of the assemblies' ``values``, and how many there are."""
+    return {
+        "smallest": float(np.nanmin(values)),
+        "largest": float(np.nanmax(values)),
+        "assemblies": int(np.isfinite(values).sum()),
+        "possible": asked.case.assembly_count,
+    }
 
 
 def _of_the_mesh(error: Floats, turn: int) -> Floats:

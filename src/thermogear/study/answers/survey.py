@@ -81,17 +81,21 @@ def notices(case: GearCase, found: Sequence[Answer], speeds: Speeds | None) -> I
         yield Notice.of("some_points_answered", answered=MOST_POINTS, points=count)
     if case.accuracy is not None:
         drawn = next((one.figures for one in found if "drawings" in one.figures), {})
-        errors = [1e-6 * drawn[name] for name in ("least", "greatest", "hot") if drawn]
+        hot = "mesh" if "mesh" in drawn else "hot"
+        errors = [1e-6 * drawn[name] for name in ("least", "greatest", hot) if drawn]
         yield Notice.of(
             "flanks_are_one_drawing",
             accuracy=case.accuracy,
             drawings=drawn.get("drawings"),
             errors=[errors[:2]] if drawn else None,
             this=errors[2] if drawn else None,
+            choice="drawn" if case.period.mesh_periods == 1 else None,
         )
     if speeds is not None:
         looked = speeds.column("pinion_speed")
-        yield Notice.of("speeds_looked_at", least=looked.min(), greatest=looked.max())
+        yield Notice.of(
+            "speeds_looked_at", least=looked.min(), greatest=looked.max(), step=speeds.step
+        )
 
 
 def answered(

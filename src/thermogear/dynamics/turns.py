@@ -3,7 +3,7 @@
 A turn of many mesh periods is long against the time in which a vibration dies out, so that a run
 which begins that time ahead of the turn repeats it at once, wherever one motion exists. No orbit
 is proven: two turns, or groups of them, agree at their ends.
-Checked by ``tests/analysis/test_turns.py``: event-exact orbits of the same tables, and the closed
+Checked by ``tests/dynamics/test_turns.py``: event-exact orbits of the same tables, and the closed
 form of a pair that never parts.
 """
 
@@ -15,7 +15,6 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.analysis.settle import PERIODIC, UNDECIDED
 from thermogear.base.arrays import Complexes, Floats
 from thermogear.dynamics.kernels.turns import advance_turn
 
@@ -73,13 +72,11 @@ def _series(coefficients: Complexes, count: int) -> Floats:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class TurnMotions:
-    """One entry per run: ``label`` as :data:`~thermogear.analysis.settle.LABELS` (periodic or
-    undecided), ``period`` in turns (0: none), ``state`` (run, 2) at phase 0, and over its cycle, or
-    the later half of what was followed where none is: greatest and least force k f over the mean
-    stiffness, greatest and least x + e, share of time out of drive-side contact.
+    """One entry per run: ``period`` in turns (0: none was seen), ``state`` (run, 2) at phase 0, and
+    over its cycle, or the later half of what was followed where none is: greatest and least force
+    k f over the mean stiffness, greatest and least x + e, share of time out of drive-side contact.
     """
 
-    label: NDArray[np.int8]
     period: NDArray[np.int32]
     state: Floats
     force: Floats
@@ -109,7 +106,6 @@ def follow_turns(tables: TurnTables, lanes: TurnLanes, start: Floats) -> TurnMot
     """
     count, mesh = lanes.mean.size, tables.mesh_periods
     out = TurnMotions(
-        label=np.full(count, UNDECIDED, np.int8),
         period=np.zeros(count, np.int32),
         state=np.array(start, dtype=float),
         force=np.full((count, 2), np.nan),
@@ -164,7 +160,6 @@ def _follow(
             span = length or max(most // 2, 1)
             _keep(out, index[rows], felt[number + 1 - span : number + 1][:, :, rows], turn)
             out.period[index[rows]] = length
-            out.label[index[rows]] = PERIODIC if length else UNDECIDED
             out.state[index[rows]] = ends[number + 1][:, rows].T
         active = active[~done]
         if not active.size:
