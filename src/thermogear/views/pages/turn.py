@@ -176,8 +176,8 @@ def tables(groups: Mapping[str, Dataset]) -> tuple[list[Table], list[Table]]:
     every = declared(
         "Tooth by tooth. Index error: the drive flank at the pitch point along the line of action, "
         "from the mean of its gear, > 0 early, eccentricity included. The greatest pressure on the "
-        "flank, with the distance from the pinion's tangent point and the mate; no pressure is known "
-        "on a corner.",
+        "flank, with the distance from the pinion's tangent point and the mate; no pressure is "
+        "known on a corner.",
         TEETH,
         rows_along(teeth, "tooth"),
         names=2,

@@ -14,7 +14,7 @@ from thermogear.views.typesetting import FAR, plain, shown
 
 
 def over_phase(data: Dataset) -> Picture:
-    """Half backlash over a mesh period or a turn, undeformed and hot, at the first operating point."""
+    """Half backlash over the mesh phase, undeformed and hot, at the first operating point."""
     panel = phase_panel(data, axis_of("half_backlash_curve", "half backlash"))
     x = shown(data, "mesh_phase")
     for place, state in enumerate(names_of(data, "state")):

@@ -59,8 +59,10 @@ def draw_phase(panel: Panel, data: Dataset, values: Floats, **look: Any) -> None
         return
     cuts = np.arange(0, x.size, x.size // of * -(-of // (MOST_POINTS // 2)))
     low, high = np.minimum.reduceat(values, cuts), np.maximum.reduceat(values, cuts)
-    kept = {name: look[name] for name in ("colour", "label") if name in look}
-    panel.band(x[cuts], low=low, high=high, opacity=0.5, **kept)
+    colour, label = look["colour"], look.get("label", "")
+    panel.band(x[cuts], low=low, high=high, opacity=0.4, colour=colour, label=label)
+    for edge in (low, high):
+        panel.curve(x[cuts], edge, colour=colour, width=0.4)
 
 
 def shows_course(samples: int, of: int) -> bool:
