@@ -53,8 +53,8 @@ def caption(data: Dataset, start: str) -> str:
     some = f" {jammed} of {data.sizes['gear_temperature']} temperatures jam." if jammed else ""
     return (
         f"{whose}At {speed:.6g} rpm and {torque:.6g} N m, both gears at one temperature, the other "
-        f"bodies as temperatures.follow says. A still picture shows {start}. Each orbit is settled by "
-        f"itself: where several motions exist, another start may find another one.{some}"
+        f"bodies as temperatures.follow says. A still picture shows {start}. Each orbit is settled "
+        f"by itself: where several motions exist, another start may find another one.{some}"
     )
 
 
