@@ -172,6 +172,11 @@ def _caption(kind: str, summary: Summary, groups: Groups) -> str:
         words = ["Dashed: edges of the backlash."] * bool(edges)
         words.append("An orbit is stable where its multipliers lie inside the circle.")
         words += ["Lines at half orders show a doubled period."] * half
+        if "mesh_periods" in summary:
+            words.append(
+                f"The orbit closes after turns of {summary['mesh_periods']} mesh periods; the "
+                "phase plane shows those in which it swings most."
+            )
         return " ".join(words)
     if kind == "branch":
         legs, points = summary["branches"], summary["bifurcations"]
@@ -220,7 +225,7 @@ def _orbit_tables(summary: Summary) -> list[Block]:
     share = summary["time_share"]
     factor = summary["dynamic_load_factor"]
     values = {
-        "period n": (str(summary["period"]), "mesh periods"),
+        "period n": (str(summary["period"]), _periods(summary)),
         **{
             f"multiplier {i}": (_complex(mu), f"modulus {mu['modulus']:.9f}")
             for i, mu in enumerate(summary["multipliers"], start=1)
@@ -248,7 +253,7 @@ def _orbit_tables(summary: Summary) -> list[Block]:
     rows = [{"name": k, "value": value, "unit": unit} for k, (value, unit) in values.items()]
     columns = (
         Column("order", "order", 4),
-        Column("", lambda line: "half order" if line["half_order"] else ""),
+        Column("", lambda line: "half order" if line["half_order"] else line.get("name") or ""),
         Column(f"amplitude [{length.unit}]", lambda line: length(line["amplitude"]), 5),
         Column("frequency [Hz]", "frequency_hz", 6),
     )
@@ -260,8 +265,13 @@ def _orbit_tables(summary: Summary) -> list[Block]:
     ]
 
 
+def _periods(summary: Summary) -> str:
+    turn = summary.get("mesh_periods", 1)
+    return "mesh periods" if turn == 1 else f"turns of {turn} mesh periods"
+
+
 def _complex(mu: dict[str, float]) -> str:
-    text = f"{mu['real']:.9f}"
+    text = f"{mu['real']:z.9f}"
     if mu["imag"] != 0.0:
         text += f" {'+' if mu['imag'] > 0 else '−'} {abs(mu['imag']):.9f} i"
     return text.replace("-", "−")

@@ -37,22 +37,17 @@ def axis_of(
 
 def phase_panel(data: Dataset, y: Axis) -> Panel:
     """A panel over one mesh period, or over all mesh periods of a turn."""
-    x = axis_of("mesh_phase", "mesh phase", low=0.0, high=float(mesh_periods(data)))
-    return Panel(x, y)
+    periods = float(int(data["mesh_phase"].values[-1]) + 1)
+    return Panel(axis_of("mesh_phase", "mesh phase", low=0.0, high=periods), y)
 
 
-def mesh_periods(data: Dataset) -> int:
-    """The mesh periods over which ``mesh_phase`` runs."""
-    return int(data["mesh_phase"].values[-1]) + 1
-
-
-def draw_phase(panel: Panel, data: Dataset, values: Floats, **look: Any) -> None:
-    """``values`` over the mesh phase of ``data`` in at most :data:`MOST_POINTS` points.
+def draw_phase(panel: Panel, x: Floats, values: Floats, **look: Any) -> None:
+    """``values`` over the mesh phases ``x`` from 0 on in at most :data:`MOST_POINTS` points.
 
     Every so many samples where :data:`FEWEST` of a mesh period are left; else a band from the
     least to the greatest of each mesh period, or of as many as it takes.
     """
-    x, of = shown(data, "mesh_phase"), mesh_periods(data)
+    of = int(x[-1]) + 1
     if shows_course(x.size, of):
         step = -(-x.size // MOST_POINTS)
         panel.curve(x[::step], values[::step], **look)
@@ -144,7 +139,7 @@ def draw_by_bundle(
             words = plain(f"{what}, {bundle}" if what else bundle)
             dash = bundle_line(bundles, place)
             if "mesh_phase" in data[name].dims:
-                draw_phase(panel, data, values[place], colour=colour, dash=dash, label=words)
+                draw_phase(panel, x, values[place], colour=colour, dash=dash, label=words)
             else:
                 panel.curve(x, values[place], colour=colour, dash=dash, label=words)
 

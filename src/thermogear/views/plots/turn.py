@@ -50,7 +50,7 @@ def error_of_turn(data: Dataset) -> Picture:
     whole.top = Top("mesh periods [–]", 1.0)
     # bands over each other cannot be told apart
     for values, colour, label in curves if shows_course(phase.size, of) else curves[:1]:
-        draw_phase(whole, data, values, colour=colour, label=label, width=1.2)
+        draw_phase(whole, phase, values, colour=colour, label=label, width=1.2)
     shown = min(of, int(data.attrs["teeth"][0]))
     if shown == of:
         return Picture([[whole]], size=(WIDE, 3.4), legend=2, top=0.75)
