@@ -9,6 +9,7 @@ from typing import Any
 
 from thermogear.base.arrays import Dataset
 from thermogear.base.display import MICROMETRE, NANOMETRE, PERCENT, Display, number
+from thermogear.base.vocabulary import label_words
 from thermogear.results.result import Result
 from thermogear.views.columns import Column, Row, declared, pairs
 from thermogear.views.csv_files import cell_text, head_text
@@ -186,6 +187,8 @@ def _caption(kind: str, summary: Summary, groups: Groups) -> str:
             "; ".join(["solid: stable"] * stable + ["dotted: unstable"] * unstable).capitalize()
         ]
         words += ["Marks: where bifurcations were located"] * bool(points)
+        if "mesh_periods" in summary:
+            words.append(f"Periods are those of the turn of {summary['mesh_periods']} mesh periods")
         return ". ".join(words) + "."
     if kind == "cascade":
         several = len({one["heat"] for one in summary["cascades"]}) > 1
@@ -306,8 +309,10 @@ def _branch_tables(summary: Summary) -> list[Block]:
         Column("points", "points"),
         Column("stable", "stable_points"),
     )
+    of = summary.get("mesh_periods", 1)
+    words = partial(label_words, followed=0, starts=1, mesh_periods=of)
     found, branches = (
-        [row | {"orbit": f"period {row['period']}"} for row in summary[name]]
+        [row | {"orbit": words(f"period-{row['period']}")} for row in summary[name]]
         for name in ("bifurcations", "branches")
     )
     none = Text("No bifurcation was found on the way.")

@@ -59,6 +59,7 @@ def orbit_of(one: Dataset) -> Orbit:
     of = int(one.attrs.get("mesh_periods", 1))
     label = str(one["label"].item())
     loop = periods_to_draw(label, samples_per_period=samples * of, stored=t.size)
+    loop = loop if of == 1 else min(loop, HISTORY * samples + 1)
     history = max(min(t.size, HISTORY * samples + 1), min(t.size, 2 * loop))
     times = max(1, round(SMOOTH / samples)) if loop < t.size else 1
     t, x, v = refined(t[:history], x=x[:history], v=v[:history], times=times)

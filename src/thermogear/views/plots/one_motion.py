@@ -18,7 +18,7 @@ from thermogear.views.style import COLD, HOT, INK, OKABE_ITO, QUIET, WIDE
 from thermogear.views.typesetting import plain
 
 HIGHEST_ORDER = 8.0
-LOOPS = 8
+LOOPS = 4
 """Mesh periods of a turn whose phase plane is drawn."""
 DASHED = (4, 2)
 DOTTED = (1, 1.5)
@@ -51,17 +51,17 @@ def orbit_picture(data: Dataset) -> Picture:
             ("velocity", data["velocity"].values[0]),
         )
     )
-    t, x, v = refined(t, x=x, v=v, times=4 if of == 1 else 1)
-    along = t * period * of / t[-1]
+    loop = slice(None) if of == 1 else _widest(x, each=round(x.size / (period * of)))
+    along, whole = t * period * of / t[-1], length(x)
+    t, x, v = refined(t[loop], x=x[loop], v=v[loop], times=4)
     x, v = length(x), speed(v)
     history = Panel(Axis("time in mesh periods t/T [–]"), Axis(x_words), "One orbit")
     phase = Panel(Axis(x_words), Axis(v_words), "Phase plane, section at phase 0")
-    loop = slice(None) if of == 1 else _widest(x, each=round(x.size / (period * of)))
     if of == 1:
-        history.curve(along, x, colour=COLD, width=1.3)
+        history.curve(t * period / t[-1], x, colour=COLD, width=1.3)
     else:
-        draw_phase(history, along[:-1], x[:-1], colour=COLD, width=0.8)
-    phase.curve(x[loop], v[loop], colour=COLD, width=1.3)
+        draw_phase(history, along[:-1], whole[:-1], colour=COLD, width=0.8)
+    phase.curve(x, v, colour=COLD, width=1.3)
     phase.points(
         length(data["section_displacement"].values), speed(data["section_velocity"].values),
         size=6.5, colour=HOT, edge="white",
