@@ -196,9 +196,7 @@ def told_orbit(
     if of > 1:
         least = max(least, float(np.sort(amplitude[1:])[-LINES_OF_TURN:][0]) * (1.0 - 1e-12))
     shown = (order > 0.0) & (amplitude > least)
-    whole = order * of
-    gears = point.gears.pair if points.gears else None
-    repeats = Period(of, None if gears is None else (gears.pinion.teeth, gears.wheel.teeth))
+    whole, repeats = order * of, point.gears.period if points.gears else Period(of)
     lines = [
         {
             "order": float(q),

@@ -10,7 +10,6 @@ from thermogear.case.case import GearCase
 from thermogear.gears.candidates import mesh_points
 from thermogear.gears.deviations import GEARS
 from thermogear.gears.loaded import LoadedMesh
-from thermogear.gears.pair import GearPair
 from thermogear.mesh.elastic import TURN_POSITIONS, LoadedPair, turn_phases
 from thermogear.mesh.thermal import HotPair
 from thermogear.signals.spectra import amplitude_spectrum
@@ -81,69 +80,58 @@ def _teeth(case: GearCase, mesh: LoadedMesh) -> Dataset:
 
     ``index_error`` [m] along the line of action, > 0 added material: its drive flank's place at the
     pitch point from the mean of all teeth of its gear, as measured about the axis of rotation, so
-    that eccentricity is in it. ``load_carried``:
-    load times time over the mean of the gear's teeth. ``greatest_share`` of the load, the greatest
-    ``contact_pressure`` [Pa] on its flank with the ``position`` [m] from the pinion's tangent point
-    and the ``mate``; nan and 0 where no pressure is known.
+    that eccentricity is in it. ``load_carried``: load times time over the mean of the gear's teeth.
+    ``greatest_share`` of the load, the greatest ``contact_pressure`` [Pa] on its flank with the
+    ``position`` [m] from the pinion's tangent point and the ``mate``; nan and 0 where no pressure
+    is known.
     """
-    columns: dict[str, list[Floats]] = {}
-    share, s = mesh.share[0], mesh.points.s
-    pressure = np.where(np.isfinite(mesh.pressure[0]), mesh.pressure[0], 0.0)
-    for gear, other in zip(GEARS, GEARS[::-1], strict=True):
-        count, tooth = case.pair.gear(gear).teeth, mesh.points.contacts.tooth(gear)
-        carried = np.bincount(tooth.ravel(), share.ravel(), count)
-        share_most, most, place, mate = (np.zeros(count) for _ in range(4))
-        np.maximum.at(share_most, tooth, share)
-        np.maximum.at(most, tooth, pressure)
-        at = np.nonzero((pressure == most[tooth]) & (pressure > 0.0))
-        place[tooth[at]] = s[at]
-        mate_of = mesh.points.contacts.tooth(other)[at]
-        mate[tooth[at]] = [case.tooth_number(other, int(n)) for n in mate_of]
-        known = most > 0.0
-        rows = {
-            "number": np.array([case.tooth_number(gear, n) for n in range(count)]),
-            "index_error": _index_error(case, gear),
-            "load_carried": carried / carried.mean(),
-            "greatest_share": share_most,
-            "contact_pressure": np.where(known, most, np.nan),
-            "position": np.where(known, place, np.nan),
-            "mate": mate.astype(int),
-        }
-        order = np.argsort(rows["number"])
-        for name, values in rows.items():
-            columns.setdefault(name, []).append(values[order])
-    meaning = {
-        "number": ("1", "number of the tooth in the case file"),
-        "index_error": (
-            "m",
-            "place of the drive flank at the pitch point, along the line of action",
-        ),
-        "load_carried": ("1", "load times time over the mean of the gear's teeth"),
-        "greatest_share": ("1", "greatest share of the load"),
-        "contact_pressure": ("Pa", "greatest Hertzian pressure on the flank"),
-        "position": ("m", "distance from the pinion's tangent point of the greatest pressure"),
-        "mate": ("1", "tooth of the mate at the greatest pressure, 0: none"),
-    }
-    joined = {
-        name: (("tooth",), np.concatenate(values), *meaning[name])
-        for name, values in columns.items()
-    }
-    gears = np.repeat(GEARS, [case.pair.gear(gear).teeth for gear in GEARS])
-    return label(joined, {"gear": dressed(("tooth",), gears, "", "gear")})
+    import xarray as xr
 
-
-def _index_error(case: GearCase, gear: str) -> Floats:
-    """Of each tooth, in the order in which they mesh [m]."""
-    pair: GearPair = case.pair
-    count = pair.gear(gear).teeth
+    contacts, share, pair = mesh.points.contacts, mesh.share[0], case.pair
+    pressure = np.where(np.isfinite(mesh.pressure[0]), mesh.pressure[0], 0.0).ravel()
     at_pitch = (pair.path.c - pair.path.a) / pair.base_pitch
-    points = mesh_points(pair, np.arange(count) + at_pitch)
-    rank = int(np.argmin(np.abs(points.s[0] - pair.path.c)))
-    gaps = [d.gap(points.contacts) for d in case.deviations if getattr(d, "gear", "") == gear]
-    taken_off = np.broadcast_to(sum(gaps), points.s.shape)[:, rank]
-    found = np.empty(count)
-    found[points.contacts.tooth(gear)[:, rank]] = taken_off.mean() - taken_off
-    return found
+    found = []
+    for gear, other in zip(GEARS, GEARS[::-1], strict=True):
+        count, tooth = pair.gear(gear).teeth, contacts.tooth(gear)
+        # each tooth where its pressure is greatest, in the order of the teeth
+        worst = np.lexsort((pressure, tooth.ravel()))
+        worst = worst[np.cumsum(np.bincount(tooth.ravel(), minlength=count)) - 1]
+        known = pressure[worst] > 0.0
+        carried, most = np.bincount(tooth.ravel(), share.ravel(), count), np.zeros(count)
+        np.maximum.at(most, tooth, share)
+        points = mesh_points(pair, np.arange(count) + at_pitch)
+        rank = int(np.argmin(np.abs(points.s[0] - pair.path.c)))
+        gaps = [d.gap(points.contacts) for d in case.deviations if getattr(d, "gear", "") == gear]
+        gap = np.broadcast_to(sum(gaps), points.s.shape)[:, rank]
+        # the tooth at the pitch point is the one that entered last
+        gap = gap[np.argsort(points.contacts.tooth(gear)[:, rank])]
+        mates = contacts.tooth(other).ravel()[worst]
+        number = [case.tooth_number(gear, n) for n in range(count)]
+        columns = {
+            "gear": ([gear] * count, "", "gear"),
+            "number": (number, "1", "number of the tooth in the case file"),
+            "index_error": (gap.mean() - gap, "m", "drive flank at the pitch point, from the mean"),
+            "load_carried": (carried / carried.mean(), "1", "load times time, over the mean"),
+            "greatest_share": (most, "1", "greatest share of the load"),
+            "contact_pressure": (
+                np.where(known, pressure[worst], np.nan),
+                "Pa",
+                "greatest Hertzian pressure on the flank",
+            ),
+            "position": (
+                np.where(known, mesh.points.s.ravel()[worst], np.nan),
+                "m",
+                "distance from the pinion's tangent point of the greatest pressure",
+            ),
+            "mate": (
+                known * np.array([case.tooth_number(other, int(n)) for n in mates]),
+                "1",
+                "tooth of the mate at the greatest pressure, 0: none",
+            ),
+        }
+        rows = label({name: (("tooth",), *entry) for name, entry in columns.items()})
+        found.append(rows.sortby("number"))
+    return xr.concat(found, "tooth")
 
 
 def _assemblies(case: GearCase, hot: HotPair, phase: Floats) -> Dataset:

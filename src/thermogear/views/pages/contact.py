@@ -116,22 +116,21 @@ def page(result: Result) -> Page:
         f"and {data.sizes['temperature']} temperatures; body "
         f"{result.text('body').replace('_', ' ')}."
     )
-    of_turn, teeth = turn.tables(result.groups)
+    of_turn = turn.tables(result.groups)
     of_survey = [against, table, corners]
-    if of_turn:
-        summary += " The mean tooth over one mesh period, and the turn of all teeth below."
+    summary += " Of the mean tooth; below, the turn of all teeth." * bool(of_turn)
     every = data.assign(iso_6336_stiffness=beside["iso_stiffness"])
     return survey(
         result,
         summary,
         pictures,
-        [*of_turn, *of_survey, *teeth],
+        [*of_survey, *of_turn],
         numbers=lambda: {
             **by_name(every, IN_JSON),
-            **turn.numbers(result),
+            **turn.numbers(result.groups),
             "units": units(IN_JSON, every),
         },
-        told=[*of_survey, *of_turn],
+        told=[*of_survey, *of_turn[:1]],
     )
 
 

@@ -226,9 +226,9 @@ def _headline(kind: str, summary: Summary) -> str:
 def _orbit_tables(summary: Summary) -> list[Block]:
     length = MICROMETRE if summary["units"] == "SI" else Display("–")
     share = summary["time_share"]
-    factor = summary["dynamic_load_factor"]
+    factor, of = summary["dynamic_load_factor"], summary.get("mesh_periods", 0)
     values = {
-        "period n": (str(summary["period"]), _periods(summary)),
+        "period n": (str(summary["period"]), f"turns of {of} mesh periods" if of else "mesh periods"),
         **{
             f"multiplier {i}": (_complex(mu), f"modulus {mu['modulus']:.9f}")
             for i, mu in enumerate(summary["multipliers"], start=1)
@@ -266,11 +266,6 @@ def _orbit_tables(summary: Summary) -> list[Block]:
         declared("Orbit", ORBIT, rows),
         declared("Greatest lines", columns, strongest, names=2, marked=half),
     ]
-
-
-def _periods(summary: Summary) -> str:
-    turn = summary.get("mesh_periods", 1)
-    return "mesh periods" if turn == 1 else f"turns of {turn} mesh periods"
 
 
 def _complex(mu: dict[str, float]) -> str:

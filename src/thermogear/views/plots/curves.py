@@ -41,15 +41,14 @@ def phase_panel(data: Dataset, y: Axis) -> Panel:
     return Panel(axis_of("mesh_phase", "mesh phase", low=0.0, high=periods), y)
 
 
-def draw_phase(panel: Panel, x: Floats, values: Floats, **look: Any) -> None:
-    """``values`` over the mesh phases ``x`` from 0 on in at most :data:`MOST_POINTS` points.
+def draw_phase(panel: Panel, x: Floats, *, values: Floats, **look: Any) -> None:
+    """``values`` over the mesh phases ``x`` in at most :data:`MOST_POINTS` points.
 
     Every so many samples where :data:`FEWEST` of a mesh period are left; else a band from the
     least to the greatest of each mesh period, or of as many as it takes.
     """
-    of = int(x[-1]) + 1
-    if shows_course(x.size, of):
-        step = -(-x.size // MOST_POINTS)
+    of, step = int(x[-1] - x[0]) + 1, -(-x.size // MOST_POINTS)
+    if x.size >= FEWEST * of * step:
         panel.curve(x[::step], values[::step], **look)
         return
     cuts = np.arange(0, x.size, x.size // of * -(-of // (MOST_POINTS // 2)))
@@ -58,11 +57,6 @@ def draw_phase(panel: Panel, x: Floats, values: Floats, **look: Any) -> None:
     panel.band(x[cuts], low=low, high=high, opacity=0.4, colour=colour, label=label)
     for edge in (low, high):
         panel.curve(x[cuts], edge, colour=colour, width=0.4)
-
-
-def shows_course(samples: int, of: int) -> bool:
-    """Whether the drawn ones of so many samples show the course of each ``of`` mesh periods."""
-    return samples >= FEWEST * of * -(-samples // MOST_POINTS)
 
 
 def along_path(data: Dataset, y: Axis, *, letters: bool = True) -> Panel:
@@ -139,7 +133,7 @@ def draw_by_bundle(
             words = plain(f"{what}, {bundle}" if what else bundle)
             dash = bundle_line(bundles, place)
             if "mesh_phase" in data[name].dims:
-                draw_phase(panel, x, values[place], colour=colour, dash=dash, label=words)
+                draw_phase(panel, x, values=values[place], colour=colour, dash=dash, label=words)
             else:
                 panel.curve(x, values[place], colour=colour, dash=dash, label=words)
 

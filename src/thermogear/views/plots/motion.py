@@ -130,7 +130,8 @@ def four_panels(data: Dataset, *, bundle: int, operating: int) -> Picture:
 def _spectra(here: Dataset, states: list[str], points: list[Dataset]) -> Panel:
     """Amplitude over order, with the frequency in Hz along the top."""
     order = here["order"].values
-    of, width = int(here.attrs.get("mesh_periods", 1)), _bin_width(here)
+    of = int(here.attrs.get("mesh_periods", 1))
+    width = float(here.attrs.get("bin_width_orders", order[1] - order[0]))
     # a motion that repeats after a turn has no line between those of the turn
     step = max(1, round(1.0 / (of * width))) if of > 1 else 1
     scale = display("line_amplitude")
@@ -150,11 +151,6 @@ def _spectra(here: Dataset, states: list[str], points: list[Dataset]) -> Panel:
         panel.title += f" = {number(width * mesh)} Hz"
         panel.top = Top("frequency f [Hz]", mesh)
     return panel
-
-
-def _bin_width(here: Dataset) -> float:
-    order = here["order"].values
-    return float(here.attrs.get("bin_width_orders", order[1] - order[0]))
 
 
 def mesh_frequency(here: Dataset) -> float:

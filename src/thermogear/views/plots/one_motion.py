@@ -60,7 +60,7 @@ def orbit_picture(data: Dataset) -> Picture:
     if of == 1:
         history.curve(t * period / t[-1], x, colour=COLD, width=1.3)
     else:
-        draw_phase(history, along[:-1], whole[:-1], colour=COLD, width=0.8)
+        draw_phase(history, along[:-1], values=whole[:-1], colour=COLD, width=0.8)
     phase.curve(x, v, colour=COLD, width=1.3)
     phase.points(
         length(data["section_displacement"].values), speed(data["section_velocity"].values),

@@ -33,7 +33,7 @@ def by_state(data: Dataset) -> Panel:
     x = shown(data, "mesh_phase")
     for place, state in enumerate(names_of(data, "state")):
         colour, one = STATES.get(state, INK), data.isel(state=place)
-        draw_phase(panel, x, shown(one, "mesh_stiffness"), colour=colour, label=plain(state))
+        draw_phase(panel, x, values=shown(one, "mesh_stiffness"), colour=colour, label=plain(state))
         mean = float(shown(one, "mean_stiffness"))
         panel.line(y=mean, colour=colour, width=1.0, dash=(2, 2), label=plain(f"{state}, mean"))
     return panel
@@ -46,7 +46,7 @@ def over_phase(data: Dataset, bundle: int) -> Picture:
     if float(np.nanmax(np.abs(data["thermal_stiffness"].isel(bundle=bundle).values))) > 0.0:
         elastic = shown(here.isel(state=-1), "elastic_stiffness")
         words = f"hot without {math_symbol('k_T')}"
-        draw_phase(panel, x, elastic, colour=HOT, width=1.1, dash=(5, 2), label=words)
+        draw_phase(panel, x, values=elastic, colour=HOT, width=1.1, dash=(5, 2), label=words)
     return Picture([[panel]])
 
 
