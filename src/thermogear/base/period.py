@@ -50,9 +50,36 @@ class Period:
             found["hunting_tooth"] = 1
         return found
 
+    def line(self, order: int) -> str:
+        """The name of an ``order`` of the period: of a harmonic of the mesh, or of what lies by it.
+
+        The nearest harmonic of the mesh, and how many orders of a shaft beside it: of the one that
+        takes fewer; of the hunting tooth where it is of neither.
+
+        >>> period = Period.of((20, 30), pinion=True, wheel=True)
+        >>> [period.line(order) for order in (3, 4, 1, 60, 126)]
+        ['pinion', '2 wheel', 'hunting tooth', 'mesh', '2 mesh + 2 pinion']
+        """
+        harmonic = (2 * order + self.mesh_periods) // (2 * self.mesh_periods)
+        beside = order - harmonic * self.mesh_periods
+        parts = [_times(harmonic, "mesh")] * (harmonic > 0)
+        if beside:
+            orders = self.orders
+            shafts = [(abs(beside) // orders[name], name) for name in ("pinion", "wheel")
+                      if name in orders and beside % orders[name] == 0]  # fmt: skip
+            count, name = min(shafts, default=(abs(beside), "hunting tooth"))
+            if len({many for many, _ in shafts}) < len(shafts):
+                name = "both shafts"
+            parts += [("−" if beside < 0 else "+") * bool(parts), _times(count, name)]
+        return " ".join(part for part in parts if part)
+
     def frequency(self, mesh_frequency: float) -> float:
         """How often the period repeats [the unit of ``mesh_frequency``]."""
         return mesh_frequency / self.mesh_periods
+
+
+def _times(count: int, name: str) -> str:
+    return name if count == 1 else f"{count} {name}"
 
 
 def turns(mesh_periods: int, *, of: int) -> int:

@@ -82,6 +82,8 @@ def branch_results(
         notices += told
     summary = summary_of(point.title, varied, legs, (begin, to), cut)
     summary["parameters"] = point.parameters
+    if point.points.mesh_periods > 1:
+        summary["mesh_periods"] = point.points.mesh_periods
     groups = {f"branch_{i}": dataset(leg, varied.unit) for i, leg in enumerate(legs)}
     if plane is not None:
         summary |= plane.summary(curves, varied)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -17,12 +17,14 @@ from thermogear.case.case import GearCase
 from thermogear.case.thermal_state import HOT, UNDEFORMED, ThermalState
 from thermogear.gears.iso6336 import iso6336_stiffness
 from thermogear.gears.loaded import loaded_contact
+from thermogear.gears.turn import mean_tooth
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair
 from thermogear.results.result import Notice, Result
 from thermogear.study.corners import HotContact
 from thermogear.study.declared import Contact, declared
 from thermogear.study.relief import UNIFORM, one_point
+from thermogear.study.turn import turn_contact
 
 PARTS = (0.1, 0.25, 0.5, 1.0, 2.0)
 """Loads, as parts of the case's greatest, where none are named."""
@@ -50,7 +52,9 @@ def loaded_survey(
     gives it, with ``corner_onset_torque`` [N m] over (temperature, gear); ``base_pitch`` over
     (temperature_difference, load) with the hot pair's gears of unequal temperature:
     ``double_contact_length``, ``mean_stiffness``, ``edge_contact_share``, ``peak_to_peak_error``;
-    ``iso_6336`` the stiffness of method B at the same loads.
+    ``iso_6336`` the stiffness of method B at the same loads. Where teeth differ these are of the
+    mean tooth; ``turn``, ``teeth``, ``assemblies`` (:func:`~thermogear.study.turn.turn_contact`)
+    are of the whole turn, hot, under the greatest of ``torques``, else the case's greatest.
     """
     most = max(case.torques, default=0.0)
     if not len(torques) and most <= 0.0:
@@ -64,7 +68,8 @@ def loaded_survey(
         state.require_settled(case, case.models[0])
     progress("loaded contact", 0, 2)
     ones = [one_point(s.operating(case, case.models[0]), float(moments[0])) for s in states]
-    at = HotContact(HotPair(case.pair, stacked(ones), model), case.deviations)
+    alike = mean_tooth(case.pair, case.deviations)
+    at = HotContact(HotPair(case.pair, stacked(ones), model), alike)
     contact = _solve(at, moments)
     contact = contact.assign(
         corner_onset_torque=dressed(
@@ -89,7 +94,7 @@ def loaded_survey(
     reach = max(most, float(moments.max()))
     light = reach * np.asarray(LIGHT)
     hotter = HotPair(case.pair, stacked(unequal), model)
-    heated = _solve(HotContact(hotter, case.deviations), light)
+    heated = _solve(HotContact(hotter, alike), light)
     progress("loaded contact", 2, 2)
     error = heated["transmission_error"]
     base_pitch = label(
@@ -135,11 +140,17 @@ def loaded_survey(
         {"load": (("load",), moments, "N m", "pinion torque")},
     )
     lost = int((contact["status"].values != 0).sum() + (heated["status"].values != 0).sum())
+    groups = {"contact": contact, "base_pitch": base_pitch, "iso_6336": compared}
+    if case.period.mesh_periods > 1:
+        moment = float(moments.max()) if len(torques) else most
+        hot = HotPair(case.pair, replace(ones[1], torque=np.array([moment])), model)
+        groups |= turn_contact(case, hot)
+        lost += int(np.isnan(groups["turn"]["transmission_error"].values).sum())
     return Result.of(
         Contact.kind,
         f"Loaded contact: {case.title}",
-        {"contact": contact, "base_pitch": base_pitch, "iso_6336": compared},
-        _notices(case, at, lost, contact, compared),
+        groups,
+        _notices(case, at, lost, groups),
         **case.provenance,
         body=model.body,
         base_pitch_length=case.pair.base_pitch,
@@ -184,8 +195,9 @@ def apart(point: Operating, difference: float) -> Operating:
 
 
 def _notices(
-    case: GearCase, at: HotContact, lost: int, contact: Dataset, compared: Dataset
+    case: GearCase, at: HotContact, lost: int, groups: Mapping[str, Dataset]
 ) -> Iterator[Notice]:
+    contact, compared = groups["contact"], groups["iso_6336"]
     edges, loads = contact["edge_contact_share"], contact["corner_load_share"]
     apart = (compared["iso_stiffness"] / compared["loaded_stiffness"] - 1.0).values
     yield Notice.of("loaded_contact_unchecked", body=at.hot.model.body)
@@ -209,3 +221,17 @@ def _notices(
         yield Notice.of("positions_not_settled", lost=lost)
     if any(m.stiffness != "loaded" for m in case.models):
         yield Notice.of("contact_of_every_bundle")
+    if "turn" in groups:
+        turn = groups["turn"].attrs
+        yield Notice.of(
+            "survey_of_mean_tooth", mesh_periods=turn["mesh_periods"], torque=turn["torque"]
+        )
+    if "assemblies" in groups:
+        ways = groups["assemblies"]
+        swings = ways["peak_to_peak_error"].values
+        yield Notice.of(
+            "assembly_not_stated",
+            swings=[[swings.min(), swings.max()]],
+            computed=swings.size,
+            count=ways.attrs["of"],
+        )

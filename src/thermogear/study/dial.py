@@ -34,7 +34,8 @@ def dial(case: GearCase, cycle: Dataset, progress: Progress = silent) -> Dataset
     ``cycle`` is the hot cycle of the case's first model: its mesh phases, and where it jams. Both
     addenda are at each temperature [K], the rest as ``temperatures.follow`` says; the start is the
     temperature of the pinion's tips when hot. ``status`` of each point; None where the heat of the
-    operating point did not settle.
+    operating point did not settle. A turn at every temperature costs too much: give it the mean
+    tooth of a case whose teeth differ.
     """
     model = case.models[0]
     if not HOT.settled(case, model):
@@ -79,6 +80,7 @@ def dial(case: GearCase, cycle: Dataset, progress: Progress = silent) -> Dataset
         pinion_speed=speed,
         pinion_torque=float(np.ravel(case.stated.torque)[0]),
         jammed=int(np.sum(status == STATUS.index("jammed"))),
+        mean_tooth=int(case.file.gears.period == "mesh"),
     )
 
 

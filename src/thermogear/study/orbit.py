@@ -19,6 +19,7 @@ from thermogear.analysis.proof import Label
 from thermogear.base.arrays import Dataset
 from thermogear.base.errors import ConvergenceError
 from thermogear.base.notice import Notice
+from thermogear.base.period import Period
 from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import label as labelled
 from thermogear.base.vocabulary import label_words
@@ -30,9 +31,12 @@ from thermogear.study.declared import ClosedOrbit, Lyapunov, declared
 
 SAMPLES = 256
 """Samples a mesh period of a stored orbit."""
+MOST_SAMPLES, LEAST_SAMPLES = 100_000, 64
+"""Samples of a whole orbit over many mesh periods, and of each of them all the same."""
 HIGHEST_ORDER = 20.0
 LEAST_LINE = 1e-12
 """Lines below this part of the greatest are rounding."""
+ROUNDING = 1e-9
 LINES_OF_TURN = 200
 """Lines told of an orbit over a turn, the greatest; all are stored."""
 ROUNDS = 10
@@ -146,8 +150,10 @@ def told_orbit(
     points, b = point.points, float(orbit.lanes.half_backlash[0])
     length, rate = float(points.length[0]), float(points.rate[0])
     hertz = float(points.mesh_frequency[0] / (2.0 * np.pi))
-    phase, x, v = orbit.samples(SAMPLES)
-    spectrum = amplitude_spectrum(x, float(orbit.sampling(SAMPLES)))
+    of = orbit.lanes.mesh_periods
+    samples = max(LEAST_SAMPLES, min(SAMPLES, MOST_SAMPLES // of))
+    phase, x, v = orbit.samples(samples)
+    spectrum = amplitude_spectrum(x, float(orbit.sampling(samples)))
     kept = spectrum.frequencies <= HIGHEST_ORDER
     order = spectrum.frequencies[kept]
     amplitude = spectrum.amplitudes[kept]
@@ -155,7 +161,7 @@ def told_orbit(
     shares = orbit.time_share
     factor = orbit.dynamic_load_factor()
     mu = orbit.multipliers
-    period_time, of = float(orbit.lanes.mesh_period[0]) / rate, orbit.lanes.mesh_periods
+    period_time = float(orbit.lanes.mesh_period[0]) / rate
     speed = length * rate
     variables: dict[str, Any] = {
         "time": (("sample",), phase * period_time),
@@ -181,6 +187,8 @@ def told_orbit(
     if points.gears:
         variables["line_frequency"] = (("order",), order * hertz)
     data = labelled(variables)
+    if of > 1:
+        data.attrs["mesh_periods"] = of
     data["phase"] = (("sample",), phase, {"units": "1", "long_name": "time in mesh periods"})
     if not points.gears:
         _without_units(data)
@@ -189,14 +197,18 @@ def told_orbit(
         LEAST_LINE * max(float(greatest[-1]), 1e-300), (1.0 - 1e-12) * float(greatest[0]) * (of > 1)
     )
     shown = (order > 0.0) & (amplitude > least)
+    whole, repeats = order * of, point.gears.period if points.gears else Period(of)
     lines = [
         {
             "order": float(q),
+            "name": repeats.line(round(n)) if abs(n - round(n)) < ROUNDING * of else None,
             "amplitude": float(a * length),
             "frequency_hz": float(q * hertz) if points.gears else None,
-            "half_order": bool(abs(2.0 * q - round(2.0 * q)) < 1e-9 and round(2.0 * q) % 2 == 1),
+            "half_order": bool(
+                abs(2.0 * n - round(2.0 * n)) < ROUNDING * of and round(2.0 * n) % 2 == 1
+            ),
         }
-        for q, a in zip(order[shown], amplitude[shown], strict=True)
+        for q, n, a in zip(order[shown], whole[shown], amplitude[shown], strict=True)
     ]
     summary: dict[str, Any] = {
         "title": point.title,

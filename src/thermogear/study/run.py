@@ -136,7 +136,9 @@ def _gear_groups(
         groups["profile"] = profiles(case.pair, case.operating, printed=of_the_thesis(case))
     if "motion" in wanted:
         groups["motion"] = _motion(case, cycles, "state", progress)
-        turned = dial(case, cycles[case.models[0].name].sel(state="hot"), progress)
+        alike, model = case.mean_tooth(), case.models[0]
+        hot = cycles[model.name].sel(state="hot") if alike is case else HOT.cycle(alike, model)
+        turned = dial(alike, hot, progress)
         if turned is not None:
             groups["dial"] = turned
     if "temperature" in wanted and case.gear_temperatures:
@@ -187,7 +189,8 @@ def _with_numbers(case: GearCase, cycle: Dataset) -> Dataset:
     mesh_frequency = np.broadcast_to(case.pair.pinion.teeth * turns, mean.shape)
     natural = np.sqrt(mean / mass) / (2.0 * np.pi)
     length = cycle["cold_half_backlash"].values
-    harmonic = 2.0 * np.abs(np.fft.rfft(cycle["mesh_stiffness"].values, axis=-1)[..., 1])
+    lines = np.fft.rfft(cycle["mesh_stiffness"].values, axis=-1)
+    harmonic = 2.0 * np.abs(lines[..., case.period.mesh_periods])
     samples = cycle.sizes["mesh_phase"]
     error = case.transmission_error.harmonics
     amplitude = abs(error[0]) if error else 0.0

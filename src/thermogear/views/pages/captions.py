@@ -264,7 +264,7 @@ def profile(factor: int, printed: bool, at: str) -> str:
 
 
 def gap_over_phase(mesh: Dataset) -> str:
-    """Of the half backlash over a mesh period."""
+    """Of the half backlash over the mesh phase."""
     drawn = mesh["half_backlash_curve"].isel(operating=told_operating(mesh))
     curves = drawn.transpose("bundle", "state", ...).values
     told = {}
@@ -325,13 +325,18 @@ def row_views(*, columns: int, most: int) -> str:
 
 
 def stiffness(mesh: Dataset, bundle: int) -> str:
-    """Of the mesh stiffness over a mesh period."""
+    """Of the mesh stiffness over the mesh phase."""
     one = mesh.isel(operating=told_operating(mesh), bundle=bundle)["mean_stiffness"].values
     change = PERCENT(float(one[-1]) / float(one[0]) - 1.0)
     words = where(mesh, "mean_stiffness")
     ratio = float(mesh.attrs.get("contact_ratio", np.nan))
     if 1.0 < ratio < 2.0:
         words += "High where two pairs carry, low where one does. "
+    if "mesh_periods" in mesh.attrs:
+        words += (
+            f"Over the turn of {mesh.attrs['mesh_periods']} mesh periods: where a tooth stands "
+            "back its neighbours carry on. "
+        )
     if not np.isfinite(change):
         return words
     return f"{words}Hot against undeformed the mean changes by {change:+.1f} %.".replace("-", "−")

@@ -22,6 +22,7 @@ from thermogear.results.result import Result
 from thermogear.views.columns import Column, by_name, declared, key, rows_along, units
 from thermogear.views.page import Page, Shown
 from thermogear.views.pages import survey_captions as captions
+from thermogear.views.pages import turn
 from thermogear.views.pages.survey import survey
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import COLD, HOT, INK, OKABE_ITO, WIDE, ramp
@@ -40,6 +41,7 @@ def page(result: Result) -> Page:
     pitch = float(result.text("base_pitch_length"))
     points = {str(k): float(v) for k, v in result.table("path_points").items()}
     pictures = [
+        *turn.pictures(result.groups),
         Shown(
             "phase",
             "Stiffness and transmission error over a mesh period, hot",
@@ -114,13 +116,21 @@ def page(result: Result) -> Page:
         f"and {data.sizes['temperature']} temperatures; body "
         f"{result.text('body').replace('_', ' ')}."
     )
+    of_turn = turn.tables(result.groups)
+    of_survey = [against, table, corners]
+    summary += " Of the mean tooth; below, the turn of all teeth." * bool(of_turn)
     every = data.assign(iso_6336_stiffness=beside["iso_stiffness"])
     return survey(
         result,
         summary,
         pictures,
-        [against, table, corners],
-        numbers=lambda: {**by_name(every, IN_JSON), "units": units(IN_JSON, every)},
+        [*of_survey, *of_turn],
+        numbers=lambda: {
+            **by_name(every, IN_JSON),
+            **turn.numbers(result.groups),
+            "units": units(IN_JSON, every),
+        },
+        told=[*of_survey, *of_turn[:1]],
     )
 
 

@@ -49,11 +49,12 @@ def caption(data: Dataset, start: str) -> str:
     """Which operating point, and what is shown without the dial."""
     torque, speed = float(data.attrs["pinion_torque"]), SPEED(data.attrs["pinion_speed"])
     jammed = int(data.attrs["jammed"])
+    whose = "Of the mean tooth. " * bool(data.attrs.get("mean_tooth", 0))
     some = f" {jammed} of {data.sizes['gear_temperature']} temperatures jam." if jammed else ""
     return (
-        f"At {speed:.6g} rpm and {torque:.6g} N m, both gears at one temperature, the other bodies "
-        f"as temperatures.follow says. A still picture shows {start}. Each orbit is settled by "
-        f"itself: where several motions exist, another start may find another one.{some}"
+        f"{whose}At {speed:.6g} rpm and {torque:.6g} N m, both gears at one temperature, the other "
+        f"bodies as temperatures.follow says. A still picture shows {start}. Each orbit is settled "
+        f"by itself: where several motions exist, another start may find another one.{some}"
     )
 
 

@@ -189,7 +189,7 @@ def gap(results: Result, pictures: Pictures) -> Section | None:
     if mesh is not None:
         if "half_backlash_curve" in mesh:
             pictures.add(
-                "gap-phase", "Half backlash over a mesh period", captions.gap_over_phase(mesh),
+                "gap-phase", "Half backlash over the mesh phase", captions.gap_over_phase(mesh),
                 mesh, ("half_backlash_curve",), lambda: backlash.over_phase(mesh),
             )  # fmt: skip
         blocks += _jam_texts(mesh) if "status" in mesh else []
@@ -296,7 +296,12 @@ def _motion_caption(here: Dataset) -> str:
             lost = f"{PERCENT(share):.1f} % of the time without drive-side contact"
             lost = "always in contact" if share < 1e-6 else lost
             parts.append(f"{state}: {motion.label_of(one)}, {lost}")
-    return "; ".join(parts) + "." if parts else "Undeformed against hot."
+    of = int(here.attrs.get("mesh_periods", 1))
+    turn = (
+        f" The motion repeats after turns of {of} mesh periods: lines of the shafts and side lines "
+        f"of the mesh stand every 1/{of} of an order."
+    )
+    return ("; ".join(parts) + "." if parts else "Undeformed against hot.") + turn * (of > 1)
 
 
 def row(results: Result, pictures: Pictures) -> Section | None:

@@ -9,6 +9,7 @@ from typing import Any
 
 from thermogear.base.arrays import Dataset
 from thermogear.base.display import MICROMETRE, NANOMETRE, PERCENT, Display, number
+from thermogear.base.vocabulary import label_words
 from thermogear.results.result import Result
 from thermogear.views.columns import Column, Row, declared, pairs
 from thermogear.views.csv_files import cell_text, head_text
@@ -172,6 +173,11 @@ def _caption(kind: str, summary: Summary, groups: Groups) -> str:
         words = ["Dashed: edges of the backlash."] * bool(edges)
         words.append("An orbit is stable where its multipliers lie inside the circle.")
         words += ["Lines at half orders show a doubled period."] * half
+        if "mesh_periods" in summary:
+            words.append(
+                f"The orbit closes after turns of {summary['mesh_periods']} mesh periods; the "
+                "phase plane shows those in which it swings most."
+            )
         return " ".join(words)
     if kind == "branch":
         legs, points = summary["branches"], summary["bifurcations"]
@@ -181,6 +187,8 @@ def _caption(kind: str, summary: Summary, groups: Groups) -> str:
             "; ".join(["solid: stable"] * stable + ["dotted: unstable"] * unstable).capitalize()
         ]
         words += ["Marks: where bifurcations were located"] * bool(points)
+        if "mesh_periods" in summary:
+            words.append(f"Periods are those of the turn of {summary['mesh_periods']} mesh periods")
         return ". ".join(words) + "."
     if kind == "cascade":
         several = len({one["heat"] for one in summary["cascades"]}) > 1
@@ -218,9 +226,9 @@ def _headline(kind: str, summary: Summary) -> str:
 def _orbit_tables(summary: Summary) -> list[Block]:
     length = MICROMETRE if summary["units"] == "SI" else Display("–")
     share = summary["time_share"]
-    factor = summary["dynamic_load_factor"]
+    factor, of = summary["dynamic_load_factor"], summary.get("mesh_periods", 0)
     values = {
-        "period n": (str(summary["period"]), "mesh periods"),
+        "period n": (str(summary["period"]), f"turns of {of} mesh periods" if of else "mesh periods"),
         **{
             f"multiplier {i}": (_complex(mu), f"modulus {mu['modulus']:.9f}")
             for i, mu in enumerate(summary["multipliers"], start=1)
@@ -248,7 +256,7 @@ def _orbit_tables(summary: Summary) -> list[Block]:
     rows = [{"name": k, "value": value, "unit": unit} for k, (value, unit) in values.items()]
     columns = (
         Column("order", "order", 4),
-        Column("", lambda line: "half order" if line["half_order"] else ""),
+        Column("", lambda line: "half order" if line["half_order"] else line.get("name") or ""),
         Column(f"amplitude [{length.unit}]", lambda line: length(line["amplitude"]), 5),
         Column("frequency [Hz]", "frequency_hz", 6),
     )
@@ -261,7 +269,7 @@ def _orbit_tables(summary: Summary) -> list[Block]:
 
 
 def _complex(mu: dict[str, float]) -> str:
-    text = f"{mu['real']:.9f}"
+    text = f"{mu['real']:z.9f}"
     if mu["imag"] != 0.0:
         text += f" {'+' if mu['imag'] > 0 else '−'} {abs(mu['imag']):.9f} i"
     return text.replace("-", "−")
@@ -296,8 +304,10 @@ def _branch_tables(summary: Summary) -> list[Block]:
         Column("points", "points"),
         Column("stable", "stable_points"),
     )
+    of = summary.get("mesh_periods", 1)
+    words = partial(label_words, followed=0, starts=1, mesh_periods=of)
     found, branches = (
-        [row | {"orbit": f"period {row['period']}"} for row in summary[name]]
+        [row | {"orbit": words(f"period-{row['period']}")} for row in summary[name]]
         for name in ("bifurcations", "branches")
     )
     none = Text("No bifurcation was found on the way.")

@@ -55,8 +55,8 @@ CURVES = (
         "Growth of both flanks",
         "Along the line of action; without heat it is zero.",
     ),
-    ("half_backlash_curve", "Half backlash over a mesh period", "Below zero a pair is jammed."),
-    ("mesh_stiffness", "Mesh stiffness over a mesh period", "High where two pairs carry."),
+    ("half_backlash_curve", "Half backlash over the mesh phase", "Below zero a pair is jammed."),
+    ("mesh_stiffness", "Mesh stiffness over the mesh phase", "High where two pairs carry."),
 )
 
 
@@ -332,7 +332,7 @@ def curve(data: Dataset, name: str, *, bundle: int, operating: int) -> Picture:
     here = data.isel(bundle=bundle, operating=operating)
     y = Axis(axis_label(name, None if len(axis_label(name)) < 40 else WORDS.get(name)))
     panel = (
-        Panel(Axis(axis_label(along), low=0.0, high=1.0), y)
+        Panel(Axis(axis_label(along), low=0.0, high=float(int(np.nanmax(here[along])) + 1)), y)
         if along == "mesh_phase"
         else _path(data, y)
     )

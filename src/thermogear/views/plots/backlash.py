@@ -8,17 +8,14 @@ from thermogear.base.arrays import Dataset
 from thermogear.base.display import CELSIUS, MICROMETRE
 from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.views.picture import Panel, Picture, Text
-from thermogear.views.plots.curves import axis_of, draw_by_bundle
+from thermogear.views.plots.curves import axis_of, draw_by_bundle, phase_panel
 from thermogear.views.style import COLD, FAINT, HOT, INK, QUIET, STATES, bundle_line, names_of
 from thermogear.views.typesetting import FAR, plain, shown
 
 
 def over_phase(data: Dataset) -> Picture:
-    """Half backlash over a mesh period, undeformed and hot, at the first operating point."""
-    panel = Panel(
-        axis_of("mesh_phase", "mesh phase", low=0.0, high=1.0),
-        axis_of("half_backlash_curve", "half backlash"),
-    )
+    """Half backlash over the mesh phase, undeformed and hot, at the first operating point."""
+    panel = phase_panel(data, axis_of("half_backlash_curve", "half backlash"))
     x = shown(data, "mesh_phase")
     for place, state in enumerate(names_of(data, "state")):
         here, colour = data.isel(state=place), STATES.get(state, INK)

@@ -22,12 +22,41 @@ from thermogear.views.style import (
 )
 from thermogear.views.typesetting import axis_label, operating_names, plain, shown
 
+MOST_POINTS = 2000
+"""Points of a curve over the mesh phase."""
+FEWEST = 24
+"""Points in a mesh period that show its course; where fewer are left, its extremes are drawn."""
+
 
 def axis_of(
     name: str, words: str | None = None, *, low: float | None = None, high: float | None = None
 ) -> Axis:
     """The axis of a stored quantity: its words, symbol and unit."""
     return Axis(axis_label(name, words), low=low, high=high)
+
+
+def phase_panel(data: Dataset, y: Axis) -> Panel:
+    """A panel over one mesh period, or over all mesh periods of a turn."""
+    periods = float(int(data["mesh_phase"].values[-1]) + 1)
+    return Panel(axis_of("mesh_phase", "mesh phase", low=0.0, high=periods), y)
+
+
+def draw_phase(panel: Panel, x: Floats, *, values: Floats, **look: Any) -> None:
+    """``values`` over the mesh phases ``x`` in at most :data:`MOST_POINTS` points.
+
+    Every so many samples where :data:`FEWEST` of a mesh period are left; else a band from the
+    least to the greatest of each mesh period, or of as many as it takes.
+    """
+    of, step = int(x[-1] - x[0]) + 1, -(-x.size // MOST_POINTS)
+    if x.size >= FEWEST * of * step:
+        panel.curve(x[::step], values[::step], **look)
+        return
+    cuts = np.arange(0, x.size, x.size // of * -(-of // (MOST_POINTS // 2)))
+    low, high = np.minimum.reduceat(values, cuts), np.maximum.reduceat(values, cuts)
+    colour, label = look["colour"], look.get("label", "")
+    panel.band(x[cuts], low=low, high=high, opacity=0.4, colour=colour, label=label)
+    for edge in (low, high):
+        panel.curve(x[cuts], edge, colour=colour, width=0.4)
 
 
 def along_path(data: Dataset, y: Axis, *, letters: bool = True) -> Panel:
@@ -93,14 +122,20 @@ def draw_by_operating(
 def draw_by_bundle(
     panel: Panel, data: Dataset, name: str, x: Floats, *, colour: str, what: str = ""
 ) -> None:
-    """``name`` over ``x`` at the first operating point, one line style per bundle."""
+    """``name`` over ``x`` at the first operating point, one line style per bundle.
+
+    Over the mesh phase by :func:`draw_phase`.
+    """
     bundles = names_of(data, "bundle")
     values = shown(data.isel(operating=0) if "operating" in data.dims else data, name)
     for place, bundle in enumerate(bundles):
         if np.isfinite(values[place]).any():
             words = plain(f"{what}, {bundle}" if what else bundle)
             dash = bundle_line(bundles, place)
-            panel.curve(x, values[place], colour=colour, dash=dash, label=words)
+            if "mesh_phase" in data[name].dims:
+                draw_phase(panel, x, values=values[place], colour=colour, dash=dash, label=words)
+            else:
+                panel.curve(x, values[place], colour=colour, dash=dash, label=words)
 
 
 def draw_by_both(

@@ -56,8 +56,10 @@ def orbit_of(one: Dataset) -> Orbit:
     t, x, v = (one[name].values for name in ("time", "displacement", "velocity"))
     mesh = mesh_frequency(one)
     samples = max(1, round(1.0 / (mesh * float(t[1] - t[0])))) if mesh > 0.0 else t.size
+    of = int(one.attrs.get("mesh_periods", 1))
     label = str(one["label"].item())
-    loop = periods_to_draw(label, samples_per_period=samples, stored=t.size)
+    loop = periods_to_draw(label, samples_per_period=samples * of, stored=t.size)
+    loop = loop if of == 1 else min(loop, HISTORY * samples + 1)
     history = max(min(t.size, HISTORY * samples + 1), min(t.size, 2 * loop))
     times = max(1, round(SMOOTH / samples)) if loop < t.size else 1
     t, x, v = refined(t[:history], x=x[:history], v=v[:history], times=times)
@@ -93,9 +95,11 @@ def four_panels(data: Dataset, *, bundle: int, operating: int) -> Picture:
     here = data.isel(bundle=bundle, operating=operating)
     states = names_of(data, "state")
     points = [here.isel(state=i) for i in range(len(states))]
-    history = Panel(Axis(axis_label("time"), margin=0.01), Axis(BEYOND), "Time history")
-    phase = Panel(Axis(BEYOND), Axis(SPEED), "Phase plane")
-    section = Panel(Axis(BEYOND), Axis(SPEED), "Poincaré section, once a mesh period")
+    of = int(here.attrs.get("mesh_periods", 1))
+    shown, every = ("", "mesh period") if of == 1 else (f", part of the turn of {of}", "turn")
+    history = Panel(Axis(axis_label("time"), margin=0.01), Axis(BEYOND), f"Time history{shown}")
+    phase = Panel(Axis(BEYOND), Axis(SPEED), f"Phase plane{shown}")
+    section = Panel(Axis(BEYOND), Axis(SPEED), f"Poincaré section, once a {every}")
     labels = ", ".join(f"{s}: {label_of(p)}" for s, p in zip(states, points, strict=True))
 
     orbits = []
@@ -126,18 +130,22 @@ def four_panels(data: Dataset, *, bundle: int, operating: int) -> Picture:
 def _spectra(here: Dataset, states: list[str], points: list[Dataset]) -> Panel:
     """Amplitude over order, with the frequency in Hz along the top."""
     order = here["order"].values
+    of = int(here.attrs.get("mesh_periods", 1))
+    width = float(here.attrs.get("bin_width_orders", order[1] - order[0]))
+    # a motion that repeats after a turn has no line between those of the turn
+    step = max(1, round(1.0 / (of * width))) if of > 1 else 1
     scale = display("line_amplitude")
     floor, top = floor_of(scale(here["line_amplitude"].values), order=order, highest=HIGHEST_ORDER)
     words = axis_label("line_amplitude", "amplitude of displacement")
     panel = over_orders(HALF_ORDERS, words, floor=floor, top=top, highest=HIGHEST_ORDER)
     for state, one in zip(states, points, strict=True):
         if moving(one):
+            kept = slice(None, None, step if str(one["label"].item()) == "period-1" else 1)
             draw_lines(
-                panel, order=order, amplitude=scale(one["line_amplitude"].values),
+                panel, order=order[kept], amplitude=scale(one["line_amplitude"].values)[kept],
                 colour=STATES.get(state, INK), label=plain(state), filled=state != UNDEFORMED,
             )  # fmt: skip
     mesh = mesh_frequency(here)
-    width = float(here.attrs.get("bin_width_orders", order[1] - order[0]))
     panel.title = f"Spectrum, bin width {number(width)} orders"
     if mesh > 0.0:
         panel.title += f" = {number(width * mesh)} Hz"

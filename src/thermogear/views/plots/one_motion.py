@@ -10,6 +10,7 @@ import numpy as np
 from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.display import MICROMETRE, MILLIMETRE_PER_SECOND, SPEED, STIFFNESS, Display
 from thermogear.views.picture import Axis, Panel, Picture, Top
+from thermogear.views.plots.curves import draw_phase
 from thermogear.views.plots.motion import refined
 from thermogear.views.plots.parameters import axis_words, shown
 from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
@@ -17,6 +18,8 @@ from thermogear.views.style import COLD, HOT, INK, OKABE_ITO, QUIET, WIDE
 from thermogear.views.typesetting import plain
 
 HIGHEST_ORDER = 8.0
+LOOPS = 4
+"""Mesh periods of a turn whose phase plane is drawn."""
 DASHED = (4, 2)
 DOTTED = (1, 1.5)
 MARKS = {
@@ -38,6 +41,7 @@ def orbit_picture(data: Dataset) -> Picture:
         if si
         else ("displacement X [–]", "velocity X′ [–]")
     )
+    of, period = int(data.attrs.get("mesh_periods", 1)), float(data["orbit_period"])
     # the orbit closed, and smooth between its samples
     t, x, v = (
         np.append(data[name].values, first)
@@ -47,12 +51,16 @@ def orbit_picture(data: Dataset) -> Picture:
             ("velocity", data["velocity"].values[0]),
         )
     )
-    t, x, v = refined(t, x=x, v=v, times=4)
-    turns = t * float(data["orbit_period"]) / t[-1]
+    loop = slice(None) if of == 1 else _widest(x, each=round(x.size / (period * of)))
+    along, whole = t * period * of / t[-1], length(x)
+    t, x, v = refined(t[loop], x=x[loop], v=v[loop], times=4)
     x, v = length(x), speed(v)
     history = Panel(Axis("time in mesh periods t/T [–]"), Axis(x_words), "One orbit")
     phase = Panel(Axis(x_words), Axis(v_words), "Phase plane, section at phase 0")
-    history.curve(turns, x, colour=COLD, width=1.3)
+    if of == 1:
+        history.curve(t * period / t[-1], x, colour=COLD, width=1.3)
+    else:
+        draw_phase(history, along[:-1], values=whole[:-1], colour=COLD, width=0.8)
     phase.curve(x, v, colour=COLD, width=1.3)
     phase.points(
         length(data["section_displacement"].values), speed(data["section_velocity"].values),
@@ -64,6 +72,14 @@ def orbit_picture(data: Dataset) -> Picture:
     unit = _multipliers(data["multiplier_real"].values, data["multiplier_imag"].values)
     spectrum = _spectrum(data, length)
     return Picture([[history, phase], [unit, spectrum]], size=(WIDE, 6.6), above=0.95, between=0.9)
+
+
+def _widest(x: Floats, *, each: int) -> slice:
+    """The :data:`LOOPS` mesh periods, of so many samples ``each``, in which ``x`` swings most."""
+    shown = min(LOOPS, x.size // each) * each
+    starts = np.arange(0, x.size - shown + 1, each)
+    widest = int(np.argmax([np.ptp(x[start : start + shown]) for start in starts]))
+    return slice(starts[widest], starts[widest] + shown)
 
 
 def edges_in_sight(data: Dataset) -> list[float]:

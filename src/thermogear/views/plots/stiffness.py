@@ -6,7 +6,14 @@ import numpy as np
 
 from thermogear.base.arrays import Dataset
 from thermogear.views.picture import Axis, Panel, Picture
-from thermogear.views.plots.curves import along_path, axis_of, draw_by_bundle, hot_state
+from thermogear.views.plots.curves import (
+    along_path,
+    axis_of,
+    draw_by_bundle,
+    draw_phase,
+    hot_state,
+    phase_panel,
+)
 from thermogear.views.style import HOT, INK, OKABE_ITO, STATES, names_of
 from thermogear.views.typesetting import math_symbol, plain, shown
 
@@ -21,27 +28,25 @@ PARTS = {
 
 
 def by_state(data: Dataset) -> Panel:
-    """Mesh stiffness over a mesh period, undeformed and hot, with its means."""
-    panel = Panel(
-        axis_of("mesh_phase", "mesh phase", low=0.0, high=1.0), axis_of("mesh_stiffness", low=0.0)
-    )
+    """Mesh stiffness over a mesh period or a turn, undeformed and hot, with its means."""
+    panel = phase_panel(data, axis_of("mesh_stiffness", low=0.0))
     x = shown(data, "mesh_phase")
     for place, state in enumerate(names_of(data, "state")):
         colour, one = STATES.get(state, INK), data.isel(state=place)
-        panel.curve(x, shown(one, "mesh_stiffness"), colour=colour, label=plain(state))
+        draw_phase(panel, x, values=shown(one, "mesh_stiffness"), colour=colour, label=plain(state))
         mean = float(shown(one, "mean_stiffness"))
         panel.line(y=mean, colour=colour, width=1.0, dash=(2, 2), label=plain(f"{state}, mean"))
     return panel
 
 
 def over_phase(data: Dataset, bundle: int) -> Picture:
-    """Mesh stiffness of one bundle over a mesh period, undeformed and hot."""
+    """Mesh stiffness of one bundle over a mesh period or a turn, undeformed and hot."""
     x, here = shown(data, "mesh_phase"), data.isel(bundle=bundle, operating=0)
     panel = by_state(here)
     if float(np.nanmax(np.abs(data["thermal_stiffness"].isel(bundle=bundle).values))) > 0.0:
         elastic = shown(here.isel(state=-1), "elastic_stiffness")
         words = f"hot without {math_symbol('k_T')}"
-        panel.curve(x, elastic, colour=HOT, width=1.1, dash=(5, 2), label=words)
+        draw_phase(panel, x, values=elastic, colour=HOT, width=1.1, dash=(5, 2), label=words)
     return Picture([[panel]])
 
 
