@@ -62,15 +62,16 @@ def test_the_fixed_pairs(monkeypatch: pytest.MonkeyPatch) -> None:
     import thermogear.verify.pairs as pairs
 
     # the whole list is computed in the tests of the checks; here its printing
-    published, far = pairs.published_pair(), pairs.far_pairs()
-    pairs_drawn = pairs.drawn_pairs()
-    monkeypatch.setattr(pairs, "own_pairs", lambda: far[:1])
-    monkeypatch.setattr(pairs, "far_pairs", lambda: (published,))
-    monkeypatch.setattr(pairs, "corner_pairs", lambda: (published,))
-    monkeypatch.setattr(pairs, "drawn_pairs", lambda: pairs_drawn[-3:-2])
+    published = pairs.published_pair()
+    for group in ("own", "far", "corner", "drawn"):
+        named = published._replace(name=f"{group}, {published.name}")
+        monkeypatch.setattr(pairs, f"{group}_pairs", lambda named=named: (named,))
     done = call("pairs")
     assert done.exit_code == 0, done.output
-    assert [4.0, 20.0, 35.0, 25.0] in [numbers(line)[:4] for line in done.output.splitlines()]
+    told = [line for line in done.output.splitlines() if published.name in line]
+    heads = [line for line in told if not line.startswith("worst")]
+    assert [numbers(line)[:4] for line in heads] == [[5.0, 25.0, 75.0, 200.0]] * 5
+    assert len(told) == 2 * len(heads)
 
 
 def test_refusals(case: str, tmp_path: Path) -> None:

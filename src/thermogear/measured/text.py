@@ -139,12 +139,9 @@ def _encoding(path: Path) -> tuple[str, list[Notice]]:
     try:
         whole.decode("utf-8")
     except UnicodeDecodeError:
-        found = encoding_of(whole)
-    else:
-        return "utf-8", []
-    return found.codec, [
-        Notice.of("text_not_utf_8" if found.likely else "text_doubtful", encoding=found.name)
-    ]
+        codec, name = encoding_of(whole)
+        return codec, [Notice.of("text_not_utf_8", encoding=name)]
+    return "utf-8", []
 
 
 def _head(lines: io.TextIOWrapper) -> list[str]:
