@@ -59,18 +59,12 @@ def test_time_without_a_unit_gives_no_rate(tmp_path: Path) -> None:
     assert record.names == ("a",)
 
 
-def test_a_row_written_twice_is_dropped_and_named(tmp_path: Path) -> None:
+@pytest.mark.parametrize("value", ["0.123456", None])
+def test_a_stamp_written_twice_gives_no_rate(tmp_path: Path, value: str | None) -> None:
+    """With another value, or the same: nothing tells a row written twice from a lost stamp."""
     text = rows()
-    text.insert(11, text[10])
-    record = read(tmp_path, lines(text))
-    assert record.samples == 30
-    assert record.rate == pytest.approx(1000.0)
-    assert told(record) == [("rows_written_twice", {"column": "time", "rows": 1, "first": 11})]
-
-
-def test_a_stamp_written_twice_with_other_values_gives_no_rate(tmp_path: Path) -> None:
-    text = rows()
-    text[11] = text[10].split(",")[0] + ",0.123456"
+    stamp, same = text[10].split(",")
+    text[11] = f"{stamp},{value or same}"
     record = read(tmp_path, lines(text))
     assert record.rate is None
     assert told(record) == [("time_stamp_twice", {"column": "time", "row": 11})]

@@ -10,9 +10,9 @@ _HIGH = re.compile(rb"[\x80-\xff]+")
 def encoding_of(head: bytes) -> tuple[str, str]:
     """The codec that reads a text which is no UTF-8, by its first bytes, and its name.
 
-    GBK where all high bytes come in pairs, half of which or more are signs or common characters (the first
-    level of GB 2312); else Windows-1252, of which Latin-1 is a part: European letters are single
-    high bytes between ASCII letters.
+    GBK where all high bytes come in pairs, half of which or more are signs or common characters
+    (the first level of GB 2312); else Windows-1252, of which Latin-1 is a part: European letters
+    are single high bytes between ASCII letters.
 
     >>> encoding_of("Gehäuse [µm]".encode("latin-1"))
     ('cp1252', 'Latin-1')

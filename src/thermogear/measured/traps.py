@@ -124,13 +124,12 @@ def unknown_unit(name: str) -> str:
 @dataclass(frozen=True, kw_only=True)
 class TimeBase:
     """What a time column says: rate [1/s] (None: it cannot be told) and the half width of its 95 %
-    interval, 0 where it is a usual rate; start, rows to drop, the stamps' ``jitter`` [steps rms];
+    interval, 0 where it is a usual rate; start, the stamps' ``jitter`` [steps rms];
     ``note``: how well they tell the rate."""
 
     rate: float | None
     start: float
     origin: str
-    drop: tuple[int, ...] = ()
     notices: tuple[Notice, ...] = ()
     gaps: tuple[tuple[int, int], ...] = ()
     half_width: float = 0.0
@@ -138,19 +137,11 @@ class TimeBase:
     note: str = ""
 
 
-def read_time(
-    name: str,
-    unit_name: str | None,
-    t: Floats,
-    *,
-    repeats: NDArray[np.bool_] | None = None,
-    stated: bool = False,
-) -> TimeBase:
+def read_time(name: str, unit_name: str | None, t: Floats, *, stated: bool = False) -> TimeBase:
     """Rate and start from a time column, or why it gives none.
 
-    ``t`` in the column's own unit; ``repeats``: of each row, whether its every value repeats the
-    row before; ``stated``: the file states its rate elsewhere. A time without a unit gives no rate.
-    A doubled stamp on a row that is doubled as a whole is one row written twice and is dropped.
+    ``t`` in the column's own unit; ``stated``: the file states its rate elsewhere. A time without
+    a unit gives no rate.
     Jumps by whole numbers of steps are dropped blocks: ``gaps`` (before which row, how many
     samples). Stamps may be rounded, also so that they repeat, and may jitter by half a step; any
     other irregularity gives no rate. The rate is that of
@@ -176,34 +167,19 @@ def read_time(
     grain = grain_of(t) * factor_of(unit_name)
     steps = np.diff(seconds)
     mean = float(seconds[-1] - seconds[0]) / (seconds.size - 1)
-    twice = np.flatnonzero(steps == 0.0) + 1
-    # stamps of few digits repeat by themselves
-    single = twice.size <= _FEW * steps.size
-    drop = tuple(int(i) for i in twice[repeats[twice]]) if repeats is not None and single else ()
-    notes: list[Notice] = []
-    if drop:
-        keep = np.ones(seconds.size, bool)
-        keep[list(drop)] = False
-        seconds, grain = seconds[keep], grain[keep]
-        steps = np.diff(seconds)
-        mean = float(seconds[-1] - seconds[0]) / (seconds.size - 1)
-        notes.append(
-            Notice.of("rows_written_twice", column=name, rows=len(drop), first=drop[0] + 1)
-        )
-    found = TimeBase(rate=None, start=float(seconds[0]), origin="", drop=drop)
+    found = TimeBase(rate=None, start=float(seconds[0]), origin="")
     if mean <= 0.0 or np.any(steps < 0):
         row = int(np.argmax(steps < 0)) + 2
-        return replace(found, notices=(*notes, Notice.of("time_falls", column=name, row=row)))
+        return replace(found, notices=(Notice.of("time_falls", column=name, row=row),))
     if not RATE.least <= 1.0 / max(mean, 1e-300) <= RATE.most:
-        told = Notice.of("time_step_impossible", column=name, step=mean)
-        return replace(found, notices=(*notes, told))
-    return _paced(replace(found, notices=tuple(notes)), name, seconds, grain, unit_name)
+        return replace(found, notices=(Notice.of("time_step_impossible", column=name, step=mean),))
+    return _paced(found, name, seconds, grain, unit_name)
 
 
 def _paced(found: TimeBase, name: str, seconds: Floats, grain: Floats, unit_name: str) -> TimeBase:
     """What rising stamps [s], rounded to ``grain``, say: gaps, jitter and the rate, or none."""
     steps = np.diff(seconds)
-    notes = list(found.notices)
+    notes: list[Notice] = []
     jumps, ahead = jumps_of(seconds, grain=grain)
     gaps = _dropped(jumps, ahead, steps)
     place = np.arange(seconds.size, dtype=float)
@@ -224,7 +200,11 @@ def _paced(found: TimeBase, name: str, seconds: Floats, grain: Floats, unit_name
             )
         return replace(found, notices=(*notes, told))
     if gaps:
-        notes.append(_lost(name, gaps, found.drop))
+        samples = sum(missing for _, missing in gaps)
+        first = gaps[0][0] + 1
+        notes.append(
+            Notice.of("samples_lost", column=name, places=len(gaps), first=first, samples=samples)
+        )
     if pace.jitter > _JITTER:
         notes.append(
             Notice.of(
@@ -278,15 +258,6 @@ def _with_rate(base: TimeBase, name: str, pace: Pace) -> TimeBase:
         origin=f"time column {name!r}",
         note=note,
     )
-
-
-def _lost(column: str, gaps: tuple[tuple[int, int], ...], drop: tuple[int, ...]) -> Notice:
-    """Where blocks are dropped, in rows of the file: those written twice count there."""
-    first = gaps[0][0] + 1
-    for row in drop:
-        first += row < first
-    samples = sum(missing for _, missing in gaps)
-    return Notice.of("samples_lost", column=column, places=len(gaps), first=first, samples=samples)
 
 
 def _dropped(jumps: NDArray[np.intp], ahead: Floats, steps: Floats) -> tuple[tuple[int, int], ...]:
