@@ -8,7 +8,7 @@ finish, moduli, expansion, damping and error may be a column.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import KW_ONLY, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -66,7 +66,7 @@ BODIES_OF: dict[str, Callable[[Operating], ArrayLike]] = {
 """What is wanted of the operating points themselves, no quantity of the mesh cycle."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Samples:
     """``case`` with its operating points in columns, and what else vibration needs.
 
@@ -74,7 +74,6 @@ class Samples:
     (sample, 2). ``cycles``: those that the motion was made of, for the answers that follow.
     """
 
-    _: KW_ONLY
     case: GearCase
     damping_ratio: Floats
     error: Floats
