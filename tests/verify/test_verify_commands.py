@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from said import numbers
 from thermogear.base.errors import InputError
 from thermogear.case.examples import example_text
 from thermogear.front.verify_commands import verify
+from thermogear.verify import checks, pairs
 
 pytestmark = pytest.mark.slow
 
@@ -24,12 +26,29 @@ def case(tmp_path: Path) -> str:
     return str(path)
 
 
+@pytest.fixture
+def one_check(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is checked first is found again whatever is asked: for tests of what is printed."""
+    check, kept = checks.check_stiffness, list[checks.StiffnessCheck]()
+
+    def once(*asked: Any, **how: Any) -> checks.StiffnessCheck:
+        if not kept:
+            kept.append(check(*asked, **how))
+        return kept[0]
+
+    monkeypatch.setattr(checks, "check_stiffness", once)
+
+
 def call(*arguments: str) -> Result:
     return CliRunner().invoke(verify, list(arguments))
 
 
-def test_stiffness_prints_model_elements_and_difference(case: str) -> None:
-    done = call("stiffness", case, "--positions", "1")
+@pytest.mark.usefixtures("one_check")
+def test_stiffness_as_a_table_and_as_json(case: str) -> None:
+    """Both of one check: what is printed of it is in question here."""
+    asked = ("stiffness", case, "--positions", "1", "--torque", "200")
+    asked = ("stiffness", case, "--positions", "1")
+    done = call(*asked)  # at the greatest torque of the case, 100 N m
     assert done.exit_code == 0, done.output
     assert "corner" in done.output
     rows = [line.split() for line in done.output.splitlines() if line.startswith("  0.")]
@@ -38,13 +57,9 @@ def test_stiffness_prints_model_elements_and_difference(case: str) -> None:
         model, finite, difference = map(float, row[2:5])
         assert difference == pytest.approx(100.0 * (model / finite - 1.0), abs=0.02)
         assert abs(difference) < 3.0
-
-
-def test_stiffness_as_json(case: str) -> None:
-    done = call("stiffness", case, "--positions", "1", "--torque", "200", "--json")
-    content = json.loads(done.output)
-    assert content["torque"] == 200.0
-    assert content["line_load_n_per_m"] == pytest.approx(200.0 / 58.7308e-3 / 25e-3, rel=1e-5)
+    content = json.loads(call(*asked, "--torque", "100", "--json").output)
+    assert content["torque"] == 100.0
+    assert content["line_load_n_per_m"] == pytest.approx(100.0 / 58.7308e-3 / 25e-3, rel=1e-5)
     ratio = np.array(content["model"]) / np.array(content["finite_elements"]) - 1.0
     assert ratio == pytest.approx(content["relative_difference"], rel=1e-9)
 
@@ -58,9 +73,8 @@ def test_growth_of_both_gears(case: str) -> None:
     assert np.max(np.abs(content["wheel"]["difference"])) < 0.7e-6
 
 
+@pytest.mark.usefixtures("one_check")
 def test_the_fixed_pairs(monkeypatch: pytest.MonkeyPatch) -> None:
-    from thermogear.verify import checks, pairs
-
     monkeypatch.setattr(checks, "inner_phases", lambda *_: (0.8,))
     # the whole list is computed in the tests of the checks; here its printing
     published = pairs.published_pair()
