@@ -67,7 +67,9 @@ def main(old: str, new: str) -> None:
             for tree, work in ((old, OLD), (new, NEW)):
                 took[work].append(asked(tree, work, turn, z1, z2, module)[0])
         answered, turned = median(took[OLD]), median(took[NEW])
-        print(f"{z1}/{z2}: answers {answered:.0f} ms, turn {turned:.0f} ms, {turned / answered:.2f}")
+        print(
+            f"{z1}/{z2}: answers {answered:.0f} ms, turn {turned:.0f} ms, {turned / answered:.2f}"
+        )
 
 
 if __name__ == "__main__":

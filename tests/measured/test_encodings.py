@@ -68,15 +68,40 @@ def test_european_heads_are_never_read_as_chinese(language: str) -> None:
         raw = head.encode("cp1252")
         if head.isascii():
             continue
-        codec, name = encoding_of(raw)
-        assert name in ("Latin-1", "Windows-1252"), head
-        assert raw.decode(codec) == head
+        found = encoding_of(raw)
+        assert found.name in ("Latin-1", "Windows-1252"), head
+        assert (raw.decode(found.codec), found.likely) == (head, True)
 
 
 def test_chinese_heads_are_never_read_as_european() -> None:
     for head in heads(CHINESE, CHINESE_UNITS, seed=7):
-        raw = head.encode("gbk", "ignore")
-        assert encoding_of(raw) == ("gb18030", "GBK"), head
+        for codec in ("gbk", "gb18030"):
+            raw = head.encode(codec, "ignore")
+            found = encoding_of(raw)
+            assert (found.name, found.likely) == ("GBK", True), head
+            assert raw.decode(found.codec) == raw.decode(codec)
+
+
+def test_every_character_of_the_first_level_may_be_a_name_of_its_own() -> None:
+    for lead, trail in itertools.product(range(0xB0, 0xD7), range(0xA1, 0xFF)):
+        raw = bytes([lead, trail])
+        assert encoding_of(raw + b" [g];" + raw + b"1 [g]\n0;1\n").name == "GBK", raw.decode("gbk")
+
+
+def test_signs_of_gb_18030_with_four_bytes() -> None:
+    raw = "加速度 (m/s²),Gehäuse [µm]".encode("gb18030")
+    assert encoding_of(raw).name == "GBK"
+    assert encoding_of("Gehäuse [µm]".encode("gb18030")).name == "GBK"
+
+
+@pytest.mark.parametrize("codec", ["cp1251", "cp1253", "shift-jis"])
+def test_letters_that_hardly_come_so_are_told(codec: str) -> None:
+    words = {
+        "cp1251": "Время [с];Ускорение корпуса [м/с2];Скорость",
+        "cp1253": "Χρόνος;Επιτάχυνση;Ταχύτητα",
+        "shift-jis": "時間;振動加速度;回転速度",
+    }
+    assert not encoding_of(words[codec].encode(codec)).likely
 
 
 @pytest.mark.parametrize(
@@ -99,5 +124,5 @@ def test_names_and_units_are_read(
     assert (record.names, record.channels[0].unit) == ((name,), unit)
     assert record.rate == pytest.approx(1000.0)
     encoding = {"latin-1": "Latin-1", "cp1252": "Windows-1252", "gbk": "GBK"}[codec]
-    told = [n.data for n in record.notices if n.code == "text_not_utf_8"]
+    told = [n.data for n in record.notices if n.code in ("text_not_utf_8", "text_doubtful")]
     assert told == [{"encoding": encoding}]

@@ -138,9 +138,12 @@ def _encoding(path: Path) -> tuple[str, list[Notice]]:
     try:
         whole.decode("utf-8")
     except UnicodeDecodeError:
-        codec, name = encoding_of(whole)
-        return codec, [Notice.of("text_not_utf_8", encoding=name)]
-    return "utf-8", []
+        found = encoding_of(whole)
+    else:
+        return "utf-8", []
+    return found.codec, [
+        Notice.of("text_not_utf_8" if found.likely else "text_doubtful", encoding=found.name)
+    ]
 
 
 def _head(lines: io.TextIOWrapper) -> list[str]:
