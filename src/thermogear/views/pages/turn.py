@@ -24,7 +24,7 @@ MOST_LINES = 16
 TICKS = 14
 NAMED = 6
 """Lines named in a panel: the greatest in as many stretches."""
-KINDS = {"mesh": INK, "pinion": HOT, "wheel": COLD, "other": OKABE_ITO[2]}
+COLOURS = {"mesh": INK, "pinion": HOT, "wheel": COLD, "other": OKABE_ITO[2]}
 """Kinds of lines of a turn and their colours; others lie beside the mesh, or are of both shafts or
 of the hunting tooth."""
 LINES = (
@@ -184,9 +184,9 @@ def error_of_turn(data: Dataset) -> Picture:
 
 
 def _kind(name: str) -> str:
-    """The kind of the line with this ``name``, of :data:`KINDS`."""
+    """The kind of the line with this ``name``, of :data:`COLOURS`."""
     last = name.split()[-1]
-    return "other" if " + " in name or " − " in name or last not in KINDS else last
+    return "other" if " + " in name or " − " in name or last not in COLOURS else last
 
 
 def orders_of_turn(data: Dataset) -> Picture:
@@ -204,7 +204,7 @@ def orders_of_turn(data: Dataset) -> Picture:
         y = Axis("amplitude of the loaded error [µm]", low=10.0 * floor, high=8.0 * top,
                  log="decades")  # fmt: skip
         panel, x = Panel(Axis(words, low=0.0, high=high), y), order * factor
-        for kind, colour in KINDS.items():
+        for kind, colour in COLOURS.items():
             (some,) = np.nonzero((kinds == kind) & (x < high))
             some = some[np.argsort(x[some])]
             draw_lines(panel, order=x[some], amplitude=amplitude[some], colour=colour, label=kind)
