@@ -2,9 +2,9 @@
 
 Run as ``python bench/warm_up.py OLD/src NEW/src``: printed are the medians [ms of user and system
 time] of one warm-up as ``answers`` asks for it (0.1 K) and as ``warmup`` does (1 mK), and of 100
-warm-ups of samples of speed, torque and ambient at 0.1 K, side by side where the tree can, with
-losses, worst moment, jams and margins and without; and the greatest difference of a temperature
-from the course of the first tree at 1e-6 K (of five of the samples, at 0.1 mK).
+warm-ups of samples of speed, torque and ambient at 0.1 K, with losses, worst moment, jams and
+margins and without; and the greatest difference of a temperature from the course of the first tree
+at 1e-6 K (of five of the samples, at 0.1 mK).
 """
 
 from __future__ import annotations
@@ -15,7 +15,6 @@ import numpy as np
 from old_beside_new import TURNS, asked, median
 
 WORK = """
-from thermogear.mesh import warm_up as module
 from thermogear.mesh.warm_up import Duty, warm_up
 at = case.stated
 def duties(turn, samples):
@@ -35,10 +34,7 @@ def go(turn, tolerance, samples, first, whole):
     )
     some = duties(turn, samples)[:int(first)]
     each = (at.lubricant, at.half_backlash, case.models[0])
-    if samples > 1 and hasattr(module, "warm_ups"):
-        found = module.warm_ups(case.pair, some, *each, **how)
-    else:
-        found = [warm_up(case.pair, duty, *each, **how) for duty in some]
+    found = [warm_up(case.pair, duty, *each, **how) for duty in some]
     # a tree may compute them only now
     for one in found if whole else []:
         one.worst, one.jams, one.losses, one.margin

@@ -31,6 +31,8 @@ _HOME = {
     "PitchError": "thermogear.gears.deviations",
     "Eccentricity": "thermogear.gears.turn",
     "ToothShapes": "thermogear.gears.turn",
+    "Population": "thermogear.gears.population",
+    "drawn_pair": "thermogear.gears.population",
     "film_thickness": "thermogear.heat.film",
     "friction_law": "thermogear.heat.friction",
     "flash_temperature": "thermogear.heat.moving_source",

@@ -129,7 +129,10 @@ def test_every_default_is_told_with_its_value_and_what_it_decides(cases: list[Ge
                 assert PURE.fullmatch(one.value), one
                 continue
             assert re.search(r"ecide|counts\b|scale\b", one.reason), one
-            if one.field in LEFT_OUT:
+            if one.field.startswith("model."):
+                choice = one.field.removeprefix("model.")
+                assert choice == "bundle" or one.value == str(case.models[0].choices()[choice])
+            elif one.field in LEFT_OUT:
                 assert one.value == "left out"
             elif one.field in UNITLESS:
                 assert PURE.fullmatch(one.value), one

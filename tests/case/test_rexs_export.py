@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from thermogear import ConvergenceError, InputError, ValidityWarning, read_rexs, write_rexs
+from thermogear.base.period import Period
 from thermogear.case.case import GearCase, gear_case, load_case, load_example
 from thermogear.case.examples import EXAMPLES
 from thermogear.case.new import NewCase
@@ -121,6 +122,24 @@ def test_an_edge_comes_back_and_ends_the_flank_for_other_programs(
         mine, other = getattr(case.pair, name), getattr(again.pair, name)
         assert other.tip_form_radius == pytest.approx(mine.tip_form_radius, rel=1e-11)
         assert mine.tip_form_radius < mine.tip_radius == pytest.approx(other.tip_radius)
+
+
+@pytest.mark.usefixtures("without_results")
+def test_a_whole_turn_comes_back(tmp_path: Path) -> None:
+    """REXS has no word for single teeth: the case kept in the file has them all."""
+    errors = [f"{(7 * n) % 5 - 2} um" for n in range(24)]
+    changes = [
+        'gears.pinion.eccentricity={run_out="20 um", angle="30 deg"}',
+        f"gears.wheel.pitch_errors={errors}",
+        "gears.pitch_errors_along=arc",
+        'gears.pinion.teeth_differ=[{tooth=3, index="5 um", slope="-4 um"}]',
+        "gears.marks=[2, 5]",
+    ]
+    case = gear_case(load_example("fzg-c", changes))
+    again = there_and_back(case, tmp_path / "gearbox.rexs")
+    assert_same(case, again)
+    assert again.deviations == case.deviations
+    assert again.period == case.period == Period(48, (16, 24))
 
 
 @pytest.mark.usefixtures("without_results")

@@ -101,7 +101,7 @@ def test_every_tooth_and_single_teeth_have_their_profiles() -> None:
         'phase="90 deg", flank="back"}]',
     )
     every, single = (one for one in found.deviations if isinstance(one, ToothShapes))
-    assert (every.flank, single.flank) == ("drive", "back")
+    assert (every.shapes[0].flank, single.shapes[0].flank) == ("drive", "back")
     for n, shape in enumerate(every.shapes):
         assert isinstance(shape, WavyProfile)
         assert (shape.slope, shape.form) == pytest.approx((1e-6 * slopes[n], 2e-6), rel=1e-14)
@@ -111,7 +111,7 @@ def test_every_tooth_and_single_teeth_have_their_profiles() -> None:
     assert third.waves == 3.5
     assert third.phase == pytest.approx(0.5 * math.pi, rel=1e-14)
     assert single.shapes[:2] == single.shapes[3:5]
-    assert single.shapes[0] == WavyProfile("pinion", slope=0.0, form=0.0, waves=3.5, flank="back")
+    assert single.shapes[0] == WavyProfile("pinion", slope=0.0, flank="back")
     errors = np.zeros(Z1)
     errors[2] = 8e-6
     np.testing.assert_allclose(alone(found, PitchError).errors, errors, rtol=1e-14)
@@ -130,9 +130,6 @@ REFUSED = {
     'gears.wheel.tooth_profiles=[{slope=["1 um", "2 um"]}]':
         "gears.wheel.tooth_profiles[0].slope: got 2 values; allowed one for each of the 40 teeth, "
         "or one",
-    "gears.wheel.tooth_profiles=[{}, {flank='drive'}]":
-        "gears.wheel.tooth_profiles[0].flank: got 'both' beside 'drive'; allowed one table of both "
-        "sides, or drive and back",
     "gears.pinion.teeth_differ=[{tooth=21, slope='1 um'}]":
         "gears.pinion.teeth_differ: got tooth 21; allowed 1..20",
     "gears.pinion.teeth_differ=[{tooth=21, index='1 um'}]":
@@ -145,6 +142,8 @@ REFUSED = {
     "gears.pitch_errors_along='chord'":
         "gears.pitch_errors_along: got 'chord'; allowed line of action | arc; write for "
         'instance "line of action"',
+    "gears.pinion.teeth_differ=[{tooth=2, slope=['1 um', '2 um']}]":
+        "gears.pinion.teeth_differ.slope: got 2 values; allowed one",
     "gears.marks=[21, 1]": "gears.marks[0]: got 21; allowed 1..20",
     "gears.marks=[1]":
         "gears.marks: got a list of 1; allowed 2 entries; write for instance [1, 1]",
@@ -208,6 +207,8 @@ def test_assemblies_differ_and_are_all() -> None:
     assert len(found) == math.gcd(Z1, Z2)
     assert found[0].file.gears.marks is None
     assert [one.file.gears.marks for one in found[1:]] == [(1, k) for k in range(2, 21)]
+    fields = [{one.field for one in each.assumptions} for each in found]
+    assert ["gears.marks" in each for each in fields] == [True] + [False] * 19
     sizes = {round(1e9 * float(np.ptp(gap(one)[:, 1])), 6) for one in found[:6]}
     assert len(sizes) == 6
     assert case(*BOTH[:1]).assemblies() == (case(*BOTH[:1]).assemblies()[0],)
@@ -278,6 +279,15 @@ def alone_of(found: GearCase, gear: str) -> PitchError:
     return next(one for one in found.deviations if isinstance(one, PitchError) and one.gear == gear)
 
 
+def test_gears_beyond_the_tables_are_not_drawn() -> None:
+    with pytest.raises(InputError) as caught:
+        graded("flanks.teeth=drawn", "gears.module=0.3 mm", "operating.torque=0.1 N m")
+    assert str(caught.value) == (
+        "flanks: got module 0.3 mm; allowed 0.5..70 mm; the range of ISO 1328-1:2013; give "
+        "[transmission_error] harmonics, or measured profiles, instead"
+    )
+
+
 def test_a_gear_that_is_given_is_not_drawn() -> None:
     with pytest.raises(InputError) as caught:
         graded("flanks.teeth=drawn", BOTH[0])
@@ -300,7 +310,7 @@ def test_a_chart_of_every_tooth_acts_tooth_by_tooth(tmp_path: Path) -> None:
     assert mean.period.mesh_periods == 1
     found = own_chart.case(tmp_path, text, more='teeth = "measured"\n')
     (shapes,) = (one for one in found.deviations if isinstance(one, ToothShapes))
-    assert (shapes.gear, shapes.flank) == ("pinion", "drive")
+    assert (shapes.gear, shapes.shapes[0].flank) == ("pinion", "drive")
     ends = np.array([found.pair.path.a, found.pair.path.e])
     rise = [-float(np.diff(one.taken_off(found.pair, ends))[0]) for one in shapes.shapes]
     np.testing.assert_allclose(rise, 1e-6 * slopes, atol=2e-9)

@@ -24,6 +24,7 @@ from thermogear.front import cli as command_line
 from thermogear.front.cli import main
 from thermogear.front.lines import one_line, system_error
 from thermogear.front.progress import progress
+from thermogear.mesh.model import MeshModel
 from thermogear.results.files import MARK
 from thermogear.results.result import Result
 
@@ -488,7 +489,7 @@ def test_check_lists_the_defaults_of_a_short_case(
     assert main(["check", str(path)]) == 0
     lines = capsys.readouterr().out.splitlines()
     heads = [line.split(",")[0] for line in lines if line.endswith("left to defaults")]
-    assert heads == ["gears", "oil", "heat", "backlash", "flanks", "motion"]
+    assert heads == ["gears", "oil", "heat", "backlash", "flanks", "motion", "model"]
     assert sum("um" in line and "f_Halpha" in line for line in lines) == 4
     told = {line.split()[0]: line for line in lines if line.startswith("  ") and ":" in line}
     assert numbers(told["backlash.value"])[0] == 0.13
@@ -497,7 +498,11 @@ def test_check_lists_the_defaults_of_a_short_case(
     assert not any(line.strip().startswith("gears.wheel.bore_radius") for line in lines)
     assert not any(line.strip().startswith(("grid.", "simulation.")) for line in lines)
     assert [10.0] in [numbers(line) for line in lines if line.startswith("numerics:")]
-    assert numbers(lines[-1])[0] == 49.0
+    assert numbers(lines[-1])[0] == 66.0
+    choices = [line.split()[0] for line in lines if line.startswith("  model.")]
+    assert choices == [f"model.{name}" for name in ("bundle", *MeshModel.consistent().choices())]
+    assert told["model.tooth"].split()[1] == "solved:"
+    assert numbers(told["model.tooth"]) == [5.0]
 
 
 def test_what_a_case_states_is_no_default(

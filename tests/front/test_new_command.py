@@ -12,6 +12,8 @@ import pytest
 
 from thermogear.case.case import GearCase, load_case
 from thermogear.front.cli import main
+from thermogear.gears.population import drawn_pair
+from thermogear.gears.turn import Eccentricity
 
 NEEDED = {
     "--teeth": ["20", "40"],
@@ -71,6 +73,15 @@ def test_the_edge_of_the_tips_arrives_at_both_gears(edge: str, tmp_path: Path) -
     for gear in (case.pair.pinion, case.pair.wheel):
         assert getattr(gear, name) == pytest.approx(0.2e-3, rel=1e-15)
         assert gear.tip_form_radius < gear.tip_radius
+
+
+def test_run_outs_and_drawn_teeth_arrive_at_the_gears(tmp_path: Path) -> None:
+    text, case = written(tmp_path / "out.toml", NEEDED | {"--run-out": ["20 um", "0.03 mm"]})
+    assert text.count("run_out") == 2
+    amounts = [one.amount for one in case.deviations if isinstance(one, Eccentricity)]
+    assert amounts == pytest.approx([10e-6, 15e-6], rel=1e-14)
+    _, drawn = written(tmp_path / "drawn.toml", NEEDED | {"--drawn-teeth": []})
+    assert drawn.deviations == drawn_pair(drawn.pair, 6, seed=1)
 
 
 def test_an_edge_that_no_tip_has_room_for_is_one_line(

@@ -7,7 +7,7 @@ its own dimension and by nothing else, which a missing or wrong unit cannot do.
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from types import ModuleType
 from typing import NamedTuple
@@ -25,9 +25,10 @@ from thermogear.gears import (
     stiffness,
     tooth,
     touch,
+    turn,
 )
 from thermogear.gears.candidates import mesh_points
-from thermogear.gears.deviations import BasePitchDifference, PitchError, Relief
+from thermogear.gears.deviations import BasePitchDifference, Deviation, PitchError, Relief
 from thermogear.gears.geometry import Gear
 from thermogear.gears.pair import GearPair
 
@@ -100,7 +101,7 @@ def given(u: Units) -> Given:
 
 
 def solved(g: Given) -> loaded.LoadedMesh:
-    flanks = [
+    flanks: list[Deviation] = [
         Relief("wheel", amount=g.amount, length=0.3 * g.pair.base_pitch),
         PitchError("pinion", tuple(0.1 * g.amount * np.cos(np.arange(25)))),
         BasePitchDifference(2e-4),
@@ -149,7 +150,11 @@ FORMULAS: dict[str, tuple[tuple[int, int, int], Formula]] = {
     "pinion_point": (LENGTH, lambda g: corner.pinion_point(g.pair, g.s, rho=1.02 * g.s)[:2]),
     "wheel_point": (LENGTH, lambda g: corner.wheel_point(g.pair, g.s, rho=1.02 * g.s)[:2]),
     "flank_ends": (LENGTH, lambda g: corner.flank_ends(g.pair)),
-    "first_touch": (LENGTH, lambda g: touched(g)),
+    "first_touch": (LENGTH, lambda g: touched(g, [relieved(g, 1.0)])),
+    "first_touch of teeth that differ": (LENGTH, lambda g: touched(g, differing(g))),
+    "tooth_angle": (NUMBER, lambda g: turn.tooth_angle(g.pair, "wheel")),
+    "turn_period": (NUMBER, lambda g: turn.turn_period(g.pair, differing(g)).mesh_periods),
+    "mean_tooth": (LENGTH, lambda g: touched(g, turn.mean_tooth(g.pair, differing(g)))),
     "flank_point": (LENGTH, lambda g: tooth.flank_point(g.gear, g.t)[:2]),
     "start_angle": (NUMBER, lambda g: tooth.start_angle(g.gear, "30-degree")),
     "section_angle": (NUMBER, lambda g: tooth.section_angle(g.gear, 0.5)),
@@ -201,13 +206,25 @@ MODULES = (
     stiffness,
     tooth,
     touch,
+    turn,
 )
 
 
-def touched(g: Given) -> np.ndarray:
-    """Gaps of steep relief at positions where every candidate is in reach."""
-    relief = [Relief("pinion", amount=g.amount, length=0.3 * (g.pair.path.e - g.pair.path.a))]
-    gap = touch.first_touch(mesh_points(g.pair, g.phase), relief).gap
+def relieved(g: Given, times: float) -> Relief:
+    """So many times a steep relief."""
+    return Relief("pinion", amount=times * g.amount, length=0.3 * (g.pair.path.e - g.pair.path.a))
+
+
+def differing(g: Given) -> list[Deviation]:
+    """Reliefs that differ from tooth to tooth, and an eccentric wheel."""
+    shapes = tuple(relieved(g, 1.0 + 0.01 * tooth) for tooth in range(25))
+    run_out = turn.Eccentricity("wheel", amount=g.amount, angle=0.3)
+    return [turn.ToothShapes("pinion", shapes), run_out]
+
+
+def touched(g: Given, deviations: Sequence[Deviation]) -> np.ndarray:
+    """Gaps at positions where every candidate is in reach."""
+    gap = touch.first_touch(mesh_points(g.pair, g.phase), deviations).gap
     return np.where(gap < g.gear.module, gap, 0.0)
 
 

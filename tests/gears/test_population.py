@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable
 
 import numpy as np
 import pytest
 from scipy.stats import kstest
 
+from thermogear.base.errors import InputError
 from thermogear.gears.accuracy import FlankTolerances, flank_class, flank_tolerances
 from thermogear.gears.candidates import mesh_points
 from thermogear.gears.deviations import Deviation, PitchError, active_profile
@@ -40,12 +42,12 @@ def pinion(place: int, grade: int = 5) -> tuple[Deviation, ...]:
 
 @pytest.fixture(scope="module")
 def shares() -> np.ndarray:
-    """Each figure over its tolerance, (gear, side, figure), of 250 gears."""
+    """Each figure over its tolerance, (gear, side, figure), of 200 gears."""
     limits = flank_tolerances(28, 3.175e-3, grade=5)
     return np.array(
         [
             [measured(EVEN, "pinion", gear, side).shares(limits) for side in SIDES]
-            for gear in map(pinion, range(250))
+            for gear in map(pinion, range(200))
         ]
     )
 
@@ -135,7 +137,7 @@ def test_the_worst_share_is_even_from_a_class_to_the_next(shares: np.ndarray) ->
 
 
 def test_shares_of_the_tolerances_are_those_of_an_own_program(shares: np.ndarray) -> None:
-    """5, 50, 95 % of f_p, F_p, f_Halpha, f_falpha; bounds: four standard errors of 250 gears."""
+    """5, 50, 95 % of f_p, F_p, f_Halpha, f_falpha; bounds: four standard errors of 200 gears."""
     own = {0: (0.42, 0.71, 0.95), 1: (0.31, 0.63, 0.94), 2: (0.21, 0.54, 0.91),
            3: (0.28, 0.69, 0.93)}  # fmt: skip
     drive = shares[:, 0]
@@ -164,18 +166,18 @@ def test_a_class_two_coarser_is_the_same_gear_doubled() -> None:
 
 
 def test_teeth_of_the_population_have_index_errors_of_an_own_program() -> None:
-    """Independent index alone: F_p and f_p over sigma, medians (sd of a median of 400: .04)."""
+    """Independent index alone: F_p and f_p over sigma, medians (sd of a median of 200: .05)."""
     only = Population(eccentricity=1e-9, order=1e-9, slope=1e-9, slope_scatter=1e-9,
                       barrel=(0.0, 1e-9), wave=1e-9)  # fmt: skip
     found = []
-    for place in range(400):
+    for place in range(200):
         seed = np.random.SeedSequence(2, spawn_key=(place,))
         _, pitch, _, _ = drawn_gear(ODD, "wheel", 6, seed=seed, population=only)
         errors = np.array(pitch.errors)
         figures = measured(ODD, "wheel", [pitch])
         assert figures.cumulative_pitch >= figures.single_pitch
         found.append(np.array(figures[:2]) * math.cos(math.radians(20.0)) / errors.std(ddof=1))
-    np.testing.assert_allclose(np.median(found, axis=0), (3.635, 4.758), atol=0.12)
+    np.testing.assert_allclose(np.median(found, axis=0), (3.635, 4.758), atol=0.2)
 
 
 def test_eccentricities_add_up_as_two_random_arrows() -> None:
@@ -222,3 +224,48 @@ def test_both_editions_are_drawn() -> None:
     drawn = drawn_pair(ODD, 6, seed=1, edition="1995")
     share = max(measured(ODD, "pinion", drawn, side).shares(limits).max() for side in SIDES)
     assert math.sqrt(0.5) < share <= 1.0
+
+
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        (lambda: Population(index=-0.1), "population.index: got -0.1; allowed finite, >= 0"),
+        (
+            lambda: Population(barrel=(math.nan, 0.1)),
+            "population.barrel: got (nan, 0.1); allowed finite, >= 0",
+        ),
+        (
+            lambda: Population(orders=(0, 2)),
+            "population: got orders (0, 2), least 0.707107; allowed orders from 1 on, least 0..1",
+        ),
+        (
+            lambda: ToothProfile("pinion", slope=3.0, barrel=0.0, wave=0.0, waves=2.0, phase=0.0),
+            "tooth_profile.slope: got 3 m (3e+06 um); allowed -2000..2000 um; did you mean "
+            "3e-06 (3 um)?",
+        ),
+        (
+            lambda: ToothProfile(
+                "pinion", slope=0.0, barrel=0.0, wave=0.0, waves=2.0, phase=math.inf
+            ),
+            "tooth_profile.waves: got 2 waves of phase inf; allowed 0..20, of finite phase",
+        ),
+        (
+            lambda: drawn_pair(ODD, 12, seed=1),
+            "accuracy.grade: got 12; allowed a whole number, 1..11; the grades of ISO 1328-1:2013",
+        ),
+    ],
+)
+def test_what_cannot_be_is_one_line(make: Callable[[], object], said: str) -> None:
+    with pytest.raises(InputError) as caught:
+        make()
+    assert str(caught.value) == said
+
+
+def test_the_coarsest_gears_stay_within_the_bounds_of_a_deviation() -> None:
+    """Raw gears of class 11 and 15 m of diameter would be eccentric by more than is allowed."""
+    large = GearPair(Gear(1000, 15e-3), Gear(1000, 15e-3))
+    for place in range(3):
+        centre, index, *_ = drawn_gear(large, "wheel", 11, seed=np.random.SeedSequence(place))
+        limits = flank_tolerances(1000, 15e-3, grade=11)
+        assert 0.0 < 2.0 * centre.amount < limits.cumulative_pitch
+        assert np.ptp(index.errors) < limits.cumulative_pitch

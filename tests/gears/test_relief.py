@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, replace
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
-from thermogear.gears.deviations import BasePitchDifference, Contacts, Relief
+from thermogear.case.flanks import relief_text
+from thermogear.gears.deviations import BasePitchDifference, Contacts, Relief, active_profile
 from thermogear.gears.geometry import Gear
 from thermogear.gears.loaded import loaded_contact
 from thermogear.gears.pair import GearPair
@@ -96,3 +99,27 @@ def test_nothing_to_take_off_leaves_the_pair_as_it_is() -> None:
     assert design.relieved <= design.unrelieved
     with pytest.raises(InputError, match=r"normal_force: got 0\.0 N; allowed > 0, finite"):
         optimise_tip_relief(PAIR, 0.0)
+
+
+@pytest.mark.parametrize("shift", [0.0, 0.1])
+def test_a_relief_at_the_end_of_its_range_is_one_that_a_case_takes(
+    shift: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As long as the active profile, to the nanometre of a file; deflections of millimetres."""
+
+    def at_the_end(_: object, start: Floats, **__: object) -> SimpleNamespace:
+        return SimpleNamespace(x=np.ones_like(start), fun=0.0)
+
+    screened = SimpleNamespace(population=np.ones((1, 2)), population_energies=np.zeros(1))
+    monkeypatch.setattr("scipy.optimize.minimize", at_the_end)
+    monkeypatch.setattr("scipy.optimize.differential_evolution", lambda *_, **__: screened)
+    gears = [Gear(z, 5e-3, face_width=20e-3, profile_shift=shift) for z in (25, 41)]
+    pair = GearPair(*gears)
+    design = optimise_tip_relief(pair, 4e6, positions=4, symmetric=True)
+    for one in (design.pinion, design.wheel):
+        assert 0.99e-3 < one.amount <= 1e-3
+        told = re.findall(r'"([\d.]+) ', relief_text(one.gear, one))
+        read = replace(one, amount=1e-6 * float(told[0]), length=1e-3 * float(told[1]))
+        start, _, tip = active_profile(pair, one.gear)
+        assert read.length == pytest.approx(tip - start, abs=1.1e-9)
+        assert read.taken_off(pair, np.array([tip]))[0] == pytest.approx(read.amount)

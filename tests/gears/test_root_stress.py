@@ -14,7 +14,15 @@ from thermogear.gears.geometry import Gear, Rack
 from thermogear.gears.iso6336 import root_factors, single_contact
 from thermogear.gears.loaded import solve_mesh
 from thermogear.gears.pair import GearPair
-from thermogear.gears.root_stress import COLUMNS, MESH, ROWS, root_stress, root_table, table_of
+from thermogear.gears.root_stress import (
+    COLUMNS,
+    MESH,
+    ROWS,
+    _middle,
+    root_stress,
+    root_table,
+    table_of,
+)
 from thermogear.gears.tooth import section_angle
 from thermogear.gears.tooth_mesh import cells_of, halved
 from thermogear.gears.tooth_table import MATES, Sector
@@ -203,7 +211,8 @@ def test_one_pair_alone_loads_its_own_roots() -> None:
         wanted = table.stress(t).max() * load / (RIG.face_width * gear.module)
         assert got.stress == pytest.approx(wanted)
         at = np.unravel_index(table.stress(t).argmax(), (alone.size, table.slope.size))[1]
-        assert got.slope == pytest.approx([table.slope[at]] * 2)
+        # on a flat maximum the middle of the last percent lies beside its greatest element
+        assert got.slope == pytest.approx([table.slope[at]] * 2, abs=math.radians(4.0))
 
 
 def test_loads_shared_bear_less_and_what_did_not_settle_nothing() -> None:
@@ -226,3 +235,13 @@ def test_a_gear_bears_the_same_driving_and_driven() -> None:
     )
     for gear, other in ((0, 1), (1, 0)):
         assert there[gear].stress == pytest.approx(back[other].stress, rel=4e-3)
+
+
+def test_the_place_of_a_flat_maximum_does_not_jump_from_point_to_point() -> None:
+    """A parabola about 37 degrees: its middle wherever the points are, and with rounding on it."""
+    top = math.radians(37.0)
+    for begin in np.radians(np.linspace(8.0, 11.0, 7)):
+        slope = np.linspace(begin, math.radians(85.0), 18)
+        stress = 2.0 - (slope - top) ** 2
+        places = [_middle(stress + 1e-3 * np.sin(k * slope), slope) for k in (0, 37, 53)]
+        assert places == pytest.approx([top] * 3, abs=math.radians(1.0))

@@ -247,36 +247,38 @@ def test_perfect_eccentric_gears_have_lines_of_shafts_and_mesh_alone() -> None:
     assert lines.max() < 1e-6
 
 
+UNDERCUT = GearPair(
+    Gear(44, 3e-3, profile_shift=-0.1, tip_rounding=0.25e-3),
+    Gear(15, 3e-3, profile_shift=-0.1, tip_rounding=0.25e-3, allow_undercut=True),
+)
+
+
+@pytest.mark.parametrize("pair", [PAIR, UNDERCUT], ids=["plain", "undercut, rounded tips"])
 @pytest.mark.parametrize("load", [0.0, 4e3])
-def test_teeth_that_differ_touch_as_first_touch_has_each_pair_of_teeth(load: float) -> None:
+def test_teeth_that_differ_touch_as_first_touch_has_each_pair_of_teeth(
+    pair: GearPair, load: float
+) -> None:
     """Within 20 nm where a pair may carry; half a per cent of the whole error is twice that."""
     rng = np.random.default_rng(11)
-    devices = [
-        ToothShapes(
-            name,
-            tuple(
-                WavyProfile(name, slope=1e-6 * s, form=5e-6, waves=2.5, phase=p, flank="drive")
-                for s, p in zip(
-                    rng.normal(2.0, 2.0, PAIR.gear(name).teeth),
-                    rng.normal(0.0, 0.75, PAIR.gear(name).teeth),
-                    strict=True,
-                )
-            ),
-        )
-        for name in NAMES
-    ]
-    relief = Relief("wheel", amount=8e-6, length=3e-3)
-    spread = 4.0 * load / (np.pi * PAIR.face_width * 115e9)
+    devices = []
+    for name in NAMES:
+        z = pair.gear(name).teeth
+        slopes, phases = 1e-6 * rng.normal(2.0, 2.0, z), rng.normal(0.0, 0.75, z)
+        profiles = [
+            WavyProfile(name, slope=float(a), form=5e-6, waves=2.5, phase=float(b), flank="drive")
+            for a, b in zip(slopes, phases, strict=True)
+        ]
+        devices.append(ToothShapes(name, tuple(profiles)))
+    relief = Relief("wheel", amount=8e-6, length=2e-3)
+    spread = 4.0 * load / (np.pi * pair.face_width * 115e9)
     phase, start = np.arange(24) / 24, 57
-    found = first_touch(mesh_points(PAIR, start + phase), [*devices, relief], spread)
-    turned = first_touch(
-        mesh_points(PAIR, np.arange(2 * 24) / 24 + start - 1), [*devices, relief], spread
-    )
-    assert np.array_equal(turned.gap[24:], found.gap)
+    found = first_touch(mesh_points(pair, start + phase), [*devices, relief], spread)
+    several = mesh_points(pair, np.arange(2 * 24) / 24 + start - 1)
+    assert np.array_equal(first_touch(several, [*devices, relief], spread).gap[24:], found.gap)
     for rank in range(found.gap.shape[1]):
         number = start + 1 - rank
         teeth = [d.shapes[number % len(d.shapes)] for d in devices]
-        exact = first_touch(mesh_points(PAIR, phase), [*teeth, relief], spread).gap[:, rank]
+        exact = first_touch(mesh_points(pair, phase), [*teeth, relief], spread).gap[:, rank]
         near = exact < 20e-6
         assert np.array_equal(np.isfinite(exact), np.isfinite(found.gap[:, rank]))
         assert found.gap[near, rank] == pytest.approx(exact[near], abs=20e-9)

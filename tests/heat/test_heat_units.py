@@ -255,7 +255,6 @@ NOT_FORMULAS = {
     "laws_together",
     "outside_range",
     "structure_factor",
-    "together",
     "transition_pieces",
 }
 

@@ -9,7 +9,7 @@ from scipy.linalg import expm
 
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.heat.network import Link, ThermalNetwork
-from thermogear.heat.transient import HOTTEST, Course, State, Stretch, follow, together
+from thermogear.heat.transient import HOTTEST, Course, State, Stretch, follow
 
 C, G, Q, T0 = 1000.0, 2.0, 100.0, 293.15
 RATE = G / C
@@ -273,38 +273,3 @@ def test_what_lags_is_asked_for_at_few_states_and_the_course_is_the_same() -> No
     again: list[int] = []
     follow([lagging(3000.0, rate, exactly=True, asked=again)], {"body": T0}, tolerance=1e-2)
     assert sum(few) < sum(again)
-
-
-def test_courses_together_are_asked_for_at_once_and_are_those_alone() -> None:
-    """Each keeps its own steps; a law that refuses one of them is told alone."""
-    calls: list[int] = []
-
-    def network(state: State) -> ThermalNetwork:
-        calls.append(state["body"].size)
-        if np.any((state["sample"] == 7.0) & (state["body"] > T0 + 400.0)):
-            raise ConvergenceError("too hot a law")
-        heat = (20.0 + 10.0 * state["sample"]) * np.exp(-(state["body"] - T0) / 90.0)
-        return ThermalNetwork(
-            (Link("body", "ambient", G),), {"body": heat}, {"ambient": T0}, {"body": C}
-        )
-
-    def stretches(k: int) -> list[Stretch]:
-        given = {"sample": float(k)}
-        return [
-            Stretch(end=400.0 + 90.0 * k, network=network, given=given),
-            Stretch(end=np.inf, network=network, given=given),
-        ]
-
-    courses = together([(stretches(k), {"body": T0 + k}) for k in range(7)])
-    shared, counts = len(calls), []
-    for k, course in enumerate(courses):
-        calls.clear()
-        alone = follow(stretches(k), {"body": T0 + k})
-        counts.append(len(calls))
-        np.testing.assert_array_equal(course.time, alone.time)
-        np.testing.assert_allclose(
-            course.temperatures["body"], alone.temperatures["body"], rtol=1e-13
-        )
-    assert shared < 0.5 * sum(counts)
-    with pytest.raises(ConvergenceError, match=r"^too hot a law$"):
-        together([(stretches(k), {"body": T0 + (600.0 if k == 7 else 1.0)}) for k in (3, 7)])

@@ -29,6 +29,7 @@ from thermogear.mesh.friction_path import FrictionPath
 from thermogear.mesh.mesh_heat import mesh_heat
 from thermogear.mesh.thermal import HotPair
 from thermogear.mesh.turn_spread import OF_TURN
+from thermogear.mesh.warm_up import Duty, warm_up
 
 OIL = lubricant("FVA3")
 MODEL = MeshModel.consistent()
@@ -126,6 +127,20 @@ def test_heat_is_that_of_all_tooth_pairs_one_by_one() -> None:
             np.testing.assert_array_equal(one, other)
 
 
+def test_a_warm_up_ends_at_the_balance_and_its_clearance_is_the_tightest() -> None:
+    flanks = errors(SMALL, 6e-6)
+    duty = Duty.steady(300.0, 40.0, ambient=293.15)
+    course = warm_up(SMALL, duty, OIL, 60e-6, deviations=flanks, moments=6)
+    balance = heat_balance(SMALL, 300.0, 40.0, OIL, 60e-6, deviations=flanks, from_hot=False)
+    end = course.temperatures["oil"][-1]
+    assert end == pytest.approx(balance.operating.oil_temperature[0], abs=0.1)
+    hot = HotPair(SMALL, course.operating.point(course.time.size - 1), MODEL)
+    gap = Clearance(hot, np.arange(240) / 240, flanks)
+    assert course.half_backlash[-1] == pytest.approx(gap.half_backlash.min(), rel=1e-12)
+    alike = warm_up(SMALL, duty, OIL, 60e-6, deviations=flanks[:0], moments=6)
+    assert end > alike.temperatures["oil"][-1] + 0.1
+
+
 def test_the_least_clearance_is_that_of_the_tightest_pair_and_jams_where_it_is_said_to() -> None:
     flanks: list[Deviation] = [
         *errors(SMALL, 8e-6),
@@ -198,6 +213,16 @@ def test_a_high_tooth_is_the_one_that_is_pressed_most() -> None:
     np.testing.assert_allclose(share[inside] + partner, 1.0, atol=0.02)
 
 
+def test_a_turn_without_load_or_at_rest_has_its_limits() -> None:
+    still = mesh_cycle(SMALL, at(speed=0.0), MODEL, deviations=errors(SMALL), path_positions=11)
+    idle = mesh_cycle(SMALL, at([0.0]), MODEL, deviations=errors(SMALL), path_positions=11)
+    for cycle, film in ((still, 0.0), (idle, np.inf)):
+        assert cycle["flash_temperature_greatest_of_turn"].item() == 0.0
+        assert cycle["film_parameter_median_of_turn"].item() == film
+        assert cycle["frictional_power"].item() == 0.0
+        assert cycle["status"].item() == 0
+
+
 def test_only_what_is_asked_of_a_turn_is_solved() -> None:
     cycle = Cycle(HotPair(SMALL, at(), MODEL), tuple(errors(SMALL)), np.array([SMALL.path.c]), 96)
     cycle.quantities(("least_half_backlash", "jam_temperature", "frictional_power"))
@@ -205,7 +230,7 @@ def test_only_what_is_asked_of_a_turn_is_solved() -> None:
     rule = MODEL.override(sharing="equal")
     other = Cycle(HotPair(SMALL, at(), rule), tuple(errors(SMALL)), np.array([SMALL.path.c]), 96)
     assert not set(OF_TURN) & set(other.quantities())
-    with pytest.raises(InputError, match="the load is shared by a rule"):
+    with pytest.raises(InputError, match="sharing = equal"):
         other.quantities(["hertz_pressure_wheel_tooth"])
 
 

@@ -11,15 +11,14 @@ import pytest
 
 from thermogear import Gear, GearPair, Surroundings, thermal_network
 from thermogear.base.errors import InputError
-from thermogear.base.materials import Lubricant, lubricant
+from thermogear.base.materials import lubricant
 from thermogear.heat.gearbox import Losses
 from thermogear.heat.transient import State, Stretch, follow
 from thermogear.mesh.balance import Gearbox, heat_balance, node_temperatures
 from thermogear.mesh.clearance import Clearance
 from thermogear.mesh.model import MeshModel
-from thermogear.mesh.operating import Varied
 from thermogear.mesh.thermal import HotPair
-from thermogear.mesh.warm_up import FACTORS, PHASES, Duty, WarmUp, warm_up, warm_ups, with_factors
+from thermogear.mesh.warm_up import FACTORS, PHASES, Duty, WarmUp, warm_up, with_factors
 
 sys.path.insert(0, str(Path(__file__).parent))
 import finite_volumes
@@ -63,39 +62,6 @@ def other() -> GearPair:
 @pytest.fixture(scope="module")
 def steadily(rig: GearPair) -> WarmUp:
     return run(rig)
-
-
-def test_samples_side_by_side_are_those_alone(rig: GearPair) -> None:
-    """Duties, oils and gears of a batch: each is the course of its own, to rounding."""
-    rng = np.random.default_rng(20261127)
-    duties = [
-        duty((0.0, w, m), (4.0, 0.7 * w, 0.0), (9.0, w, m))
-        for w, m in zip(rng.uniform(60.0, 250.0, 4), rng.uniform(20.0, 300.0, 4), strict=True)
-    ]
-    oils = [
-        Lubricant.from_two_points("own", (313.15, v), (373.15, 0.09 * v), density_15=870.0)
-        for v in rng.uniform(60e-6, 300e-6, 4)
-    ]
-
-    def columns(lines: list[Lubricant]) -> Lubricant:
-        names = ("walther_a", "walther_b", "density_15")
-        return replace(lines[0], **{n: np.array([getattr(o, n) for o in lines]) for n in names})
-
-    rough = rng.uniform(0.2e-6, 0.8e-6, 4)
-    batch = warm_ups(
-        rig, duties, columns(oils), 125e-6, MODEL,
-        varied=Varied(pinion_roughness=rough), tolerance=1e-2,
-    )  # fmt: skip
-    for k, course in enumerate(batch):
-        alone = warm_ups(
-            rig, [duties[k]], columns([oils[k]]), 125e-6, MODEL,
-            varied=Varied(pinion_roughness=rough[k : k + 1]), tolerance=1e-2,
-        )[0]  # fmt: skip
-        assert course.piece.max() == 1
-        for name, kelvin in alone.temperatures.items():
-            np.testing.assert_allclose(course.temperatures[name], kelvin, atol=1e-6)
-        assert course.worst.half_backlash == pytest.approx(alone.worst.half_backlash, rel=1e-9)
-        np.testing.assert_allclose(course.losses.mesh, alone.losses.mesh, rtol=1e-6)
 
 
 def test_a_leap_of_the_speed_jams_at_once() -> None:

@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 from thermogear.case.case import GearCase, load_case
-from thermogear.case.thermal_state import UNDEFORMED
+from thermogear.case.thermal_state import HOT, UNDEFORMED
 from thermogear.gears.deviations import Relief
 from thermogear.mesh.thermal import HotPair
+from thermogear.study.contact import loaded_survey
 from thermogear.study.corners import HotContact
 from thermogear.study.relief import UNIFORM, one_point
 
@@ -30,10 +31,15 @@ torque = "100 N m"
 MOST = 400.0
 
 
-def contact(*changes: str) -> HotContact:
-    """Of two equal cold gears without the errors of a class."""
+def read(*changes: str) -> GearCase:
     case = load_case(TEXT, changes)
     assert isinstance(case, GearCase)
+    return case
+
+
+def contact(*changes: str) -> HotContact:
+    """Of two equal cold gears without the errors of a class."""
+    case = read(*changes)
     reliefs = tuple(one for one in case.deviations if isinstance(one, Relief))
     case = replace(case, deviations=reliefs)
     model = case.models[0].override(stiffness="loaded")
@@ -108,3 +114,46 @@ def test_a_rounded_corner_yields_where_its_circle_is_pressed_too_hard() -> None:
     assert found[0, -1].tolist() == [True, True]
     sharp = contact()
     assert not sharp.yields(sharp.under(torques[None, :], phase=UNIFORM)).any()
+
+
+def test_an_edge_of_plastic_is_not_held_to_the_limit_of_steel() -> None:
+    """Neither below it, where steel would bear, nor above: what it bears is not known."""
+    sizes = [f"gears.{gear}.tip_rounding=0.1 mm" for gear in ("pinion", "wheel")]
+    at = contact(*sizes, "gears.pinion.material=POM")
+    assert not at.yields(at.under(np.array([[400.0]]), phase=UNIFORM))[..., 0].any()
+    words = at.told(5.0)[1]
+    assert "POM" in words
+    assert "known" not in contact(*sizes).told(5.0)[1]
+
+
+def test_a_survey_tells_of_the_hot_pair_what_is_told_of_one_load() -> None:
+    """Temperatures of a heat balance, six loads: shares, ratio and onset are those of each."""
+    case = read()
+    model = case.models[0].override(stiffness="loaded")
+    hot = loaded_survey(case, (20.0, 40.0, 60.0, 80.0, 100.0, 200.0))["contact"].sel(
+        temperature="hot", load=100.0
+    )
+    at = HotContact(
+        HotPair(case.pair, one_point(HOT.operating(case, case.models[0]), 100.0), model),
+        case.deviations,
+    )
+    mesh = at.under(np.array([[100.0]]), phase=UNIFORM)
+    for name, expected in (
+        ("corner_load_share", mesh.corner_load[0, 0]),
+        ("corner_period_share", mesh.corner_part[0, 0]),
+        ("effective_contact_ratio", mesh.effective_ratio[0, 0]),
+        ("corner_onset_torque", at.onset(100.0)[0]),
+    ):
+        np.testing.assert_allclose(hot[name].values, expected, rtol=2e-3, atol=1e-12)
+    np.testing.assert_allclose(hot["load_share"].values, mesh.share[0, 0], atol=1e-6)
+
+
+def test_the_edge_of_an_undercut_is_not_told_from_a_tip_corner() -> None:
+    case = read("gears.pinion.teeth=12", "gears.pinion.allow_undercut=true")
+    assert case.pair.cut_short
+    found = loaded_survey(case, (100.0,))
+    for name in ("corner_load_share", "corner_period_share", "corner_onset_torque"):
+        assert np.isnan(found["contact"][name].values).all()
+    codes = [one.code for one in found.notices]
+    assert "edge_of_undercut" in codes
+    assert "edge_contact_at_most" not in codes

@@ -51,6 +51,18 @@ def test_deviations_reach_both_forms() -> None:
         assert float(at[name].sel(load=at["load"][16])) < 0.95 * float(bare[name][16])
 
 
+def test_teeth_that_differ_are_compared_as_their_mean_tooth() -> None:
+    """Errors of mean 0 about a common one: the forms of that common error."""
+    both = []
+    for errors in ('"5 um", "1 um", ' * 12 + '"3 um"', '"3 um", ' * 25):
+        case = load_case(example_text("rig"), [f"gears.pinion.pitch_errors=[{errors}]"])
+        point = of_case(gear_case(case))
+        found = shared_results(point, speeds=(200.0, 201.0), count=1).tree["rest"].to_dataset()
+        both.append(found)
+    for name in both[0]:
+        np.testing.assert_allclose(both[0][name], both[1][name], rtol=1e-9, atol=1e-15)
+
+
 def test_without_gears_there_is_no_load_to_share() -> None:
     numbers = {"zeta": 0.1, "w": 1.2, "eps": 0.3, "fm": 0.1, "fh": 0.1}
     with pytest.raises(InputError, match="it has no tooth pairs to share a load"):

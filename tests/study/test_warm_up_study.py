@@ -14,6 +14,7 @@ from coded import coded
 from own_pair import OWN_PAIR
 from said import numbers
 from thermogear.base.errors import InputError
+from thermogear.base.units import ZERO_CELSIUS
 from thermogear.case.case import GearCase, load_case, load_example
 from thermogear.case.duty import Measured, chosen_point
 from thermogear.case.sensors import flank_area, shaft_share
@@ -60,6 +61,17 @@ def test_the_worst_moment_stands_in_its_own_curve(tree: xr.DataTree) -> None:
     assert data["jam_margin"].values.min() == pytest.approx(worst["margin_K"], abs=0.05)
     assert float(data["imbalance"].max()) < 1e-6
     assert tree.attrs["greatest_imbalance"] < 1e-6
+
+
+def test_a_jam_beyond_what_the_gears_bear_is_told_by_what_they_bear(tree: xr.DataTree) -> None:
+    """Hotter by 2000 K no steel is a gear: the words end at the tempering, 180 degC."""
+    worst = json.loads(tree.attrs["worst"])
+    tooth = worst["temperatures_K"]["pinion_tooth"] - ZERO_CELSIUS
+    assert worst["borne_K"] == pytest.approx(180.0 - tooth)
+    far = answer(worst | {"margin_K": 2000.0, "half_backlash_m": 1e-4}, 1e-4)
+    near = answer(worst | {"margin_K": 20.0, "half_backlash_m": 1e-4}, 1e-4)
+    assert (180.0 in numbers(far), 2000.0 in numbers(far)) == (True, False)
+    assert (180.0 in numbers(near), 20.0 in numbers(near)) == (False, True)
 
 
 def test_a_stop_has_no_flash_no_film_and_no_stiffness(tree: xr.DataTree) -> None:

@@ -9,12 +9,12 @@ import pytest
 from scipy.optimize import brentq
 
 from conftest import Compared
+from gear_compliance import gear_compliance
 from thermogear.gears.geometry import Gear
 from thermogear.gears.ring import ring_compliance
 from thermogear.gears.stiffness import weber_approach
 from thermogear.gears.tooth import flank_point, tooth_compliances
 from thermogear.gears.tooth_mesh import Profile
-from thermogear.verify import gear_compliance
 
 pytestmark = pytest.mark.slow
 

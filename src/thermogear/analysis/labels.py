@@ -76,11 +76,12 @@ def label(
     standard errors, in both halves of its record.
 
     The label is given only when the same motion on twice as many sub-steps of the event-exact maps
-    ends there too. Where a difference of 1e-13 half backlashes grows a millionfold on the way,
-    ``starts`` starts that differ by so much are followed, to where each closes, for ``follow``
-    periods (``cap`` if that is more): all must end on one orbit, or, for "chaotic", none may
-    close and all must still part in the last round. Everything else is undecided. Chaos is
-    therefore an estimate, "chaotic for N periods, k starts": no exponent says how long it lasts.
+    (of a turn on a quarter more) ends there too. Where a difference of 1e-13 half backlashes grows
+    a millionfold on the way, ``starts`` starts that differ by so much are followed, to where each
+    closes, for ``follow`` periods (``cap`` if that is more): all must end on one orbit, or, for
+    "chaotic", none may close and all must still part in the last round. Everything else is
+    undecided. Chaos is therefore an estimate, "chaotic for N periods, k starts": no exponent says
+    how long it lasts.
 
     >>> model = TorsionalModel(
     ...     damping_ratio=0.05, frequency=0.5, stiffness_amplitude=0.0,

@@ -24,6 +24,8 @@ from thermogear.dynamics.return_map import ReturnMap, return_map
 
 SAMPLES = 2**17
 """Samples along a turn at most, unless a mesh period would have fewer than 64."""
+BETWEEN = 8
+"""Places from one sample of a turn to the next at which its force is looked at."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -99,8 +101,8 @@ class Orbit:
 
     def sampling(self, per_period: int) -> int:
         """Samples a mesh period: ``per_period``, of long turns fewer, :data:`SAMPLES` in all."""
-        of = self.lanes.mesh_periods
-        return per_period if of == 1 else min(per_period, max(SAMPLES // of, 64))
+        most = max(SAMPLES // self.lanes.mesh_periods, 64)
+        return min(per_period, most) if self.lanes.mesh_periods > 1 else per_period
 
     def samples(self, per_period: int = 256) -> tuple[Floats, Floats, Floats]:
         """Phase (in mesh periods), x and x' along the whole orbit at uniform phases.
@@ -116,43 +118,44 @@ class Orbit:
     def extremes(self, per_period: int = 256) -> tuple[float, float]:
         """Least and largest x on the orbit, between the samples too."""
         _, x, v = self.samples(per_period)
-        step = float(self.lanes.mesh_period[0]) / self.sampling(per_period)
-        x1, v1 = np.roll(x, -1), np.roll(v, -1)
+        c1, c2, c3 = self._cubics(x, v, per_period)
         low, high = float(x.min()), float(x.max())
-        for i in np.flatnonzero(v * v1 < 0.0):
-            # cubic Hermite through both ends: its error is of fourth order in a short step
-            d = x1[i] - x[i]
-            c2, c3 = 3 * d - step * (2 * v[i] + v1[i]), step * (v[i] + v1[i]) - 2 * d
-            roots = np.roots([3 * c3, 2 * c2, step * v[i]])
+        for i in np.flatnonzero(v * np.roll(v, -1) < 0.0):
+            roots = np.roots([3 * c3[i], 2 * c2[i], c1[i]])
             for t in roots[np.isreal(roots)].real:
                 if 0.0 <= t <= 1.0:
-                    value = float(x[i] + t * (step * v[i] + t * (c2 + t * c3)))
+                    value = float(x[i] + t * (c1[i] + t * (c2[i] + t * c3[i])))
                     low, high = min(low, value), max(high, value)
         return low, high
+
+    def _cubics(self, x: Floats, v: Floats, per_period: int) -> tuple[Floats, Floats, Floats]:
+        """Cubic Hermite from each sample to the next: coefficients of t, t^2, t^3, t from 0 to 1.
+
+        Its error is of fourth order in the step.
+        """
+        step = float(self.lanes.mesh_period[0]) / self.sampling(per_period)
+        d, v1 = np.roll(x, -1) - x, np.roll(v, -1)
+        return step * v, 3 * d - step * (2 * v + v1), step * (v + v1) - 2 * d
 
     def dynamic_load_factor(self, per_period: int = 1024) -> float:
         """max |k f| over the mean of k f on the orbit (1 for a quasi-static, constant mesh).
 
         The mean of the elastic force equals the mean of F(t) on every closed orbit. Infinite
-        when that mean is 0. Over a turn the greatest is that of the parabola through three samples.
+        when that mean is 0. Over a turn it is looked for between the samples too.
         """
-        phase, x, _ = self.samples(per_period)
-        of = self.lanes.mesh_periods
-        once = self.lanes.values("stiffness", phase[: phase.size // self.period] / of)[:, 0]
-        stiffness = np.tile(once, self.period)
+        _, x, v = self.samples(per_period)
+        if self.lanes.mesh_periods > 1:
+            t = np.arange(BETWEEN) / BETWEEN
+            c1, c2, c3 = (c[:, None] for c in self._cubics(x, v, per_period))
+            x = (x[:, None] + t * (c1 + t * (c2 + t * c3))).ravel()
+        count = x.size // self.period
+        once = self.lanes.values("stiffness", np.arange(count) / count)[:, 0]
         b = float(self.lanes.half_backlash[0])
-        force = stiffness * (x - np.clip(x, -b, b))
+        force = np.tile(once, self.period) * (x - np.clip(x, -b, b))
         mean = float(self.lanes.force[0, 0].real)
         piece = self.lanes.force_pieces[0]
         mean += 0.0 if piece is None else piece.mean
-        size = np.abs(force)
-        greatest = float(size.max())
-        if of > 1:
-            top = int(size.argmax())
-            a, c = float(size[top - 1]), float(size[(top + 1) % size.size])
-            bend = 2.0 * greatest - a - c
-            greatest += (a - c) ** 2 / (8.0 * bend) if bend > 0.0 else 0.0
-        return greatest / abs(mean) if mean != 0.0 else float("inf")
+        return float(np.max(np.abs(force)) / abs(mean)) if mean != 0.0 else float("inf")
 
 
 def multipliers(jacobian: Floats, determinant: float) -> Complexes:

@@ -82,8 +82,8 @@ def periodic(
         orbit = shorter
     points = orbit.points / unit
     largest = float(np.max(np.abs(orbit.multipliers)))
-    counted = ("period" if lane.mesh_periods == 1 else "turn") + "s" * (period > 1)
-    shown = f"largest Floquet multiplier {_shown(orbit)} over {period} {counted}"
+    shown = f"largest Floquet multiplier {_shown(orbit)} over {period} "
+    shown += ("period" if lane.mesh_periods == 1 else "turn") + "s" * (period > 1)
     # the window against the orbit, in step: its last state is the orbit's first point
     if not _on(points, scaled):
         return None, False

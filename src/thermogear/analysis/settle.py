@@ -76,12 +76,12 @@ class Rule:
         """
         if mesh_periods == 1:
             return self
-        first, cap, chaos = (
-            turns(count, of=mesh_periods) for count in (self.first, self.cap, self.chaos_periods)
-        )
-        chaos = max(chaos, 8)
-        counts = {"first": max(first, 3), "cap": max(cap, 24), "chaos_periods": chaos}
-        return _OfTurn(**(vars(self) | counts | {"batches": min(self.batches, chaos)}))
+        counts = {
+            name: max(turns(getattr(self, name), of=mesh_periods), least)
+            for name, least in (("first", 3), ("cap", 24), ("chaos_periods", 8))
+        }
+        counts["batches"] = min(self.batches, counts["chaos_periods"])
+        return _OfTurn(**(vars(self) | counts))
 
     def full(self) -> Rule:
         """The same proofs after one long run, nothing given up early."""

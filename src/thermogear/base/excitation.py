@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -56,10 +55,8 @@ class Periodic:
         values = np.asarray(samples, dtype=float)
         if values.ndim != 1 or values.size < 1 or not np.all(np.isfinite(values)):
             raise InputError("samples", values.shape, allowed="a finite 1-D array, one period")
-        spectrum = np.fft.rfft(values) / values.size
-        most = (values.size - 1) // 2
-        kept = most if harmonics is None else min(harmonics, most)
-        return cls(float(spectrum[0].real), tuple(2.0 * spectrum[1 : kept + 1]))
+        row = fourier_rows(values[None], values.size if harmonics is None else harmonics)[0]
+        return cls(float(row[0].real), tuple(row[1:]))
 
     @staticmethod
     def columns(rows: Sequence[Periodic]) -> NDArray[np.complex128]:
@@ -73,8 +70,7 @@ class Periodic:
         """Values at ``phase`` (in periods, any shape)."""
         phi = np.asarray(phase, dtype=float)
         if len(self.harmonics) > fourier.MANY:
-            found: Floats = fourier.values(self._row, phi)[0]
-            return found
+            return np.asarray(fourier.values(self.columns([self]), phi)[0])[()]
         if phi.ndim == 0 and self.harmonics and abs(phi) < _FAR:
             return self._one(float(phi))
         total = np.full(phi.shape, self.mean)
@@ -82,10 +78,6 @@ class Periodic:
             if amplitude != 0.0:
                 total = total + (amplitude * np.exp(2j * np.pi * order * phi)).real
         return total
-
-    @cached_property
-    def _row(self) -> NDArray[np.complex128]:
-        return self.columns([self])
 
     def _one(self, phi: float) -> Floats:
         """The value at one phase, to the last digit that of arrays, in a tenth of their time."""
@@ -201,11 +193,6 @@ class Excitation:
         """omega_n = sqrt(k_m/m_e) [rad/s]."""
         return float(np.sqrt(self.stiffness.mean / self.equivalent_mass))
 
-    @property
-    def turn_frequency(self) -> float:
-        """How often stiffness and error repeat [rad/s]."""
-        return self.mesh_frequency / self.mesh_periods
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Excitations:
@@ -248,20 +235,14 @@ class Excitations:
         mean = np.where(moves(self.status), self.stiffness[:, 0].real, np.nan)
         return np.sqrt(mean / self.equivalent_mass)
 
-    @property
-    def turn_frequency(self) -> Floats:
-        """How often stiffness and error repeat [rad/s], (point,)."""
-        return self.mesh_frequency / self.mesh_periods
-
     def take(self, index: ArrayLike) -> Excitations:
         """Some of the points, in that order."""
         chosen = np.atleast_1d(np.asarray(index))
-        arrays = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in _OF_ALL}
         rubbed = self.friction
         if rubbed is not None:
             rubbed = tuple(rubbed[i] for i in np.arange(len(self))[chosen])
-        some = {name: array[chosen] for name, array in arrays.items()}
-        return replace(self, **some, friction=rubbed)
+        arrays = [field.name for field in fields(self) if field.name not in _OF_ALL]
+        return replace(self, **{n: getattr(self, n)[chosen] for n in arrays}, friction=rubbed)
 
     @classmethod
     def of(cls, rows: Sequence[Excitation]) -> Excitations:
@@ -308,11 +289,10 @@ class Excitations:
         """One point by itself; None where it does not move."""
         if not moves(self.status[place]):
             return None
-        tables = (
+        stiffness, error = (
             Periodic(float(row[0].real), tuple(row[1:]))
             for row in (self.stiffness[place], self.error[place])
         )
-        stiffness, error = tables
         inertias, radii, torques = (
             (float(both[place, 0]), float(both[place, 1]))
             for both in (self.inertias, self.base_radii, self.torques)

@@ -37,7 +37,7 @@ class Period:
     def orders(self) -> dict[str, int]:
         """Orders of the period at which a shaft, the mesh and the hunting tooth repeat.
 
-        A shaft stands here only where a whole number of its turns fills the period; the hunting
+        A shaft is given only where a whole number of its turns fills the period; the hunting
         tooth only where the same two teeth meet once in a period.
         """
         found = {}

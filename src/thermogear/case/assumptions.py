@@ -67,7 +67,7 @@ class Assumption:
     @property
     def default(self) -> str:
         """What is known of a default left to act; empty where the file declares the value."""
-        return self.reason.removeprefix(_LEFT) if self.reason.startswith(_LEFT) else ""
+        return self.reason.removeprefix(LEFT) if self.reason.startswith(LEFT) else ""
 
     @property
     def figure(self) -> dict[str, Any]:
@@ -88,12 +88,8 @@ class Assumption:
 _NUMBERS = re.compile(
     r"([-+]?[\d.]+(?:e[-+]?\d+)?(?:, [-+]?[\d.]+(?:e[-+]?\d+)?)*)(?: ([^\d,][^,]*))?(?:, (\D.*))?"
 )
-_LEFT = "not in the file; the default: "
-
-
-def unstated(field: str, value: str, why: str) -> Assumption:
-    """A default that acts in some cases alone: its field, what it is, why."""
-    return Assumption(field, value, f"{_LEFT}{why}")
+LEFT = "not in the file; the default: "
+"""How the reason of a default begins that was left to act."""
 
 
 def assumptions(
@@ -268,7 +264,7 @@ def _defaults(
         elif name not in table.model_fields_set and field.description and name not in _SILENT:
             path = dotted((*above, name))
             text = decided.get(path) or _shown(value, field)
-            reason = f"{_LEFT}{field.description}"
+            reason = f"{LEFT}{field.description}"
             found.append(Assumption(path, text, reason, _real(value)))
     return found
 

@@ -27,7 +27,7 @@ from thermogear.base.toml import overridden, pairs, tables
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.case import build as parts
 from thermogear.case.allowed import gear_parameter, gear_reader
-from thermogear.case.assumptions import Assumption, assumptions, unstated
+from thermogear.case.assumptions import LEFT, Assumption, assumptions
 from thermogear.case.backlash import Backlash
 from thermogear.case.base import Case, Simulation
 from thermogear.case.build import TemperatureRule
@@ -39,7 +39,7 @@ from thermogear.case.flanks import accuracy, deviations, first_tooth, unmeasured
 from thermogear.case.gearbox import Reading, gearbox, heated
 from thermogear.case.ranges import in_proportion, warn_of_temperatures, warn_of_torque
 from thermogear.case.refusals import complaints, together
-from thermogear.case.schema import PICTURES, GearFile
+from thermogear.case.schema import OF_BUNDLE, PICTURES, GearFile
 from thermogear.case.sensor_schema import SensorsTable
 from thermogear.case.shaft_plan import TrainPlan
 from thermogear.case.shafts import train_plan
@@ -224,7 +224,8 @@ class GearCase(Case):
         """The case with a field put to the ``value`` that a file would hold."""
         changes = (*(pair for pair in self.overrides if pair[0] != field), (field, value))
         made = case_of(overridden(self.data, ((field, value),)), self.text, changes, told=False)
-        return replace(gear_case(made), assumptions=self.assumptions)
+        kept = tuple(one for one in self.assumptions if one.field != field)
+        return replace(gear_case(made), assumptions=kept)
 
     @property
     def measured_class(self) -> int | None:
@@ -454,15 +455,17 @@ def case_of(
     found = assumptions(data, read, _decided(case))
     if case.assembly_count > 1 and read.gears.marks is None:
         found += (
-            unstated(
+            Assumption(
                 "gears.marks",
                 "1, 1",
-                "tooth 1 meets tooth 1 at mesh phase 0. One of "
+                f"{LEFT}tooth 1 meets tooth 1 at mesh phase 0. One of "
                 f"{case.assembly_count} assemblies; decides which errors meet",
             ),
         )
     if read.gears.face_width is not None:  # one for both is no default of each
         found = tuple(one for one in found if not one.field.endswith(".face_width"))
+    if "bundle" in read.model.model_fields_set:  # who names a bundle names its choices
+        found = tuple(one for one in found if not one.default.startswith(OF_BUNDLE))
     return replace(case, assumptions=found)
 
 
@@ -470,6 +473,11 @@ def _decided(case: GearCase) -> dict[str, str]:
     around = case.gearbox.surroundings
     graded = unmeasured(case.file)
     found = decided(case.pair, case.cold_backlash, around, case.accuracy, graded)
+    choices = [model.choices() for model in case.models]
+    found |= {
+        f"model.{name}": " and ".join(dict.fromkeys(str(one[name]) for one in choices))
+        for name in choices[0]
+    }
     if len(case.charts) == 2:
         found["flanks.accuracy"] = found["flanks.seed"] = "none: both gears are measured"
     return found

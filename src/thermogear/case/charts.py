@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -50,22 +50,22 @@ class Chart:
         A single trace is smoothed more than the mean of all: its noise is greater. Refused where a
         tooth is missing.
         """
-        body = pair.pinion if self.gear == "pinion" else pair.wheel
+        body, traces = pair.pinion if self.gear == "pinion" else pair.wheel, self.traces
         found = []
-        for side in sorted(set(self.traces.flank), reverse=True):  # drive first
-            places = {
-                self.read.tooth[k] - 1: k
-                for k, acts in enumerate(self.traces.flank)
-                if acts == side
-            }
-            if len(places) < body.teeth:
+        for side in sorted(set(traces.flank), reverse=True):  # drive first
+            rows = {n: k for k, n in enumerate(traces.tooth) if traces.flank[k] == side}
+            if len(rows) < body.teeth:
                 raise InputError(
                     f"flanks.{self.gear}",
-                    f"traces of {len(places)} teeth, {side} flank",
+                    f"traces of {len(rows)} teeth, {side} flank",
                     allowed=f'all {body.teeth} teeth with flanks.teeth = "measured"',
                     fix='write teeth = "alike" to take the mean of these',
                 )
-            shapes = (self.traces.single(pair, places[n]) for n in range(body.teeth))
+            each = (
+                replace(traces, added=traces.added[[rows[n]]], flank=(side,), tooth=(n,))
+                for n in sorted(rows)
+            )
+            shapes = (one.flanks(pair)[0].table(self.gear, body.base_radius) for one in each)
             found.append(ToothShapes(self.gear, tuple(shapes)))
         return tuple(found)
 

@@ -61,7 +61,7 @@ class EccentricityTable(Table):
     )
     angle: Annotated[float, Turned] = Field(
         default=0.0,
-        description="tooth 1 stands farthest out. From its axis towards tooth 2; decides what the "
+        description="tooth 1 is farthest out. From its axis towards tooth 2; decides what the "
         "eccentricities of both gears, and the errors of single teeth, add up to",
     )
 
@@ -77,7 +77,7 @@ Waves = Annotated[float, Number(low=1.0, high=20.0, example="2.5")]
 
 
 class ToothProfilesTable(Table):
-    """Slope and form of every tooth on one side of a gear: one value for each, or one for all."""
+    """Slope and form of every tooth: one value for each, or one for all; several tables add up."""
 
     slope: Annotated[tuple[float, ...] | None, Several(Slope, most=bounds.MOST_TEETH)] = Field(
         default=None, title="none"
@@ -92,7 +92,7 @@ class ToothProfilesTable(Table):
     flank: Flank = Field(default="both", description="drive and back flanks alike")
 
 
-class ToothTable(Table):
+class ToothTable(ToothProfilesTable):
     """One tooth that differs: what it has besides all that the gear's other fields say."""
 
     tooth: Annotated[int, Count(low=1, high=bounds.MOST_TEETH, example="7")]
@@ -104,12 +104,7 @@ class ToothTable(Table):
             "along the line of action, > 0 towards the drive flank",
             "8 um",
         ),
-    ] = Field(default=0.0, title="none: the whole tooth stands where it did")
-    slope: Annotated[float, Slope] = Field(default=0.0, title="none")
-    form: Annotated[float, Form] = Field(default=0.0, title="none")
-    phase: Annotated[float, Turned] = Field(default=0.0, title="0")
-    waves: Waves = Field(default=2.5, title="2.5")
-    flank: Flank = Field(default="both", title="of slope and form; both")
+    ] = Field(default=0.0, title="none: the whole tooth stays where it is")
 
 
 Charts = Annotated[

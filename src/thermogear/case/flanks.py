@@ -17,6 +17,7 @@ from thermogear.gears.deviations import (
     FLANKS,
     GEARS,
     Deviation,
+    FlankShape,
     FlankTable,
     PitchError,
     PressureAngleError,
@@ -91,16 +92,8 @@ def _of_teeth(
     if (one := table.eccentricity) is not None:
         amount = one.amount if one.amount is not None else 0.5 * (one.run_out or 0.0)
         yield "eccentricity", partial(Eccentricity, gear, amount=amount, angle=one.angle)
-    sides = [one.flank for one in table.tooth_profiles]
     for place, profiles in enumerate(table.tooth_profiles):
-        field = f"tooth_profiles[{place}]"
-        if len(sides) > 1 and set(sides) != {"drive", "back"}:
-            raise InputError(
-                f"gears.{gear}.{field}.flank",
-                f"{sides[place]!r} beside {sides[1 - place]!r}",
-                allowed="one table of both sides, or drive and back",
-            )
-        yield field, partial(_every_tooth, gear, profiles, table.teeth)
+        yield f"tooth_profiles[{place}]", partial(_every_tooth, gear, profiles, table.teeth)
     for flank in FLANKS:
         single = [one for one in table.teeth_differ if one.flank == flank]
         if any(one.slope or one.form for one in single):
@@ -144,29 +137,21 @@ def _every_tooth(gear: str, table: ToothProfilesTable, teeth: int) -> ToothShape
     columns = {name: getattr(table, name) or (0.0,) for name in ("slope", "form", "phase")}
     for name, values in columns.items():
         if len(values) not in (1, teeth):
-            raise InputError(
-                name, f"{len(values)} values", allowed=f"one for each of the {teeth} teeth, or one"
-            )
+            each = f"one for each of the {teeth} teeth, or " * (teeth > 1)
+            raise InputError(name, f"{len(values)} values", allowed=f"{each}one")
     rows = zip(*(np.broadcast_to(one, teeth).tolist() for one in columns.values()), strict=True)
-    return ToothShapes(gear, tuple(_wavy(gear, table, *row) for row in rows))
+    made = partial(WavyProfile, gear, waves=table.waves, flank=table.flank)
+    return ToothShapes(gear, tuple(made(**dict(zip(columns, row, strict=True))) for row in rows))
 
 
 def _single_teeth(gear: str, given: Sequence[ToothTable], teeth: int) -> ToothShapes:
     """Slope and form of the teeth that differ on one side, none of the others."""
-    shapes = [_wavy(gear, given[0], 0.0, 0.0, 0.0)] * teeth
+    shapes: list[FlankShape] = [WavyProfile(gear, slope=0.0, flank=given[0].flank)] * teeth
     for place, one in enumerate(given):
         if one.tooth in [other.tooth for other in given[:place]]:
             raise InputError("", f"tooth {one.tooth} twice", allowed="each tooth of a side once")
-        shapes[_place(one, teeth)] = _wavy(gear, one, one.slope, one.form, one.phase)
+        (shapes[_place(one, teeth)],) = _every_tooth(gear, one, 1).shapes
     return ToothShapes(gear, tuple(shapes))
-
-
-def _wavy(
-    gear: str, table: ToothProfilesTable | ToothTable, slope: float, form: float, phase: float
-) -> WavyProfile:
-    return WavyProfile(
-        gear, slope=slope, form=form, phase=phase, waves=table.waves, flank=table.flank
-    )
 
 
 def _charted(file: GearFile, pair: GearPair, chart: Chart) -> tuple[Deviation, ...]:
@@ -188,6 +173,8 @@ def accuracy(file: GearFile, pair: GearPair) -> int | None:
         return table.accuracy
     stiff = min(gear.material.youngs_modulus for gear in (pair.pinion, pair.wheel))
     usual = OF_METAL if stiff > PLASTIC else OF_PLASTICS
+    if table.teeth == "drawn":  # asked for, so refused where it cannot be
+        return usual
     try:
         graded_flanks(pair, usual, seed=table.seed, edition=table.edition)
     except InputError:
@@ -198,16 +185,7 @@ def accuracy(file: GearFile, pair: GearPair) -> int | None:
 def _graded(file: GearFile, pair: GearPair) -> tuple[Deviation, ...]:
     """Seeded profiles of the gears whose own are not given."""
     grade, table = accuracy(file, pair), file.flanks
-    if table is None or not unmeasured(file):
-        return ()
-    if grade is None:
-        if table.teeth == "drawn":
-            raise InputError(
-                "flanks.teeth",
-                "'drawn'",
-                why="the tables of ISO 1328-1 end before these gears",
-                fix="give pitch_errors and tooth_profiles instead",
-            )
+    if grade is None or table is None:
         return ()
     edition, drawn = table.edition, table.teeth == "drawn"
     for gear in unmeasured(file) if drawn else ():

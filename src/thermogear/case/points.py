@@ -63,8 +63,7 @@ class Points:
 
     def model(self, place: int = 0) -> DeadZoneModel:
         """The dimensionless equation of one point."""
-        lane = self.flat
-        stiffness, force = lane.stiffness[place], lane.force[place]
+        lane, stiffness, force = self.flat, self.flat.stiffness[place], self.flat.force[place]
         return DeadZoneModel(
             damping_ratio=0.5 * float(lane.damping[place]),
             frequency=2.0 * np.pi / float(lane.period[place]),
@@ -150,7 +149,7 @@ def points_of(found: Excitations) -> Points:
         found = found.take(np.where(still, int(np.argmin(still)), np.arange(count)))
     length, mean = found.reference_half_backlash, found.stiffness[:, 0].real
     rate = found.natural_frequency
-    frequency = found.turn_frequency / rate
+    frequency = found.mesh_frequency / found.mesh_periods / rate
     # d/dtau = (w/2 pi) d/dphi
     ranks = np.arange(found.error.shape[1])
     bent: NDArray[np.complex128] = found.error * (2j * np.pi * ranks) ** 2
@@ -186,10 +185,9 @@ def largest_fluctuation(points: Points) -> Floats:
 
     k = k_m (1 + s w(t)) with the pair's own w: s = -1/min w; infinite without fluctuation.
     """
-    waves = points.flat.stiffness.copy()
-    mean = waves[:, 0].real.copy()
-    waves[:, 0] = 0.0
-    least = fourier.sampled(waves, 8 * waves.shape[1]).min(axis=1)
+    rows = points.flat.stiffness
+    mean = rows[:, 0].real
+    least = fourier.sampled(rows, 8 * rows.shape[1]).min(axis=1) - mean
     return np.asarray(np.divide(mean, -least, out=np.full(mean.size, np.inf), where=least < 0.0))
 
 

@@ -57,7 +57,7 @@ from thermogear.case.shaft_schema import (
 from thermogear.case.table import Below, Body, Length, Table, not_both, one_of
 from thermogear.heat.friction import LAWS, LUBRICATED
 from thermogear.heat.law_parameters import parameters, ranges, require_known
-from thermogear.mesh.model import CHOICES
+from thermogear.mesh.model import CHOICES, DECIDES
 
 
 def _reader(name: str, laws: Sequence[object]) -> Any:
@@ -341,8 +341,8 @@ class GearTable(Table):
         Several(measure("length", bounds.PITCH_ERROR, example="3 um"), least=1, most=2000),
     ] = Field(default=None, title="one for each tooth, in the order in which they mesh; none")
     eccentricity: EccentricityTable | None = Field(default=None, title="none: centred on the bore")
-    tooth_profiles: Annotated[tuple[ToothProfilesTable, ...], Field(max_length=2)] = Field(
-        default=(), title="slope and form of every tooth, a table for each side; none"
+    tooth_profiles: Annotated[tuple[ToothProfilesTable, ...], Field(max_length=20)] = Field(
+        default=(), title="slope and form of every tooth; none"
     )
     teeth_differ: Annotated[tuple[ToothTable, ...], Field(max_length=bounds.MOST_TEETH)] = Field(
         default=(), title="single teeth beside all others; none"
@@ -381,7 +381,7 @@ class GearsTable(Table):
     )
     pitch_errors_are: Annotated[str, Choice("index", "single pitch")] = Field(
         default="index",
-        title="index: where each tooth stands, > 0 towards its drive flank; single pitch: how much "
+        title="index: where each tooth is, > 0 towards its drive flank; single pitch: how much "
         "farther than a pitch from the tooth before",
     )
     pitch_errors_along: Annotated[str, Choice("line of action", "arc")] = Field(
@@ -577,22 +577,27 @@ class TransmissionErrorTable(Table):
         return self
 
 
+OF_BUNDLE = "as the bundle has it"
+"""Of a choice of the model that is left out."""
+
+
 def _model_table() -> type[Table]:
     fields: dict[str, Any] = {
         "bundle": (
             Annotated[str, Choice("both", "consistent", "thesis")],
-            Field(default="consistent", title="consistent: units, energy and limits close"),
-        ),
-        "dry_coefficient": (
-            Annotated[float | None, Number(low=0.001, high=1.0, example="0.2")],
-            Field(default=None, title="as the bundle has it"),
+            Field(
+                default="consistent",
+                description="units, energy and limits close. Decides what the choices below are",
+            ),
         ),
     }
-    for name, known in CHOICES.items():
-        kind: Any = Annotated[str | None, Choice(*known)]
-        if name == "friction":
-            kind = Annotated[FrictionTable | None, FRICTION]
-        fields[name] = (kind, Field(default=None, title="as the bundle has it"))
+    kinds: dict[str, Any] = {
+        "friction": Annotated[FrictionTable | None, FRICTION],
+        "dry_coefficient": Annotated[float | None, Number(low=0.001, high=1.0, example="0.2")],
+    }
+    for name, words in DECIDES.items():
+        kind = kinds.get(name) or Annotated[str | None, Choice(*CHOICES[name])]
+        fields[name] = (kind, Field(default=None, description=f"{OF_BUNDLE}. Decides {words}"))
     words = "The model: one bundle of choices or both, then single choices in place of theirs."
     return create_model("ModelTable", __base__=Table, __doc__=words, **fields)
 

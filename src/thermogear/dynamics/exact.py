@@ -26,6 +26,7 @@ Bytes = NDArray[np.uint8]
 ORDER = 12
 BLOCK = 128
 _COUNTS = tuple(base * 2**k for k in range(11) for base in (32, 48))
+_OF_TURN = np.array([base * 2**k for k in range(14) for base in (32, 40, 48, 56)])
 MOST_OF_TURN = 400_000
 """Sub-steps of a turn at most: a lane's maps then take some 600 MB."""
 ROOM = 2**19
@@ -56,26 +57,6 @@ def _powers(width: int, order: int) -> Floats:
     return np.asarray((np.arange(width)[:, None] * turn) ** (order - 1))
 
 
-def _tail(lanes: LaneTables, name: str, counts: Whole, order: int) -> Floats:
-    """A bound of |d^(order-1) p/du^(order-1)|, u from -1 to 1 over a sub-step: (lane, count)."""
-    coefficients = getattr(lanes, name)
-    if lanes.by_fft:
-        bound = fourier.bound(coefficients, order - 1)
-        fine = counts > 2 * coefficients.shape[1]
-        return np.asarray(np.where(fine, bound[:, None] / (2.0 * counts) ** (order - 1), np.inf))
-    # summed rank by rank: no sum may depend on the other lanes
-    powers = _powers(coefficients.shape[1], order)
-    return np.asarray(np.sum(np.abs(coefficients)[:, :, None] * powers, axis=1))
-
-
-def _counts(lanes: LaneTables) -> Whole:
-    """The numbers of sub-steps a period that are allowed: the same for every mesh period."""
-    if not lanes.by_fft:
-        return np.array(_COUNTS)
-    counts = lanes.mesh_periods * np.array([base * 2**k for k in range(14) for base in (32, 48)])
-    return np.asarray(counts[counts <= max(MOST_OF_TURN, counts[0])])
-
-
 def substeps(lanes: LaneTables, order: int = ORDER) -> Whole:
     """Sub-steps a period each lane needs so that a polynomial of ``order`` is exact.
 
@@ -91,12 +72,23 @@ def substeps(lanes: LaneTables, order: int = ORDER) -> Whole:
         ]
     )
     scale = lanes.half_backlash + strongest / mean
-    counts = _counts(lanes)
+    counts = np.array(_COUNTS)
+    if lanes.by_fft:
+        counts = lanes.mesh_periods * _OF_TURN
+        counts = counts[counts <= max(MOST_OF_TURN, counts[0])]
     half = lanes.period[:, None] / (2.0 * counts)
     allowed = 2e-17 * factorial(order + 1)
     good = half * np.maximum(np.sqrt(stiffest), lanes.damping)[:, None] <= 0.3
     for name, size in (("stiffness", np.ones(len(lanes))), ("force", scale)):
-        good &= half**2 * _tail(lanes, name, counts, order) <= allowed * size[:, None]
+        coefficients = getattr(lanes, name)
+        if lanes.by_fft:
+            bound = fourier.bound(coefficients, order - 1)[:, None]
+            tail = bound / (2.0 * counts) ** (order - 1)
+        else:
+            # summed rank by rank: no sum may depend on the other lanes
+            powers = _powers(coefficients.shape[1], order)
+            tail = np.sum(np.abs(coefficients)[:, :, None] * powers, axis=1)
+        good &= half**2 * tail <= allowed * size[:, None]
     needed = np.where(good.any(axis=1), counts[np.argmax(good, axis=1)], 0)
     if np.all(needed):
         return needed
@@ -222,7 +214,7 @@ def _taylor(lanes: LaneTables, name: str, centres: Floats, half: Floats, order: 
     """Coefficients in u about the centre of every sub-step: (sub-step, lane, order + 1)."""
     coefficients = getattr(lanes, name)
     pieces: tuple[Pieces | None, ...] = getattr(lanes, name + "_pieces")
-    if lanes.by_fft and np.ptp(half) == 0.0:
+    if lanes.by_fft and np.ptp(half) < 1e-6 * half[0]:
         return fourier.taylor(coefficients, centres.size, order)
     if len(lanes) == 1 and pieces[0] is None:
         return _of_one(coefficients.tobytes(), centres.tobytes(), half.tobytes(), order)
@@ -263,16 +255,9 @@ def _of_harmonics(
     return out
 
 
-def _widths(lanes: LaneTables, borders: Floats) -> Floats:
-    """Widths of the sub-steps; those of a turn without jumps equal to the last bit."""
-    widths = np.diff(borders)
-    even = lanes.by_fft and np.ptp(widths) * widths.size < 1e-6
-    return np.full(widths.size, 1.0 / widths.size) if even else widths
-
-
 def prepare_maps(lanes: LaneTables, borders: Floats, marks: Bytes, order: int = ORDER) -> ExactMaps:
     """The maps of ``lanes`` on the sub-steps between ``borders`` (phases from 0 to 1)."""
-    widths = _widths(lanes, borders)
+    widths = np.diff(borders)
     centres = borders[:-1] + 0.5 * widths
     half = 0.5 * widths[:, None] * lanes.period
     size, rate = _bounds(lanes, "force")
@@ -323,7 +308,7 @@ def maps_moved(
     ``maps`` are those of ``lanes``. The numbers of the equation change at the rate
     sum(weight * neighbour) over ``around``; how the maps change with them is exact.
     """
-    width = _widths(lanes, maps.borders)
+    width = np.diff(maps.borders)
     centres = maps.borders[:-1] + 0.5 * width
 
     def rate(name: str) -> float:
@@ -418,9 +403,11 @@ def layouts(
     """Blocks of lanes with equal sub-steps: their indices, the borders, the sampled borders.
 
     The sub-steps of a lane depend on that lane alone, so results do not depend on company.
-    ``refine`` multiplies their number: another rounding of the same motion.
+    ``refine`` multiplies their number: another rounding of the same motion. Of a turn, whose maps
+    are large, it adds a quarter each time.
     """
-    needed = substeps(lanes) * refine
+    needed = substeps(lanes)
+    needed = needed * (3 + refine) // 4 if lanes.by_fft else needed * refine
     keys = [(int(needed[i]), lanes.jumps(i)) for i in range(len(lanes))]
     for key in sorted(set(keys)):
         count, jumps = key
@@ -450,7 +437,7 @@ def advance(
     """
     lanes = state.x.size
     sections = np.empty((periods, 2, lanes))
-    stretch = np.empty((periods if normalise else 0, lanes))
+    stretch = np.zeros((periods if normalise else 0, lanes))
     samples = np.empty((periods * maps.marked if sampled else 0, 2, lanes))
     width, room = maps.order + 1, maps.curves.shape[2]
     carried, table, p, scratch = _aligned(

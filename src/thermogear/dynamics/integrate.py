@@ -282,8 +282,8 @@ class _Run:
         chosen, reason = _choose(model, method)
         of = int(getattr(model, "mesh_periods", 1))
         counts = {name: turns(asked[name], of=of) for name in ("periods", "discard")}
-        within = {name: asked[name] * of for name in ("steps", "samples")}
-        run = cls(method=chosen, reason=reason, mesh_periods=of, **(asked | counts | within))
+        counts |= {name: asked[name] * of for name in ("steps", "samples")}
+        run = cls(method=chosen, reason=reason, mesh_periods=of, **(asked | counts))
         if chosen == "rk4" and run.samples and run.steps % run.samples:
             raise InputError(
                 "samples_per_period",

@@ -11,8 +11,8 @@ from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import Excitation, Periodic
 from thermogear.base.pair_springs import PairSprings
-from thermogear.base.period import Period
 from thermogear.dynamics.kernels.shared import advance_shared
+from thermogear.dynamics.models import require
 from thermogear.dynamics.outcome import Result, dataset
 
 NO_ERROR = Periodic(0.0)
@@ -29,8 +29,7 @@ class LoadSharedModel:
 
     y [m] displacement of the pinion's base circle over the wheel's less the kinematic error,
     positive on the drive side; ``half_backlash`` b [m] the cold one, because heat is in
-    S_j as a deviation; ``mass`` m [kg], ``damping`` c [N s/m], ``mesh_frequency`` [rad/s], the
-    tables repeat after ``mesh_periods`` mesh periods,
+    S_j as a deviation; ``mass`` m [kg], ``damping`` c [N s/m], ``mesh_frequency`` [rad/s],
     ``force`` F [N] with -m e'' of the kinematic error in it; ``drive`` and ``back`` flanks.
     Where the one-spring form opens and closes the whole mesh at once, here pairs touch and
     leave by themselves: the stiffness depends on the load.
@@ -43,17 +42,10 @@ class LoadSharedModel:
     force: Periodic
     drive: PairSprings
     back: PairSprings
-    mesh_periods: int = 1
 
     def __post_init__(self) -> None:
-        Period(self.mesh_periods)
-        for name in ("mass", "mesh_frequency", "half_backlash"):
-            value = float(getattr(self, name))
-            object.__setattr__(self, name, value)
-            if not (np.isfinite(value) and value > 0.0):
-                raise InputError(name, value, allowed="> 0, finite")
-        if not (np.isfinite(self.damping) and self.damping >= 0.0):
-            raise InputError("damping", self.damping, allowed=">= 0, finite")
+        for name in ("mass", "mesh_frequency", "half_backlash", "damping"):
+            require(self, name, positive=name != "damping", floor=True)
 
     @classmethod
     def from_excitation(
@@ -67,9 +59,17 @@ class LoadSharedModel:
 
         ``error`` the kinematic error [m] alone: what deviations and heat do is in the
         springs. The excitation's own stiffness gives no more than c = 2 zeta sqrt(k_m m_e).
+        Raises InputError where it repeats after a turn.
         """
+        if excitation.mesh_periods > 1:
+            raise InputError(
+                "mesh_periods",
+                excitation.mesh_periods,
+                allowed="1: the springs of the tooth pairs are those of one mesh period",
+                fix="take the teeth as alike: gears.period = 'mesh'",
+            )
         mass = excitation.equivalent_mass
-        turn = excitation.turn_frequency / (2.0 * np.pi)
+        turn = excitation.mesh_frequency / (2.0 * np.pi)
         return cls(
             mass,
             2.0 * excitation.damping_ratio * mass * excitation.natural_frequency,
@@ -78,13 +78,12 @@ class LoadSharedModel:
             error.derivative(2) * (-mass * turn**2) + excitation.mean_force,
             drive,
             back,
-            excitation.mesh_periods,
         )
 
     @property
     def period(self) -> float:
-        """Period of the tables [s]: ``mesh_periods`` mesh periods."""
-        return self.mesh_periods * (2.0 * np.pi / self.mesh_frequency)
+        """Mesh period [s]."""
+        return 2.0 * np.pi / self.mesh_frequency
 
     def mesh_force(self, y: ArrayLike, phase: ArrayLike) -> Floats:
         """Force of the teeth [N] at ``y`` [m] and mesh ``phase``; negative on the back flanks."""
@@ -153,10 +152,5 @@ def simulate_shared(
     result.shares[0] = spent / spent.sum()
     result.substeps[0] = steps
     return dataset(
-        result,
-        period=np.array([model.period]),
-        periods=periods,
-        discard=discard,
-        samples=samples,
-        mesh_periods=model.mesh_periods,
+        result, period=np.array([model.period]), periods=periods, discard=discard, samples=samples
     )

@@ -43,7 +43,7 @@ class ClearanceModel(Protocol):
         """Flat parameter arrays, one entry per lane."""
 
 
-def _checked(owner: object, name: str, *, positive: bool = False, floor: bool = False) -> None:
+def require(owner: object, name: str, *, positive: bool = False, floor: bool = False) -> None:
     """Finite, and > 0 or >= 0 where asked; scalars stay scalars."""
     values = np.asarray(getattr(owner, name), dtype=float)
     allowed = "> 0, finite" if positive else ">= 0, finite" if floor else "finite"
@@ -86,11 +86,11 @@ class TorsionalModel:
     thermal_stiffness: ArrayLike = 0.0
 
     def __post_init__(self) -> None:
-        _checked(self, "damping_ratio", floor=True)
-        _checked(self, "frequency", positive=True)
+        require(self, "damping_ratio", floor=True)
+        require(self, "frequency", positive=True)
         for name in ("stiffness_amplitude", "mean_force", "force_amplitude", "thermal_stiffness"):
-            _checked(self, name)
-        _checked(self, "half_backlash", positive=True)
+            require(self, name)
+        require(self, "half_backlash", positive=True)
         stiffness = np.asarray(self.thermal_stiffness, dtype=float)
         if np.any(stiffness <= -1.0):
             raise InputError(
@@ -178,10 +178,8 @@ class DeadZoneModel:
 
     def __post_init__(self) -> None:
         Period(self.mesh_periods)
-        _checked(self, "damping_ratio", floor=True)
-        _checked(self, "frequency", positive=True)
-        _checked(self, "half_backlash", positive=True)
         for name in ("damping_ratio", "frequency", "half_backlash"):
+            require(self, name, positive=name != "damping_ratio", floor=True)
             if np.ndim(getattr(self, name)) > 1:
                 raise InputError(name, f"{np.ndim(getattr(self, name))} axes", allowed="0 or 1")
         for name in ("stiffness", "force"):
@@ -279,7 +277,7 @@ def from_excitation(excitation: Excitation | Sequence[Excitation]) -> DeadZoneMo
     force: list[Table] = []
     numbers: list[tuple[float, float, float]] = []
     for row in rows:
-        frequency = row.turn_frequency / row.natural_frequency
+        frequency = row.mesh_frequency / row.mesh_periods / row.natural_frequency
         length = row.reference_half_backlash
         mean = row.stiffness.mean
         # d/dtau = (w/2 pi) d/dphi
@@ -287,23 +285,14 @@ def from_excitation(excitation: Excitation | Sequence[Excitation]) -> DeadZoneMo
         stiffness.append(row.stiffness * (1.0 / mean))
         force.append(acceleration * -1.0 + row.mean_force / (mean * length))
         numbers.append((row.damping_ratio, frequency, row.half_backlash / length))
-    if isinstance(excitation, Excitation):
-        damping, omega, backlash = numbers[0]
-        return DeadZoneModel(
-            damping_ratio=damping,
-            frequency=omega,
-            stiffness=stiffness[0],
-            force=force[0],
-            half_backlash=backlash,
-            mesh_periods=rows[0].mesh_periods,
-        )
-    columns = np.array(numbers).T
+    single = isinstance(excitation, Excitation)
+    damping, omega, backlash = numbers[0] if single else np.array(numbers).T
     return DeadZoneModel(
-        damping_ratio=columns[0],
-        frequency=columns[1],
-        stiffness=stiffness,
-        force=force,
-        half_backlash=columns[2],
+        damping_ratio=damping,
+        frequency=omega,
+        stiffness=stiffness[0] if single else stiffness,
+        force=force[0] if single else force,
+        half_backlash=backlash,
         mesh_periods=common_period(rows),
     )
 
@@ -343,7 +332,6 @@ class PairModel:
     mesh_periods: int = 1
 
     def __post_init__(self) -> None:
-        Period(self.mesh_periods)
         for name in ("inertias", "base_radii", "torques"):
             pair = tuple(float(v) for v in getattr(self, name))
             object.__setattr__(self, name, pair)
@@ -351,9 +339,8 @@ class PairModel:
                 raise InputError(name, pair, allowed="two finite numbers")
             if name != "torques" and min(pair) <= 0.0:
                 raise InputError(name, pair, allowed="> 0")
-        _checked(self, "damping", floor=True)
-        _checked(self, "half_backlash", positive=True)
-        _checked(self, "mesh_frequency", positive=True)
+        for name in ("damping", "half_backlash", "mesh_frequency"):
+            require(self, name, positive=name != "damping", floor=True)
         if self.stiffness.mean <= 0.0:
             raise InputError("stiffness", self.stiffness.mean, allowed="a mean > 0")
 
@@ -415,10 +402,9 @@ class PairModel:
         The wheel takes none of it in the rigid mode: the momentum is zero.
         """
         (i1, i2), (r1, r2) = self.inertias, self.base_radii
-        total = np.array([x + float(self.error(0.0)), 0.0])
-        total[1] = v + float(self.error.derivative()(0.0)) / self.period
         weight = self.equivalent_mass * np.array([r1 / i1, -r2 / i2])
-        return np.concatenate([weight * total[0], weight * total[1]])
+        rate = v + float(self.error.derivative()(0.0)) / self.period
+        return np.concatenate([weight * (x + float(self.error(0.0))), weight * rate])
 
     def derivative(self, t: float, y: ArrayLike) -> Floats:
         """Time derivative of the state (theta1, theta2, theta1', theta2')."""

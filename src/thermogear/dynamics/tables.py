@@ -50,8 +50,8 @@ class LaneTables:
     @property
     def unit(self) -> Floats:
         """Scales of (x, x') for distances: b and 2 pi b over the mesh period, (lane, 2)."""
-        b = self.half_backlash
-        return np.stack([b, 2.0 * np.pi * b / self.mesh_period], axis=1)
+        speed = 2.0 * np.pi * self.half_backlash / self.mesh_period
+        return np.stack([self.half_backlash, speed], axis=1)
 
     @property
     def by_fft(self) -> bool:
@@ -106,14 +106,5 @@ def stack(tables: Iterable[Table]) -> tuple[Complexes, tuple[Pieces | None, ...]
     ((2, 2), (None, None))
     """
     rows = list(tables)
-    width = 1 + max((len(t.harmonics) for t in rows if isinstance(t, Periodic)), default=0)
-    coefficients = np.zeros((len(rows), width), complex)
-    pieces: list[Pieces | None] = []
-    for lane, table in enumerate(rows):
-        if isinstance(table, Pieces):
-            pieces.append(table)
-        else:
-            pieces.append(None)
-            coefficients[lane, 0] = table.mean
-            coefficients[lane, 1 : 1 + len(table.harmonics)] = table.harmonics
-    return coefficients, tuple(pieces)
+    series = [table if isinstance(table, Periodic) else Periodic(0.0) for table in rows]
+    return Periodic.columns(series), tuple(t if isinstance(t, Pieces) else None for t in rows)

@@ -13,6 +13,7 @@ GROUPS = {
     "backlash": ("backlash",),
     "flanks": ("flanks", "transmission_error"),
     "motion": ("inertia", "dynamics"),
+    "model": ("model",),
     "other": (),
 }
 NUMERICAL = ("grid", "simulation")

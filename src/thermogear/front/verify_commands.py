@@ -150,16 +150,17 @@ def growth(case: str, overrides: tuple[str, ...], bore: str, as_json: bool) -> N
 @_near
 @delivery.plain_json
 def pairs(refine: int, near: str, as_json: bool) -> None:
-    """The fixed pairs: published, own, at the model's edges, with corners, and drawn at random."""
+    """The fixed pairs: published, own, at the model's edges, with corners, drawn, and roots."""
     from thermogear.base.display import LINE_LOAD, PERCENT
     from thermogear.gears.tooth_mesh import Density
-    from thermogear.verify.checks import check_stiffness, inner_phases
+    from thermogear.verify.checks import check_root, check_stiffness, inner_phases
     from thermogear.verify.pairs import (
         corner_pairs,
         drawn_pairs,
         far_pairs,
         own_pairs,
         published_pair,
+        root_pairs,
     )
 
     groups: tuple[tuple[str, tuple[CheckedPair, ...]], ...] = (
@@ -184,10 +185,21 @@ def pairs(refine: int, near: str, as_json: bool) -> None:
                 corners=checked.corners,
             )
             content.setdefault(group, {})[checked.name] = _stiffness_numbers(found)
-            worst = max(worst, (abs(float(found.difference[found.worst])), checked.name))
+            of_swing = abs(float(found.error[found.worst])) / found.peak_to_peak[1]
+            worst = max(worst, (of_swing, checked.name))
             load = f"{LINE_LOAD(checked.line_load):g} N/mm"
             _say(as_json, "", f"{checked.name}, {load} ({group})", *_stiffness_lines(found))
-        _say(as_json, "", f"worst of the {group} pairs: {worst[1]}, {PERCENT(worst[0]):.2f} %")
+        told = f"{PERCENT(worst[0]):.2f} % of its peak-to-peak error"
+        _say(as_json, "", f"worst of the {group} pairs: {worst[1]}, {told}")
+    _say(
+        as_json, "", "greatest stress of a root over F_n/(b m): model, finite elements, difference"
+    )
+    for checked, gear in root_pairs():
+        model, finite = check_root(checked.pair, gear, Density(refinement=refine))
+        row = {"gear": gear, "model": model, "finite_elements": finite}
+        content.setdefault("root", {})[checked.name] = row
+        off = PERCENT(model / finite - 1.0)
+        _say(as_json, f"{checked.name}, {gear}: {model:.4f}, {finite:.4f}, {off:+.2f} %")
     if as_json:
         click.echo(json_text(content), nl=False)
 
@@ -212,7 +224,8 @@ def _stiffness_numbers(found: StiffnessCheck) -> dict[str, Any]:
         "relative_difference": found.difference.tolist(),
         "model_share": found.model_share.tolist(),
         "finite_share": found.finite_share.tolist(),
-        "worst_difference": float(found.difference[found.worst]),
+        "deflection_error_m": found.error.tolist(),
+        "worst_deflection_error_m": float(found.error[found.worst]),
         "worst_share_difference": found.worst_share,
         "peak_to_peak_m": dict(zip(("model", "finite_elements"), found.peak_to_peak, strict=True)),
     }
@@ -240,7 +253,7 @@ def _stiffness_lines(found: StiffnessCheck) -> list[str]:
         Column("pairs", "pairs"),
         Column("model", "model", ".3f"),
         Column("FE", "finite", ".3f"),
-        Column("difference", "difference", "+.2f", PERCENT),
+        Column("error [um]", "error", "+.4f", MICROMETRE),
         Column("share", "share", ".4f"),
         Column("FE", "finite_share", ".4f"),
         Column("difference", "share_difference", "+.4f"),
@@ -250,15 +263,16 @@ def _stiffness_lines(found: StiffnessCheck) -> list[str]:
         "pairs": found.pairs,
         "model": STIFFNESS_PER_WIDTH(found.model / found.face_width),
         "finite": STIFFNESS_PER_WIDTH(found.finite / found.face_width),
-        "difference": found.difference,
+        "error": found.error,
         "share": found.model_share[:, 1],
         "finite_share": found.finite_share[:, 1],
         "share_difference": found.share_difference[:, 1],
     }
     worst = found.worst
     return [
-        *lines_of(declared("secant, N/(mm um)", columns, rows_of(by_name))),
-        f"worst: stiffness {PERCENT(found.difference[worst]):+.2f} % at {found.phase[worst]:.4f}, "
+        *lines_of(declared("secant, N/(mm um); deflection's error", columns, rows_of(by_name))),
+        f"worst: deflection {MICROMETRE(found.error[worst]):+.4f} um at {found.phase[worst]:.4f}, "
+        f"{PERCENT(found.error[worst] / found.peak_to_peak[1]):+.2f} % of the peak-to-peak error, "
         f"share {found.worst_share:.4f}",
         "transmission error, peak to peak: model {:.3f} um, finite elements {:.3f} um".format(
             *(MICROMETRE(size) for size in found.peak_to_peak)

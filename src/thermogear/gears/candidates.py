@@ -62,7 +62,7 @@ def mesh_points(
             "flank", repr(flank), allowed="drive | back", fix=nearest(flank, ("drive", "back"))
         )
     period = np.floor(phi)
-    if np.ptp(period) == 0.0:
+    if not np.any(period != period[:1]):
         return _at(pair, phi.tobytes(), flank, extended)
     fraction = phi - period
     _, first, place = np.unique(

@@ -10,9 +10,8 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass
-from typing import NamedTuple, Protocol
+from typing import ClassVar, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,7 +19,6 @@ from numpy.typing import ArrayLike, NDArray
 from thermogear.base import bounds
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import GeometryError, InputError, require_choice
-from thermogear.gears.geometry import Gear
 from thermogear.gears.pair import GearPair
 
 GEARS = ("pinion", "wheel")
@@ -45,10 +43,6 @@ class Contacts(NamedTuple):
     wheel_tooth: NDArray[np.int64]
     flank: str
     phase: Floats
-
-    def gear(self, name: str) -> Gear:
-        """The named gear of the pair."""
-        return self.pair.gear(name)
 
     def string(self, name: str) -> Floats:
         """rho [m] on the named gear."""
@@ -85,9 +79,13 @@ class Deviation(Protocol):
 
 
 class ToothDeviation(ABC):
-    """A deviation of one ``gear`` that may differ from tooth to tooth, or over its turn."""
+    """A deviation of one ``gear`` that may differ from tooth to tooth, or over its turn.
+
+    ``listed``: its kind and the field that has one value for each tooth.
+    """
 
     gear: str
+    listed: ClassVar[str] = ""
 
     @abstractmethod
     def gap(self, at: Contacts) -> Floats:
@@ -102,16 +100,13 @@ class ToothDeviation(ABC):
     def mean(self) -> Deviation:
         """What is alike on all teeth: its mean over them."""
 
-    @abstractmethod
     def require_fits(self, pair: GearPair) -> None:
-        """Refuse what has not one value for each tooth of its gear."""
-
-    def _require_each(self, field: str, values: Sequence[object], pair: GearPair) -> None:
-        """Refuse ``values`` that are not one for each tooth."""
+        """Refuse what is listed for each tooth of its gear and has not as many values."""
+        values = getattr(self, self.listed.rpartition(".")[2], None)
         teeth = pair.gear(self.gear).teeth
-        if len(values) != teeth:
+        if values is not None and len(values) != teeth:
             raise InputError(
-                f"{self.gear}.{field}",
+                f"{self.gear}.{self.listed}",
                 f"{len(values)} values",
                 allowed=f"one for each of the {teeth} teeth",
             )
@@ -209,6 +204,7 @@ class PitchError(ToothDeviation):
 
     gear: str
     errors: tuple[float, ...]
+    listed: ClassVar[str] = "pitch_error.errors"
 
     def __post_init__(self) -> None:
         require_choice("pitch_error.gear", self.gear, GEARS)
@@ -219,10 +215,6 @@ class PitchError(ToothDeviation):
     def differs(self) -> bool:
         """Whether the errors are not all the same."""
         return len(set(self.errors)) > 1
-
-    def require_fits(self, pair: GearPair) -> None:
-        """Refuse a list that has not one error for each tooth."""
-        self._require_each("pitch_error.errors", self.errors, pair)
 
     def mean(self) -> PitchError:
         """All teeth with the mean error."""

@@ -314,7 +314,8 @@ def loaded_contact(
     pressure is nan: Hertz's curvature of two involutes does not hold on an edge, whose pressure
     is several times higher. ``edge_contact_share`` is the share of the positions with such a
     corner; ``corner_period_share`` and ``corner_load_share``, the greatest share of the load on
-    it, are each gear's. Forces and stiffness there are those of a narrow contact
+    it, are each gear's, nan where undercut ends the path, whose edge is not told from the mate's
+    tip corner. Forces and stiffness there are those of a narrow contact
     (:func:`~thermogear.gears.sharing_kernel._half_width`) whose force acts along the normal of the
     flank it touches. ``effective_contact_ratio``: :attr:`LoadedMesh.effective_ratio`.
 
@@ -363,7 +364,8 @@ def loaded_contact(
     if len(names) != len(lead):
         raise InputError("dimensions", names, allowed=f"{len(lead)} names, one for each axis")
     loaded, settled = (mesh.share > 0.0).sum(axis=-1), mesh.settled.all(axis=-1)
-    by_gear, every = (*names, "gear"), mesh.settled.all(axis=-1, keepdims=True)
+    # an undercut's edge is not told from the mate's tip corner
+    by_gear, every = (*names, "gear"), np.array(settled & (not pair.cut_short))[..., None]
     along, by_pair = (*names, "mesh_phase"), (*names, "mesh_phase", "pair")
     values: dict[str, tuple[tuple[str, ...], ArrayLike]] = {
         "transmission_error": (along, mesh.deflection),

@@ -8,7 +8,7 @@ trace is evaluated by itself. The roll path rho is the string length along the l
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -96,13 +96,6 @@ class ProfileTraces:
         """What acts on each side that was measured, drive first."""
         sides = [side for side in ("drive", "back") if side in self.flank]
         return tuple(self._flank(pair, side) for side in sides)
-
-    def single(self, pair: GearPair, trace: int) -> FlankTable:
-        """What acts of one trace by itself, as a deviation."""
-        row = slice(trace, trace + 1)
-        alone = replace(self, added=self.added[row], flank=self.flank[row], tooth=self.tooth[row])
-        gear = pair.pinion if self.gear == "pinion" else pair.wheel
-        return alone.flanks(pair)[0].table(self.gear, gear.base_radius)
 
     def _flank(self, pair: GearPair, side: str) -> MeasuredFlank:
         low, high = self.evaluated(pair)

@@ -16,10 +16,13 @@ from functools import lru_cache
 
 import numpy as np
 
+from thermogear.base import bounds
 from thermogear.base.arrays import Floats
+from thermogear.base.errors import InputError, require_choice
 from thermogear.gears.accuracy import FlankTolerances, flank_tolerances
 from thermogear.gears.contact import mirror_position
 from thermogear.gears.deviations import (
+    FLANKS,
     GEARS,
     Contacts,
     Deviation,
@@ -51,6 +54,11 @@ class Population:
     ``waves``: one tool makes them alike on all teeth, but for ``form_scatter`` of their heights
     and ``phase_scatter`` [rad]. ``least``: the worst of the gear's deviations over its tolerance is
     evenly drawn from there to 1; 1/sqrt(2) is where the next better class begins.
+
+    >>> pair = GearPair(Gear(20, 3e-3), Gear(40, 3e-3))
+    >>> centred, *_ = drawn_pair(pair, 6, seed=1, population=Population(eccentricity=0.0))
+    >>> centred.differs
+    False
     """
 
     eccentricity: float = 0.55
@@ -65,6 +73,14 @@ class Population:
     form_scatter: float = 0.12
     phase_scatter: float = math.radians(43.0)
     least: float = math.sqrt(0.5)
+
+    def __post_init__(self) -> None:
+        for name, value in vars(self).items():
+            if not (np.all(np.isfinite(value)) and np.all(np.asarray(value) >= 0.0)):
+                raise InputError(f"population.{name}", value, allowed="finite, >= 0")
+        if min(self.orders, default=1) < 1 or self.least > 1.0:
+            got = f"orders {self.orders}, least {self.least:g}"
+            raise InputError("population", got, allowed="orders from 1 on, least 0..1")
 
 
 @dataclass(frozen=True)
@@ -85,6 +101,15 @@ class ToothProfile(FlankShape):
     waves: float
     phase: float
     flank: str = "both"
+
+    def __post_init__(self) -> None:
+        require_choice("tooth_profile.gear", self.gear, GEARS)
+        require_choice("tooth_profile.flank", self.flank, FLANKS)
+        for name in ("slope", "barrel", "wave"):
+            bounds.ADDED.require(f"tooth_profile.{name}", getattr(self, name))
+        if not (math.isfinite(self.phase) and 0.0 <= self.waves <= 20.0):
+            got = f"{self.waves:g} waves of phase {self.phase:g}"
+            raise InputError("tooth_profile.waves", got, allowed="0..20, of finite phase")
 
     def taken_off(self, pair: GearPair, rho: Floats) -> Floats:
         """e = -S."""
@@ -193,7 +218,9 @@ def drawn_gear(
     '0.87 of its tolerance'
     """
     gear = pair.pinion if name == "pinion" else pair.wheel
-    limits = flank_tolerances(gear.teeth, gear.module, grade=grade, edition=edition)
+    whole = flank_tolerances(gear.teeth, gear.module, grade=grade, edition=edition)
+    # drawn a thousand times too small, so that no raw gear leaves the bounds of a deviation
+    limits = FlankTolerances(*(1e-3 * one for one in whole))
     rng = np.random.default_rng(seed)
     cosine, p = math.cos(gear.pressure_angle), population
     amount = 0.5 * cosine * _rayleigh(rng, p.eccentricity) * limits.cumulative_pitch
@@ -209,19 +236,18 @@ def drawn_gear(
     def shares(flank: str, profiles: float) -> Floats:
         at = _probe(pair, name, flank)
         added = -centre.gap(at)[:, 0] - pitch.gap(at)[:, 0]
-        traces = at.string(name)[gear.teeth :, 0].reshape(MEASURED_TEETH, _POINTS)
+        rho = at.string(name)[gear.teeth : gear.teeth + _POINTS, 0]
         some = at.tooth(name)[gear.teeth :: _POINTS, 0]
-        for place, (rho, tooth) in enumerate(zip(traces, some, strict=True)):
-            trace = slice(gear.teeth + place * _POINTS, gear.teeth + (place + 1) * _POINTS)
-            added[trace] -= profiles * sides[flank][tooth].taken_off(pair, rho)
+        read = [sides[flank][tooth].taken_off(pair, rho) for tooth in some]
+        added[gear.teeth :] -= profiles * np.ravel(read)
         return _figures(pair, name, added).shares(limits)
 
     bare, full = shares("back", 0.0), shares("back", 1.0)
-    worst = max(*shares("drive", 1.0), *bare)
+    worst = float(max(*shares("drive", 1.0), *bare))
     # each share is a norm of what is read, so convex in the size of the profiles
     over = full > worst
     back = float(np.min((worst - bare[over]) / (full[over] - bare[over]), initial=1.0))
-    scale = share / worst
+    scale = 1e3 * share / worst
     return (
         replace(centre, amount=scale * centre.amount),
         replace(pitch, errors=tuple(scale * np.asarray(pitch.errors))),
@@ -239,7 +265,7 @@ def drawn_pair(
     edition: str = "2013",
     population: Population = Population(),
 ) -> tuple[Deviation, ...]:
-    """Both gears of the drawing number ``place``: any of them by itself, whatever is drawn beside.
+    """Both gears of the drawing number ``place``, sizes in [m]; the same whatever else is drawn.
 
     Drawing n has the n-th child of ``seed`` (:meth:`numpy.random.SeedSequence.spawn`), each gear a
     child of that, pinion first.

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from thermogear.base.arrays import Floats
+from thermogear.base.bounds import RELIEF_AMOUNT, RELIEF_LENGTH
 from thermogear.base.errors import InputError
 from thermogear.gears.candidates import mesh_points
 from thermogear.gears.deviations import (
@@ -99,7 +100,7 @@ def optimise_tip_relief(
     least value plus its peak-to-peak value; positions: of the mesh period; symmetric: both gears
     with one amount and one length; evaluations: of one simplex, at most; progress: called
     with the curves of first touch so far. Lengths are between 0.05 base pitches and the active
-    profile.
+    profile, amounts and lengths within what a :class:`Relief` and a case file take.
 
     >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
     >>> design = optimise_tip_relief(pair, 4e3, positions=16, symmetric=True, evaluations=20)
@@ -140,11 +141,17 @@ def optimise_tip_relief(
     }
     unrelieved = float(np.ptp(plain))
     most = 3.0 * float(plain.mean() - plain.min() + np.ptp(plain)) if largest is None else largest
-    shortest, longest = _SHORTEST * pair.base_pitch, pair.path.e - pair.path.a
+    # as a case file has it, to a nanometre, it is still no longer than the active profile
+    shortest, longest = (
+        max(_SHORTEST * pair.base_pitch, RELIEF_LENGTH.least),
+        1e-9 * np.floor(1e9 * (pair.path.e - pair.path.a)),
+    )
 
     def sizes(x: Floats) -> tuple[Floats, Floats]:
         whole = np.clip(np.repeat(x, 2, axis=-1) if symmetric else x, 0.0, 1.0)
-        return most * whole[..., :2], shortest + (longest - shortest) * whole[..., 2:]
+        return min(most, RELIEF_AMOUNT.most) * whole[..., :2], shortest + (
+            longest - shortest
+        ) * whole[..., 2:]
 
     def reliefs(x: Floats) -> list[Relief]:
         return [

@@ -124,7 +124,7 @@ class Damage(ABC):
 
     def _pitches(self, contacts: Contacts) -> Integers:
         """(position, pair): how many pitches ahead of this tooth, towards its loaded flank."""
-        teeth = contacts.gear(self.gear).teeth
+        teeth = contacts.pair.gear(self.gear).teeth
         behind = (contacts.tooth(self.gear) - self.tooth + teeth // 2) % teeth - teeth // 2
         return np.asarray(-behind if self.gear == "pinion" else behind)
 
@@ -132,7 +132,7 @@ class Damage(ABC):
         self, contacts: Contacts, t: Floats, angle: Floats, plane: str
     ) -> tuple[Floats, Floats]:
         """What the gear yields more, times E b: (position, pair) and (position, pair, pair)."""
-        table, pitches = self.table(contacts.gear(self.gear), plane), self._pitches(contacts)
+        table, pitches = self.table(contacts.pair.gear(self.gear), plane), self._pitches(contacts)
         body = table.more(t, pitches)
         # a crack at the root of the other flank is pressed shut
         body *= contacts.flank == "drive"
@@ -217,7 +217,7 @@ class Chip(Damage):
     def touching(self, points: MeshPoints, extended: bool) -> MeshPoints:
         """The candidates, those of this tooth beyond the break on its edge."""
         contacts = points.contacts
-        gears = [contacts.gear(name) for name in GEARS]
+        gears = [contacts.pair.gear(name) for name in GEARS]
         i = GEARS.index(self.gear)
         gears[i] = self.left(gears[i])
         broken = _Meshing(gears[0], gears[1], contacts.pair.centre_distance)

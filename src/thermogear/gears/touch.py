@@ -56,6 +56,11 @@ class Touch(NamedTuple):
     edge: NDArray[np.int8]
 
 
+_KEPT: dict[Hashable, Touch] = {}
+_MOST_KEPT = 4
+"""Touches of teeth that differ, remembered: one mesh cycle asks for the same several times."""
+
+
 def first_touch(
     points: MeshPoints, deviations: Sequence[Deviation] = (), spread: float = 0.0
 ) -> Touch:
@@ -85,26 +90,28 @@ def first_touch(
     shapes: list[FlankShape | ToothShapes] = []
     rest: list[Floats] = []
     for n, d in enumerate(deviations):
-        if isinstance(d, ToothShapes):
-            d.require_fits(contacts.pair)
-            shapes.append(d if d.differs else d.shapes[0])
-        elif isinstance(d, FlankShape):
-            _checked(n, d, d.gap(once.contacts))
-            shapes.append(d)
-        else:
+        if not isinstance(d, FlankShape | ToothShapes):
             rest.append(_checked(n, d, d.gap(contacts)))
-    shapes = [d for d in shapes if d.acts_on(contacts.flank)]
+            continue
+        _checked(n, d, d.gap(once.contacts))
+        if d.acts_on(contacts.flank):
+            shapes.append(d.shapes[0] if isinstance(d, ToothShapes) and not d.differs else d)
     gap, edge = points.point.gap, _corner_of(contacts.pair, contacts.s)
     if shapes:
         extended = bool(np.any((edge > 0) & np.isfinite(gap)))
         alike = [d for d in shapes if isinstance(d, FlankShape)]
+        hashable = all(isinstance(d, Hashable) for d in shapes)
         if len(alike) < len(shapes):
-            gap, edge = _of_teeth(points, tuple(shapes), extended, spread)
+            phases = contacts.phase.tobytes()
+            key = (contacts.pair, contacts.flank, phases, tuple(shapes), extended, spread)
+            kept = _KEPT if hashable else {}
+            touch = kept.get(key) or _of_teeth(points, tuple(shapes), extended, spread)
+            kept[key] = gap, edge = touch
+            if len(kept) > _MOST_KEPT:
+                kept.pop(next(iter(kept)), None)
         else:
-            solve = _shaped if all(isinstance(d, Hashable) for d in shapes) else _shaped.__wrapped__
-            gap, edge = solve(
-                contacts.pair, tuple(alike), once.s.shape, once.s.tobytes(), extended, spread
-            )
+            given = (contacts.pair, tuple(alike), once.s.shape, once.s.tobytes(), extended, spread)
+            gap, edge = (_shaped if hashable else _shaped.__wrapped__)(*given)
             if points.shared:
                 gap, edge = gap[..., place, :], edge[..., place, :]
     if points.broken is not None:
@@ -163,7 +170,8 @@ def _shaped(
     edge = np.tile(_corner_of(pair, s), (len(gap), 1))
     where = _looked_at(pair, s, nominal, span)
     touch_many(*where, one, first, two, second, gap, edge)
-    gap = _ended(gap, edge, nominal, where[2]).reshape(*lead, *size)
+    gained, lost = _at_ends(nominal, where[2])
+    gap = (gap + gained - lost * (edge > 0)).reshape(*lead, *size)
     edge = edge.reshape(*lead, *size)
     gap.setflags(write=False)
     edge.setflags(write=False)
@@ -185,15 +193,12 @@ def _looked_at(
     return s, middle, near, 1.5 * radii[0] * np.sqrt(softness), mesh
 
 
-def _ended(
-    gap: Floats, edge: NDArray[np.int8], nominal: ContactPoint, near: NDArray[np.bool_]
-) -> Floats:
-    """The gaps of the flanks with what their ends and levers make of them."""
+def _at_ends(nominal: ContactPoint, near: NDArray[np.bool_]) -> tuple[Floats, Floats]:
+    """What the gap of the flanks gains off the path, and loses where an edge touches [m]."""
     # off the path what the wheel would fall back is the pinion's advance times its lever
-    gap += np.where(near, nominal.gap, 0.0) * (1.0 - nominal.lever)
+    gained = np.where(near, nominal.gap, 0.0) * (1.0 - nominal.lever)
     # the flanks end where a rounding begins, which reaches farther by r_e (1 - cos theta)
-    gap -= nominal.rounding * (1.0 - np.cos(nominal.angle)) * (near & (edge > 0))
-    return gap
+    return gained, nominal.rounding * (1.0 - np.cos(nominal.angle)) * near
 
 
 def _of_teeth(
@@ -205,7 +210,7 @@ def _of_teeth(
     """Gap and edge of flanks that differ from tooth to tooth.
 
     The advance of plain involutes at :data:`_POINTS` of the flank once for all teeth, and what each
-    tooth takes off there: within 0.1 um of :func:`_shaped` for every pair of teeth.
+    tooth takes off there. Where a pair may carry within 4e-5 modules of :func:`_shaped`.
     """
     from thermogear.gears.touch_kernel import advance_many, touch_teeth
 
@@ -232,9 +237,10 @@ def _of_teeth(
     whole = (first.shape[1], *contacts.s.shape)
     gap, edge = np.empty(whole), np.empty(whole, np.int8)
     teeth = (contacts.pinion_tooth % len(first), contacts.wheel_tooth % len(second))
-    touch_teeth(nodes, edges, part, first, second, place, *teeth, gap, edge)
-    there = ContactPoint(*(x[place] for x in nominal))
-    gap = _ended(gap, edge, there, where[2].reshape(once.shape)[place])
+    more = _at_ends(nominal, where[2].reshape(once.shape))
+    touch_teeth(nodes, edges, part, first, second, place, *teeth, *more, gap, edge)
+    gap.setflags(write=False)
+    edge.setflags(write=False)
     return Touch(gap.reshape(*lead, *whole[1:]), edge.reshape(*lead, *whole[1:]))
 
 

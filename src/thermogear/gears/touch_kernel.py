@@ -26,8 +26,8 @@ _PLACE = 1e-12
 """String [m] to which borders of the wheel are found on the pinion."""
 _LEVEL = 1e-8
 """dE/drho counted as 0: with d2E/drho2 > 1 /m the gap is exact to 1e-16 m."""
-_AHEAD = 1e-5
-"""Move of the place [m] over which slopes of an advance are taken."""
+_AHEAD = 1e-4
+"""Move of the place [r_b1] over which slopes of an advance are taken."""
 _HALVINGS = 5
 """Of the distance of two nodes, about the least of them."""
 _LAST = 1e-9
@@ -282,7 +282,7 @@ def advance_many(
     edge [candidate, 2]: whose tip the first and the last node is. Both ends come twice, outermost
     as those of the flank that ends there. Candidates that are not near stay as they come.
     """
-    plain, count = np.zeros((1, 1)), nodes.shape[1]
+    plain, count, move = np.zeros((1, 1)), nodes.shape[1], _AHEAD * mesh[0]
     for q in range(s.size):
         if not near[q]:
             continue
@@ -290,12 +290,13 @@ def advance_many(
         tip = _reached(two[-1], begin, s[q], mesh, one, plain)
         foot = _reached(two[0], end, s[q], mesh, one, plain)
         low, high = max(begin, tip), min(end, foot)
-        edge[q, 0], edge[q, 1] = 1 * (low > begin), 2 * (end == one[-1] <= foot)
+        edge[q, 1] = 2 * (end == one[-1] <= foot)
+        edge[q, 0] = edge[q, 1] if low == high else 1 * (low > begin)
         for k in range(count):
             rho = low + (high - low) * min(max(k - 1, 0), count - 3) / (count - 3)
             value, _, by, kept = _advance(rho, s[q], mesh, one, plain, 0, two, plain, 0)
             string = math.sqrt(max(_meet(rho, s[q], mesh, one, plain, 0)[3], 0.0))
-            moved, ahead = rho, s[q] + _AHEAD
+            moved, ahead = rho, s[q] + move
             wheels = (k == 0 and low > begin) or (k == count - 1 and high < end)
             if wheels:  # the end of its flank stays its own, along the pinion's
                 moved = _reached(string, rho, ahead, mesh, one, plain)
@@ -304,7 +305,7 @@ def advance_many(
             if wheels:
                 by, later = kept, later_kept
             nodes[q, k] = rho, string, value, by, later - by, moved - rho, after - string
-            nodes[q, k, 4:] /= _AHEAD
+            nodes[q, k, 4:] /= move
             if low > high:
                 nodes[q, k, 2] = np.inf
 
@@ -322,14 +323,27 @@ def _gap_at(node: Floats, part: float, own: Floats, mate: Floats, gap: float) ->
 
     e = [a + (1 - a') e_1 + a'' x^2/2 + e_2]/(1 - part a'), a the advance, a' and a'' its slope and
     bend by the place, e_1 and e_2 by the tables ``own`` and ``mate`` where the points are when the
-    pinion's has moved on by x = part ``gap`` - e_1 [m]; ``gap`` inf: as if it had not.
+    pinion's has moved on by x = part ``gap`` - e_1 [m].
     """
-    off, shift = _between(own, node[0]), 0.0
-    if gap < math.inf:
-        shift = part * gap - off
-        off = _between(own, node[0] + node[5] * shift)
+    shift = part * gap - _between(own, node[0])
+    off = _between(own, node[0] + node[5] * shift)
     taken = (1.0 - node[3]) * off + _between(mate, node[1] + node[6] * shift)
     return float((node[2] + taken + 0.5 * node[4] * shift * shift) / (1.0 - part * node[3]))
+
+
+@compiled
+def _at_nodes(table: Floats, nodes: Floats, part: Floats, column: int) -> Floats:
+    """What each tooth adds to the gap at each node to first order [m], [tooth, place, pair, node].
+
+    table [tooth, step] of the gear whose string is in that ``column`` of ``nodes``.
+    """
+    out = np.empty((table.shape[0], *nodes.shape[:3]))
+    for q, r, k in np.ndindex(nodes.shape[:3]):
+        by = nodes[q, r, k, 3]
+        weight = (1.0 - by if column == 0 else 1.0) / (1.0 - part[q, r] * by)
+        for tooth in range(table.shape[0]):
+            out[tooth, q, r, k] = weight * _between(table[tooth], nodes[q, r, k, column])
+    return out
 
 
 @compiled
@@ -342,6 +356,8 @@ def touch_teeth(
     place: NDArray[np.int64],
     pinion: NDArray[np.int64],
     wheel: NDArray[np.int64],
+    gained: Floats,
+    lost: Floats,
     gap: Floats,
     edge: NDArray[np.int8],
 ) -> None:
@@ -350,25 +366,33 @@ def touch_teeth(
     nodes [place, pair, node, 7] and edges [place, pair, 2]: see :func:`advance_many`, strings in
     steps of the tables; part [place, pair]: of the advance, the pinion's; first, second [tooth,
     case, step]: what is taken off; place [position]; pinion, wheel [position, pair]: rows of the
-    tables. Gaps to first order at all nodes, to second order between the neighbours of the least.
+    tables; gained, lost [place, pair]: what is added, and taken off again on an edge. Gaps to first
+    order at all nodes, to second order between the neighbours of the least.
     """
     count = nodes.shape[2]
     node = np.empty(nodes.shape[3])
+    advance = nodes[..., 2] / (1.0 - np.expand_dims(part, 2) * nodes[..., 3])
+    advance[..., 1] = advance[..., count - 2] = np.inf
+    # one place alone where the flanks are not near
+    several = np.where(nodes[..., 0, 0] == nodes[..., count - 1, 0], 1, count)
     for c in range(gap.shape[0]):
+        firsts, seconds = (
+            _at_nodes(first[:, c], nodes, part, 0),
+            _at_nodes(second[:, c], nodes, part, 1),
+        )
         for p in range(place.size):
+            q = place[p]
             for r in range(gap.shape[2]):
-                own, mate = first[pinion[p, r], c], second[wheel[p, r], c]
-                these, share = nodes[place[p], r], part[place[p], r]
+                i, j = pinion[p, r], wheel[p, r]
                 least, best = math.inf, NOUGHT
-                # one place alone where the flanks are not near
-                apart = these[0, 0] == these[count - 1, 0]
-                for k in range(1 if apart else count):
-                    if k != 1 and k != count - 2:
-                        value = _gap_at(these[k], share, own, mate, math.inf)
-                        if value < least:
-                            least, best = value, k
-                least = _gap_at(these[best], share, own, mate, least)
-                edge[c, p, r] = edges[place[p], r, min(best, 1)]
+                for k in range(several[q, r]):
+                    value = advance[q, r, k] + firsts[i, q, r, k] + seconds[j, q, r, k]
+                    if value < least:
+                        least, best = value, k
+                own, mate, these, share = first[i, c], second[j, c], nodes[q, r], part[q, r]
+                if least < math.inf:
+                    least = _gap_at(these[best], share, own, mate, least)
+                edge[c, p, r] = edges[q, r, min(best, 1)]
                 if 1 < best < count - 2:
                     edge[c, p, r] = 0
                     before, here, after = these[best - 1], these[best], these[best + 1]
@@ -382,4 +406,4 @@ def touch_teeth(
                             if value < least:
                                 least, middle = value, x
                         step *= 0.5
-                gap[c, p, r] = least
+                gap[c, p, r] = least + gained[q, r] - lost[q, r] * (edge[c, p, r] > 0)

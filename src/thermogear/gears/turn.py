@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass, replace
-from typing import TypeVar
+from typing import ClassVar, TypeVar
 
 import numpy as np
 
@@ -93,16 +93,13 @@ class Eccentricity(ToothDeviation):
         """Whether there is any."""
         return self.amount > 0.0
 
-    def require_fits(self, pair: GearPair) -> None:
-        """It fits any gear."""
-
     def mean(self) -> Eccentricity:
         """None: over the turn its mean is 0."""
         return replace(self, amount=0.0)
 
     def gap(self, at: Contacts) -> Floats:
         """e = -S, the same for all pairs of a position."""
-        turned = 2.0 * np.pi * at.phase / at.gear(self.gear).teeth
+        turned = 2.0 * np.pi * at.phase / at.pair.gear(self.gear).teeth
         turned += tooth_angle(at.pair, self.gear) - self.angle
         # the pinion's drive flank and the wheel's back flank face one way
         side = 1.0 if (self.gear == "pinion") == (at.flank == "drive") else -1.0
@@ -124,6 +121,7 @@ class ToothShapes(ToothDeviation):
 
     gear: str
     shapes: tuple[FlankShape, ...]
+    listed: ClassVar[str] = "tooth_shapes.shapes"
 
     def __post_init__(self) -> None:
         require_choice("tooth_shapes.gear", self.gear, GEARS)
@@ -141,10 +139,6 @@ class ToothShapes(ToothDeviation):
     def differs(self) -> bool:
         """Whether the shapes are not all the same."""
         return any(shape != self.shapes[0] for shape in self.shapes)
-
-    def require_fits(self, pair: GearPair) -> None:
-        """Refuse a list that has not one shape for each tooth."""
-        self._require_each("tooth_shapes.shapes", self.shapes, pair)
 
     def acts_on(self, flank: str) -> bool:
         """Whether the flanks of that side, "drive" or "back", have these shapes."""

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,11 +17,6 @@ from thermogear.heat.network import ThermalNetwork
 
 State = Mapping[str, Floats]
 """Temperatures [K] of the free nodes by name, arrays (count,), and what else a law finds there."""
-Ask = tuple[Callable[[Any, State], tuple[Floats, ...]], Any, State]
-"""A reading of a law at states: arrays (count, ...)."""
-Found = TypeVar("Found")
-Steps = Generator[Ask, tuple[Floats, ...], Found]
-"""What asks on its way and finds something: many such are answered together."""
 
 HOTTEST = 700.0
 """A node [K] that gets there ends the course: no gear lives there, and no law was made for it."""
@@ -53,8 +47,6 @@ _ROUGH = 0.01
 """What Newton's next correction [K] may be where only the steps are to be drawn."""
 _PROBE = 0.01
 """Change of a node [K] by which the law's own slopes are found."""
-_TOGETHER = 1000
-"""States that a law is asked at together: memory, not the result."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -182,11 +174,6 @@ def _flows(network: Callable[[State], ThermalNetwork], state: State) -> tuple[Fl
     return np.column_stack([kept, source, out]), np.broadcast_to(inner, (*y.shape, y.shape[1]))
 
 
-def _lagging(law: Callable[[State], Floats], state: State) -> tuple[Floats, ...]:
-    """What lags, (count, quantities)."""
-    return (law(state),)
-
-
 @dataclass
 class _Law:
     """Rates of the free nodes [K/s], then of heat in and out [W], and how they change.
@@ -221,11 +208,12 @@ class _Law:
         given = {name: np.full(len(y), value) for name, value in self.stretch.given.items()}
         return dict(zip(self.nodes, held.T, strict=True)) | given | {"as computed": y}
 
-    def renew(self, t: Floats, y: Floats) -> Steps[None]:
-        """Ask for what lags at every fourth and the last of the states ``y`` (count, nodes)."""
+    def renew(self, t: Floats, y: Floats) -> None:
+        """See what lags at every fourth and the last of the states ``y`` (count, nodes)."""
+        if self.stretch.lagging is None:
+            return
         some = np.unique(np.append(np.arange(0, len(t), 4), len(t) - 1))
-        (values,) = yield _lagging, self.stretch.lagging, self._state(y[some])
-        self._see(t, y, some, values)
+        self._see(t, y, some, self.stretch.lagging(self._state(y[some])))
 
     def _see(self, t: Floats, y: Floats, some: NDArray[np.int64], values: Floats) -> None:
         """Keep ``values`` (some, quantities) over the way [K] that the temperatures have gone."""
@@ -246,17 +234,15 @@ class _Law:
         off = np.einsum("ijk,ik->ij", _between(*self.steep, t), beside)
         return np.asarray(along[:, self.capacity.size :] + off)
 
-    def rates(
-        self, t: Floats, y: Floats, lagging: Floats | None = None
-    ) -> Steps[tuple[Floats, Floats]]:
+    def rates(self, t: Floats, y: Floats, lagging: Floats | None = None) -> tuple[Floats, Floats]:
         """(rates, (count, nodes + 2); G/C [1/s], (count, nodes, nodes)) at ``y`` (count, nodes)."""
         state = self._state(y)
         if self.seen:
             state["lagging"] = self._lagging(t, y) if lagging is None else lagging
-        flows, inner = yield _flows, self.stretch.network, state
+        flows, inner = _flows(self.stretch.network, state)
         return flows / np.append(self.capacity, [1.0, 1.0]), inner / self.capacity[:, None]
 
-    def probe(self, t: Floats, y: Floats) -> Steps[None]:
+    def probe(self, t: Floats, y: Floats) -> None:
         """Find the slopes at the states ``y`` (count, nodes) of the times ``t``.
 
         Those of what lags once: what differs from them is asked for anew.
@@ -265,13 +251,13 @@ class _Law:
         steps = _PROBE * np.vstack([np.zeros(count), np.eye(count)])
         moved = (y[:, None] + steps).reshape(-1, count)
         if self.stretch.lagging is not None and not self.probed:
-            (found,) = yield _lagging, self.stretch.lagging, self._state(moved)
+            found = self.stretch.lagging(self._state(moved))
             self.steep = t, _slopes(found, count)
             self._see(t, y, np.arange(t.size), found[:: count + 1])
         elif self.seen:
             beside = np.einsum("ijk,lk->ilj", _between(*self.steep, t), steps)
             found = (self._lagging(t, y)[:, None] + beside).reshape(len(moved), -1)
-        rates, relaxing = yield from self.rates(t, moved, found)
+        rates, relaxing = self.rates(t, moved, found)
         self.probed = True
         self.bent = t, _slopes(rates[:, :count], count) + relaxing[:: count + 1]
 
@@ -308,7 +294,7 @@ def _cubic(at: Floats, x: Floats) -> tuple[NDArray[np.int64], Floats]:
 
 def _solved(
     law: _Law, begin: Floats, time: Floats, guess: Floats, *, goal: float, most: float
-) -> Steps[_Window]:
+) -> _Window:
     """The steps between ``time`` from the state ``begin`` (nodes + 2,), all at once.
 
     Unknown are the temperatures at both stages of every step, ``guess`` (2 steps, nodes). Ended
@@ -325,8 +311,8 @@ def _solved(
         fresh = lags and (not law.seen or not law.probed or left <= goal)
         if fresh:
             size, seen = float(np.abs(y - seen).max()), y
-            yield from law.renew(np.append(time[0], when), np.concatenate([known, y]))
-        rates, relaxing = yield from law.rates(np.append(time[0], when), np.concatenate([known, y]))
+            law.renew(np.append(time[0], when), np.concatenate([known, y]))
+        rates, relaxing = law.rates(np.append(time[0], when), np.concatenate([known, y]))
         gains = np.einsum("k,ij,kjn->kin", h, _RADAU, rates[1:].reshape(h.size, 2, -1))
         starts = np.concatenate([known, y[1:-1:2]])
         residual = (starts[:, None] + gains[..., :count]).reshape(y.shape) - y
@@ -353,7 +339,7 @@ def _solved(
             probed = turn
             places = h.size if lags and law.probed else _PROBED
             chosen = np.unique(np.linspace(0, h.size - 1, places).round().astype(int))
-            yield from law.probe(when[1::2][chosen], y[1::2][chosen])
+            law.probe(when[1::2][chosen], y[1::2][chosen])
     raise ConvergenceError(
         f"thermal network at {time[0]:.6g} s: Newton's last correction was {size:.3g} K"
     )
@@ -384,9 +370,7 @@ def _correction(h: Floats, residual: Floats, slopes: Floats) -> Floats:
     return step.reshape(residual.shape)
 
 
-def _window(
-    law: _Law, begin: Floats, time: Floats, tolerance: float
-) -> Steps[tuple[_Window, float]]:
+def _window(law: _Law, begin: Floats, time: Floats, tolerance: float) -> tuple[_Window, float]:
     """The steps from ``begin`` on a mesh that keeps the ``tolerance`` [K], and the error [K].
 
     Every mesh is halved: for a method of order 3 the finer solution errs by a seventh of the
@@ -397,12 +381,12 @@ def _window(
     error, steps, count = np.inf, time.size - 1, law.capacity.size
     solved = partial(_solved, law, begin, goal=_SOLVED * tolerance, most=tolerance)
     guess = np.broadcast_to(begin[:count], (2 * steps, count))
-    found = yield from solved(time, guess, goal=max(_ROUGH, _SOLVED * tolerance))
+    found = solved(time, guess, goal=max(_ROUGH, _SOLVED * tolerance))
     for _ in range(_ROUNDS):
         coarse_time = _drawn(found.time, found.bend(), steps)
         time = np.sort(np.append(coarse_time, 0.5 * (coarse_time[1:] + coarse_time[:-1])))
-        coarse = yield from solved(coarse_time, found.at(_stages(coarse_time))[:, :count])
-        found = yield from solved(time, coarse.at(_stages(time))[:, :count])
+        coarse = solved(coarse_time, found.at(_stages(coarse_time))[:, :count])
+        found = solved(time, coarse.at(_stages(time))[:, :count])
         error = float(np.abs(coarse.at(time) - found.ends)[:, :count].max()) / 3.0 + found.left
         if error <= tolerance and found.bend().max() <= _BEND:
             return found, error
@@ -438,15 +422,14 @@ _Followed = tuple[list[_Window], float, float, bool, bool]
 
 def _stretch(
     law: _Law, y: Floats, begun: float, tolerance: float, within: float, progress: Progress
-) -> Steps[_Followed]:
+) -> _Followed:
     """The windows of a stretch one after the other, from the state ``y``.
 
     The whole stretch first; a quarter of it where that fails.
     """
     end = law.stretch.end
-    if law.stretch.lagging is not None:
-        yield from law.renew(np.array([begun]), y[None, :-2])
-    _, relaxing = yield from law.rates(np.array([begun]), y[None, :-2])
+    law.renew(np.array([begun]), y[None, :-2])
+    _, relaxing = law.rates(np.array([begun]), y[None, :-2])
     length = end - begun
     if not np.isfinite(end):
         # similar to a symmetric matrix
@@ -461,7 +444,7 @@ def _stretch(
         try:
             mesh = _first_mesh(begun, stop, relaxing)
             law.forget()
-            window, error = yield from _window(law, y, mesh, tolerance)
+            window, error = _window(law, y, mesh, tolerance)
         except ThermogearError:
             if length <= shortest:
                 raise
@@ -496,107 +479,35 @@ def follow(
     to be stored with some ``moments`` of each stretch; a stretch without end runs until its steady
     state is no more than ``settled_within`` [K] away. Raises InputError for stretches that do not
     follow each other, and ConvergenceError where the steps fail.
-    """
-    return together(
-        [(stretches, start)],
-        times=times,
-        moments=moments,
-        tolerance=tolerance,
-        settled_within=settled_within,
-        progress=progress,
-    )[0]
-
-
-def together(
-    courses: Sequence[tuple[Sequence[Stretch], Mapping[str, float]]],
-    *,
-    times: ArrayLike = (),
-    moments: int = 60,
-    tolerance: float = 1e-3,
-    settled_within: float = 0.01,
-    progress: Progress = silent,
-) -> list[Course]:
-    """:func:`follow` for many stretches and starts of the same nodes and capacities.
-
-    Each goes its own way; what they ask of one and the same law, they ask at once. Raises what is
-    wrong with the first course that fails.
 
     >>> from thermogear.heat.network import Link
     >>> network = ThermalNetwork(
     ...     (Link("oil", "ambient", 10.0),), sources={"oil": 200.0}, fixed={"ambient": 293.15},
     ...     capacities={"oil": 6000.0},
     ... )
-    >>> stretch = Stretch(end=600.0, network=lambda state: network)
-    >>> cold, warm = together([([stretch], {"oil": 293.15}), ([stretch], {"oil": 313.15})])
-    >>> [f"{course.temperatures['oil'][-1] - 293.15:.1f} K" for course in (cold, warm)]
-    ['12.6 K', '20.0 K']
+    >>> course = follow([Stretch(end=600.0, network=lambda state: network)], {"oil": 293.15})
+    >>> f"{course.temperatures['oil'][-1] - 293.15:.1f} K"
+    '12.6 K'
     """
     if not tolerance > 0.0:
         raise InputError("tolerance", f"{tolerance} K", allowed="> 0 K")
-    for stretches, _ in courses:
-        ends = np.array([one.end for one in stretches])
-        if not ends.size or not np.all(np.diff(np.concatenate([[0.0], ends])) > 0.0):
-            raise InputError("stretches", f"ends {ends} s", allowed="one or more, rising from 0 s")
-    stretches, start = courses[0]
+    ends = np.array([one.end for one in stretches])
+    if not ends.size or not np.all(np.diff(np.concatenate([[0.0], ends])) > 0.0):
+        raise InputError("stretches", f"ends {ends} s", allowed="one or more, rising from 0 s")
     at = {name: np.array([float(t)]) for name, t in start.items()}
     at |= {name: np.array([value]) for name, value in stretches[0].given.items()}
     if stretches[0].lagging is not None:
         at["lagging"] = stretches[0].lagging(at)
     first = stretches[0].network(at)
-    runs = [
-        _course(
-            parts,
-            np.array([*(float(begin[name]) for name in first.free), 0.0, 0.0]),
-            first.free,
-            _capacities(first),
-            moments=lambda begun, end: _moments(
-                begun, end, moments, np.unique(np.asarray(times, dtype=float))
-            ),
-            followed=partial(
-                _stretch, tolerance=tolerance, within=settled_within, progress=progress
-            ),
-        )
-        for parts, begin in courses
-    ]
-    return _answered(runs)
-
-
-def _answered(runs: Sequence[Steps[Course]]) -> list[Course]:
-    """What ``runs`` find in the end; what they ask for meanwhile is answered together."""
-    found: dict[int, Course] = {}
-    replies: dict[int, Any] = dict.fromkeys(range(len(runs)))
-    asked: dict[int, Ask] = {}
-    while replies:
-        for place, reply in replies.items():
-            try:
-                failed = isinstance(reply, ThermogearError)
-                asked[place] = runs[place].throw(reply) if failed else runs[place].send(reply)
-            except StopIteration as end:
-                found[place] = end.value
-        # what costs most waits until all that go on ask for it
-        due = [k for k, ask in asked.items() if ask[0] is _flows] or list(asked)
-        replies = dict(zip(due, _answers([asked.pop(k) for k in due]), strict=True))
-    return [found[place] for place in range(len(runs))]
-
-
-def _answers(asks: Sequence[Ask]) -> list[Any]:
-    """The answer of each or what refuses it, those of one law found at all their states at once."""
-    if not asks:
-        return []
-    (reading, law, state), sizes = asks[0], [len(ask[2]["as computed"]) for ask in asks]
-    alike = [k for k, ask in enumerate(asks) if ask[:2] == (reading, law)]
-    alike = alike[: max(1, _TOGETHER // max(sizes))]
-    try:
-        whole = {name: np.concatenate([asks[k][2][name] for k in alike]) for name in state}
-        cuts = np.cumsum([sizes[k] for k in alike])[:-1]
-        parts = zip(*(np.split(one, cuts) for one in reading(law, whole)), strict=True)
-        replies: dict[int, Any] = dict(zip(alike, parts, strict=True))
-    except ThermogearError as error:
-        # who is refused is found alone
-        replies = {k: error if len(alike) == 1 else _answers([asks[k]])[0] for k in alike}
-    rest = [k for k in range(len(asks)) if k not in replies]
-    replies |= dict(zip(rest, _answers([asks[k] for k in rest]), strict=True))
-    return [replies[k] for k in range(len(asks))]
+    wanted = np.unique(np.asarray(times, dtype=float))
+    return _course(
+        stretches,
+        np.array([*(float(start[name]) for name in first.free), 0.0, 0.0]),
+        first.free,
+        _capacities(first),
+        moments=lambda begun, end: _moments(begun, end, moments, wanted),
+        followed=partial(_stretch, tolerance=tolerance, within=settled_within, progress=progress),
+    )
 
 
 def _course(
@@ -606,15 +517,15 @@ def _course(
     capacity: Floats,
     *,
     moments: Callable[[float, float], Floats],
-    followed: Callable[..., Steps[_Followed]],
-) -> Steps[Course]:
+    followed: Callable[..., _Followed],
+) -> Course:
     """One course from the state ``y`` (nodes + 2,)."""
     windows: list[tuple[int, _Window]] = []
     stored: list[tuple[int, Floats]] = []
     stop, calls, error = 0.0, 1, 0.0
     for place, stretch in enumerate(stretches):
         law, begun = _Law(stretch, nodes, capacity), stop
-        parts, stop, worst, settled, too_hot = yield from followed(law, y, begun)
+        parts, stop, worst, settled, too_hot = followed(law, y, begun)
         windows += [(place, window) for window in parts]
         y, error = parts[-1].ends[-1], max(error, worst)
         calls += law.calls

@@ -183,19 +183,13 @@ class Cycle:
         """
         names = _asked(want)
         springs = self.parts if any(name in SPRINGS for name in names) else {}
-        left_out = {name for name in SPRINGS if name not in springs}
-        for name in left_out.intersection(want):
-            why = f"model.tooth = {self.hot.model.tooth} has other springs"
-            raise InputError("want", repr(name), allowed=" | ".join(springs), why=why)
+        left_out = {name: "it has other springs" for name in SPRINGS if name not in springs}
         if not self.teeth_differ:
-            left_out |= OF_TURN.keys()
-            for name in left_out.intersection(want):
-                rule = (
-                    "all teeth are alike"
-                    if self.mesh_periods == 1
-                    else "the load is shared by a rule"
-                )
-                raise InputError("want", repr(name), why=f"{rule}: no tooth pair differs")
+            left_out |= dict.fromkeys(OF_TURN, "no two tooth pairs carry different loads")
+        for name in left_out.keys() & set(want):
+            tooth, sharing = self.hot.model.tooth, self.hot.model.sharing
+            why = f"{left_out[name]} with model.tooth = {tooth}, model.sharing = {sharing}"
+            raise InputError("want", repr(name), allowed=" | ".join(springs) or None, why=why)
         values = {
             name: of(self)
             for name, (_, of) in TABLE.items()
@@ -263,10 +257,6 @@ class Cycle:
     def gap(self) -> Clearance:
         return Clearance(self.hot, self.phase, self.elastic.deviations)
 
-    @property
-    def least(self) -> Floats:
-        return self.gap.least
-
     @cached_property
     def rim(self) -> Floats:
         return self._of_body("rim")
@@ -284,7 +274,7 @@ class Cycle:
     def status(self, names: Collection[str]) -> NDArray[np.int64]:
         """Where the gap is used up, and where what is asked for is not known."""
         bath = np.where(self.hot.operating.no_bath, NO_OIL_BATH, STATUS.index("ok"))
-        found = np.where(self.least > 0.0, bath, STATUS.index("jammed"))
+        found = np.where(self.gap.least > 0.0, bath, STATUS.index("jammed"))
         # a turn is solved only for what is asked
         known = np.ones(self.hot.count, np.bool_)
         if self.mesh_periods == 1 or "curves" in vars(self):
@@ -442,10 +432,10 @@ TABLE: dict[str, tuple[tuple[str, ...], Made]] = {
     # counted from the least, so that a constant gap keeps its last bit
     "half_backlash": (
         POINT,
-        lambda c: c.least + (c.gap.half_backlash - c.least[:, None]).mean(axis=1),
+        lambda c: c.gap.least + (c.gap.half_backlash - c.gap.least[:, None]).mean(axis=1),
     ),
     "cold_half_backlash": (POINT, lambda c: c.hot.half_backlash),
-    "least_half_backlash": (POINT, lambda c: c.least),
+    "least_half_backlash": (POINT, lambda c: c.gap.least),
     **{
         f"half_backlash_by_{name}": (POINT, partial(_one_of, lambda c: c.gap.parts, name))
         for name in PARTS

@@ -337,7 +337,10 @@ def tooth_pair_shares(elastic: ElasticPair, s: Floats) -> PathShare:
                 for values in (solved.share, solved.edge)
             ]
         )
-    share, edge = (np.concatenate(values) for values in zip(*parts, strict=True))
+    # in the order of their axes: sums along the path go by it
+    share, edge = (
+        np.ascontiguousarray(np.concatenate(values)) for values in zip(*parts, strict=True)
+    )
     return PathShare(share, edge)
 
 

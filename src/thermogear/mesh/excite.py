@@ -122,7 +122,8 @@ def excitations(
         raise InputError("friction", f"{len(friction)} of them", allowed=f"{count}, as the points")
     status = np.asarray(cycle["status"], dtype=np.int8)
     moving = moves(status)
-    samples, periods = {}, mesh_periods_of(cycle)
+    told: Any = cycle if "mesh_periods" in cycle else getattr(cycle, "attrs", {})
+    samples, periods = {}, int(np.nanmax(told.get("mesh_periods", 1)))
     for name in ("mesh_stiffness", "spring_error"):
         values = np.asarray(cycle[name], dtype=float)
         samples[name] = fourier_rows(np.where(moving[:, None], values, 1.0), harmonics * periods)
@@ -145,13 +146,6 @@ def excitations(
         friction=None if friction is None else tuple(friction),
         mesh_periods=periods,
     )
-
-
-def mesh_periods_of(cycle: Dataset | Mapping[str, NDArray[Any]]) -> int:
-    """After how many mesh periods a cycle comes again."""
-    if "mesh_periods" in cycle:
-        return int(np.nanmax(cycle["mesh_periods"]))
-    return int(getattr(cycle, "attrs", {}).get("mesh_periods", 1))
 
 
 def over_turn(rows: NDArray[np.complex128], mesh_periods: int) -> NDArray[np.complex128]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.polynomial.chebyshev import chebvander
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.arrays import Floats
@@ -17,7 +18,7 @@ from thermogear.mesh.friction_path import FrictionPath
 PHASES = 48
 """Phases of the mesh period at which the loaded contact is asked."""
 LOADS = 5
-"""Loads that stand for those of all tooth pairs of a turn at a position, :func:`_of_few_loads`."""
+"""Loads in place of those of all tooth pairs of a turn at each position, :func:`_of_few_loads`."""
 GAUSS = 12
 """Nodes on each part of the path between two changes of the number of pairs."""
 
@@ -28,7 +29,8 @@ class MeshHeat(NamedTuple):
     ``power`` [W] of friction, ``partition`` [-] of it into the pinion, ``conductance`` [W/K]
     between both flanks, ``beyond`` [-] the share of the power off the path of contact (tip
     corners), ``settled`` whether the loaded contact is known, ``share`` [-] of the load on every
-    position (count, positions).
+    position (count, positions), over a turn with its weight among the tooth pairs (count, 2,
+    positions).
     """
 
     power: Floats
@@ -111,7 +113,7 @@ def _around(
 
 
 def _of_few_loads(share: Floats) -> Floats:
-    """:data:`LOADS` shares and what part of the tooth pairs each stands for, (count, 2, positions).
+    """:data:`LOADS` shares and their weights among the tooth pairs, (count, 2, positions).
 
     From the shares (count, tooth pair, position) of all: at one position speeds and radii are the
     same for all tooth pairs, so that heat and conductance depend on the load alone, 0 without load
@@ -123,17 +125,12 @@ def _of_few_loads(share: Floats) -> Floats:
     """
     top = share.max(axis=1)
     top = np.where(top == 0.0, 1.0, top)
-    x = (share / top[:, None]) ** 0.25
     nodes = 0.5 - 0.5 * np.cos(np.pi * np.arange(LOADS + 1) / LOADS)
-    to_values = np.linalg.inv(np.polynomial.chebyshev.chebvander(2.0 * nodes - 1.0, LOADS))
-    last, now = np.ones_like(x), 2.0 * x - 1.0
-    means = [last.mean(axis=1), now.mean(axis=1)]
-    for _ in range(2, LOADS + 1):
-        last, now = now, 2.0 * (2.0 * x - 1.0) * now - last
-        means.append(now.mean(axis=1))
-    stands_for = np.einsum("jk,jcp->ckp", to_values[:, 1:], np.stack(means))
-    carried = nodes[1:, None] ** 4 * top[:, None]
-    return np.stack([carried, stands_for], axis=1).reshape(len(share), 2, -1)
+    to_values = np.linalg.inv(chebvander(2.0 * nodes - 1.0, LOADS))[:, 1:]
+    means = chebvander(2.0 * (share / top[:, None]) ** 0.25 - 1.0, LOADS).mean(axis=1)
+    # the load of the pairs is 0 at the first node, which adds nothing
+    every = np.stack([nodes[1:] ** 4 * top[..., None], means @ to_values], axis=1)
+    return np.swapaxes(every, 2, 3).reshape(len(share), 2, -1)
 
 
 def _between_steps(pair: GearPair) -> tuple[Floats, Floats]:

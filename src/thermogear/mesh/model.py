@@ -85,6 +85,26 @@ CHOICES: dict[str, dict[str, str]] = {
     },
 }
 
+DECIDES = {
+    "friction": "the losses, and with them every temperature that is computed",
+    "dry_coefficient": "friction where it is dry alone",
+    "inlet": "how thick the film is",
+    "flash": "the flash temperature",
+    "heat_distribution": "the flash temperature, by at most 6 %",
+    "flank": "how much backlash heat takes",
+    "bore": "how far a warm or fast gear grows",
+    "housing": "how far the axes move apart, and so the hot backlash",
+    "modulus": "how soft hot gears are",
+    "stiffness": "stiffness and transmission error, and so every motion",
+    "tooth": "the stiffness of the loaded contact, by at most 5 %",
+    "plane": "the stiffness of solved teeth, by 1 to 3 %",
+    "body": "the stiffness and the mean transmission error; shares and its course stay",
+    "spring": "which stiffness and which error a motion has",
+    "thermal_stiffness": "the stiffness of a hot pair",
+    "sharing": "the load of a tooth pair: pressure, film and flash temperature",
+}
+"""What hangs on each choice, in words."""
+
 
 @dataclass(frozen=True)
 class MeshModel:

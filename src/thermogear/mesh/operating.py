@@ -61,8 +61,8 @@ class Temperatures:
         return cls(reference=reference, **dict.fromkeys(outer, temperature))
 
     def cold(self) -> Temperatures:
-        """Everything at the reference temperature."""
-        return Temperatures.uniform(self.reference, reference=self.reference)
+        """Every body that is known at the reference temperature."""
+        return replace(self, **dict.fromkeys(self.bodies, self.reference))
 
     @property
     def bodies(self) -> dict[str, Floats]:

@@ -26,9 +26,6 @@ from thermogear.heat.thesis_profile import deformed_points, thesis_flank_growth
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating, Temperatures
 
-SAME_PLACE = 1e-9
-"""Places closer than this part of the base pitch are one."""
-
 
 def _column(values: ArrayLike, count: int) -> Floats:
     """One value per operating point as a column against positions."""
@@ -272,8 +269,8 @@ class ThermalDeviation:
         s, again = np.clip(at.s, at.pair.path.a, at.pair.path.e), None
         if np.ptp(at.phase) > 1.0:
             # every mesh period has the same places, but for the rounding of its phases
-            places = np.round(s / (SAME_PLACE * at.pair.base_pitch))
-            _, first, again = np.unique(places[:, 1], return_index=True, return_inverse=True)
+            fraction = np.round(at.phase % 1.0, 11)
+            _, first, again = np.unique(fraction, return_index=True, return_inverse=True)
             s = s[first]
         shape, flat = (self.hot.count, *s.shape), s.ravel()
         added = np.add(*self.hot.pulled_material(flat)), self.hot.added_material(flat)

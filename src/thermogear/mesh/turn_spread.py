@@ -40,23 +40,19 @@ def spread_of_turn(elastic: ElasticPair, s: Floats, every: PathShare) -> dict[st
     loaded contact is not known.
     """
     count, periods, places = every.share.shape
-    settled = np.isfinite(every.share).all(axis=(1, 2))
-    worst = {name: np.empty((count, periods)) for name in WORST}
-    step = max(BLOCK // (count * places), 1)
+    step, parts = max(BLOCK // (count * places), 1), []
     for first in range(0, periods, step):
-        some = slice(first, first + step)
-        share = every.share[:, some].reshape(count, -1)
-        edge = every.edge[:, some].reshape(count, -1)
+        share = every.share[:, first : first + step].reshape(count, -1)
+        edge = every.edge[:, first : first + step].reshape(count, -1)
         path = FrictionPath(elastic, np.resize(s, share.shape[1]), PathShare(share, edge))
-        for name, (of, sign) in WORST.items():
-            values = sign * np.broadcast_to(of(path), share.shape).reshape(count, -1, places)
-            worst[name][:, some] = sign * values.max(axis=-1)
+        along = [sign * np.broadcast_to(of(path), share.shape) for of, sign in WORST.values()]
+        parts.append(np.reshape(along, (len(along), count, -1, places)).max(axis=-1))
     found: dict[str, Floats] = {}
-    for name, values in worst.items():
-        sign = WORST[name][1]
-        rising = sign * values
-        place = np.argmax(rising, axis=1)
-        median, decile, most = sign * np.quantile(rising, [0.5, DECILE, 1.0], axis=1)
-        teeth = [1.0 + place % gear.teeth for gear in (elastic.pair.pinion, elastic.pair.wheel)]
-        found |= dict(zip(_names(name, sign), (median, decile, most, *teeth), strict=True))
+    for (name, (_, sign)), rising in zip(WORST.items(), np.concatenate(parts, -1), strict=True):
+        # values that occur: between two infinite films there is none
+        of_pairs = sign * np.quantile(rising, [0.5, DECILE, 1.0], axis=1, method="inverted_cdf")
+        pair = np.argmax(rising, axis=1)
+        teeth = [1.0 + pair % gear.teeth for gear in (elastic.pair.pinion, elastic.pair.wheel)]
+        found |= dict(zip(_names(name, sign), (*of_pairs, *teeth), strict=True))
+    settled = np.isfinite(every.share).all(axis=(1, 2))
     return {name: np.where(settled, values, np.nan) for name, values in found.items()}

@@ -24,7 +24,7 @@ from thermogear.gears.turn import mean_tooth
 from thermogear.heat.free_convection import with_free_convection
 from thermogear.heat.gearbox import Losses, Surroundings, joined, thermal_network
 from thermogear.heat.network import ThermalNetwork
-from thermogear.heat.transient import Course, State, Stretch, together
+from thermogear.heat.transient import Course, State, Stretch, follow
 from thermogear.mesh.balance import Gearbox, node_temperatures, pair_losses
 from thermogear.mesh.clearance import Clearance
 from thermogear.mesh.cycle import mesh_cycle
@@ -32,7 +32,7 @@ from thermogear.mesh.elastic import ElasticPair, elastic_pair
 from thermogear.mesh.mesh_heat import PHASES as HEAT_PHASES
 from thermogear.mesh.mesh_heat import MeshHeat, mesh_heat
 from thermogear.mesh.model import MeshModel
-from thermogear.mesh.operating import ALIKE, Operating, Varied
+from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair
 
 FACTORS = {
@@ -140,7 +140,6 @@ class WarmUp:
     duty: Duty
     course: Course
     _chain: _Chain = field(repr=False)
-    _given: Sequence[Mapping[str, float]] = field(repr=False)
 
     @property
     def time(self) -> Floats:
@@ -169,11 +168,7 @@ class WarmUp:
 
     def _at(self, state: State, piece: ArrayLike) -> State:
         """What the chain finds at temperatures of the course in ``piece`` of the duty."""
-        each = np.broadcast_to(piece, np.shape(next(iter(state.values()))))
-        found = {
-            name: np.array([one[name] for one in self._given])[each] for name in self._given[0]
-        }
-        return {**state, **found}
+        return {**state, "piece": np.broadcast_to(piece, np.shape(next(iter(state.values()))))}
 
     @cached_property
     def losses(self) -> Losses:
@@ -270,59 +265,11 @@ def warm_up(
     >>> f"{course.temperatures['oil'][-1] - 273.15:.1f} C"
     '24.1 C'
     """
-    return warm_ups(
-        pair,
-        [duty],
-        lubricant,
-        half_backlash,
-        model,
-        gearbox=gearbox,
-        start=start,
-        reference=reference,
-        housing=housing,
-        deviations=deviations,
-        factors=factors,
-        times=times,
-        moments=moments,
-        tolerance=tolerance,
-        progress=progress,
-    )[0]
-
-
-def warm_ups(
-    pair: GearPair,
-    duties: Sequence[Duty],
-    lubricant: Lubricant,
-    half_backlash: float,
-    model: MeshModel | None = None,
-    *,
-    varied: Varied = ALIKE,
-    gearbox: Gearbox | None = None,
-    start: float | Mapping[str, float] | None = None,
-    reference: float = 293.15,
-    housing: Material = MATERIALS["steel"],
-    deviations: Sequence[Deviation] = (),
-    factors: Mapping[str, float] | None = None,
-    times: ArrayLike = (),
-    moments: int = 60,
-    tolerance: float = 1e-3,
-    progress: Progress = silent,
-) -> list[WarmUp]:
-    """:func:`warm_up` of many samples side by side, each over its own duty of ``duties``.
-
-    ``lubricant``: one for all, or of one viscosity line a sample; ``varied``: what of the pair
-    differs between the samples, one width for all. Every sample goes its own way, with its own
-    steps; the laws are asked for all of them at once.
-    """
-    begins = np.cumsum([0, *(duty.pieces for duty in duties)])
     chain = _Chain(
         pair=pair,
-        speed=np.concatenate([duty.speed for duty in duties]),
-        torque=np.concatenate([duty.torque for duty in duties]),
-        ambient=np.concatenate([duty.ambient for duty in duties]),
+        duty=duty,
         lubricant=lubricant,
         half_backlash=half_backlash,
-        varied=varied,
         model=MeshModel.consistent() if model is None else model,
         box=Gearbox() if gearbox is None else gearbox,
         reference=reference,
@@ -330,34 +277,25 @@ def warm_ups(
         deviations=deviations,
         factors=_known(factors or {}),
     )
-    given = [
-        [{"sample": k, "row": begin + piece} for piece in range(duty.pieces)]
-        for k, (duty, begin) in enumerate(zip(duties, begins, strict=False))
-    ]
     with warnings.catch_warnings(action="ignore", category=ValidityWarning):
         # told once, by the losses
-        courses = together(
+        course = follow(
             [
-                (
-                    [
-                        Stretch(
-                            end=float(end), network=chain.network, lagging=chain.mesh, given=where
-                        )
-                        for end, where in zip(duty.time[1:], rows, strict=True)
-                    ],
-                    chain.start(start, float(duty.ambient[0])),
+                Stretch(
+                    end=float(end),
+                    network=chain.network,
+                    lagging=chain.mesh,
+                    given={"piece": piece},
                 )
-                for duty, rows in zip(duties, given, strict=True)
+                for piece, end in enumerate(duty.time[1:])
             ],
+            chain.start(start, float(duty.ambient[0])),
             times=times,
             moments=moments,
             tolerance=tolerance,
             progress=progress,
         )
-    return [
-        WarmUp(duty=duty, course=course, _chain=chain, _given=rows)
-        for duty, course, rows in zip(duties, courses, given, strict=True)
-    ]
+    return WarmUp(duty=duty, course=course, _chain=chain)
 
 
 def with_factors(surroundings: Surroundings, factors: Mapping[str, float]) -> Surroundings:
@@ -407,19 +345,15 @@ def _group(first: str, second: str) -> str | None:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class _Chain:
-    """From temperatures to losses, conductances and clearance of one pair in its duties.
+    """From temperatures to losses, conductances and clearance of one pair in its duty.
 
-    States hold temperatures [K] of the free nodes, the ``sample`` and the ``row`` of its duty's
-    piece in ``speed``, ``torque`` and ``ambient``, arrays (count,).
+    States hold temperatures [K] of the free nodes and the ``piece`` of the duty, arrays (count,).
     """
 
     pair: GearPair
-    speed: Floats
-    torque: Floats
-    ambient: Floats
+    duty: Duty
     lubricant: Lubricant
     half_backlash: float
-    varied: Varied
     model: MeshModel
     box: Gearbox
     reference: float
@@ -445,25 +379,22 @@ class _Chain:
 
     def nodes(self, state: State) -> dict[str, Floats]:
         """Temperatures [K] of all nodes, held ones too, (count,)."""
-        whole = np.shape(state["row"])
+        whole = np.shape(state["piece"])
         return {
             n: np.full(whole, self.held[n]) if n in self.held else state[n] for n in self.box.nodes
         }
 
     def operating(self, state: State) -> Operating:
         """The operating points of a state."""
-        at, row, sample = (
-            self.nodes(state), *(np.asarray(state[name], dtype=int) for name in ("row", "sample"))
-        )  # fmt: skip
+        at, piece = self.nodes(state), np.asarray(state["piece"], dtype=int)
         return Operating(
-            self.speed[row],
-            self.torque[row],
-            self.lubricant.part(sample),
+            self.duty.speed[piece],
+            self.duty.torque[piece],
+            self.lubricant,
             at["oil"],
             node_temperatures(at, self.reference),
             self.half_backlash,
             self.housing,
-            varied=self.varied.part(sample),
         )
 
     def _elastic(self, at: Operating) -> ElasticPair:
@@ -472,8 +403,8 @@ class _Chain:
     def mesh(self, state: State) -> Floats:
         """Friction power [W], its share into the pinion and conductance [W/K], (count, 3)."""
         elastic = self._elastic(self.operating(state))
-        long = max(TURN_POSITIONS // elastic.mesh_periods, LEAST_PHASES)
-        means = mesh_heat(elastic, min(HEAT_PHASES, long))
+        phases = max(TURN_POSITIONS // elastic.mesh_periods, LEAST_PHASES)
+        means = mesh_heat(elastic, min(HEAT_PHASES, phases))
         if not means.settled.all():
             count = int(np.count_nonzero(~means.settled))
             raise ConvergenceError(
@@ -492,8 +423,8 @@ class _Chain:
 
     def network(self, state: State) -> ThermalNetwork:
         """The law of every piece."""
-        at, row = self.operating(state), np.asarray(state["row"], dtype=int)
-        around = replace(self.box.surroundings, ambient=self.ambient[row])
+        at, piece = self.operating(state), np.asarray(state["piece"], dtype=int)
+        around = replace(self.box.surroundings, ambient=self.duty.ambient[piece])
         bare = thermal_network(
             self.pair.pinion,
             self.pair.wheel,
@@ -533,7 +464,7 @@ class _Chain:
     def losses_of(self, state: State) -> Losses:
         """At many moments; warns once where the oil leaves its line."""
         parts: list[Losses] = []
-        count = np.size(state["row"])
+        count = np.size(state["piece"])
         with warnings.catch_warnings(
             record=True, action="always", category=ValidityWarning
         ) as told:

@@ -77,7 +77,7 @@ def loaded_survey(
             at.onset(float(moments.max())),
             "N m",
             "pinion torque from which a tip corner of this gear carries, 0 where it does at any; "
-            "nan where at no load here",
+            "nan where at no load here or undercut ends the path",
         )
     ).assign_coords(
         temperature=[state.words for state in states],
@@ -203,15 +203,18 @@ def _notices(
     yield Notice.of("loaded_contact_unchecked", body=at.hot.model.body)
     yield Notice.of("iso_stiffness_apart", apart=[[apart.min(), apart.max()]])
     if bool((edges > 0.0).any()):
-        most, heaviest = edges.isel(edges.argmax(...)), loads.isel(loads.argmax(...))
-        yield Notice.of(
-            "edge_contact_at_most",
-            share=most.item(),
-            state=str(most["temperature"].values),
-            torque=most["load"].item(),
-            gear=str(heaviest["gear"].values),
-            load=heaviest.item(),
-        )
+        most = edges.isel(edges.argmax(...))
+        where = {
+            "share": most.item(),
+            "state": str(most["temperature"].values),
+            "torque": most["load"].item(),
+        }
+        if case.pair.cut_short:
+            yield Notice.of("edge_of_undercut", **where)
+        else:
+            top = loads.isel(loads.argmax(...))
+            where |= {"gear": str(top["gear"].values), "load": top.item()}
+            yield Notice.of("edge_contact_at_most", **where)
     if at.yields(at.under(contact["load"].values[None, :], phase=UNIFORM)).any():
         yield Notice.of("edge_settles")
     if lost:

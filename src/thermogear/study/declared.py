@@ -18,11 +18,11 @@ from numbers import Integral
 from typing import TYPE_CHECKING, Any, ClassVar, ParamSpec, TypeVar
 
 from thermogear.base.errors import InputError
-from thermogear.base.notice import Notice
 from thermogear.base.progress import Progress
 from thermogear.base.units import RPM
 
 if TYPE_CHECKING:
+    from thermogear.base.notice import Notice
     from thermogear.case.case import GearCase
     from thermogear.results.result import Result
 
@@ -104,6 +104,8 @@ class Study:
 
 def mean_tooth_notices(case: GearCase, taken: GearCase) -> Iterator[Notice]:
     """That a study has ``taken`` the mean tooth of a ``case`` whose teeth differ."""
+    from thermogear.base.notice import Notice
+
     if case.period.mesh_periods > taken.period.mesh_periods:
         yield Notice.of("mean_tooth_taken", mesh_periods=case.period.mesh_periods)
 

@@ -55,7 +55,8 @@ def mesh(case: GearCase, alive: Alive = keep_going) -> xr.Dataset:
         )
         for name in (*MESH, "status")
     }
-    phase = np.arange(case.mesh_positions) / case.mesh_positions
+    positions = found[0]["mesh_stiffness"].shape[-1]
+    phase = np.arange(positions) * case.period.mesh_periods / positions
     data = label(variables, {"mesh_phase": phase})
     return data.assign_coords(state=list(STATES)).assign_attrs(_at(case))
 

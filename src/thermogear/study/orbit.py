@@ -192,9 +192,10 @@ def told_orbit(
     data["phase"] = (("sample",), phase, {"units": "1", "long_name": "time in mesh periods"})
     if not points.gears:
         _without_units(data)
-    least = LEAST_LINE * max(float(amplitude[1:].max()), 1e-300)
-    if of > 1:
-        least = max(least, float(np.sort(amplitude[1:])[-LINES_OF_TURN:][0]) * (1.0 - 1e-12))
+    greatest = np.sort(amplitude[1:])[-LINES_OF_TURN if of > 1 else 0 :]
+    least = max(
+        LEAST_LINE * max(float(greatest[-1]), 1e-300), (1.0 - 1e-12) * float(greatest[0]) * (of > 1)
+    )
     shown = (order > 0.0) & (amplitude > least)
     whole, repeats = order * of, point.gears.period if points.gears else Period(of)
     lines = [

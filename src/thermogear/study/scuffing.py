@@ -1,4 +1,4 @@
-"""Against which limit scuffing is judged: the FZG load stage of the oil, or the one assumed."""
+"""Against which limits is judged: scuffing by the FZG load stage, a jam by what gears bear."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from thermogear.base.materials import Material
 from thermogear.case.case import GearCase
+from thermogear.gears.pair import GearPair
 
 STAGE = 12.0
 """FZG load stage of an oil of which none is given: the least of CLP oils (DIN 51517-3; usual)."""
@@ -35,3 +36,8 @@ def not_steel(case: GearCase) -> str:
 def steel(material: Material) -> bool:
     """Whether a material has the stiffness and the density of steel."""
     return 180e9 <= material.youngs_modulus <= 230e9 and 7500.0 <= material.density <= 8200.0
+
+
+def borne_by(pair: GearPair) -> tuple[float, str]:
+    """Temperature [K] beyond which nothing is said of a jam, and why: of both gears the lower."""
+    return min(gear.material.bears for gear in (pair.pinion, pair.wheel))

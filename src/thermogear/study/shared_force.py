@@ -19,6 +19,7 @@ from thermogear.case.one_point import OnePoint
 from thermogear.dynamics.integrate import simulate
 from thermogear.dynamics.load_shared import LoadSharedModel
 from thermogear.dynamics.models import from_excitation
+from thermogear.gears.turn import mean_tooth
 from thermogear.mesh.clearance import Clearance
 from thermogear.mesh.load_shared import contact_at, pair_springs
 from thermogear.mesh.thermal import HotPair
@@ -51,7 +52,8 @@ def shared_results(
 
     A swing is that of the transmission error r_b1 theta_1 - r_b2 theta_2 [m], peak to peak: what
     each form takes for the error is its own split of it, and belongs to no comparison. Towards
-    speed 0 it is the static one, far above resonance it goes to 0, for both.
+    speed 0 it is the static one, far above resonance it goes to 0, for both. Where teeth differ or
+    a gear is eccentric both forms are of the mean tooth over one mesh period.
     """
     if point.operating is None:
         raise InputError(
@@ -65,7 +67,8 @@ def shared_results(
             why="tooth pairs share a load in the loaded contact alone",
             fix="choose the bundle 'consistent'",
         )
-    here = point.excitation()
+    case = replace(case, deviations=mean_tooth(case.pair, case.deviations))
+    here = replace(point, case=case).excitation()
     hot = HotPair(case.pair, point.operating, point.bundle)
     progress("springs", 0, 2)
     drive, back = (

@@ -14,7 +14,7 @@ from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.bounds import whole
 from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.base.progress import Progress, silent
-from thermogear.base.units import RPM
+from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import label
 from thermogear.case.case import GearCase
 from thermogear.case.duty import Measured, chosen_point, point_duty
@@ -28,6 +28,7 @@ from thermogear.mesh.warm_up import PHASES, Duty, WarmUp, meshing, warm_up, with
 from thermogear.mesh.warm_up_fit import Fit, fit_factors, require_factors, until
 from thermogear.results.result import Notice, Result
 from thermogear.study.declared import WarmUpSurvey, declared
+from thermogear.study.scuffing import borne_by
 
 FLAT = 5e-8
 """Half backlash [m] above its least within which no moment is told as that of the least: a tenth of
@@ -297,6 +298,7 @@ def _worst(case: GearCase, course: WarmUp, steady: Dataset) -> dict[str, Any]:
     cold = float(_least_gap(case, HotPair(case.pair, case.stated, case.models[0]).drawn())[0])
     lost, lost_for_good = cold - one.half_backlash, cold - rest
     ratio = lost / lost_for_good - 1.0 if lost_for_good > LEAST_LOSS else np.nan
+    borne, why = borne_by(case.pair)
     return {
         "time_s": one.time,
         "between_s": least_between(course),
@@ -304,6 +306,9 @@ def _worst(case: GearCase, course: WarmUp, steady: Dataset) -> dict[str, Any]:
         "half_backlash_m": one.half_backlash,
         "undeformed_half_backlash_m": cold,
         "margin_K": one.margin,
+        "borne_K": borne - one.temperatures["pinion_tooth"],
+        "borne_degC": borne - ZERO_CELSIUS,
+        "borne_why": why,
         "steady_half_backlash_m": rest,
         "below_steady_m": rest - one.half_backlash,
         "loss_above_steady": ratio,

@@ -13,7 +13,7 @@ from thermogear.verify.checks import (
     inner_phases,
 )
 from thermogear.verify.growth import finite_flank_growth
-from thermogear.verify.stiffness import FinitePair, gear_compliance, pair_stiffness
+from thermogear.verify.stiffness import FinitePair, pair_stiffness
 
 __all__ = [
     "Density",
@@ -23,7 +23,6 @@ __all__ = [
     "check_growth",
     "check_stiffness",
     "finite_flank_growth",
-    "gear_compliance",
     "inner_phases",
     "pair_stiffness",
 ]

@@ -10,13 +10,16 @@ from numpy.typing import ArrayLike
 
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
-from thermogear.gears.deviations import FlankShape
+from thermogear.gears.deviations import GEARS, FlankShape
 from thermogear.gears.geometry import Gear
+from thermogear.gears.iso6336 import single_contact
 from thermogear.gears.loaded import LoadedModel, loaded_contact
 from thermogear.gears.pair import GearPair
+from thermogear.gears.root_stress import root_table
 from thermogear.gears.tooth_mesh import Density
 from thermogear.heat.expansion import RadialField, flank_growth
 from thermogear.verify.growth import finite_flank_growth, flank_radii
+from thermogear.verify.sector import FlankSector
 from thermogear.verify.stiffness import pair_stiffness
 
 
@@ -79,9 +82,14 @@ class StiffnessCheck:
         return float(np.ptp(self.model_deflection)), float(np.ptp(self.finite_deflection))
 
     @property
+    def error(self) -> Floats:
+        """Model's deflection minus the finite elements' [m], (position,)."""
+        return self.model_deflection - self.finite_deflection
+
+    @property
     def worst(self) -> int:
-        """The position with the greatest difference in stiffness."""
-        return int(np.argmax(np.abs(self.difference)))
+        """The position with the greatest error of the deflection."""
+        return int(np.argmax(np.abs(self.error)))
 
     @property
     def worst_share(self) -> float:
@@ -121,6 +129,20 @@ def check_stiffness(
         finite_share=finite.share,
         face_width=pair.face_width,
         line_load=normal_force / pair.face_width,
+    )
+
+
+def check_root(pair: GearPair, gear: str, density: Density | None = None) -> tuple[float, float]:
+    """Greatest stress sigma b m/F_n [-] in one gear's fillet: model, finer finite elements.
+
+    gear: "pinion" or "wheel", loaded at the outer point of single contact; plane stress, bore held.
+    """
+    at: Gear = getattr(pair, gear)
+    t = single_contact(pair)[GEARS.index(gear)]
+    sector = FlankSector(at, 0.05 * at.module, 3 * (density or Density()).refinement)
+    load = sector.pressed(0.5 * at.base_radius * t**2, half_width=0.12 * at.module)
+    return float(root_table(at).stress(t).max()), at.module * float(
+        sector.root_stress(load)[0].max()
     )
 
 

@@ -127,6 +127,18 @@ def corner_pairs() -> tuple[CheckedPair, ...]:
     )
 
 
+def root_pairs() -> tuple[tuple[CheckedPair, str], ...]:
+    """Pairs with the gear whose root is checked: usual, highly shifted, on a rim of 1.5 modules."""
+    usual = published_pair()
+    shifted = GearPair(_gear(25, 5, 20, 20, 0.8), usual.pair.wheel)
+    thin = GearPair(_gear(40, 5, 30, 20), _gear(100, 5, 236.25, 20))
+    return (
+        (usual, "pinion"),
+        (CheckedPair("m 5, 25/75, x 0.8/0", shifted, usual.line_load), "pinion"),
+        (CheckedPair("m 5, 40/100, wheel rim 1.5 m", thin, usual.line_load), "wheel"),
+    )
+
+
 _SEED = 20261127
 """Of :func:`drawn_pairs`, fixed before they were compared with anything."""
 _KINDS = {

@@ -23,7 +23,7 @@ from thermogear.gears.deviations import FlankShape
 from thermogear.gears.geometry import Gear
 from thermogear.gears.pair import GearPair
 from thermogear.gears.tooth_mesh import Density
-from thermogear.verify.contact import NEAR, FlankContact, held_in
+from thermogear.verify.contact import NEAR, FlankContact
 from thermogear.verify.sector import FlankSector
 
 _MOST_ROWS = 900
@@ -57,47 +57,6 @@ def _sectors(pair: GearPair, line_load: float, density: Density) -> tuple[FlankS
         return FlankSector(gear, min(max(step, (high - low) / _MOST_ROWS), (high - low) / 20))
 
     return sector(pair.pinion), sector(pair.wheel)
-
-
-def gear_compliance(
-    gear: Gear,
-    t: ArrayLike,
-    half_width: float,
-    density: Density | None = None,
-    near: str = "strain",
-) -> Floats:
-    """Deflection [m/N] of one tooth along its flank's normal under its own Hertzian load.
-
-    Tooth, body with its bore held, and the local indentation, plane stress. t: tan(alpha_k) of
-    the contacts, one axis; half_width: a [m] of the pressure; density: of the mesh; near:
-    see :data:`~thermogear.verify.contact.NEAR`. The
-    deflection is the mean over the contact, weighted by the pressure. Raises InputError for a
-    contact nearer than a to an end of the flank, and when scikit-fem is missing.
-    """
-    require_choice("near", near, tuple(NEAR))
-    mesh = density or Density()
-    step = half_width / (mesh.per_half_width * mesh.refinement)
-    values = []
-    for at in np.atleast_1d(t):
-        arc = 0.5 * gear.base_radius * float(at) ** 2
-        sector = FlankSector(gear, step, mesh.refinement, (arc, 1.25 * half_width))
-        room = min(arc - sector.ends[0], sector.ends[1] - arc)
-        if not half_width <= room:
-            raise InputError(
-                "position",
-                f"{1e3 * room:.4g} mm from the end of the flank",
-                allowed=f"> {1e3 * half_width:.4g} mm, the Hertzian half width",
-                fix="take a position farther inside the path of contact",
-            )
-        case = sector.pressed(arc, half_width=half_width)
-        load = case, sector.felt(case)
-        value = float(sector.compliance(load, second=load, lag=0)[0, 0])
-        if near == "strain":
-            # the mean over the same pressure is 1/(2 pi) less than at its middle
-            value += held_in(gear, float(at), in_stress=half_width, in_strain=half_width)
-            value += gear.material.poisson_ratio**2 / (2.0 * np.pi)
-        values.append(value)
-    return np.array(values) / (gear.material.youngs_modulus * gear.face_width)
 
 
 def pair_stiffness(

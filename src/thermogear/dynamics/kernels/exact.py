@@ -36,6 +36,10 @@ from thermogear.dynamics.kernels.vector import EIGHT, bits, choose, load, store
 
 Real = NDArray[np.float64]
 
+LARGE = 2.0**400
+OFTEN = 1024
+"""Sub-steps after which a tangent smaller than 1/LARGE or larger than LARGE is scaled."""
+
 
 @kernel
 def advance_exact(
@@ -67,7 +71,7 @@ def advance_exact(
     ``steps`` (N, group of eight lanes, 11, 8) and ``curves`` (N, lane, 5 ``width`` + 14 and more)
     as ``affine.prepare`` fills them; ``reach`` (lane) how far a hidden turn can swing in a
     sub-step; ``columns`` 0, 1 or 2 tangent columns of ``tangent`` (4, lane) = m11, m12, m21, m22;
-    with ``normalise`` the first column is normalised every period and its logarithm stored in
+    with ``normalise`` the first column is normalised every period and its logarithm added to
     ``stretch`` (period, lane). ``sections`` (period, 2, lane). ``samples`` (period marked, 2,
     lane): the state at the start of every sub-step that ``marks`` names, when not empty.
     ``counts`` (2, lane) and ``spent`` (3, lane) accumulate contact losses, back-side impacts, and
@@ -179,6 +183,16 @@ def advance_exact(
                 else:
                     carried[X * stride + i] = np.nan
                     carried[Y * stride + i] = np.nan
+            if normalise and n % OFTEN == OFTEN - 1:
+                # a long turn shrinks or stretches it beyond all numbers: powers of 2 are exact
+                for i in range(lanes):
+                    above = TANGENT * stride + i
+                    below = (TANGENT + 2) * stride + i
+                    size = abs(carried[above]) + abs(carried[below])
+                    scale = LARGE if size * LARGE < 1.0 else 1.0 / LARGE if size > LARGE else 1.0
+                    carried[above] *= scale
+                    carried[below] *= scale
+                    stretch[period * lanes + i] -= np.log(scale)
         for i in range(lanes):
             sections[2 * period * lanes + i] = carried[X * stride + i]
             sections[(2 * period + 1) * lanes + i] = carried[Y * stride + i]
@@ -201,7 +215,7 @@ def advance_exact(
                 above = TANGENT * stride + i
                 below = (TANGENT + 2) * stride + i
                 size = np.sqrt(carried[above] ** 2 + carried[below] ** 2)
-                stretch[period * lanes + i] = np.log(size)
+                stretch[period * lanes + i] += np.log(size)
                 carried[above] /= size
                 carried[below] /= size
     for i in range(lanes):

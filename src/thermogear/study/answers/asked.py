@@ -249,9 +249,9 @@ class Asked:
     def assemblies(self) -> tuple[Floats, Floats]:
         """Static error [m] peak to peak and dynamic factor, greatest of the motions, of assemblies.
 
-        Of the hardest point, hot as it is: at most :data:`MOST_ASSEMBLIES` of those that gears of a
-        common divisor can be put together in, evenly chosen, the case's own first. Empty where
-        there is one alone, or the case states its marks; nan where nothing settles.
+        Of the hardest point, hot as it is: of those that gears of a common divisor can be put
+        together in, beside the case's own, evenly chosen, :data:`MOST_ASSEMBLIES` with it at most.
+        Empty where there is one alone, or the case states its marks; nan where nothing settles.
         """
         case, count = self.case, self.case.assembly_count
         if count == 1 or case.file.gears.marks is not None:
@@ -259,7 +259,9 @@ class Asked:
         mesh = excitations(case, self._part([self.hardest]))
         phase = np.arange(POSITIONS) / POSITIONS
         errors, factors = [], []
-        for wheel in np.linspace(0, count, min(count, MOST_ASSEMBLIES), endpoint=False).astype(int):
+        for wheel in np.linspace(0, count, min(count, MOST_ASSEMBLIES), endpoint=False).astype(int)[
+            1:
+        ]:
             flanks = [
                 numbered_from(case.pair, deviation, wheel=int(wheel))
                 for deviation in case.deviations

@@ -162,7 +162,7 @@ def loads(asked: Asked) -> Iterator[Answer]:
         at = asked.at(point)
         every = asked.motion["dynamic_factor"][point]
         rested, every = bool(np.isfinite(every[0])), every[np.isfinite(every)]
-        words, figures = _rated_factor(asked, point)
+        words, figures = rated_factor(asked, point)
         rated = figures.get("factor", np.inf)
         limit = "dynamic_factor" if rated < PARTING else "parting"
         about = {"limit": limit, "most": min(rated, PARTING), "at": at}
@@ -183,12 +183,12 @@ def loads(asked: Asked) -> Iterator[Answer]:
                 " as its teeth are numbered, {smallest:.2f} to {largest:.2f} in {assemblies} of "
                 "its {possible} assemblies"
             )
-            figures |= _spread(asked, asked.assemblies[1])
+            figures |= _spread(asked, asked.assemblies[1], figures["own"])
         sentence = f"The vibration computed gives {gives}; ISO 6336-1 {words}."
         yield answer(LOADS, "dynamic_factor", sentence, figures["own"], figures=figures, **about)
 
 
-def _rated_factor(asked: Asked, point: int) -> tuple[str, dict[str, Any]]:
+def rated_factor(asked: Asked, point: int) -> tuple[str, dict[str, Any]]:
     """What method B says of a point, in words with their figures; why not where it does not."""
     torque, speed = (float(asked.hot[f"pinion_{n}"][point]) for n in ("torque", "speed"))
     grade, edition, whose = _class(asked.case)
@@ -232,7 +232,7 @@ def errors(asked: Asked) -> Iterator[Answer]:
                 "; {assemblies} of its {possible} assemblies have {smallest:.2f µm} to "
                 "{largest:.2f µm}: state gears.marks"
             )
-            figures |= _spread(asked, 1e6 * asked.assemblies[0])
+            figures |= _spread(asked, 1e6 * asked.assemblies[0], figures["hot"])
         value = float(with_mesh[point]) if np.isfinite(most) else float("nan")
         yield answer(
             ERROR, "transmission_error", f"{sentence}.", value, most=most, at=at, figures=figures
@@ -240,8 +240,9 @@ def errors(asked: Asked) -> Iterator[Answer]:
     yield _relief(asked)
 
 
-def _spread(asked: Asked, values: Floats) -> dict[str, float]:
-    """Least and greatest of the assemblies' ``values``, and how many there are."""
+def _spread(asked: Asked, others: Floats, value: float) -> dict[str, float]:
+    """Least and greatest of the assemblies: the ``value`` of the case's own, and the ``others``."""
+    values = np.append(others, value)
     return {
         "smallest": float(np.nanmin(values)),
         "largest": float(np.nanmax(values)),
@@ -292,12 +293,13 @@ def _drawings(asked: Asked) -> list[float]:
     """Static error [um] peak to peak at the hardest point, hot, of drawn flanks and of others.
 
     The flanks of the case first, then other seeds of the same class, as many in all as
-    :data:`DRAWINGS`, each at up to :data:`POSITIONS` phases; empty where nothing is drawn, or where
-    the model's springs do not feel flanks.
+    :data:`DRAWINGS`, each at up to :data:`POSITIONS` phases; empty where nothing is drawn, or whole
+    gears are, whose turns differ, or where the model's springs do not feel flanks.
     """
     case = asked.case
     table = case.file.flanks
-    if case.accuracy is None or table is None or asked.model.stiffness != "loaded":
+    whole = table is not None and table.teeth == "drawn"
+    if case.accuracy is None or table is None or whole or asked.model.stiffness != "loaded":
         return []
     kept = [one for one in asked.mean_tooth if not isinstance(one, WavyProfile)]
     drawn = {one.gear for one in case.deviations if isinstance(one, WavyProfile)}
@@ -320,7 +322,7 @@ def _relief(asked: Asked) -> Answer:
     case, point = asked.case, asked.hardest
     if why := asked.still(point):
         return undecided(ERROR, "relief", why)
-    if any(isinstance(one, Relief) for one in case.deviations):
+    if any(isinstance(one, Relief) and one.end == "tip" for one in case.deviations):
         return answer(
             ERROR, "relief", "The flanks have one; `thermogear relief` looks for a better.",
             float("nan"), verdict=FINE,
@@ -355,7 +357,8 @@ def _relief(asked: Asked) -> Answer:
         "{after:.2f µm} hot; the best one undeformed, {undeformed:.1f µm}, leaves "
         "{left:.2f µm} hot."
         if gain >= 1.0
-        else "No tip relief of both gears makes it smaller, hot: the flanks themselves decide."
+        else "Of the linear tip reliefs tried, alike on both gears, no one makes it smaller, hot; "
+        "`thermogear relief` looks among all amounts and lengths."
     )
     units = dict.fromkeys(figures, "µm")
     return answer(ERROR, "relief", sentence, gain, at=asked.at(point), figures=figures, units=units)

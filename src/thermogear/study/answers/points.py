@@ -13,8 +13,7 @@ from thermogear.case.allowed import LANE
 from thermogear.case.case import GearCase
 from thermogear.case.family import BESIDE, GearFamily
 from thermogear.mesh.scuffing_rating import Scuffing, flash_rating, integral_rating
-from thermogear.study.answers.steady import borne_by
-from thermogear.study.scuffing import load_stage, not_steel
+from thermogear.study.scuffing import borne_by, load_stage, not_steel
 
 NUMBERS: dict[str, tuple[str, str]] = {
     "oil_temperature": ("K", "oil temperature"),

@@ -45,7 +45,7 @@ def answers(asked: Asked) -> Iterator[Answer]:
         why = "undercut ends the path, and its edge is not told from the mate's tip corner"
         yield undecided(SHARE, "edge_contact", why, at=at)
         return
-    words = f"{words[:1].upper()}{words[1:] or 'Tip corners carry 0 % of the load'}{whose}."
+    words = f"At these temperatures, {words or 'tip corners carry 0 % of the load'}{whose}."
     yield answer(
         SHARE,
         "edge_contact",

@@ -36,7 +36,8 @@ from thermogear.study.answers.asked import (
     answer,
     undecided,
 )
-from thermogear.study.scuffing import load_stage, not_steel, steel
+from thermogear.study.answers.moving import rated_factor
+from thermogear.study.scuffing import borne_by, load_stage, not_steel, steel
 from thermogear.study.warm_up import FLAT, least_between, no_bath_from
 
 MESH, HEAT, GAP = "Does it mesh?", "How hot does it run?", "What is left of the backlash?"
@@ -255,11 +256,6 @@ def gap(asked: Asked) -> Iterator[Answer]:
     yield _worst_moment(asked)
 
 
-def borne_by(pair: GearPair) -> tuple[float, str]:
-    """Temperature [K] beyond which nothing is said of a jam, and why: of both gears the lower."""
-    return min(gear.material.bears for gear in (pair.pinion, pair.wheel))
-
-
 def _worst_moment(asked: Asked) -> Answer:
     if (why := asked.unsettled(asked.hardest)) and not asked.lost(asked.hardest):
         return undecided(GAP, "warm_up_backlash", why, limit="backlash")
@@ -405,7 +401,10 @@ def _thin(gear: Gear) -> bool:
 
 
 def root(asked: Asked) -> Iterator[Answer]:
-    """Of both gears, under the shares of the loaded contact over the period of the pair."""
+    """Of both gears, under the shares of the loaded contact over the period of the pair.
+
+    The value is the greatest hot, times the dynamic factor of method B where it covers the point.
+    """
     pair, force = asked.case.pair, asked.hot["normal_force"]
     (standard, words), phase = _standard(pair), np.arange(POSITIONS) / POSITIONS
     names = [f"root_{gear.material.name}" for gear in (pair.pinion, pair.wheel)]
@@ -438,13 +437,18 @@ def root(asked: Asked) -> Iterator[Answer]:
         nominal = 1e-6 * load * np.cos(pair.pinion.pressure_angle)
         nominal /= pair.face_width * pair.pinion.module
         factors = zip(standard.get("form", ()), standard.get("notch", ()), strict=True)
+        rated = rated_factor(asked, point)[1].get("factor")
+        times = ", without a dynamic factor"
+        dynamic = {} if rated is None else {"times": max(stress) * rated, "rated": rated}
+        if dynamic:
+            times += ", at most {times:.0f MPa} with the {rated:.2f} of ISO 6336-1, method B"
         yield answer(
             ROOT,
             "root_stress",
             "Static, the pinion's fillet carries {hot[0]:.0f MPa} hot and {undeformed[0]:.0f MPa} "
-            "undeformed, the wheel's {hot[1]:.0f MPa} and {undeformed[1]:.0f MPa}, at their "
-            f"{{slope[0]:.0f}}° and {{slope[1]:.0f}}° tangents; {words}.",
-            max(stress) if limit in LIMITS else np.nan,
+            "undeformed, the wheel's {hot[1]:.0f MPa} and {undeformed[1]:.0f MPa}, about their "
+            f"{{slope[0]:.0f}}° and {{slope[1]:.0f}}° tangents{times}; {words}.",
+            dynamic.get("times", max(stress)),
             limit=limit,
             at=at,
             figures={
@@ -453,6 +457,7 @@ def root(asked: Asked) -> Iterator[Answer]:
                 "slope": [float(np.degrees(one.slope[0])) for one in hot],
                 **standard,
                 "standard": [nominal * form * notch for form, notch in factors],
+                **dynamic,
             },
             units={"slope": "°", "standard": "MPa"},
         )

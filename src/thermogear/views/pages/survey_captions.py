@@ -132,10 +132,13 @@ def contact_path(data: Dataset) -> str:
     corners = [name for bit, name in ((1, "wheel"), (2, "pinion")) if (edges & bit).any()]
     if not corners:
         return f"{words}. No corner of a tip touches."
-    whose = "the tips of both gears" if len(corners) == 2 else f"the {corners[0]}'s tip"
+    tips = "the tips of both gears" if len(corners) == 2 else f"the {corners[0]}'s tip"
+    whose = f"the corner of {tips}"
+    if np.isnan(data["corner_load_share"].values).all():
+        whose = "the corner of a tip or the edge of an undercut"
     return (
-        f"{words}. Where the teeth give way the corner of {whose} touches: there (shaded) the "
-        "Hertzian pressure is not valid and is left out."
+        f"{words}. Where the teeth give way {whose} touches: there (shaded) the Hertzian pressure "
+        "is not valid and is left out."
     )
 
 

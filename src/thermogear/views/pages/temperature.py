@@ -19,7 +19,7 @@ from thermogear.views.pages.survey import OPERATING, survey
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import INK, OKABE_ITO, WIDE, names_of, scale
 from thermogear.views.tables import is_settled
-from thermogear.views.typesetting import prose
+from thermogear.views.typesetting import jam_at, prose
 
 KINDS = ("temperature",)
 
@@ -307,6 +307,5 @@ def _jam(panel: Panel, data: Dataset, left: Floats) -> None:
     finite = jam[np.isfinite(jam) & np.isfinite(left)]
     words = "no point jams"
     if finite.size:
-        at = float(CELSIUS(finite.min()))
-        words += f"; pinion teeth\nwould at {at:.0f} °C, housing as it is"
+        words += f"; pinion teeth\nwould at {jam_at(float(finite.min()))}, housing as it is"
     panel.text(0.03, 0.04, words, at="panel", across="left", up="baseline", size=7.5, box=True)

@@ -107,8 +107,13 @@ def answer(worst: Mapping[str, Any], cold: float) -> str:
             text += "."
         else:
             text += f" Held for good, this point would leave {number(MICROMETRE(rest), 4)} um."
-    margin = worst["margin_K"]
-    if margin is not None and least > 0.0:
+    margin, borne = worst["margin_K"], worst.get("borne_K")
+    if margin is not None and borne is not None and 0.0 < borne < margin and least > 0.0:
+        text += (
+            f" It does not jam below {number(worst['borne_degC'])} °C of the pinion's teeth "
+            f"({worst['borne_why']}), the wheel's changed alike and the housing as it is."
+        )
+    elif margin is not None and least > 0.0:
         text += (
             f" Both gears could then be {number(margin)} K hotter, the housing as it is, until "
             "the pair jams."
