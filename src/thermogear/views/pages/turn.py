@@ -62,7 +62,8 @@ SWINGS = ("transmission_error", "unloaded_error", "mesh_synchronous_error")
 def lines(turn: Dataset) -> list[dict[str, Any]]:
     """All lines of the loaded error with their names, the greatest first."""
     of, rows = int(turn.attrs["mesh_periods"]), rows_along(turn, "order")
-    period = Period(of, tuple(int(z) for z in turn.attrs["teeth"]))
+    pinion, wheel = (int(z) for z in turn.attrs["teeth"])
+    period = Period(of, (pinion, wheel))
     named = [row | {"name": period.line(round(row["order"] * of))} for row in rows]
     return sorted(named, key=lambda row: -float(row["line_amplitude"]))
 
