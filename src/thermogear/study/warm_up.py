@@ -110,7 +110,14 @@ def warm_up_survey(
     if measured is not None:
         groups["record"] = _record(measured, course, shown)
     if found is not None:
-        groups["fit"] = _fit_dataset(found)
+        groups["fit"] = label(
+            {
+                "value": ("factor", [f.value for f in found.factors], "1", "factor"),
+                "low": ("factor", [f.low for f in found.factors], "1", "lower end, 95 %"),
+                "high": ("factor", [f.high for f in found.factors], "1", "upper end, 95 %"),
+            },
+            {"factor": [f.name for f in found.factors]},
+        )
     seconds = time.perf_counter() - began
     worst = _worst(case, course, steady)
     return Result.of(
@@ -374,18 +381,6 @@ def _record(measured: Measured, course: WarmUp, shown: Sequence[Shown]) -> Datas
             "channel": list(measured.names),
             "time": (("row",), when, "s", "time from the start"),
         },
-    )
-
-
-def _fit_dataset(found: Fit) -> Dataset:
-    along = ("factor",)
-    return label(
-        {
-            "value": (along, [f.value for f in found.factors], "1", "factor"),
-            "low": (along, [f.low for f in found.factors], "1", "lower end, 95 %"),
-            "high": (along, [f.high for f in found.factors], "1", "upper end, 95 %"),
-        },
-        {"factor": [f.name for f in found.factors]},
     )
 
 
