@@ -177,7 +177,7 @@ def _caption(kind: str, summary: Summary, groups: Groups) -> str:
         if "mesh_periods" in summary:
             words.append(
                 f"The orbit closes after turns of {summary['mesh_periods']} mesh periods; the "
-                "phase plane shows those in which it swings most."
+                "phase plane shows the first of them."
             )
         return " ".join(words)
     if kind == "branch":

@@ -51,11 +51,6 @@ TEETH = (
     key("position_m", "position"),
     key("mate", lambda row: int(row["mate"]) or None),
 )
-ASSEMBLIES = (
-    key("wheel_tooth"),
-    key("peak_to_peak_m", "peak_to_peak_error"),
-    key("unloaded_peak_to_peak_m", "unloaded_swing"),
-)
 SWINGS = ("transmission_error", "unloaded_error", "mesh_synchronous_error")
 
 
@@ -80,9 +75,6 @@ def numbers(groups: Mapping[str, Dataset]) -> dict[str, Any]:
         "lines": [in_full(LINES, row) for row in lines(turn)[:MOST_LINES]],
         "teeth": [in_full(TEETH, row) for row in rows_along(groups["teeth"], "tooth")],
     }
-    if "assemblies" in groups:
-        ways = groups["assemblies"]
-        found["assemblies"] = [in_full(ASSEMBLIES, row) for row in rows_along(ways, "wheel_tooth")]
     return {"turn": found}
 
 
@@ -184,18 +176,13 @@ def error_of_turn(data: Dataset) -> Picture:
     return Picture([[whole], [near]], size=(WIDE, 6.2), legend=2, top=0.75, above=1.0)
 
 
-def _kind(name: str) -> str:
-    """The kind of the line with this ``name``, of :data:`COLOURS`."""
-    last = name.split()[-1]
-    return "other" if " + " in name or " − " in name or last not in COLOURS else last
-
-
 def orders_of_turn(data: Dataset) -> Picture:
     """Lines of the loaded error: those of the shafts, and of the mesh with its side lines."""
     rows = lines(data)
     order = np.array([row["order"] for row in rows])
     amplitude = MICROMETRE(np.array([row["line_amplitude"] for row in rows]))
-    kinds = np.array([_kind(row["name"]) for row in rows])
+    plain = [row["name"].lstrip("0123456789 ") for row in rows]  # no side line
+    kinds = np.array([name if name in COLOURS else "other" for name in plain])
     floor, top = floor_of(amplitude, order=order, highest=4.0)
     panels = []
     for words, factor, high in (
