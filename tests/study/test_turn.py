@@ -6,18 +6,21 @@ import math
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from said import numbers
 from thermogear.base.period import Period
+from thermogear.base.progress import silent
 from thermogear.case.case import GearCase, gear_case, load_case
 from thermogear.case.one_point import of_case
 from thermogear.results.result import Result
 from thermogear.study.contact import loaded_survey
 from thermogear.study.notices import turn_notices
 from thermogear.study.orbit import orbit_results
+from thermogear.study.run import MOST_KEPT, _bounded, _cycles
 from thermogear.views.pages.turn import error_of_turn, orders_of_turn, teeth_of_turn
-from thermogear.views.picture import Curve
-from thermogear.views.plots.curves import MOST_POINTS
+from thermogear.views.picture import Band, Curve, Panel
+from thermogear.views.plots.curves import MOST_POINTS, draw_phase
 from thermogear.views.plots.one_motion import orbit_picture
 from thermogear.views.write import page_of
 
@@ -199,6 +202,48 @@ def test_an_orbit_over_a_turn_names_its_lines_and_counts_turns() -> None:
         assert not line["half_order"]  # half of the mesh's order is the twelfth of the shaft
     for row in orbit_picture(data).panels:
         assert all(np.size(m.x) <= 8200 for p in row for m in p.marks if isinstance(m, Curve))
+
+
+def test_eccentricity_leaves_the_amplitude_of_the_stiffness_at_the_mesh() -> None:
+    """It moves all tooth pairs at once: the stiffness is that of the mean tooth."""
+    change = 'gears.wheel.eccentricity={amount="8 um", angle="20 deg"}'
+    whole = case((18, 24), change, "grid.mesh_positions=96")
+    amplitudes = [
+        next(iter(_cycles(one, silent).values()))["stiffness_amplitude"].values
+        for one in (whole, whole.mean_tooth())
+    ]
+    np.testing.assert_allclose(*amplitudes, rtol=1e-6)
+    assert amplitudes[0].min() > 0.05
+
+
+@pytest.mark.parametrize(("of", "points", "each"), [(40, 1, 96), (945, 8, 96), (1890, 60, 8)])
+def test_curves_that_are_kept_of_a_turn_are_bounded(of: int, points: int, each: int) -> None:
+    """With as many positions of every mesh period, the first of each among them."""
+    count = 96 * of
+    rows = np.broadcast_to(np.int8(0), (points, count))
+    mesh = xr.Dataset(
+        {"mesh_stiffness": (("operating", "mesh_phase"), rows)},
+        {"mesh_phase": np.arange(count) / 96},
+        {"mesh_periods": of},
+    )
+    kept = _bounded(mesh)
+    assert kept["mesh_stiffness"].size <= MOST_KEPT
+    phase = kept["mesh_phase"].values.reshape(of, each)
+    np.testing.assert_array_equal(phase[:, 0], np.arange(of))
+    assert _bounded(mesh.drop_attrs()).sizes["mesh_phase"] == count
+
+
+def test_a_curve_of_many_mesh_periods_is_drawn_as_its_extremes() -> None:
+    phase = np.arange(96 * 1890) / 96
+    values = np.sin(2.0 * np.pi * phase) + np.cos(2.0 * np.pi * phase / 1890)
+    panel = Panel()
+    draw_phase(panel, phase, values=values, colour="#000000")
+    band, low, high = panel.marks
+    assert isinstance(band, Band)
+    assert isinstance(low, Curve)
+    assert isinstance(high, Curve)
+    assert np.size(low.x) <= MOST_POINTS / 2
+    assert (np.min(low.y), np.max(high.y)) == (values.min(), values.max())
 
 
 def test_a_pair_whose_teeth_are_alike_has_no_turn() -> None:
