@@ -28,6 +28,7 @@ from thermogear.mesh.warm_up import PHASES, Duty, WarmUp, meshing, warm_up, with
 from thermogear.mesh.warm_up_fit import Fit, fit_factors, require_factors, until
 from thermogear.results.result import Notice, Result
 from thermogear.study.declared import WarmUpSurvey, declared
+from thermogear.study.notices import turn_notices
 from thermogear.study.scuffing import borne_by
 
 FLAT = 5e-8
@@ -440,6 +441,7 @@ def _notices(
     found: Fit | None,
     seconds: float,
 ) -> Iterator[Notice]:
+    yield from turn_notices(case, alike="flash, film, friction and stiffness over time")
     if jams := jams_of(course):
         yield Notice.of("pair_jams", time=jams[0])
     if course.course.too_hot:
