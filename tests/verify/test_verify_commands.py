@@ -46,7 +46,6 @@ def call(*arguments: str) -> Result:
 @pytest.mark.usefixtures("one_check")
 def test_stiffness_as_a_table_and_as_json(case: str) -> None:
     """Both of one check: what is printed of it is in question here."""
-    asked = ("stiffness", case, "--positions", "1", "--torque", "200")
     asked = ("stiffness", case, "--positions", "1")
     done = call(*asked)  # at the greatest torque of the case, 100 N m
     assert done.exit_code == 0, done.output
@@ -77,7 +76,7 @@ def test_growth_of_both_gears(case: str) -> None:
 
 @pytest.mark.usefixtures("one_check")
 def test_the_fixed_pairs(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(checks, "inner_phases", lambda *_: (0.8,))
+    monkeypatch.setattr(checks, "inner_phases", lambda *_: (0.3, 0.8))
     # the whole list is computed in the tests of the checks; here its printing
     published = pairs.published_pair()
     for group in ("own", "far", "corner", "drawn"):
