@@ -17,6 +17,7 @@ from thermogear.views.pages import (
     relief,
     rig_trains,
     train_motion,
+    turn,
     warm_up,
     waterfall,
 )
@@ -230,8 +231,30 @@ def of_surveys() -> dict[str, Picture]:
         "thermal-map": thermal_map.thermal_map(closed_loop()),
         "thermal-line": thermal_map.thermal_map(closed_loop().isel(torques=[0])),
         "thermal-map-bare": thermal_map.thermal_map(closed_loop(np.nan)),
+        **of_turn(),
         **of_warm_up(),
         **of_records(),
+    }
+
+
+def of_turn() -> dict[str, Picture]:
+    """Gears of 2 and 3 teeth over their turn of 6 mesh periods."""
+    phase, order = np.arange(144) / 24, np.arange(1, 24) / 6
+    error = 1e-6 * np.sin(2.0 * np.pi * phase) + 2e-6 * np.cos(np.pi * phase)
+    errors = ("transmission_error", "unloaded_error")
+    data = xr.Dataset(
+        dict.fromkeys(errors, ("mesh_phase", error))
+        | dict.fromkeys(("line_amplitude", "unloaded_line"), ("order", 1e-06 / order)),
+        {"mesh_phase": phase, "order": order},
+        {"mesh_periods": 6, "teeth": [2, 3], "first": [1, 1]},
+    )
+    teeth = {"gear": ["pinion"] * 2 + ["wheel"] * 3, "number": [1, 2, 1, 2, 3]}
+    sizes = {"index_error": 1e-6 * np.arange(-2, 3), "contact_pressure": 1e9 * np.arange(1, 6)}
+    rows = xr.Dataset({name: ("tooth", values) for name, values in (teeth | sizes).items()})
+    return {
+        "turn": turn.error_of_turn(data),
+        "turn-orders": turn.orders_of_turn(data),
+        "turn-teeth": turn.teeth_of_turn(rows),
     }
 
 
