@@ -230,19 +230,25 @@ def _fields(line: str, layout: Layout) -> list[str]:
     cells = cells_of(line, layout.separator)
     if layout.commented:
         cells = cells[: layout.columns]
+    if layout.paired:
+        whole = iter(cells)
+        cells = [f"{left}.{right}" for left, right in zip(whole, whole, strict=False)]
     return cells
 
 
 def _table(block: list[str], layout: Layout, path: Path, number: int, last: bool) -> Floats:
-    swap = layout.decimal == "," and layout.separator != ","
-    plain = [line.replace(",", ".") for line in block] if swap else block
-    try:
-        used = range(layout.columns) if layout.commented else None
-        table = np.loadtxt(plain, delimiter=layout.separator, ndmin=2, comments=None, usecols=used)
-        if table.shape[1] == layout.columns:
-            return table
-    except (ValueError, UserWarning):
-        table = np.empty((0, 0))  # gaps, quotes or a broken row: cell by cell below
+    if not layout.paired:
+        swap = layout.decimal == "," and layout.separator != ","
+        plain = [line.replace(",", ".") for line in block] if swap else block
+        try:
+            used = range(layout.columns) if layout.commented else None
+            table = np.loadtxt(
+                plain, delimiter=layout.separator, ndmin=2, comments=None, usecols=used
+            )
+            if table.shape[1] == layout.columns:
+                return table
+        except (ValueError, UserWarning):
+            table = np.empty((0, 0))  # gaps, quotes or a broken row: cell by cell below
     rows: list[list[float]] = []
     for place, line in enumerate(block):
         cells = _fields(line, layout)
@@ -250,7 +256,8 @@ def _table(block: list[str], layout: Layout, path: Path, number: int, last: bool
             continue
         if len(cells) == layout.columns - 1 and layout.separator is not None:
             raw = line.rstrip("\r\n")
-            if raw.endswith(layout.separator) or raw.count(layout.separator) + 1 == layout.columns:
+            fields = 0 if layout.paired else raw.count(layout.separator) + 1
+            if raw.endswith(layout.separator) or fields == layout.columns:
                 cells.append("")  # an empty last cell, not a missing one
         if len(cells) != layout.columns:
             if last and place == len(block) - 1:

@@ -48,6 +48,7 @@ MOST_STAMPS = 1 << 23
 _OFF = 0.5  # of a step: farthest of a stamp from an even clock, beside rounding
 _JITTER = 0.02  # of a step: jitter, or rounding, that is told
 _EXACTLY = 1e-8  # relative half width that is not told
+_LOW, _HIGH = 1e3, 1e6  # samples/s: between them records of vibration are taken
 
 
 def is_time_name(name: str) -> bool:
@@ -215,8 +216,25 @@ def _paced(found: TimeBase, name: str, seconds: Floats, grain: Floats, unit_name
             )
         )
     if unit_name != "s":
-        notes.append(Notice.of("time_unit", column=name, unit=unit_name))
+        notes.append(_in_unit(name, unit_name, 1.0 / pace.step))
     return _with_rate(replace(found, gaps=gaps, notices=tuple(notes)), name, pace)
+
+
+def _in_unit(name: str, unit_name: str, rate: float) -> Notice:
+    """The unit of a time column; asked about where it makes a ``rate`` [1/s] that is too high for
+    sensors of vibration, and a longer unit would not."""
+    slower = {each: rate * factor_of(unit_name) / factor_of(each) for each in ("us", "ms", "s")}
+    fits = {each: slow for each, slow in slower.items() if _LOW < slow < _HIGH}
+    if rate < _HIGH or not fits:
+        return Notice.of("time_unit", column=name, unit=unit_name)
+    return Notice.of(
+        "time_unit_doubtful",
+        column=name,
+        unit=unit_name,
+        rate=rate,
+        other_units=list(fits),
+        other_rates=list(fits.values()),
+    )
 
 
 def _with_rate(base: TimeBase, name: str, pace: Pace) -> TimeBase:
@@ -285,19 +303,30 @@ class Health:
 
 def health(channel: Channel) -> Health:
     """One pass over a channel, block by block."""
+    missing = gap = longest = 0
     low, high = np.inf, -np.inf
-    first, bad = 0, [np.empty(0, dtype=np.intp)]
     for block in channel.blocks():
         good = np.isfinite(block)
-        low = min(low, float(np.min(block, where=good, initial=np.inf)))
-        high = max(high, float(np.max(block, where=good, initial=-np.inf)))
-        bad.append(first + np.flatnonzero(~good))
-        first += block.size
-    missing = np.concatenate(bad)
-    gaps = np.diff(np.flatnonzero(np.diff(missing, prepend=-2) > 1), append=missing.size)
+        values = block
+        if not good.all():
+            bad = np.flatnonzero(~good)
+            missing += bad.size
+            values = block[good]
+            edges = np.flatnonzero(np.diff(bad) > 1)
+            firsts = bad[np.concatenate([[0], edges + 1])]
+            lasts = bad[np.concatenate([edges, [bad.size - 1]])]
+            runs = lasts - firsts + 1
+            if firsts[0] == 0:
+                runs[0] += gap
+            longest = max(longest, int(runs.max()))
+            gap = int(runs[-1]) if lasts[-1] == block.size - 1 else 0
+        else:
+            gap = 0
+        if values.size:
+            low, high = min(low, float(values.min())), max(high, float(values.max()))
     return Health(
-        missing=missing.size,
-        longest_gap=int(gaps.max(initial=0)),
+        missing=missing,
+        longest_gap=longest,
         zeros=low == high == 0.0,
         constant=low == high,
         peak=float(max(abs(low), abs(high))) if low <= high else 0.0,
