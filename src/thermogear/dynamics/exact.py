@@ -210,11 +210,16 @@ def _turned(
     return np.cos(angle), np.sin(angle), parts[0], parts[1], which.ravel()
 
 
+def _by_fft(lanes: LaneTables, half: Floats) -> bool:
+    """Whether the tables of ``lanes`` go by FFT: long ones on even sub-steps."""
+    return bool(lanes.by_fft and np.ptp(half) < 1e-6 * half[0])
+
+
 def _taylor(lanes: LaneTables, name: str, centres: Floats, half: Floats, order: int) -> Floats:
     """Coefficients in u about the centre of every sub-step: (sub-step, lane, order + 1)."""
     coefficients = getattr(lanes, name)
     pieces: tuple[Pieces | None, ...] = getattr(lanes, name + "_pieces")
-    if lanes.by_fft and np.ptp(half) < 1e-6 * half[0]:
+    if _by_fft(lanes, half):
         return fourier.taylor(coefficients, count=centres.size, order=order)
     if len(lanes) == 1 and pieces[0] is None:
         return _of_one(coefficients.tobytes(), centres.tobytes(), half.tobytes(), order)
@@ -318,7 +323,10 @@ def maps_moved(
             parts = [w * _taylor(one, name, centres, 0.5 * width, order) for w, one in around]
         else:
             moved = np.sum([w * getattr(one, name) for w, one in around], axis=0)
-            parts = [_of_harmonics(moved, centres, 0.5 * width, order)]
+            if _by_fft(lanes, 0.5 * width):
+                parts = [fourier.taylor(moved, count=centres.size, order=order)]
+            else:
+                parts = [_of_harmonics(moved, centres, 0.5 * width, order)]
         return np.asarray(np.sum(parts, axis=0)[:, 0])
 
     half = 0.5 * width * rate("period")
