@@ -31,33 +31,42 @@ def _with_part(
     return (*given, *period, *(() if part is None else (f"gears.part={part}",)))
 
 
-def overrides(command: _Command) -> _Command:
-    """``--set``, and the options that choose the part and its period."""
-    chosen = together(
-        click.option(
-            "--set",
-            "overrides",
-            multiple=True,
-            metavar="PATH=VALUE",
-            callback=_with_part,
-            help="Put a value in place of the file's, as gears.pinion.teeth=30; PATH= leaves it "
-            "out. May be repeated.",
-        ),
-        click.option(
-            "--part",
-            type=click.Choice(["case", "nominal"]),
-            is_eager=True,
-            help="Flanks as CASE has them, or as designed, with reliefs alone.",
-        ),
-        click.option(
-            "--turn/--mean-tooth",
-            default=None,
-            is_eager=True,
-            help="The whole turn of gears whose teeth differ, or their mean tooth over one mesh "
-            "period.",
-        ),
-    )
-    return chosen(command)
+def together(*options: Callable[[_Command], _Command]) -> Callable[[_Command], _Command]:
+    """Options that several commands have, in the order of the help."""
+
+    def put(command: _Command) -> _Command:
+        for option in reversed(options):
+            command = option(command)
+        return command
+
+    return put
+
+
+overrides: Callable[[Any], Any] = together(
+    click.option(
+        "--set",
+        "overrides",
+        multiple=True,
+        metavar="PATH=VALUE",
+        callback=_with_part,
+        help="Put a value in place of the file's, as gears.pinion.teeth=30; PATH= leaves it "
+        "out. May be repeated.",
+    ),
+    click.option(
+        "--part",
+        type=click.Choice(["case", "nominal"]),
+        is_eager=True,
+        help="Flanks as CASE has them, or as designed, with reliefs alone.",
+    ),
+    click.option(
+        "--turn/--mean-tooth",
+        default=None,
+        is_eager=True,
+        help="The whole turn of gears whose teeth differ, or their mean tooth over one mesh "
+        "period.",
+    ),
+)
+"""``--set``, and the options that choose the part and its period."""
 
 
 def _csv_place(context: click.Context, _: click.Parameter, name: str | None) -> None:
@@ -68,8 +77,13 @@ def _csv_place(context: click.Context, _: click.Parameter, name: str | None) -> 
     if path.suffix.lower() != ".csv":
         raise InputError("--csv", name, allowed="a file that ends in .csv", fix=f"write {name}.csv")
     if path.is_dir() or not path.parent.is_dir():
-        why = "it is a directory" if path.is_dir() else f"{path.parent} is no directory"
-        raise InputError("--csv", name, allowed="a file", why=why, fix="write --csv points.csv")
+        raise InputError(
+            "--csv",
+            name,
+            allowed="a file",
+            why="it is a directory" if path.is_dir() else f"{path.parent} is no directory",
+            fix="write --csv points.csv",
+        )
     context.meta[CSV] = path
 
 
@@ -126,9 +140,8 @@ plain_json = click.option("--json", "as_json", is_flag=True, help="Print the fig
 """Of commands that have no notices."""
 
 
-def as_json(command: _Command) -> _Command:
-    """``--json``, and ``--hide`` of the notices that page, terminal and JSON show."""
-    return plain_json(hide(command))
+as_json: Callable[[Any], Any] = together(plain_json, hide)
+"""``--json``, and ``--hide`` of the notices that page, terminal and JSON show."""
 
 
 case = click.argument("case", metavar="CASE")
@@ -139,17 +152,6 @@ def output(
 ) -> Callable[[_Command], _Command]:
     """``-o DIR``."""
     return click.option("-o", "--output", required=required, metavar="DIR", help=words)
-
-
-def together(*options: Callable[[_Command], _Command]) -> Callable[[_Command], _Command]:
-    """Options that several commands have, in the order of the help."""
-
-    def put(command: _Command) -> _Command:
-        for option in reversed(options):
-            command = option(command)
-        return command
-
-    return put
 
 
 def load(path: str, changes: tuple[str, ...]) -> GearCase | DimensionlessCase:
@@ -214,8 +216,7 @@ def deliver(
         clear_tables(place, written)
     tell(page, None if place is None else place / written[0].name, as_json=as_json)
     if result.interrupted:
-        where = "what was found so far is printed" if place is None else f"{kept} in {place}"
-        raise Stopped(where)
+        raise Stopped("what was found so far is printed" if place is None else f"{kept} in {place}")
 
 
 def tell(page: Page, path: Path | None, *, as_json: bool) -> None:

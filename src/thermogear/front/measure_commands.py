@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 def supplies(command: Any, *, speeds: bool = False) -> Any:
     """The options that supply what a file does not state; ``speeds``: --speed may be repeated."""
-    for option in (
+    return delivery.together(
         number("--rate", "Samples per second.", "> 0 samples/s", "25600", metavar="HZ"),
         click.option(
             "--unit", metavar="UNIT", help="Unit of the vibration channels: g, m/s^2, ..."
@@ -88,9 +88,7 @@ def supplies(command: Any, *, speeds: bool = False) -> Any:
             show_default=True,
             help="Acceleration to displacement: frequency, line, or trapezoid as in the thesis.",
         ),
-    ):
-        command = option(command)
-    return command
+    )(command)
 
 
 def _require_gear(teeth: int | None, *speeds: float | None) -> None:
@@ -137,8 +135,12 @@ def measure(
     if one and baseline is not None:
         raise InputError("--baseline", baseline, why="there is one record", fix="name several")
     if join is not None and baseline is not None:
-        why = "files that are joined are one record"
-        raise InputError("--baseline", baseline, why=why, fix="leave out --join or --baseline")
+        raise InputError(
+            "--baseline",
+            baseline,
+            why="files that are joined are one record",
+            fix="leave out --join or --baseline",
+        )
 
     def make(report: Progress) -> Result:
         from thermogear.measured.dataset import result_of
@@ -240,17 +242,18 @@ def compare(
             known = {**options, "teeth": teeth, "speed": rpm or (_one_speed(read) if at else None)}
             read_by = measured_by if len(named) == 1 else measured_among
             against.append(file if table else read_by(file, known))
-        compared = study(
-            read,
-            against or None,
-            teeth=teeth,
-            speed=[None if rpm is None else rpm * RPM for rpm in speeds] or None,
-            at=at,
-            u_data=None if u_data is None else u_data / 100.0,
-            tolerances=tolerated,
-            samples=12 if samples is None else samples,
+        return result_of(
+            study(
+                read,
+                against or None,
+                teeth=teeth,
+                speed=[None if rpm is None else rpm * RPM for rpm in speeds] or None,
+                at=at,
+                u_data=None if u_data is None else u_data / 100.0,
+                tolerances=tolerated,
+                samples=12 if samples is None else samples,
+            )
         )
-        return result_of(compared)
 
     delivery.deliver(make, output, as_json=as_json)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -99,12 +100,9 @@ def points(groups: Iterable[Dataset]) -> Dataset:
     import xarray as xr
 
     every = [spread(data) for data in groups]
-    counts: dict[frozenset[str], int] = {}
-    for data in every:
-        for variable in data.data_vars.values():
-            dims = frozenset(str(d) for d in variable.dims)
-            if dims:
-                counts[dims] = counts.get(dims, 0) + 1
+    counts = Counter(
+        frozenset(map(str, v.dims)) for data in every for v in data.data_vars.values() if v.dims
+    )
     wanted = max(counts, key=lambda dims: counts[dims])
     parts: list[Dataset] = []
     for data in every:
@@ -160,8 +158,7 @@ def in_words(data: Dataset) -> Dataset:
     if "state" in data.dims and "state_names" in data.attrs:
         words["state"] = (("state",), json.loads(data.attrs["state_names"]))
     if "direction" in data.coords:
-        ways = np.where(data["direction"].values > 0, "up", "down")
-        words["direction"] = (("direction",), ways)
+        words["direction"] = (("direction",), np.where(data["direction"].values > 0, "up", "down"))
     for name, variable in data.data_vars.items():
         if "flag_meanings" in variable.attrs:
             meanings = np.array([*str(variable.attrs["flag_meanings"]).split(), "unknown"])

@@ -68,8 +68,7 @@ def branch_results(
     begin = point.value(varied.name) if start is None else start
     plane = None
     if second is not None:
-        sheet = point.over(varied.name, second[0])
-        plane = Plane(parameter_of(point, second[0]), second[1], sheet)
+        plane = Plane(parameter_of(point, second[0]), second[1], point.over(varied.name, second[0]))
     models = point.along(varied.name) if plane is None else plane.models
     require_depth(switch)
     orbit, _ = orbit_of(point, period, transient=transient, model=models(begin))
@@ -131,14 +130,13 @@ def walked(
             end, behind = (to, begin) if forth else (begin, to)
             if end == doubled.value:
                 continue
-            stage = f"period {doubled.orbit.period}"
             branch = _walk(
                 doubled.orbit,
                 varied.name,
                 end,
                 models,
                 doubled.value,
-                stage,
+                f"period {doubled.orbit.period}",
                 progress,
                 doubled.direction,
                 back_to=behind,
@@ -170,8 +168,7 @@ def summary_of(
 
 def parameter_of(point: OnePoint, name: str) -> Parameter:
     """The parameter that ``name`` stands for where ``point`` is."""
-    gears = isinstance(point.case, GearCase)
-    return gear_parameter(name) if gears else number_parameter(name)
+    return gear_parameter(name) if isinstance(point.case, GearCase) else number_parameter(name)
 
 
 def _forks(branch: Branch) -> tuple[Bifurcation, ...]:
@@ -248,17 +245,19 @@ def _leg_summary(leg: Leg, parameter: Parameter) -> dict[str, Any]:
 
 
 def dataset(leg: Leg, unit: str) -> Dataset:
-    """A branch as it is stored: points along it, bifurcations beside them."""
+    """A branch as it is stored: points along it, bifurcations beside them; with sections of one
+    mass the displacement of each bifurcation."""
     data = leg.branch.dataset()
     data["stable"] = data["stable"].astype(np.int8)
     for name in ("value", "event_value"):
         data[name].attrs["units"] = unit
-    for name in ("section_x", "section_v"):
+    for name in {"section", "section_x", "section_v"} & set(map(str, data.data_vars)):
         data[name].attrs["units"] = "1"
     for name in ("event_kind", "event_note"):
         data[name] = data[name].astype(str)
-    places = np.array([b.state[0] for b in leg.branch.bifurcations], dtype=float)
-    data["event_x"] = ("event", places, {"units": "1", "long_name": "displacement at phase 0"})
+    if "section_x" in data:
+        places = np.array([b.state[0] for b in leg.branch.bifurcations], dtype=float)
+        data["event_x"] = ("event", places, {"units": "1", "long_name": "displacement at phase 0"})
     data.attrs.update({"level": leg.level, "heat": leg.heat, "row": leg.row})
     return data
 
@@ -280,22 +279,20 @@ COLD = Heat("cold", {})
 def heats() -> tuple[Heat, ...]:
     """Cold, and the hottest point of every row of the ready-made case of section 4.1."""
     case = load_example("section-4.1")
-    if not isinstance(case, DimensionlessCase):
-        raise InputError("example", case.kind, allowed="dimensionless")
+    assert isinstance(case, DimensionlessCase)
     hottest: dict[str, Point] = {}
     for point in case.points:
         kept = hottest.get(point.row)
         if kept is None or point.value > kept.value:
             hottest[point.row] = point
-    found_heats = [
+    return COLD, *(
         Heat(
             f"{p.value - ZERO_CELSIUS:.4g} °C, {row} (b' {p.half_backlash:.4g}, eps_T "
             f"{p.thermal_stiffness:+.4g})",
             {"half_backlash": p.half_backlash, "thermal_stiffness": p.thermal_stiffness},
         )
         for row, p in hottest.items()
-    ]
-    return (COLD, *found_heats)
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -386,12 +383,7 @@ def cascade_results(
         raise ConvergenceError("; ".join(n.text for n in notices) or "no cascade was found")
     if all(leg.branch.back_impacts.max() == 0 for leg in legs):
         notices.append(Notice.of("backlash_without_effect"))
-    summary = {
-        "title": title,
-        "flips": flips,
-        "cascades": entries,
-        "interrupted": cut,
-    }
+    summary = {"title": title, "flips": flips, "cascades": entries, "interrupted": cut}
     groups = {f"branch_{i}": dataset(leg, "1") for i, leg in enumerate(legs)}
     return found("cascade", groups, summary, notices, interrupted=cut)
 
@@ -399,8 +391,7 @@ def cascade_results(
 def _entry(
     sweep: Sweep, heat: Heat, values: Sequence[Bifurcation], legs: Sequence[Leg]
 ) -> dict[str, Any]:
-    numbers = np.array([b.value for b in values])
-    gaps = np.diff(numbers)
+    gaps = np.diff(np.array([b.value for b in values]))
     return {
         "row": sweep.row,
         "parameter": sweep.parameter,
@@ -462,8 +453,7 @@ def _mother(point: OnePoint, sweep: Sweep, models: Models) -> tuple[Orbit, float
     orbit, _ = orbit_of(point)
     if orbit.period == 1:
         return orbit, sweep.first
-    centre = orbit.points.mean(axis=0)
-    mother = periodic_orbit(models(sweep.first), 1, centre)
+    mother = periodic_orbit(models(sweep.first), 1, orbit.points.mean(axis=0))
     away = sweep.first + 0.5 * (sweep.first - sweep.last)
     if away <= 0.0:
         away = 0.5 * sweep.first

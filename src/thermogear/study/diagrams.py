@@ -145,7 +145,17 @@ def case_map(
     train: Train | None = None,
 ) -> MapPlan:
     """The map of regimes of a case, or of its drive ``train``, over two parameters."""
-    return _map(case, axes, bundle, state, changes, refine, train)
+    whole = case_family(
+        case, tuple(axes), bundle=bundle, state=state, changes=changes, train=train
+    )  # fmt: skip
+    whole.require(axes)
+    start = case.simulation.initial_state
+    if not isinstance(whole, TrainFamily):
+        return map_plan(whole, axes, initial_state=start, refine=refine)
+    return map_plan(
+        whole, axes, initial_state=start, refine=refine, rule=rule_of(whole, MAP_RULE),
+        tile=TRAIN_TILE, stride=TRAIN_STRIDE,
+    )  # fmt: skip
 
 
 def train_maps(
@@ -161,7 +171,10 @@ def train_maps(
     None of them the temperature.
     """
     chosen = Train() if train is None else train
-    plans = [_map(case, axes, bundle, state, None, refine, chosen) for state in STATES]
+    plans = [
+        case_map(case, axes, bundle=bundle, state=state, refine=refine, train=chosen)
+        for state in STATES
+    ]
     return StackedPlan(plans=tuple(plans), words=tuple(state.words for state in STATES))
 
 
@@ -179,28 +192,6 @@ def whole_or_spared(
     if found.seconds < WHOLE:
         return plan, found
     return spared, replace(found, seconds=found.seconds * spared.visited)
-
-
-def _map(
-    case: Case,
-    axes: Mapping[str, Floats],
-    bundle: str,
-    state: StateLike,
-    changes: Mapping[str, float] | None,
-    refine: bool,
-    train: Train | None,
-) -> MapPlan:
-    whole = case_family(
-        case, tuple(axes), bundle=bundle, state=state, changes=changes, train=train
-    )  # fmt: skip
-    whole.require(axes)
-    start = case.simulation.initial_state
-    if not isinstance(whole, TrainFamily):
-        return map_plan(whole, axes, initial_state=start, refine=refine)
-    return map_plan(
-        whole, axes, initial_state=start, refine=refine, rule=rule_of(whole, MAP_RULE),
-        tile=TRAIN_TILE, stride=TRAIN_STRIDE,
-    )  # fmt: skip
 
 
 def case_basins(
@@ -240,16 +231,18 @@ def overlaid(
     import xarray as xr
 
     one, other = found
-    kept = [
-        data.drop_vars([n for n in data if str(n).startswith(("branch_", "bifurcation_"))])
-        for data in found
-    ]
-    data = xr.concat(kept, "state", combine_attrs="drop_conflicts")
+    data = xr.concat(
+        [
+            data.drop_vars([n for n in data if str(n).startswith(("branch_", "bifurcation_"))])
+            for data in found
+        ],
+        "state",
+        combine_attrs="drop_conflicts",
+    )
     data.attrs["state_names"] = json.dumps(words)
     name = str(data.attrs["parameter"])
     if "bifurcation_kind" in one and "bifurcation_kind" in other:
-        units = str(data[name].attrs["units"])
-        data = with_branches_of_states(data, dict(enumerate(found)), units)
+        data = with_branches_of_states(data, dict(enumerate(found)), str(data[name].attrs["units"]))
     rows = matches(
         one, other, (plans[0].family, plans[1].family), most=most,
         progress=lambda done, count: progress("bifurcations followed", done, count),

@@ -8,7 +8,6 @@ from thermogear.base.display import HERTZ, MICROMETRE, MILLIMETRE, PERCENT, SPEE
 from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.measured.published import (
     THESIS_5_2,
-    SpeedLine,
     allowed,
     rounded_error,
     unstated_processing,
@@ -22,18 +21,12 @@ PUBLISHED = "thermogear.measured.published.THESIS_5_2"
 COMPARE = "thermogear.study.compare.compare"
 MODELS = ("with heat", "without heat")
 QUANTITIES = {"frequency": Display("Hz"), "displacement": MICROMETRE}
-
-
-def _lines() -> tuple[SpeedLine, ...]:
-    return THESIS_5_2.measured.lines
-
-
-def _teeth() -> int:
-    return THESIS_5_2.measured.teeth or 0
+LINES, TEETH = THESIS_5_2.measured.lines, THESIS_5_2.measured.teeth or 0
+"""Of the printed table."""
 
 
 def _row(e: Evidence, number: int, quantity: str) -> Row:
-    return e.comparison.row(_lines()[number].speed, quantity)
+    return e.comparison.row(LINES[number].speed, quantity)
 
 
 def _platform(e: Evidence) -> Finding:
@@ -50,8 +43,8 @@ def _platform(e: Evidence) -> Finding:
 
 
 def _tested_speeds(e: Evidence) -> Finding:
-    speeds = [SPEED(line.speed) for line in _lines()]
-    implied = [SPEED(line.shaft_speed(_teeth())) for line in _lines()]
+    speeds = [SPEED(line.speed) for line in LINES]
+    implied = [SPEED(line.shaft_speed(TEETH)) for line in LINES]
     ratio = e.bundle("mesh", "consistent", UNDEFORMED)["frequency_ratio"].values
     return Finding(
         f"nominal {listed(speeds, '.0f')} rpm",
@@ -63,14 +56,12 @@ def _tested_speeds(e: Evidence) -> Finding:
 
 
 def _integrated(e: Evidence) -> Finding:
-    lines = _lines()
-    highest = max(line.frequency for line in lines)
+    highest = max(line.frequency for line in LINES)
     rates = (5120.0, 25600.0)
     lost = [PERCENT(float(trapezoid_factor(highest, rate=rate)) - 1.0) for rate in rates]
-    g = [line.acceleration_g for line in lines]
     return Finding(
         f"two sums lose {listed(lost, '.1f')} % at {highest:g} Hz and {listed(rates, '.0f')} Hz",
-        f"the printed displacements imply {listed(g)} g",
+        f"the printed displacements imply {listed([line.acceleration_g for line in LINES])} g",
         Verdict.UNDECIDED,
         "Rate, filter, window and integration are not stated, and they decide the amplitude. "
         "Accelerations as high are implausible on a housing, whose motion is not the relative "
@@ -79,8 +70,8 @@ def _integrated(e: Evidence) -> Finding:
 
 
 def _near_mesh(e: Evidence) -> Finding:
-    offsets = [line.frequency - HERTZ(_teeth() * line.speed) for line in _lines()]
-    share = [PERCENT(o / line.frequency) for o, line in zip(offsets, _lines(), strict=True)]
+    offsets = [line.frequency - HERTZ(TEETH * line.speed) for line in LINES]
+    share = [PERCENT(o / line.frequency) for o, line in zip(offsets, LINES, strict=True)]
     return Finding(
         f"off the nominal mesh frequency by {listed(offsets, '+.2f')} Hz",
         f"that is {listed(share, '+.2f')} %",
@@ -90,18 +81,18 @@ def _near_mesh(e: Evidence) -> Finding:
 
 
 def _measured_line(e: Evidence, number: int) -> Finding:
-    line = _lines()[number]
+    line = LINES[number]
     return Finding(
         f"{line.frequency:g} Hz",
-        f"implies {SPEED(line.shaft_speed(_teeth())):.1f} rpm instead of {SPEED(line.speed):.0f}",
+        f"implies {SPEED(line.shaft_speed(TEETH)):.1f} rpm instead of {SPEED(line.speed):.0f}",
         Verdict.ASSUMED,
         "Measured values are taken as printed, as the mesh line of a shaft near its nominal speed.",
     )
 
 
 def _measured_amplitude(e: Evidence, number: int) -> Finding:
-    line = _lines()[number]
-    found = unstated_processing(line.frequency, highest=max(one.frequency for one in _lines()))
+    line = LINES[number]
+    found = unstated_processing(line.frequency, highest=max(one.frequency for one in LINES))
     total = PERCENT(float(np.sqrt(sum(part**2 for part in found.values()))))
     return Finding(
         f"{MICROMETRE(line.displacement):g} µm",
@@ -114,11 +105,10 @@ def _measured_amplitude(e: Evidence, number: int) -> Finding:
 
 def _simulated_line(e: Evidence, number: int, model: int) -> Finding:
     row = _row(e, number, "frequency")
-    forced = HERTZ(_teeth() * row.speed)
+    forced = HERTZ(TEETH * row.speed)
     value = row.simulated[model]
     own = e.groups["motion"].isel(operating=number, bundle=0, state=-1 if model == 0 else 0)
-    line = own["line_amplitude"].values
-    peak = float(own["line_frequency"].values[1 + int(np.argmax(line[1:]))])
+    peak = float(own["line_frequency"].values[1 + int(np.argmax(own["line_amplitude"].values[1:]))])
     return Finding(
         f"{value:g} Hz printed; the model is forced at {forced:.3f} Hz",
         f"our main line: {peak:.3f} Hz",
@@ -130,8 +120,9 @@ def _simulated_line(e: Evidence, number: int, model: int) -> Finding:
 
 def _simulated_amplitude(e: Evidence, number: int, model: int) -> Finding:
     row = _row(e, number, "displacement")
-    state = "hot" if model == 0 else UNDEFORMED
-    motion = e.groups["motion"].isel(operating=number).sel(state=state)
+    motion = (
+        e.groups["motion"].isel(operating=number).sel(state="hot" if model == 0 else UNDEFORMED)
+    )
     swing = e.sensitivity.data.sel(output="swing")
     low, high = float(swing["low"]), float(swing["high"])
     ours = []
@@ -209,7 +200,7 @@ def _more_accurate(e: Evidence) -> Finding:
 
 def _entries() -> list[Claim]:
     found = []
-    for number, line in enumerate(_lines()):
+    for number, line in enumerate(LINES):
         rpm = f"{SPEED(line.speed):.0f} rpm"
         for q, (quantity, scale) in enumerate(QUANTITIES.items()):
             place = f"5.2, table, {rpm}, {quantity}"

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from markupsafe import Markup
 
-from thermogear.views.picture import Axis, Contours, Field, Hatch, Mark, Panel, Picture, Points
+from thermogear.views.picture import Contours, Field, Hatch, Mark, Panel, Picture, Points
 
 SCRIPTS = ("uplot.js", "gears.js", "marks.js", "pictures.js")
 PAGE = "page.js"
@@ -27,6 +27,8 @@ DENSE, CELLS = 2000, 2000
 """From so many points on a cloud is thinned, to so many cells across and up."""
 SHORT = 8
 """An array of fewer numbers is written where it stands, in full."""
+NUMBERS = ("x", "y", "values")
+"""What holds the numbers of a mark."""
 MOST = 40_000
 """Numbers of one picture; with more it stays still, so that the page stays light."""
 
@@ -48,22 +50,18 @@ class Dial:
 
 def moves(picture: Picture) -> bool:
     """Whether the script can draw it: no contours, hatches, turned axes or slanted names."""
-    for panel in chain(*picture.panels):
-        for mark in panel.marks:
-            if isinstance(mark, Contours | Hatch):
-                return False
-            if isinstance(mark, Field) and np.size(mark.levels):
-                return False
-        for axis in (panel.x, panel.y):
-            if axis.slant or (axis.low is not None and axis.high is not None
-                              and axis.low > axis.high):  # fmt: skip
-                return False
-    return _count(picture) <= MOST
-
-
-def _count(picture: Picture) -> int:
-    marks = [distinct(m) for panel in chain(*picture.panels) for m in panel.marks]
-    return sum(np.size(getattr(m, n, ())) for m in marks for n in ("x", "y", "values"))
+    panels = [*chain(*picture.panels)]
+    marks = [mark for panel in panels for mark in panel.marks]
+    fixed = any(
+        isinstance(mark, Contours | Hatch) or (isinstance(mark, Field) and np.size(mark.levels))
+        for mark in marks
+    ) or any(
+        axis.slant or (axis.low is not None and axis.high is not None and axis.low > axis.high)
+        for panel in panels
+        for axis in (panel.x, panel.y)
+    )
+    numbers = (np.size(getattr(m, n, ())) for m in map(distinct, marks) for n in NUMBERS)
+    return not fixed and sum(numbers) <= MOST
 
 
 def moving(picture: Picture, dial: Dial | None = None) -> str:
@@ -77,9 +75,8 @@ def moving(picture: Picture, dial: Dial | None = None) -> str:
         "panels": [[_panel(one) for one in row] for row in picture.panels],
         "size": list(picture.size),
     }
-    for name in ("heights", "share_x", "share_y"):
-        if len(getattr(picture, name)):
-            said[name] = getattr(picture, name)
+    more = {name: getattr(picture, name) for name in ("heights", "share_x", "share_y")}
+    said |= {name: value for name, value in more.items() if len(value)}
     if dial is not None:
         pictures = [dial.make(place) for place in range(len(dial.values))]
         said["dial"] = {
@@ -92,8 +89,7 @@ def moving(picture: Picture, dial: Dial | None = None) -> str:
             ],
         }
     arrays: dict[str, int] = {}
-    plain = _plain(said, arrays)
-    return _written({**plain, "arrays": [json.loads(one) for one in arrays]})
+    return _written({**_plain(said, arrays), "arrays": [json.loads(one) for one in arrays]})
 
 
 def compact(said: Any) -> str:
@@ -113,7 +109,9 @@ def _written(said: Any) -> str:
 
 
 def _panel(panel: Panel) -> dict[str, Any]:
-    found: dict[str, Any] = {"x": _axis(panel.x), "y": _axis(panel.y), "marks": _marks(panel)}
+    found: dict[str, Any] = {
+        name: {**_given(axis), "unit": axis.unit} for name, axis in (("x", panel.x), ("y", panel.y))
+    } | {"marks": _marks(panel)}
     if panel.title:
         found["title"] = panel.title
     if panel.top:
@@ -121,10 +119,6 @@ def _panel(panel: Panel) -> dict[str, Any]:
     if panel.equal:
         found["equal"] = True
     return found
-
-
-def _axis(axis: Axis) -> dict[str, Any]:
-    return {**_given(axis), "unit": axis.unit}
 
 
 def _marks(panel: Panel) -> list[dict[str, Any]]:
@@ -152,13 +146,10 @@ def _given(one: Any) -> dict[str, Any]:
     """The fields of a mark or an axis that differ from their defaults."""
     found = {}
     for known in fields(one):
-        value = getattr(one, known.name)
-        if isinstance(value, np.ndarray):
-            if value.size or known.default is MISSING:
-                found[known.name] = value
-        elif known.default is MISSING or value != known.default:
+        value, default = getattr(one, known.name), known.default
+        told = value.size if isinstance(value, np.ndarray) else value != default
+        if known.name != "pixels" and (default is MISSING or told):
             found[known.name] = value
-    found.pop("pixels", None)
     return found
 
 
@@ -186,9 +177,8 @@ def _evenly(values: Any) -> dict[str, Any] | None:
     """The ends and the count of numbers in equal steps; None of others."""
     if not np.isfinite(values).all():
         return None
-    even = np.linspace(values[0], values[-1], values.size)
     room = 0.1**DIGITS * float(abs(values[-1] - values[0]))
-    if not room or np.abs(values - even).max() > room:
+    if not room or np.abs(values - np.linspace(values[0], values[-1], values.size)).max() > room:
         return None
     return {"from": _number(float(values[0])), "to": _number(float(values[-1])), "n": values.size}
 

@@ -6,9 +6,9 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
 from importlib.resources import files
-from itertools import zip_longest
+from itertools import chain, groupby, zip_longest
 from textwrap import wrap
-from typing import Any, overload
+from typing import Any
 
 from markupsafe import Markup
 
@@ -104,6 +104,12 @@ class Code:
 
 Block = Text | Table | Gallery | Code
 
+
+def shown_in(blocks: Iterable[Block]) -> list[Shown]:
+    """The pictures among ``blocks``, in their order."""
+    return [one for block in blocks if isinstance(block, Gallery) for one in block.pictures]
+
+
 TYPEWRITTEN = str.maketrans(
     {"µ": "u", "±": "+-", "−": "-", "–": "-", "→": "->", "°": "deg", "′": "'", "⁻": "-"}
     | dict(zip("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789", strict=True))
@@ -156,9 +162,8 @@ class Section:
     @property
     def inside(self) -> str:
         """What a reader finds in it: how many pictures and tables."""
-        galleries_ = [one for one in self.blocks if isinstance(one, Gallery)]
         counts = {
-            "picture": sum(len(one.pictures) for one in galleries_),
+            "picture": len(shown_in(self.blocks)),
             "table": sum(isinstance(one, Table) for one in self.blocks),
         }
         return ", ".join(f"{n} {word}{'s' * (n > 1)}" for word, n in counts.items() if n)
@@ -211,14 +216,10 @@ class Pictures:
 def galleries(pictures: Iterable[Shown]) -> list[Block]:
     """Pictures as galleries in their order: wide ones by themselves."""
     blocks: list[Block] = []
-    row: list[Shown] = []
-    for one in pictures:
-        if not one.wide:
-            row.append(one)
-            continue
-        blocks += [Gallery(row)] * bool(row) + [Gallery([one])]
-        row = []
-    return blocks + [Gallery(row)] * bool(row)
+    for wide, some in groupby(pictures, key=lambda one: one.wide):
+        row = [*some]
+        blocks += [Gallery([one]) for one in row] if wide else [Gallery(row)]
+    return blocks
 
 
 LEAD = "pictures"
@@ -235,22 +236,11 @@ class Made(Sequence[Section]):
     def _there(self) -> Sequence[Section]:
         return self._make()
 
-    @overload
-    def __getitem__(self, place: int) -> Section: ...
-
-    @overload
-    def __getitem__(self, place: slice) -> Sequence[Section]: ...
-
-    def __getitem__(self, place: int | slice) -> Section | Sequence[Section]:
+    def __getitem__(self, place: Any) -> Any:
         return self._there[place]
 
     def __len__(self) -> int:
         return len(self._there)
-
-
-def nothing() -> Any:
-    """No numbers, no tables."""
-    return {}
 
 
 @dataclass(frozen=True)
@@ -268,9 +258,9 @@ class Page:
     summary: Cell
     sections: Sequence[Section]
     tiles: Sequence[Tile] = ()
-    numbers: Callable[[], Mapping[str, Any]] = nothing
-    told: Callable[[], Iterable[Block]] = nothing
-    tables: Callable[[], Mapping[str, str]] = nothing
+    numbers: Callable[[], Mapping[str, Any]] = dict
+    told: Callable[[], Iterable[Block]] = tuple
+    tables: Callable[[], Mapping[str, str]] = dict
     files: tuple[str, ...] = ()
     most: int | None = None
     first: Sequence[Sequence[str]] = ()
@@ -326,33 +316,33 @@ class Page:
     @property
     def pictures(self) -> Iterator[Shown]:
         """Every picture, in the order of the page."""
-        for section in self.sections:
-            for block in section.blocks:
-                if isinstance(block, Gallery):
-                    yield from block.pictures
+        return chain.from_iterable(shown_in(section.blocks) for section in self.sections)
 
 
 def without(section: Section, names: Collection[str]) -> Section:
     """The section without the pictures of these ``names``."""
-    blocks: list[Block] = []
-    for block in section.blocks:
-        if isinstance(block, Gallery):
-            blocks += galleries(one for one in block.pictures if one.name not in names)
-        else:
-            blocks.append(block)
-    return replace(section, blocks=blocks)
+    kept = (
+        galleries(one for one in block.pictures if one.name not in names)
+        if isinstance(block, Gallery)
+        else [block]
+        for block in section.blocks
+    )
+    return replace(section, blocks=[*chain.from_iterable(kept)])
 
 
 def _without_pictures(section: Section) -> Section:
     """Its tables and warnings; words that speak of its pictures go with them."""
     if not any(isinstance(block, Gallery) for block in section.blocks):
         return section
-    kept = [
-        block
-        for block in section.blocks
-        if not isinstance(block, Gallery) and not (isinstance(block, Text) and block.tone != "jam")
-    ]
-    return replace(section, blocks=kept)
+    return replace(
+        section,
+        blocks=[
+            block
+            for block in section.blocks
+            if not isinstance(block, Gallery)
+            and not (isinstance(block, Text) and block.tone != "jam")
+        ],
+    )
 
 
 OPEN = 3
@@ -362,8 +352,7 @@ LEVELS = {"important": "Important", "warning": "Mind", "info": "Note"}
 
 def told(notices: Iterable[Notice]) -> list[tuple[str, str, Markup]]:
     """(level, its word, text) of every notice, most important first."""
-    order = list(LEVELS)
-    found = sorted(notices, key=lambda one: order.index(one.level))
+    found = sorted(notices, key=lambda one: [*LEVELS].index(one.level))
     return [(one.level, LEVELS[one.level], prose(one.text)) for one in found]
 
 
@@ -398,20 +387,20 @@ def render(page: Page) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    title = " ".join(page.result.title.split()) or "thermogear"
     parts = page.parts
-    text = environment.get_template("report.html").render(
-        title=title,
-        who=who(page.result),
-        style=Markup(style()) + sheet(),
-        script=script() if any(page.pictures) else "",
-        policy=policy(),
-        summary=page.summary if isinstance(page.summary, Markup) else prose(page.summary),
-        tiles=page.tiles,
-        notices=told(page.result.notices),
-        open=OPEN,
-        sections=parts,
-        folded=any(one.folded for one in parts),
-        version=page.result.text("thermogear"),
+    return shared_styles(
+        environment.get_template("report.html").render(
+            title=" ".join(page.result.title.split()) or "thermogear",
+            who=who(page.result),
+            style=Markup(style()) + sheet(),
+            script=script() if any(page.pictures) else "",
+            policy=policy(),
+            summary=page.summary if isinstance(page.summary, Markup) else prose(page.summary),
+            tiles=page.tiles,
+            notices=told(page.result.notices),
+            open=OPEN,
+            sections=parts,
+            folded=any(one.folded for one in parts),
+            version=page.result.text("thermogear"),
+        )
     )
-    return shared_styles(text)

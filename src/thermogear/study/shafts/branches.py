@@ -28,6 +28,7 @@ from thermogear.dynamics.return_map import return_map
 from thermogear.results.result import Result
 from thermogear.study.branches import (
     Leg,
+    dataset,
     lost_notices,
     parameter_of,
     require_depth,
@@ -225,9 +226,8 @@ def train_branch_results(
     summary = summary_of(point.title, varied, legs, (first, to), cut)
     began = "Newton's method from the start itself"
     if motion is not None:
-        began = f"{motion.name}: {motion.reason}"
-        if motion.period != orbit.period:
-            began += f"; the orbit of period {orbit.period} was asked for"
+        wanted = f"; the orbit of period {orbit.period} was asked for"
+        began = f"{motion.name}: {motion.reason}{wanted * (motion.period != orbit.period)}"
     summary |= {
         "train": {
             "coordinates": orbit.model.size if isinstance(orbit.model, GearedModel) else 0,
@@ -238,14 +238,13 @@ def train_branch_results(
         }
     }
     off = summary["train"]["straight"] or {"force": None, "multiplier": None}
+    cycle = grid.family.cycle
     notices = [
         *lost_notices(legs),
         *told,
         Notice.of("straight_between_values", force=off["force"], multiplier=off["multiplier"]),
+        *([Notice.of("period_of_all_shafts", cycle=cycle)] if cycle > 1 else []),
     ]
-    cycle = grid.family.cycle
-    if cycle > 1:
-        notices.append(Notice.of("period_of_all_shafts", cycle=cycle))
     groups = {f"branch_{i}": _stored(leg, varied) for i, leg in enumerate(legs)}
     if plane is not None:
         summary |= plane.summary(curves, varied)
@@ -285,14 +284,7 @@ def straight_error(grid: TrainGrid, branch: Branch, plane: Plane | None) -> dict
 
 def _stored(leg: Leg, varied: Parameter) -> Dataset:
     """A branch as it is stored: points along it with their greatest force, and bifurcations."""
-    branch = leg.branch
-    data = branch.dataset()
-    data["stable"] = data["stable"].astype(np.int8)
-    data["section"].attrs["units"] = "1"
-    for name in ("value", "event_value"):
-        data[name].attrs["units"] = varied.unit
-    for name in ("event_kind", "event_note"):
-        data[name] = data[name].astype(str)
+    branch, data = leg.branch, dataset(leg, varied.unit)
     forces = [
         _greatest(branch.family(float(value)), state, branch.period)
         for value, state in zip(branch.values, branch.states, strict=True)
@@ -303,7 +295,6 @@ def _stored(leg: Leg, varied: Parameter) -> Dataset:
     words = {"long_name": "greatest force of the drive flanks", "units": "N"}
     data["mesh_force"] = ("point", np.array(forces, dtype=float), words)
     data["event_mesh_force"] = ("event", np.array(events, dtype=float), words)
-    data.attrs.update({"level": leg.level, "heat": leg.heat, "row": leg.row})
     return data
 
 
