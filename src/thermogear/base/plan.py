@@ -45,8 +45,7 @@ class Variable:
 
 def real(dims: tuple[str, ...], words: str, units: str, *inner: str) -> Variable:
     """A stored number over ``dims`` and ``inner`` ones, nan where none was computed."""
-    about = {"long_name": words, "units": units}
-    return Variable((*dims, *inner), "float64", float("nan"), about)
+    return Variable((*dims, *inner), "float64", float("nan"), {"long_name": words, "units": units})
 
 
 def axis_coordinates(

@@ -335,8 +335,7 @@ def inertias(file: GearFile, pair: GearPair) -> tuple[tuple[float, float], str]:
 
     def disc(gear: Gear) -> float:
         outer = gear.pitch_radius if radius == "pitch" else gear.tip_radius
-        inner = gear.bore_radius if bored else 0.0
-        return disc_inertia(gear, radius=outer, bore_radius=inner)
+        return disc_inertia(gear, radius=outer, bore_radius=gear.bore_radius if bored else 0.0)
 
     words = f"solid discs of {radius} radius, {'bored' if bored else 'unbored'}"
     return (disc(pair.pinion), disc(pair.wheel)), words

@@ -180,8 +180,7 @@ class ThermalNetwork:
             # relative to one given temperature: no digits lost to the absolute scale
             datum = given[..., held[:1]]
             push = heat[..., free] - np.einsum("...ij,...j->...i", across, given[..., held] - datum)
-            rise = np.linalg.solve(inner, push[..., None])[..., 0]
-            temperature[..., free] = rise + datum
+            temperature[..., free] = np.linalg.solve(inner, push[..., None])[..., 0] + datum
         datum = temperature[..., :1]
         flow = heat - np.einsum("...ij,...j->...i", laplacian, temperature - datum)
         names = self.nodes

@@ -190,8 +190,7 @@ class TextbookPair(ElasticPair):
     def over(self, phase: Floats) -> MeshCurves:
         k = mesh_stiffness(self.pair, phase[None, :], self.start, *self.moduli)
         k = np.tile(k * self.hot.widened, self.mesh_periods)
-        unsaid = np.full(self.hot.count, np.nan)
-        return MeshCurves(k, None, self.force[:, None] / k, unsaid)
+        return MeshCurves(k, None, self.force[:, None] / k, np.full(self.hot.count, np.nan))
 
 
 @dataclass(frozen=True, eq=False)

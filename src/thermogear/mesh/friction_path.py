@@ -122,8 +122,9 @@ class FrictionPath:
         """Where the film's inlet leaves the range of the oil's viscosity line, (count,)."""
         low, high = self.hot.operating.lubricant.temperature_range
         warm = self.inlet_temperature[:, 0]
-        thin = self.inlet_oil.kinematic[:, 0] < THINNEST
-        return np.asarray((warm < low) | (warm > high) | thin)
+        return np.asarray(
+            (warm < low) | (warm > high) | (self.inlet_oil.kinematic[:, 0] < THINNEST)
+        )
 
     def warn_beyond_oil(self) -> None:
         """ValidityWarning with temperatures and range where ``beyond_oil``."""
@@ -142,8 +143,7 @@ class FrictionPath:
     @cached_property
     def bath_viscosity(self) -> Floats:
         """eta [Pa s] of the oil supply, (count, 1), which laws of mean friction take."""
-        operating = self.hot.operating
-        supplied = np.asarray(operating.oil_temperature, dtype=float)
+        supplied = np.asarray(self.hot.operating.oil_temperature, dtype=float)
         spread = np.broadcast_to(supplied, (self.hot.count,))[:, None]
         return dynamic_viscosity(self._oil, spread)
 

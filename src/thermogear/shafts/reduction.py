@@ -96,8 +96,7 @@ def reduced(assembly: Assembly, coordinates: int | None = None) -> Reduction:
     At least the interface is kept, less one for the rotation. Raises InputError for a number below
     that or above all, or where a motion is free with the interface held.
     """
-    names = interface_of(assembly)
-    kept = np.array([assembly.index[name] for name in names], dtype=int)
+    kept = np.array([assembly.index[name] for name in interface_of(assembly)], dtype=int)
     rest = np.setdiff1d(np.arange(assembly.size), kept)
     least, most = kept.size - 1, assembly.size - 1
     wanted = most if coordinates is None else coordinates
@@ -119,8 +118,7 @@ def reduced(assembly: Assembly, coordinates: int | None = None) -> Reduction:
     whole = np.zeros((assembly.size, wanted + 1))
     whole[kept, np.arange(kept.size)] = 1.0
     if rest.size:
-        symmetric = 0.5 * (inner + inner.T)
-        square, shapes = scipy.linalg.eigh(symmetric, mass)
+        square, shapes = scipy.linalg.eigh(0.5 * (inner + inner.T), mass)
         if square[0] <= DROPPED * square[-1]:
             raise InputError(
                 "shafts",

@@ -114,9 +114,8 @@ class Drive:
         """Whether the u axes of both shafts point the same way; so where nothing is said."""
         axes = []
         for gear in (first, second):
-            shaft = self.model.at(self.of_gear.get(gear.id))
             axes.append(
-                self.reader.vector(shaft, "u_axis_vector")
+                self.reader.vector(self.model.at(self.of_gear.get(gear.id)), "u_axis_vector")
                 or self.reader.vector(gear, "u_axis_vector")
             )
         if axes[0] is None or axes[1] is None:
@@ -132,8 +131,7 @@ class Drive:
     def _load(self, stage: Stage, case: LoadCase | None) -> Load:
         over: dict[int, dict[str, Attribute]] = {} if case is None else case.components
         speeds, read, signed = self.speeds(over)
-        first = stage.gears[0]
-        shaft = self.of_gear.get(first.id)
+        shaft = self.of_gear.get(stage.gears[0].id)
         speed = speeds.get(shaft) if shaft is not None else None
         torque = self._torque(stage, over, speeds)
         unit = next(iter(self.model.of_type("gear_unit")), None)
