@@ -151,8 +151,7 @@ def _trap(field: Field, points: Floats, multiplier: complex, period: int) -> flo
     """
     if points.shape[1] != 2:
         return 0.0
-    size = abs(multiplier)
-    turns = int(np.clip(np.ceil(np.log(1e-3) / np.log(max(size, 1e-3))), 4, 2000))
+    turns = int(np.clip(np.ceil(np.log(1e-3) / np.log(max(abs(multiplier), 1e-3))), 4, 2000))
     edge = np.linspace(-1.0, 1.0, 5)
     ring = np.array([(a, b) for a in edge for b in edge if max(abs(a), abs(b)) == 1.0])
     shape = np.concatenate([ring, 0.5 * ring, 0.25 * ring])

@@ -469,5 +469,8 @@ def basins(
     >>> found.attractor_x.values.round(3)
     array([[1.166]])
     """
-    plan = basin_plan(model, x=x, v=v, rule=rule, seeds=seeds, survey=survey)
-    return gather(plan, threads=threads, progress=progress)
+    return gather(
+        basin_plan(model, x=x, v=v, rule=rule, seeds=seeds, survey=survey),
+        threads=threads,
+        progress=progress,
+    )

@@ -172,7 +172,8 @@ def _grazes(stretch: Stretch) -> Iterator[tuple[float, str]]:
             if step > max(start, found - 2.0 * stretch.near) and counts(point) != before
         )
         after = counts(stretch.at(high))
-        yield high, _grazed(before, after)
+        rows = zip(("contact losses", "back-side impacts"), before, after, strict=True)
+        yield high, ", ".join(f"{name} per orbit {a} -> {b}" for name, a, b in rows if a != b)
         start, before = high, after
 
 
@@ -347,8 +348,7 @@ def birth_of(curve: Curve, a: Point, kind: str) -> Bifurcation | None:
     def there(value: float) -> Point | None:
         if not np.isfinite(value):
             return None
-        guess = np.append(centre * units, value / curve.span)
-        return mother.correct(guess, normal=mother.upright)
+        return mother.correct(np.append(centre * units, value / curve.span), normal=mother.upright)
 
     def flip(value: float) -> float:
         point = there(value)
@@ -363,8 +363,3 @@ def birth_of(curve: Curve, a: Point, kind: str) -> Bifurcation | None:
         return None
     born = Bifurcation(kind, curve.parameter, float(found.root), mother.orbit(point))
     return replace(born, note=criticality(born, curve.family)) if broken else born
-
-
-def _grazed(before: tuple[int, int], after: tuple[int, int]) -> str:
-    counts = zip(("contact losses", "back-side impacts"), before, after, strict=True)
-    return ", ".join(f"{name} per orbit {old} -> {new}" for name, old, new in counts if old != new)

@@ -225,13 +225,12 @@ def _with_bifurcations(data: Dataset, lines: list[_Line], family: Family) -> Dat
     for n, line in enumerate(lines):
         for one in line.bifurcations:
             scale = max(abs(one.value), 1e-3)
-            known = any(
+            if not any(
                 other.kind == one.kind
                 and other.period == one.period
                 and abs(value - one.value) < 1e-7 * scale
                 for value, other, _ in rows
-            )
-            if not known:
+            ):
                 rows.append((one.value, one, n))
     rows.sort(key=lambda row: (row[0], row[1].kind, row[1].period))
     dims = ("bifurcation",)

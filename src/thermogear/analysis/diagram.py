@@ -260,17 +260,21 @@ def orbit_diagram(
     >>> diagram.period.values.ravel().tolist()
     [1, 1, 1, 1]
     """
-    plan = diagram_plan(
-        model,
-        parameter,
-        values,
-        starts=starts,
-        rule=rule,
-        keep=keep,
-        block=block,
-        branch_period=branch_period,
+    return gather(
+        diagram_plan(
+            model,
+            parameter,
+            values,
+            starts=starts,
+            rule=rule,
+            keep=keep,
+            block=block,
+            branch_period=branch_period,
+        ),
+        threads=threads,
+        progress=progress,
+        alive=alive,
     )
-    return gather(plan, threads=threads, progress=progress, alive=alive)
 
 
 def diagram_plan(

@@ -130,8 +130,7 @@ def event_curve(
     low, high = sorted(limits)
     spans = (max(high - low, 1e-300), abs(float(marks[-1]) - start))
     walk = Bordered(bifurcation, sheet, start, spans=spans)
-    d = bifurcation.state.size
-    ahead = np.zeros(d + 2)
+    ahead = np.zeros(bifurcation.state.size + 2)
     ahead[-1] = float(np.sign(marks[-1] - start))
     first = _first(walk, bifurcation, start, ahead)
     if first is None:

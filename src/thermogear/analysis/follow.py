@@ -190,8 +190,7 @@ def _pushed(event: Bifurcation) -> Floats:
     """The state at a bifurcation, of a flip a little off the orbit that has become unstable."""
     if event.kind != FLIP:
         return event.state
-    section = event.orbit.section
-    two = section.unit
+    two = event.orbit.section.unit
     matrix = event.orbit.jacobian / two[:, None] * two
     return np.asarray(event.state + 0.05 * two * np.linalg.svd(matrix + np.eye(two.size))[2][-1])
 

@@ -26,7 +26,7 @@ from thermogear.analysis.agreement import (
     most,
 )
 from thermogear.analysis.any_motion import settle
-from thermogear.analysis.lyapunov import Lyapunov, lyapunov_exponents
+from thermogear.analysis.lyapunov import Lyapunov, lyapunov_exponents, of_any_dimension
 from thermogear.analysis.proof import NEAR_BORDER, Label, closing, periodic, proves_chaos, returned
 from thermogear.analysis.section import lanes_of, starts_of
 from thermogear.analysis.walk import Search
@@ -36,8 +36,7 @@ from thermogear.base.errors import InputError
 from thermogear.base.period import turns
 from thermogear.dynamics.blocks import Progress
 from thermogear.dynamics.lanes import Lanes
-from thermogear.dynamics.models import ClearanceModel
-from thermogear.dynamics.return_map import ReturnMap, return_map
+from thermogear.dynamics.return_map import return_map
 
 LEAST_OF_TURN = 8
 """Turns after which an orbit may close are searched for at least."""
@@ -90,7 +89,7 @@ def label(
     >>> str(label(model, initial_state=(1.166, 0.002)))
     'period-1'
     """
-    if _of_any_dimension(model):
+    if of_any_dimension(model):
         search = Search(
             first=min(discard, cap),
             cap=cap,
@@ -120,12 +119,6 @@ def label(
         return found
     # with its model the orbit can be continued
     return replace(found, orbit=replace(found.orbit, model=model))
-
-
-def _of_any_dimension(model: object) -> bool:
-    """Whether a model is no mass with clearance and has a return map."""
-    one_mass = isinstance(model, Lanes | ClearanceModel)
-    return not one_mass and (isinstance(model, ReturnMap) or hasattr(model, "return_map"))
 
 
 def _any(model: object, initial_state: ArrayLike, search: Search) -> Label:

@@ -198,8 +198,11 @@ def _many(model: object) -> Lanes | Sequence[object]:
     """Its lanes; or the models themselves, one or a sequence, that have return maps."""
     if isinstance(model, list | tuple):
         return model
-    if isinstance(model, ReturnMap) or (
-        hasattr(model, "return_map") and not isinstance(model, Lanes | ClearanceModel)
-    ):
-        return [model]
-    return lanes_of(model)
+    return [model] if of_any_dimension(model) else lanes_of(model)
+
+
+def of_any_dimension(model: object) -> bool:
+    """Whether a model is no mass with clearance and has a return map."""
+    return not isinstance(model, Lanes | ClearanceModel) and (
+        isinstance(model, ReturnMap) or hasattr(model, "return_map")
+    )

@@ -97,8 +97,7 @@ class Periodic:
     def __add__(self, other: Periodic | float) -> Periodic:
         if not isinstance(other, Periodic):
             return Periodic(self.mean + float(other), self.harmonics)
-        width = max(len(self.harmonics), len(other.harmonics))
-        mine = np.zeros(width, complex)
+        mine = np.zeros(max(len(self.harmonics), len(other.harmonics)), complex)
         mine[: len(self.harmonics)] = self.harmonics
         mine[: len(other.harmonics)] += other.harmonics
         return Periodic(self.mean + other.mean, tuple(mine))

@@ -375,8 +375,7 @@ def still(status: int, words: str) -> InputError:
 
 def is_known(status: ArrayLike) -> NDArray[np.bool_]:
     """Where heat and loaded contact are known, jammed or not, of values of ``status``."""
-    unknown = [STATUS.index(word) for word in STILL if word != "jammed"]
-    return ~np.isin(status, unknown)
+    return ~np.isin(status, [STATUS.index(word) for word in STILL if word != "jammed"])
 
 
 def status_attributes() -> dict[str, Any]:

@@ -136,14 +136,11 @@ def _entries(table: dict[str, Any], above: str = "") -> list[tuple[str, Any]]:
     found: list[tuple[str, Any]] = []
     for key, value in table.items():
         path = f"{above}.{key}" if above else key
-        nested = isinstance(value, dict) and not _is_entry(value)
+        # a field may be named "value" too: its entry is a table
+        nested = isinstance(value, dict) and "reason" not in value
+        nested = nested and isinstance(value.get("value", {}), dict)
         found += _entries(value, path) if nested else [(path, value)]
     return found
-
-
-def _is_entry(table: dict[str, Any]) -> bool:
-    """Whether a table is an entry; a field may be named "value" too, its entry is a table."""
-    return "reason" in table or not isinstance(table.get("value", {}), dict)
 
 
 def _spoken(path: str, entry: Any) -> tuple[Any, str]:

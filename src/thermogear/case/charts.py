@@ -188,7 +188,10 @@ def _chart(gear: str, names: tuple[str, ...], read: FlankFile, pair: GearPair) -
         gear=gear,
         rho=np.ascontiguousarray(rho[order]),
         added=np.ascontiguousarray(read.added[:, order]),
-        flank=tuple(_acts_as(side, read.drive) for side in read.side),
+        flank=tuple(
+            side if side in ("drive", "back") else "drive" if side == read.drive else "back"
+            for side in read.side
+        ),
         tooth=read.tooth,
         range=_evaluated(name, read, body),
     )
@@ -217,11 +220,6 @@ def _roll(over: str, position: NDArray[np.float64], gear: Gear) -> NDArray[np.fl
     if over in ("roll length", "roll path"):
         return np.asarray(position, dtype=float)
     return roll_path(gear, diameter=position if over == "diameter" else 2.0 * position)
-
-
-def _acts_as(side: str, drive: str | None) -> str:
-    """ "drive" or "back" of a side that may be a hand."""
-    return side if side in ("drive", "back") else "drive" if side == drive else "back"
 
 
 def _shown(read: FlankFile, place: int) -> str:

@@ -209,7 +209,8 @@ def read_duty(path: str | Path, case: GearCase, field: str = "duty") -> Duty:
     if ambient is None:
         around = np.full(time.values.size - 1, case.gearbox.surroundings.ambient)
     else:
-        _require_ambient(ambient, case, f"{field}.ambient")
+        for row, value in enumerate(ambient.values):
+            _require_air(case, value, f"{field}.ambient", ambient.shown(row))
         around = ambient.values[:-1]
     return Duty(
         time=time.values,
@@ -295,11 +296,6 @@ def _require_torque(column: Column, case: GearCase, field: str) -> None:
                 allowed=f"0..{most:.4g} N m",
                 why=why if value > most else "the pinion drives; a stop is 0",
             )
-
-
-def _require_ambient(column: Column, case: GearCase, field: str) -> None:
-    for row, value in enumerate(column.values):
-        _require_air(case, value, field, column.shown(row))
 
 
 def _require_air(case: GearCase, value: float, field: str, got: str) -> None:

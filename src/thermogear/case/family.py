@@ -87,7 +87,12 @@ def family(
     if isinstance(case, DimensionlessCase):
         for option, given in (("bundle", bundle), ("state", ThermalState.of(state) != HOT)):
             if given:
-                raise _without_gears(option, bundle if option == "bundle" else state)
+                raise InputError(
+                    option,
+                    repr(bundle if option == "bundle" else state),
+                    why="a dimensionless case has no gears",
+                    fix="leave it out",
+                )
         full = tuple(number_parameter(name).name for name in names)
         return NumberFamily(base_model(case, numbers), full)
     if numbers:
@@ -98,12 +103,6 @@ def family(
             fix="put a field in place, for instance dynamics.damping_ratio=0.1",
         )
     return GearFamily(gear_case(case), tuple(names), bundle, ThermalState.of(state))
-
-
-def _without_gears(option: str, got: object) -> InputError:
-    return InputError(
-        option, repr(got), why="a dimensionless case has no gears", fix="leave it out"
-    )
 
 
 # --- numbers ------------------------------------------------------------------------------

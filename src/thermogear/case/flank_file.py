@@ -364,8 +364,7 @@ def _sign(said: Mapping[str, tuple[str, str]]) -> float:
         return 1.0
     where, value = said["sign"]
     words = " ".join(value.lower().split())
-    short_words = {f"{k.split()[1]} is positive": s for k, s in SIGNS.items()}
-    known = SIGNS | short_words
+    known = SIGNS | {f"{k.split()[1]} is positive": s for k, s in SIGNS.items()}
     if words not in known:
         raise InputError("", where, allowed=" | ".join(SIGNS), fix=nearest(words, SIGNS))
     return known[words]

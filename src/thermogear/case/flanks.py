@@ -206,10 +206,9 @@ def _graded(file: GearFile, pair: GearPair) -> tuple[Deviation, ...]:
     except InputError as error:
         inner = error.field.rpartition(".")[2]
         field = {"grade": "flanks.accuracy", "edition": "flanks.edition"}.get(inner, "flanks")
-        got = error.got if field != "flanks" else f"{inner} {error.got}"
         raise InputError(
             field,
-            got,
+            error.got if field != "flanks" else f"{inner} {error.got}",
             allowed=error.allowed,
             why=error.why,
             fix="give [transmission_error] harmonics, or measured profiles, instead",

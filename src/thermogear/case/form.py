@@ -134,17 +134,15 @@ def _field(place: _Place, key: str, about: Mapping[str, Any], value: Any) -> Ite
         yield place.entry(key, about, value)
         law = ".".join((*below.path, named))
         yield from (one for one in _entries(below, {}) if one.path != law)
-    elif kind == "named tables" and inside and all(map(_bare, inside)):
+    elif (
+        kind == "named tables"
+        and inside
+        and all(settable(name) and "." not in name for name in inside)
+    ):
         for name, table in inside.items():
-            each = _Place(table=below.table, path=(*below.path, name))
-            yield from _entries(each, table)
+            yield from _entries(_Place(table=below.table, path=(*below.path, name)), table)
     else:
         yield place.entry(key, about, value)
-
-
-def _bare(name: str) -> bool:
-    """Whether ``name`` is one key of a path."""
-    return settable(name) and "." not in name
 
 
 def _table_of(about: Mapping[str, Any]) -> str:

@@ -86,25 +86,24 @@ def gearbox(
         held |= _stated(file, held)
     wetted, given = table.wetted_share, table.housing_coefficient
     box = housing_box(pair, table.shaft_length, table.immersion, housing)
-    around = Surroundings(
-        ambient=table.ambient,
-        housing_area=box.area if table.housing_area is None else table.housing_area,
-        housing_coefficient=_OURS.housing_coefficient if given is None else given,
-        housing_coefficient_at=_OURS.housing_coefficient_at if given is None else None,
-        oil_housing_coefficient=table.oil_housing_coefficient,
-        wetted_share=(wetted[0], wetted[-1]),
-        shaft_length=table.shaft_length,
-        bearing_conductance=table.bearing_conductance,
-        oil_mass=box.oil_mass if table.oil_mass is None else table.oil_mass,
-        housing_mass=box.mass if table.housing_mass is None else table.housing_mass,
-        housing_specific_heat=housing.specific_heat
-        if table.housing_specific_heat is None
-        else table.housing_specific_heat,
-        oil_flow=table.oil_flow,
-        supply_temperature=table.supply_temperature,
-    )
     return Gearbox(
-        surroundings=around,
+        surroundings=Surroundings(
+            ambient=table.ambient,
+            housing_area=box.area if table.housing_area is None else table.housing_area,
+            housing_coefficient=_OURS.housing_coefficient if given is None else given,
+            housing_coefficient_at=_OURS.housing_coefficient_at if given is None else None,
+            oil_housing_coefficient=table.oil_housing_coefficient,
+            wetted_share=(wetted[0], wetted[-1]),
+            shaft_length=table.shaft_length,
+            bearing_conductance=table.bearing_conductance,
+            oil_mass=box.oil_mass if table.oil_mass is None else table.oil_mass,
+            housing_mass=box.mass if table.housing_mass is None else table.housing_mass,
+            housing_specific_heat=housing.specific_heat
+            if table.housing_specific_heat is None
+            else table.housing_specific_heat,
+            oil_flow=table.oil_flow,
+            supply_temperature=table.supply_temperature,
+        ),
         immersion=table.immersion,
         bearing_coefficient=table.bearing_coefficient,
         measured=held,

@@ -87,8 +87,7 @@ class Points:
         """e [m] at ``phase`` [periods of the tables], (point, phase)."""
         if self.flat.by_fft:
             return fourier.values(self.error, phase)
-        ranks = np.arange(self.error.shape[1])
-        waves = np.exp(2j * np.pi * np.multiply.outer(ranks, phase))
+        waves = np.exp(2j * np.pi * np.multiply.outer(np.arange(self.error.shape[1]), phase))
         # one product a point: the same to the last bit in every batch
         return np.asarray((self.error[:, None] @ waves)[:, 0].real)
 

@@ -260,8 +260,7 @@ def prepare_maps(lanes: LaneTables, borders: Floats, marks: Bytes, order: int = 
     centres = borders[:-1] + 0.5 * widths
     half = 0.5 * widths[:, None] * lanes.period
     size, rate = _bounds(lanes, "force")
-    jerk = rate / lanes.period + lanes.damping * size
-    reach = jerk * half.max(axis=0) ** 3
+    reach = (rate / lanes.period + lanes.damping * size) * half.max(axis=0) ** 3
     width, room = order + 1, -(-(5 * (order + 1) + BEHIND) // 8) * 8
     (steps,) = _aligned((centres.size, -(-len(lanes) // 8), 11, 8))
     (curves,) = _aligned((centres.size, len(lanes), room))

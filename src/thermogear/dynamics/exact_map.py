@@ -231,9 +231,8 @@ class ExactMap:
             x=np.array([start[0]]), y=np.array([start[1]]), backlash=self.lanes.half_backlash
         )
         sections, _, samples = exact.advance(self.maps, state, periods, columns=2, sampled=sampled)
-        points = np.vstack([np.asarray(start, dtype=float)[None], sections[:, :, 0]])
         return Visit(
-            points=points,
+            points=np.vstack([np.asarray(start, dtype=float)[None], sections[:, :, 0]]),
             jacobian=state.tangent[:, 0].reshape(2, 2),
             contact_losses=int(state.counts[0, 0]),
             back_impacts=int(state.counts[1, 0]),

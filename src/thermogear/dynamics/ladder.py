@@ -270,8 +270,7 @@ class Engine:
 
     def modal(self, states: ArrayLike) -> Floats:
         """Modal numbers (..., 2 modes) of physical states (..., d)."""
-        u = (np.asarray(states, dtype=float) - self.rest) @ self.to_modes.T
-        return _split(u)
+        return _split((np.asarray(states, dtype=float) - self.rest) @ self.to_modes.T)
 
     def physical(self, numbers: ArrayLike) -> Floats:
         """Physical states (..., d) of modal numbers (..., 2 modes)."""

@@ -130,11 +130,10 @@ class TorsionalModel:
     def lanes(self) -> Lanes:
         """Flat parameter arrays, lanes in C order of the broadcast fields."""
         shape = self.shape
-        flat = [
+        zeta, frequency, eps, mean, amplitude, backlash, thermal = [
             np.broadcast_to(np.asarray(getattr(self, f.name), dtype=float), shape).ravel()
             for f in fields(self)
         ]
-        zeta, frequency, eps, mean, amplitude, backlash, thermal = flat
         none = (None,) * zeta.size
         return Lanes(
             period=2.0 * np.pi / frequency,

@@ -75,7 +75,6 @@ class Deviation(Protocol):
 
     def gap(self, at: Contacts) -> Floats:
         """e [m], > 0 where material is missing; leading axes are operating points."""
-        ...
 
 
 class ToothDeviation(ABC):
@@ -136,8 +135,7 @@ class FlankShape(ABC):
     def gap(self, at: Contacts) -> Floats:
         """e [m] at the points named; 0 on the other side's flanks."""
         rho = at.string(self.gear)
-        found = self.taken_off(at.pair, rho)
-        return found if self.acts_on(at.flank) else np.zeros_like(rho)
+        return self.taken_off(at.pair, rho) if self.acts_on(at.flank) else np.zeros_like(rho)
 
 
 @dataclass(frozen=True)

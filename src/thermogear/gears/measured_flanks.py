@@ -220,6 +220,5 @@ def _least_curvature(pair: GearPair, name: str, rho: Floats) -> float:
     start, _, tip = active_profile(pair, name)
     gear = pair.pinion if name == "pinion" else pair.wheel
     one = np.clip(rho, start, tip)
-    other = pair.line_of_action - one
-    reduced = one * other / pair.line_of_action
+    reduced = one * (pair.line_of_action - one) / pair.line_of_action
     return float(np.min((one / gear.base_radius) ** 2 / reduced))

@@ -147,8 +147,7 @@ def _taken_off(
 ) -> Floats:
     """What the shapes of this gear's flank take off [m], below the form circle as at it."""
     name = "pinion" if gear is pair.pinion else "wheel"
-    lowest = gear.base_radius * gear.junction[1]
-    rho = np.where(np.isnan(string), lowest, string)
+    rho = np.where(np.isnan(string), gear.base_radius * gear.junction[1], string)
     own = [
         one
         for one in deviations

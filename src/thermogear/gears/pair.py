@@ -318,11 +318,10 @@ class GearPair:
         j_n = (p_w - s_w1 - s_w2) cos(alpha_w) = p_b - 2 r_b1 psi_1(r_w1) - 2 r_b2 psi_2(r_w2);
         0 for the zero-backlash mesh.
         """
-        filled = sum(
+        return self.base_pitch - sum(
             2.0 * gear.base_radius * float(gear.half_thickness_angle(radius))
             for gear, radius in zip((self.pinion, self.wheel), self.operating_radii, strict=True)
         )
-        return self.base_pitch - filled
 
     def swapped(self) -> GearPair:
         """The same two gears with the wheel driving."""

@@ -201,8 +201,7 @@ def foot_mesh(gear: Gear, across: Floats, density: Density) -> Foot:
     profile = Profile(gear, density.joint)
     m, half = gear.module, np.pi / gear.teeth
     r_joint, phi_joint = (float(at) for at in profile.fillet(np.asarray(profile.start)))
-    rim = gear.root_radius - gear.bore_radius
-    r_low = gear.root_radius - min(0.5 * m, 0.5 * rim)
+    r_low = gear.root_radius - min(0.5 * m, 0.5 * (gear.root_radius - gear.bore_radius))
     # the lines below the joint lean inward, so that three equal corners meet in the fillet
     phi_low = max(phi_joint - np.tan(np.pi / 6.0) * (r_joint - r_low) / r_joint, 0.5 * phi_joint)
 

@@ -15,14 +15,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, require_choice
-from thermogear.base.materials import Material
+from thermogear.gears.geometry import Gear
 from thermogear.heat.temperature import radial_temperature
 
 BORES: dict[str, str] = {
@@ -33,24 +32,6 @@ BORES: dict[str, str] = {
 """How the bore is held: name -> what it means."""
 
 PLANES = ("stress", "strain")
-
-
-class GearLike(Protocol):
-    """What the growth of a flank needs to know of its gear (SI)."""
-
-    @property
-    def base_radius(self) -> float: ...
-
-    @property
-    def root_radius(self) -> float: ...
-
-    @property
-    def pitch_radius(self) -> float: ...
-
-    @property
-    def material(self) -> Material: ...
-
-    def half_thickness_angle(self, radius: ArrayLike) -> Floats: ...
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -293,7 +274,7 @@ def radial_displacement(
 
 
 def base_circle_growth(
-    gear: GearLike, field: RadialField, bore: str = "free", plane: str = "stress"
+    gear: Gear, field: RadialField, bore: str = "free", plane: str = "stress"
 ) -> Floats:
     """u_b = u_r(r_b), the radial displacement of the base circle [m].
 
@@ -363,7 +344,7 @@ def flank_normal_growth(
 
 
 def flank_growth(
-    gear: GearLike,
+    gear: Gear,
     field: RadialField,
     radius: ArrayLike,
     bore: str = "free",

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.materials import Lubricant
-from thermogear.heat.gearbox import BodyLike, Surroundings, oil_prandtl
+from thermogear.gears.geometry import Gear
+from thermogear.heat.gearbox import Surroundings, oil_prandtl
 from thermogear.heat.lubrication import density, kinematic_viscosity
 from thermogear.heat.network import ThermalNetwork
 from thermogear.heat.still_air import free_face_convection
@@ -27,7 +28,7 @@ def oil_expansion(lubricant: Lubricant, temperature: ArrayLike) -> NDArray[np.fl
 
 def with_free_convection(
     network: ThermalNetwork,
-    gears: Mapping[str, BodyLike],
+    gears: Mapping[str, Gear],
     lubricant: Lubricant,
     surroundings: Surroundings,
     temperatures: Mapping[str, ArrayLike],

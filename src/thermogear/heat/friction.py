@@ -57,7 +57,6 @@ class FrictionLaw(Protocol):
 
     def __call__(self, state: ContactState) -> Floats:
         """|mu| [-] in the common shape of ``state``."""
-        ...
 
 
 def outside_range(law: FrictionLaw, state: ContactState) -> NDArray[np.bool_]:
@@ -204,16 +203,18 @@ class BenedictKelley(Bounded):
     )
 
     def __call__(self, state: ContactState) -> Floats:
-        mu = benedict_kelley(
-            state.line_load,
-            sliding_speed=state.sliding,
-            sum_speed=state.sum_speed,
-            viscosity=state.oil_viscosity,
-            roughness=state.roughness,
-            pitch_floor=self.pitch_floor,
-            ceiling=self.ceiling,
+        return _spread(
+            benedict_kelley(
+                state.line_load,
+                sliding_speed=state.sliding,
+                sum_speed=state.sum_speed,
+                viscosity=state.oil_viscosity,
+                roughness=state.roughness,
+                pitch_floor=self.pitch_floor,
+                ceiling=self.ceiling,
+            ),
+            state,
         )
-        return _spread(mu, state)
 
 
 @dataclass(frozen=True)
@@ -277,17 +278,19 @@ class XuKahraman(Bounded):
     )
 
     def __call__(self, state: ContactState) -> Floats:
-        mu = xu_kahraman(
-            state.pressure,
-            sliding_speed=state.sliding,
-            entrainment=state.entrainment,
-            viscosity=state.viscosity,
-            reduced_radius=state.reduced_radius,
-            roughness=0.0 if self.smooth else rms_roughness(state.roughness),
-            pitch_floor=self.pitch_floor,
-            ceiling=self.ceiling,
+        return _spread(
+            xu_kahraman(
+                state.pressure,
+                sliding_speed=state.sliding,
+                entrainment=state.entrainment,
+                viscosity=state.viscosity,
+                reduced_radius=state.reduced_radius,
+                roughness=0.0 if self.smooth else rms_roughness(state.roughness),
+                pitch_floor=self.pitch_floor,
+                ceiling=self.ceiling,
+            ),
+            state,
         )
-        return _spread(mu, state)
 
 
 @dataclass(frozen=True)
@@ -343,8 +346,9 @@ class Schlenk(Bounded):
     def __call__(self, state: ContactState) -> Floats:
         kind = lubricant_factor(state.lubricant_kind, FZG_LUBRICANT_FACTOR)
         factor = kind if self.factor is None else self.factor
-        mu = schlenk(*_of_mesh(state, self.name), factor=factor, ceiling=self.ceiling)
-        return _spread(mu, state)
+        return _spread(
+            schlenk(*_of_mesh(state, self.name), factor=factor, ceiling=self.ceiling), state
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -360,8 +364,9 @@ class Iso13989Flash(Bounded):
     def __call__(self, state: ContactState) -> Floats:
         kind = ISO_LUBRICANT_FACTOR.get(state.lubricant_kind, 1.0)
         factor = kind if self.factor is None else self.factor
-        mu = iso_13989_1(*_of_mesh(state, self.name), factor=factor, ceiling=self.ceiling)
-        return _spread(mu, state)
+        return _spread(
+            iso_13989_1(*_of_mesh(state, self.name), factor=factor, ceiling=self.ceiling), state
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -375,8 +380,10 @@ class Iso13989Integral(Bounded):
     source: ClassVar[str] = "ISO/TR 13989-2 eq. 1-7 = ISO/TR 15144-1 eq. 86"
 
     def __call__(self, state: ContactState) -> Floats:
-        mu = iso_13989_2(*_of_mesh(state, self.name), factor=self.factor, ceiling=self.ceiling)
-        return _spread(mu, state)
+        return _spread(
+            iso_13989_2(*_of_mesh(state, self.name), factor=self.factor, ceiling=self.ceiling),
+            state,
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -392,14 +399,16 @@ class Fernandes(Bounded):
     def __call__(self, state: ContactState) -> Floats:
         kind = lubricant_factor(state.lubricant_kind, FZG_LUBRICANT_FACTOR)
         factor = kind if self.factor is None else self.factor
-        mu = fernandes(
-            *_of_mesh(state, self.name),
-            state.needed("pressure_viscosity", self.name),
-            state.pitch(self.name).face_width,
-            factor=factor,
-            ceiling=self.ceiling,
+        return _spread(
+            fernandes(
+                *_of_mesh(state, self.name),
+                state.needed("pressure_viscosity", self.name),
+                state.pitch(self.name).face_width,
+                factor=factor,
+                ceiling=self.ceiling,
+            ),
+            state,
         )
-        return _spread(mu, state)
 
 
 _TABLE: dict[FrictionLaw, str] = {

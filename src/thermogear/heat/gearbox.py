@@ -12,7 +12,6 @@ import warnings
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field, fields
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -21,8 +20,8 @@ from thermogear.base.arrays import Floats
 from thermogear.base.bounds import BODY
 from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.base.materials import Lubricant, Material
+from thermogear.gears.geometry import Gear
 from thermogear.heat.convection import MOST_PRANDTL, rotating_face_convection, transition_pieces
-from thermogear.heat.expansion import GearLike
 from thermogear.heat.lubrication import density, kinematic_viscosity
 from thermogear.heat.network import Link, ThermalNetwork
 from thermogear.heat.shaft_heat import BearingLoss, ShaftHeat
@@ -30,22 +29,6 @@ from thermogear.heat.still_air import still_air_coefficient
 
 ROOM = 293.15
 """The room [K] in which the customary coefficient of a housing is meant."""
-
-
-class BodyLike(GearLike, Protocol):
-    """What the heat path through a gear needs besides its profile (SI)."""
-
-    @property
-    def teeth(self) -> int: ...
-
-    @property
-    def face_width(self) -> float: ...
-
-    @property
-    def bore_radius(self) -> float: ...
-
-    @property
-    def tip_radius(self) -> float: ...
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -269,7 +252,7 @@ def face_conductance(
     return np.asarray(np.sum(film * 2.0 * np.pi * r * weights, axis=-1))
 
 
-def body_radius(gear: BodyLike) -> float:
+def body_radius(gear: Gear) -> float:
     """Radius [m] of a gear's body node, sqrt((r_x^2 + r_f^2)/2): it halves the ring's area.
 
     >>> f"{1e3 * body_radius(Gear(20, 4e-3)):.2f} mm"
@@ -278,7 +261,7 @@ def body_radius(gear: BodyLike) -> float:
     return float(np.sqrt(0.5 * (gear.bore_radius**2 + gear.root_radius**2)))
 
 
-def tooth_radius(gear: BodyLike) -> float:
+def tooth_radius(gear: Gear) -> float:
     """Radius [m] of a gear's tooth node: the pitch circle, held within the tooth.
 
     A large profile shift puts the pitch circle off the tooth; a tenth of the tooth's height is
@@ -291,7 +274,7 @@ def tooth_radius(gear: BodyLike) -> float:
     return float(min(max(gear.pitch_radius, gear.root_radius + margin), gear.tip_radius - margin))
 
 
-def _outer_resistances(gear: BodyLike) -> tuple[float, float]:
+def _outer_resistances(gear: Gear) -> tuple[float, float]:
     """(root circle to body node, tooth node to root circle) [K/W]."""
     k, b, at = gear.material.thermal_conductivity, gear.face_width, tooth_radius(gear)
     thickness = 2.0 * at * float(gear.half_thickness_angle(at))
@@ -299,7 +282,7 @@ def _outer_resistances(gear: BodyLike) -> tuple[float, float]:
     return ring, (at - gear.root_radius) / (k * b * thickness * gear.teeth)
 
 
-def body_conductances(gear: BodyLike) -> tuple[float, float]:
+def body_conductances(gear: Gear) -> tuple[float, float]:
     """(tooth to body, body to bore) conductances of a gear by steady conduction [W/K].
 
     The body node lies at :func:`body_radius`: ring parts 2 pi k b/ln(r_o/r_i). The teeth carry
@@ -316,7 +299,7 @@ def body_conductances(gear: BodyLike) -> tuple[float, float]:
 
 
 def body_places(
-    gear: BodyLike, *, body: ArrayLike, tooth: ArrayLike
+    gear: Gear, *, body: ArrayLike, tooth: ArrayLike
 ) -> tuple[tuple[float, Floats], ...]:
     """(radius [m], temperature [K]) of body node, root circle and tooth node.
 
@@ -343,8 +326,8 @@ def _heat_capacity(material: Material, area: float, width: float) -> float:
 
 
 def thermal_network(
-    pinion: BodyLike,
-    wheel: BodyLike,
+    pinion: Gear,
+    wheel: Gear,
     speed: ArrayLike,
     losses: Losses,
     lubricant: Lubricant,
@@ -403,8 +386,7 @@ def thermal_network(
     ):
         tooth, body, shaft = f"{name}_tooth", f"{name}_body", f"{name}_shaft"
         outer, inner = body_conductances(gear)
-        height = gear.tip_radius - gear.root_radius
-        flanks = 2.0 * gear.teeth * gear.face_width * height
+        flanks = 2.0 * gear.teeth * gear.face_width * (gear.tip_radius - gear.root_radius)
         film = rotating_face_convection(
             omega, tooth_radius(gear), nu, lubricant.thermal_conductivity, prandtl
         )

@@ -184,11 +184,10 @@ class ThermalNetwork:
         datum = temperature[..., :1]
         flow = heat - np.einsum("...ij,...j->...i", laplacian, temperature - datum)
         names = self.nodes
-        imbalance = np.max(np.abs(flow[..., free]), axis=-1) if free else np.zeros(self.shape)
         return SteadyState(
             {name: temperature[..., i] for i, name in enumerate(names)},
             {names[i]: flow[..., i] for i in held},
-            np.asarray(imbalance),
+            np.asarray(np.max(np.abs(flow[..., free]), axis=-1) if free else np.zeros(self.shape)),
         )
 
     def laplacian(self) -> Floats:

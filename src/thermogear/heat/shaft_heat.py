@@ -19,6 +19,7 @@ from thermogear.base.errors import InputError
 from thermogear.base.materials import MATERIALS, Lubricant, Material
 from thermogear.heat.lubrication import kinematic_viscosity
 from thermogear.heat.network import Link
+from thermogear.shafts.bearings.geometry import RollingBearing
 from thermogear.shafts.train import SHAFTS, Shaft
 
 RACE = 0.7
@@ -34,32 +35,6 @@ class Friction(Protocol):
 
     def moment(self, *, force: ArrayLike, speed: ArrayLike, viscosity: ArrayLike) -> Floats:
         """Friction moment [N m] of a radial force [N], a speed [rad/s], an oil's nu [m^2/s]."""
-        ...
-
-
-class BearingSize(Protocol):
-    """The geometry of a rolling bearing that its heat asks for [m, rad]."""
-
-    @property
-    def bore(self) -> float: ...
-
-    @property
-    def outside_diameter(self) -> float: ...
-
-    @property
-    def width(self) -> float: ...
-
-    @property
-    def pitch_diameter(self) -> float: ...
-
-    @property
-    def element_diameter(self) -> float: ...
-
-    @property
-    def elements(self) -> int: ...
-
-    @property
-    def contact_angle(self) -> float: ...
 
 
 def ring_conductance(
@@ -143,7 +118,7 @@ class HeatedBearing:
     position: float
     friction: Friction
     seat: float
-    size: BearingSize | None = None
+    size: RollingBearing | None = None
     share: float | None = None
 
     def __post_init__(self) -> None:
@@ -172,7 +147,7 @@ class HeatedBearing:
         return np.asarray(moment * omega)
 
 
-def ring_capacities(size: BearingSize, steel: Material) -> tuple[float, float]:
+def ring_capacities(size: RollingBearing, steel: Material) -> tuple[float, float]:
     """Heat [J/K] that inner and outer ring hold, each with half of the elements.
 
     Rings end at d_m -+ 0.7 D_w, elements are balls: catalogue masses to about a tenth.

@@ -572,11 +572,10 @@ def pair_losses(
     else:
         speeds = operating.speed, wheel_speed
         bearings = {"bearings": train.losses(nodes, oil, elastic.force, speeds)}
-    losses = Losses(
+    return Losses(
         mesh=means.power,
         partition_1=means.partition,
         churning=churning,
         contact=means.conductance,
         **bearings,
-    )
-    return losses, means.settled
+    ), means.settled

@@ -345,8 +345,7 @@ def tooth_pair_shares(elastic: ElasticPair, s: Floats) -> PathShare:
 
 def elastic_pair(hot: HotPair, deviations: Sequence[Deviation] = ()) -> ElasticPair:
     """The springs that the model of ``hot`` chooses."""
-    kind = LoadedPair if hot.model.stiffness == "loaded" else TextbookPair
-    return kind(hot, deviations)
+    return (LoadedPair if hot.model.stiffness == "loaded" else TextbookPair)(hot, deviations)
 
 
 def loaded_pair(elastic: ElasticPair) -> LoadedPair:

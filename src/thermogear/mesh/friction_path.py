@@ -144,8 +144,7 @@ class FrictionPath:
     def bath_viscosity(self) -> Floats:
         """eta [Pa s] of the oil supply, (count, 1), which laws of mean friction take."""
         supplied = np.asarray(self.hot.operating.oil_temperature, dtype=float)
-        spread = np.broadcast_to(supplied, (self.hot.count,))[:, None]
-        return dynamic_viscosity(self._oil, spread)
+        return dynamic_viscosity(self._oil, np.broadcast_to(supplied, (self.hot.count,))[:, None])
 
     @cached_property
     def velocities(self) -> tuple[Floats, Floats]:

@@ -82,8 +82,7 @@ def pair_springs(
     )
     heat = ThermalDeviation(replace(hot, operating=hot.operating.point(operating)))
     touch = first_touch(mesh_points(pair, local, flank), (*deviations, heat)).gap[0].min(axis=-1)
-    rest = springs.deflection(mean, local)
-    knee = 0.5 * (np.maximum(touch, springs.touch(local)) + rest)
+    knee = 0.5 * (np.maximum(touch, springs.touch(local)) + springs.deflection(mean, local))
     return replace(springs, foot=np.stack([touch, knee]))
 
 

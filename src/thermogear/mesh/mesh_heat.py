@@ -137,8 +137,7 @@ def _between_steps(pair: GearPair) -> tuple[Floats, Floats]:
     """Gauss's nodes and weights [m] from A to E, split where a pair enters or leaves and at C."""
     a, c, e = pair.path.a, pair.path.c, pair.path.e
     whole = np.arange(int(np.ceil(pair.contact_ratio)) + 1) * pair.base_pitch
-    cuts = np.concatenate([a + whole, e - whole, [a, c, e]])
-    ends = np.unique(np.clip(cuts, a, e))
+    ends = np.unique(np.clip(np.concatenate([a + whole, e - whole, [a, c, e]]), a, e))
     u, w = gauss(GAUSS)
     half, middle = 0.5 * np.diff(ends)[:, None], 0.5 * (ends[1:] + ends[:-1])[:, None]
     return (middle + half * u).ravel(), (half * w).ravel()

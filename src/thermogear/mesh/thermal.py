@@ -282,8 +282,7 @@ def _carried(
 ) -> Floats:
     """sum_j k_j S_j / sum_j k_j over the pairs present; (phases, pairs) -> (count, phases)."""
     present = np.isfinite(positions)
-    anywhere = float(positions[present].flat[0])
-    filled = np.where(present, positions, anywhere)
+    filled = np.where(present, positions, float(positions[present].flat[0]))
     shape = filled.shape
     k = np.where(present.ravel(), weights(filled.ravel()), 0.0).reshape(-1, *shape)
     s = values(filled.ravel()).reshape(-1, *shape)

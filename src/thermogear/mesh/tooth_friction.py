@@ -197,8 +197,7 @@ def _fitted(
     while open_:
         low, high = (np.array([one[i] for one in open_]) for i in (0, 1))
         half, middle = 0.5 * (high - low)[:, None], 0.5 * (high + low)[:, None]
-        phases = middle + half * np.r_[nodes, checks]
-        found = ask(phases.ravel())
+        found = ask((middle + half * np.r_[nodes, checks]).ravel())
         if found is None or not np.all(np.isfinite(found.values)):
             return None
         values = found.values.reshape(2, low.size, -1)

@@ -184,10 +184,9 @@ class LinearTrain:
         value, shape = found[keep][order], t @ vectors[:n, keep][:, order]
         energy = np.einsum("im,ij,jm->m", shape.conj(), self.stiffness, shape).real
         kinetic = np.einsum("im,ij,jm->m", shape.conj(), train.mass, shape).real
-        total = np.abs(energy) + np.abs(value) ** 2 * kinetic
         return Modes(
             frequency=np.asarray(value.imag),
-            shape=shape / np.sqrt(total),
+            shape=shape / np.sqrt(np.abs(energy) + np.abs(value) ** 2 * kinetic),
             damping_ratio=np.asarray(-value.real / np.abs(value)),
         )
 

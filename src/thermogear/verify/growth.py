@@ -137,6 +137,5 @@ def _displacement(
         unknown[2 * foot.bore] = 0.0 if bore == "rigid" else expansion * field.bore_rise * inner
         held = np.concatenate([held, 2 * foot.bore])
     free = np.setdiff1d(np.arange(2 * count), held)
-    right = (load - stiffness @ unknown)[free]
-    unknown[free] = splu(stiffness[free][:, free].tocsc()).solve(right)
+    unknown[free] = splu(stiffness[free][:, free].tocsc()).solve((load - stiffness @ unknown)[free])
     return np.asarray((turn @ unknown).reshape(count, 2))

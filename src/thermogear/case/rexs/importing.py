@@ -417,8 +417,7 @@ def _head(model: Model, stage: Stage, unused: list[str]) -> list[str]:
 
 
 def _fresh(made: Draft, head: list[str]) -> str:
-    bare = toml(made.lines, head, ())
-    case = checked(made.stage, bare)
+    case = checked(made.stage, toml(made.lines, head, ()))
     return toml(made.lines, head, _defaults(made, case.assumptions))
 
 

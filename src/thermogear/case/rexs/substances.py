@@ -119,7 +119,8 @@ def oil_lines(reader: Reader, made: Draft, drive: Drive) -> None:
 
 
 def _oil(reader: Reader, made: Draft, oil: Component) -> None:
-    name = _printable(reader.words(oil, "name") or oil.name)
+    words = reader.words(oil, "name") or oil.name
+    name = "".join(c if c.isprintable() else " " for c in words)[:200]
     cold = reader.number(oil, "viscosity_at_40_degree_celsius")
     hot = reader.number(oil, "viscosity_at_100_degree_celsius")
     density = reader.number(oil, "density_at_15_degree_celsius")
@@ -161,7 +162,3 @@ def _named(name: str) -> str:
             continue
         return one
     return name if name in LUBRICANTS else ""
-
-
-def _printable(text: str) -> str:
-    return "".join(c if c.isprintable() else " " for c in text)[:200]

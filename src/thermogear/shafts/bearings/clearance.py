@@ -134,8 +134,7 @@ def mounted_clearance(
     otherwise than their ring; an interference moves the raceway by :func:`ring_growth`, a loose
     ring does not.
     """
-    warm = np.asarray(temperatures, dtype=float) - reference
-    inner, element, outer = np.moveaxis(warm, -1, 0)
+    inner, element, outer = np.moveaxis(np.asarray(temperatures, dtype=float) - reference, -1, 0)
     own = fit.ring.thermal_expansion
     free = thermal_clearance(
         inner_raceway=bearing.inner_raceway,

@@ -26,19 +26,15 @@ class BearingLaw(Protocol):
     @property
     def linear(self) -> bool:
         """Whether the stiffness is the same at every displacement."""
-        ...
 
     def force(self, displacement: ArrayLike) -> Floats:
         """Force on the journal [N], (..., 2)."""
-        ...
 
     def stiffness(self, displacement: ArrayLike) -> Floats:
         """Tangent stiffness -dF/du [N/m], (..., 2, 2)."""
-        ...
 
     def touching(self, displacement: ArrayLike) -> Bools:
         """Whether journal and ring touch, (...): false where the journal is free to move."""
-        ...
 
 
 @dataclass(frozen=True, kw_only=True)
