@@ -29,20 +29,19 @@ def _stretch(gear: Gear, field: RadialField, radius: Floats) -> Floats:
 def thesis_flank_growth(gear: Gear, field: RadialField, radius: ArrayLike) -> Floats:
     """The thesis's Delta f of one flank with its first term read as a length [m].
 
-        Delta f = lambda tau (cos(alpha_k)/2) [s r_k/r - 2 r_k (inv alpha_k - inv alpha)]
-                  + lambda int_{r_b}^{r_k} tau dr / cos(alpha_k).
+    Delta f = lambda tau (cos(alpha_k)/2) [s r_k/r - 2 r_k (inv alpha_k - inv alpha)]
+              + lambda int_{r_b}^{r_k} tau dr / cos(alpha_k).
 
-        The bracket is the tooth thickness 2 r_k psi(r_k) at r_k; the second term is the stretch
-        along the flank as printed; u_b does not appear. ``radius`` r_k [m] >= r_b. Shape of field
-        and radius. Too small by a factor 2 to 4 against :func:`expansion.flank_growth`.
+    The bracket is the tooth thickness 2 r_k psi(r_k) at r_k; the second term is the stretch
+    along the flank as printed; u_b does not appear. ``radius`` r_k [m] >= r_b. Shape of field
+    and radius. Too small by a factor 2 to 4 against :func:`expansion.flank_growth`.
 
-        >>> from thermogear.gears.geometry import Gear
-    from thermogear.heat.expansion import RadialField
-        >>> field = RadialField.uniform(
-        ...     bore_radius=16e-3, tip_radius=44e-3, temperature=393.15, reference=293.15
-        ... )
-        >>> f"{1e6 * thesis_flank_growth(Gear(20, 4e-3), field, 40e-3):.2f} um"
-        '6.35 um'
+    >>> from thermogear.heat.expansion import RadialField
+    >>> field = RadialField.uniform(
+    ...     bore_radius=16e-3, tip_radius=44e-3, temperature=393.15, reference=293.15
+    ... )
+    >>> f"{1e6 * thesis_flank_growth(Gear(20, 4e-3), field, 40e-3):.2f} um"
+    '6.35 um'
     """
     r = np.asarray(radius, dtype=float)
     cosine = np.minimum(gear.base_radius / r, 1.0)
@@ -117,19 +116,18 @@ def deformed_profile(
 ) -> tuple[Floats, Floats]:
     """The deformed profile, repaired: (r' [m], theta' [rad] from the tooth centre line).
 
-        r' = r + u_r(r),   theta' = psi + psi (lambda tau - u_r/r).
+    r' = r + u_r(r),   theta' = psi + psi (lambda tau - u_r/r).
 
-        ``radius`` r [m] >= r_b. A uniform field scales the profile: theta' = psi, r' = r (1 +
-        lambda tau). Shape of field and radius.
+    ``radius`` r [m] >= r_b. A uniform field scales the profile: theta' = psi, r' = r (1 +
+    lambda tau). Shape of field and radius.
 
-        >>> from thermogear.gears.geometry import Gear
-    from thermogear.heat.expansion import RadialField
-        >>> field = RadialField.uniform(
-        ...     bore_radius=16e-3, tip_radius=44e-3, temperature=393.15, reference=293.15
-        ... )
-        >>> radius, angle = deformed_profile(Gear(20, 4e-3), field, 40e-3)
-        >>> f"{1e3 * radius:.3f} mm, {angle:.5f} rad"
-        '40.046 mm, 0.07854 rad'
+    >>> from thermogear.heat.expansion import RadialField
+    >>> field = RadialField.uniform(
+    ...     bore_radius=16e-3, tip_radius=44e-3, temperature=393.15, reference=293.15
+    ... )
+    >>> radius, angle = deformed_profile(Gear(20, 4e-3), field, 40e-3)
+    >>> f"{1e3 * radius:.3f} mm, {angle:.5f} rad"
+    '40.046 mm, 0.07854 rad'
     """
     r = np.asarray(radius, dtype=float)
     return deformed_points(gear, field, r, gear.half_thickness_angle(r), bore)
@@ -144,19 +142,18 @@ def deformed_points(
 ) -> tuple[Floats, Floats]:
     """Where points of a tooth go: (r' [m], theta' [rad] from the tooth centre line).
 
-        r' = r + u_r(r),   theta' = theta + theta (lambda tau - u_r/r).
+    r' = r + u_r(r),   theta' = theta + theta (lambda tau - u_r/r).
 
-        ``radius`` r [m] from the root circle up, ``angle`` theta [rad] from the tooth centre line: the
-        growth of :func:`deformed_profile` at any place of the tooth. Shape of field and radius.
+    ``radius`` r [m] from the root circle up, ``angle`` theta [rad] from the tooth centre line: the
+    growth of :func:`deformed_profile` at any place of the tooth. Shape of field and radius.
 
-        >>> from thermogear.gears.geometry import Gear
-    from thermogear.heat.expansion import RadialField
-        >>> field = RadialField.uniform(
-        ...     bore_radius=16e-3, tip_radius=44e-3, temperature=393.15, reference=293.15
-        ... )
-        >>> radius, angle = deformed_points(Gear(20, 4e-3), field, 40e-3, 0.05)
-        >>> f"{1e3 * radius:.3f} mm, {angle:.3f} rad"
-        '40.046 mm, 0.050 rad'
+    >>> from thermogear.heat.expansion import RadialField
+    >>> field = RadialField.uniform(
+    ...     bore_radius=16e-3, tip_radius=44e-3, temperature=393.15, reference=293.15
+    ... )
+    >>> radius, angle = deformed_points(Gear(20, 4e-3), field, 40e-3, 0.05)
+    >>> f"{1e3 * radius:.3f} mm, {angle:.3f} rad"
+    '40.046 mm, 0.050 rad'
     """
     r, theta = np.asarray(radius, dtype=float), np.asarray(angle, dtype=float)
     body = gear.material
