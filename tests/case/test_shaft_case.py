@@ -74,7 +74,7 @@ def test_ten_lines_make_a_train_of_two_shafts_and_four_bearings() -> None:
     assert found.shafts[1].length == pytest.approx(0.15)
     parts = assemble(found.drive_train(pair=read().pair))
     assert parts.size == sum(5 * nodes.size for nodes in parts.nodes)
-    body = found.bodies[0]
+    body = found.gears[0]
     radius = 0.5 * 23 * 3e-3
     mass = 7850.0 * math.pi * (radius**2 - 0.015**2) * 0.028
     assert body.mass == pytest.approx(mass, rel=5e-3)

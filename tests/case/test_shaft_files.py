@@ -105,11 +105,11 @@ def test_what_hangs_on_the_shafts() -> None:
 def test_gear_body_is_the_ring_between_shaft_and_pitch_circle() -> None:
     case = gear_case(load_case(TRAIN))
     assert case.train is not None
-    gear, body = case.pair.pinion, case.train.bodies[0]
+    gear, body = case.pair.pinion, case.train.gears[0]
     area = math.pi * (gear.pitch_radius**2 - 0.0125**2)
     assert body.mass == pytest.approx(gear.material.density * area * 0.03)
     given = TRAIN + '[inertia]\nmodel = "given"\npinion = "0.003 kg m^2"\nwheel = "0.01 kg m^2"\n'
-    assert planned(given).bodies[0].polar_inertia == 0.003
+    assert planned(given).gears[0].polar_inertia == 0.003
 
 
 def test_a_preload_is_allowed_and_told() -> None:

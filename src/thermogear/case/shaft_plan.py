@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -23,17 +23,11 @@ from thermogear.shafts.mesh_lines import MeshFrame
 from thermogear.shafts.train import (
     SHAFTS,
     Bearing,
-    Casing,
-    Damping,
-    Disc,
-    DriveEnd,
     DriveTrain,
-    GearBody,
-    RunOut,
     Seat,
     Section,
     Shaft,
-    Unbalance,
+    TrainParts,
 )
 
 if TYPE_CHECKING:
@@ -106,26 +100,15 @@ class BearingPlan:
 
 
 @dataclass(frozen=True, kw_only=True)
-class TrainPlan:
+class TrainPlan(TrainParts):
     """Shafts, bearings and what hangs on them, as the tables of a case draw them (SI).
 
     ``nominal_force`` [N] of the mesh at the greatest torque: damping that is left out follows it.
     """
 
-    shafts: tuple[Shaft, Shaft]
-    bodies: tuple[GearBody, GearBody]
     bearings: tuple[BearingPlan, ...]
-    discs: tuple[Disc, ...]
-    motor: DriveEnd | None
-    load: DriveEnd | None
-    casing: Casing | None
-    unbalances: tuple[Unbalance, ...]
-    run_outs: tuple[RunOut, ...]
-    damping: Damping
     centre_line: float
     sense: int
-    gravity: float
-    least_elements: int
     nominal_force: float
     reference: float
 
@@ -158,20 +141,10 @@ class TrainPlan:
         half = 0.5 * self.nominal_force
         return DriveTrain(
             frame=frame,
-            shafts=self.shafts,
-            gears=self.bodies,
             bearings=tuple(
                 one.placed(float(c), half) for one, c in zip(self.bearings, half_plays, strict=True)
             ),
-            discs=self.discs,
-            motor=self.motor,
-            load=self.load,
-            casing=self.casing,
-            unbalances=self.unbalances,
-            run_outs=self.run_outs,
-            damping=self.damping,
-            gravity=self.gravity,
-            least_elements=self.least_elements,
+            **{one.name: getattr(self, one.name) for one in fields(TrainParts)},
         )
 
     def half_plays(self, temperatures: Floats, *, reference: float) -> Floats:

@@ -79,7 +79,7 @@ def train_plan(
     places = dict(zip(SHAFTS, shafts, strict=True))
     return TrainPlan(
         shafts=shafts,
-        bodies=(bodies[0], bodies[1]),
+        gears=(bodies[0], bodies[1]),
         bearings=bearings,
         discs=tuple(_disc(n, one, places, known) for n, one in enumerate(file.discs)),
         motor=None if file.motor is None else _end("motor", file.motor, places["pinion"], 0.0),

@@ -352,17 +352,17 @@ def heat_balance(
         np.atleast_1d(np.asarray(torque, dtype=float)),
     )
     loop = _Loop(
-        pair,
-        omega,
-        moment,
-        lubricant,
-        half_backlash,
-        varied,
-        MeshModel.consistent() if model is None else model,
-        box,
-        reference,
-        housing,
-        tuple(deviations),
+        pair=pair,
+        speed=omega,
+        torque=moment,
+        lubricant=lubricant,
+        half_backlash=half_backlash,
+        varied=varied,
+        model=MeshModel.consistent() if model is None else model,
+        box=box,
+        reference=reference,
+        housing=housing,
+        deviations=tuple(deviations),
     )
     stand_in, cold = max(STAND_IN, reference + OVER), np.arange(loop.count)
     loop.operating(loop.at(stand_in), cold)
@@ -419,21 +419,31 @@ def _unknown_where(lost: Flags, steady: SteadyState) -> SteadyState:
     )
 
 
-@dataclass(frozen=True, eq=False)
-class _Loop:
-    """What stays the same in the closed loop of a batch; states are (count, nodes) [K]."""
+@dataclass(frozen=True, eq=False, kw_only=True)
+class HeatedPair:
+    """A pair in its gearbox, whatever it does there."""
 
     pair: GearPair
-    speed: Floats
-    torque: Floats
     lubricant: Lubricant
     half_backlash: float
-    varied: Varied
     model: MeshModel
     box: Gearbox
     reference: float
     housing: Material
-    deviations: tuple[Deviation, ...]
+    deviations: Sequence[Deviation]
+
+    def elastic(self, at: Operating) -> ElasticPair:
+        """Its tooth pairs at operating points."""
+        return elastic_pair(HotPair(self.pair, at, self.model), self.deviations)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class _Loop(HeatedPair):
+    """What stays the same in the closed loop of a batch; states are (count, nodes) [K]."""
+
+    speed: Floats
+    torque: Floats
+    varied: Varied
 
     @property
     def count(self) -> int:
@@ -491,7 +501,7 @@ class _Loop:
     ) -> tuple[ThermalNetwork, Losses, MeshHeat]:
         """The network with the losses of the state, and what the mesh makes of heat."""
         here, named = self.operating(nodes, index), self.named(nodes)
-        elastic = elastic_pair(HotPair(self.pair, here, self.model), self.deviations)
+        elastic = self.elastic(here)
         means = mesh_heat(elastic, share=share)
         losses, _ = pair_losses(self.pair, here, elastic, self.box, named, means)
         network = thermal_network(

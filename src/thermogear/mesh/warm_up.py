@@ -25,10 +25,9 @@ from thermogear.heat.free_convection import with_free_convection
 from thermogear.heat.gearbox import Losses, Surroundings, joined, thermal_network
 from thermogear.heat.network import ThermalNetwork
 from thermogear.heat.transient import Course, State, Stretch, follow
-from thermogear.mesh.balance import Gearbox, node_temperatures, pair_losses
+from thermogear.mesh.balance import Gearbox, HeatedPair, node_temperatures, pair_losses
 from thermogear.mesh.clearance import Clearance
 from thermogear.mesh.cycle import mesh_cycle
-from thermogear.mesh.elastic import ElasticPair, elastic_pair
 from thermogear.mesh.mesh_heat import PHASES as HEAT_PHASES
 from thermogear.mesh.mesh_heat import MeshHeat, mesh_heat
 from thermogear.mesh.model import MeshModel
@@ -343,21 +342,13 @@ def _group(first: str, second: str) -> str | None:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class _Chain:
+class _Chain(HeatedPair):
     """From temperatures to losses, conductances and clearance of one pair in its duty.
 
     States hold temperatures [K] of the free nodes and the ``piece`` of the duty, arrays (count,).
     """
 
-    pair: GearPair
     duty: Duty
-    lubricant: Lubricant
-    half_backlash: float
-    model: MeshModel
-    box: Gearbox
-    reference: float
-    housing: Material
-    deviations: Sequence[Deviation]
     factors: Mapping[str, float]
     held: dict[str, float] = field(init=False)
 
@@ -396,12 +387,9 @@ class _Chain:
             self.housing,
         )
 
-    def _elastic(self, at: Operating) -> ElasticPair:
-        return elastic_pair(HotPair(self.pair, at, self.model), self.deviations)
-
     def mesh(self, state: State) -> Floats:
         """Friction power [W], its share into the pinion and conductance [W/K], (count, 3)."""
-        elastic = self._elastic(self.operating(state))
+        elastic = self.elastic(self.operating(state))
         phases = max(TURN_POSITIONS // elastic.mesh_periods, LEAST_PHASES)
         means = mesh_heat(elastic, min(HEAT_PHASES, phases))
         if not means.settled.all():
@@ -415,9 +403,7 @@ class _Chain:
         """Of the whole chain at the operating points of a state, its mesh as it lags there."""
         power, first, between = np.clip(state["lagging"], 0.0, [np.inf, 1.0, np.inf]).T
         means = MeshHeat(power, first, between, 0.0 * power, power >= 0.0, 0.0 * power)
-        losses, _ = pair_losses(
-            self.pair, at, self._elastic(at), self.box, self.nodes(state), means
-        )
+        losses, _ = pair_losses(self.pair, at, self.elastic(at), self.box, self.nodes(state), means)
         return losses
 
     def network(self, state: State) -> ThermalNetwork:

@@ -167,17 +167,14 @@ class Damping:
 
 
 @dataclass(frozen=True, kw_only=True)
-class DriveTrain:
-    """Two geared shafts in their bearings; the first shaft carries the pinion, which drives.
+class TrainParts:
+    """Two geared shafts and what hangs on them; the first carries the pinion, which drives.
 
-    ``frame``: base radii, teeth, pressure angle, place and sense of the mesh. ``gravity``
-    [m/s^2] along -y.
+    ``gravity`` [m/s^2] along -y; ``least_elements`` of each shaft.
     """
 
-    frame: MeshFrame
     shafts: tuple[Shaft, Shaft]
     gears: tuple[GearBody, GearBody]
-    bearings: tuple[Bearing, ...]
     discs: tuple[Disc, ...] = ()
     motor: DriveEnd | None = None
     load: DriveEnd | None = None
@@ -187,3 +184,14 @@ class DriveTrain:
     damping: Damping = field(default_factory=Damping)
     gravity: float = 0.0
     least_elements: int = 12
+
+
+@dataclass(frozen=True, kw_only=True)
+class DriveTrain(TrainParts):
+    """Two geared shafts in their bearings.
+
+    ``frame``: base radii, teeth, pressure angle, place and sense of the mesh.
+    """
+
+    frame: MeshFrame
+    bearings: tuple[Bearing, ...]
