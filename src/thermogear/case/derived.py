@@ -69,16 +69,12 @@ def _pair(case: GearCase) -> list[Fact]:
         Fact("path of contact from the pinion's tangent point", name, 1e3 * value, "mm")
         for name, value in zip("ABCDE", path, strict=True)
     ]
-    cold = case.cold_backlash
-    found.append(
-        Fact("backlash on the line of action", "cold half backlash", 1e6 * cold.half, "um")
-    )
+    group, cold = "backlash on the line of action", case.cold_backlash
+    sizes = {"cold half backlash": cold.half}
     if cold.least != cold.most:
-        group = "backlash on the line of action"
-        found.append(Fact(group, "least cold half backlash", 1e6 * cold.least, "um"))
-        found.append(Fact(group, "most cold half backlash", 1e6 * cold.most, "um"))
-    found.append(Fact("backlash on the line of action", "from", cold.origin))
-    return found
+        sizes |= {"least cold half backlash": cold.least, "most cold half backlash": cold.most}
+    found += [Fact(group, name, 1e6 * size, "um") for name, size in sizes.items()]
+    return [*found, Fact(group, "from", cold.origin)]
 
 
 def _gear(name: str, gear: Gear, start: float) -> list[Fact]:

@@ -119,15 +119,15 @@ def takes(case: GearCase, field: str) -> bool:
     table, _, last = field.rpartition(".")
     if field in FREE:
         return True
-    if field == "backlash.value":
+    if field == "backlash.value" or field in OF_OIL:
         return _given(case, field) is not None
     if field in WIDTHS:
         # the heat balance knows one housing and one width
         return not case.computed
-    if field in OF_OIL:
-        return _given(case, field) is not None
     if table.startswith("materials."):
-        return last in OF_MATERIAL and _given(case, field) is not None and not _soaked(case)
+        # a soaked backlash hangs on how much the materials expand
+        soaked = _given(case, "backlash.temperature") is not None
+        return last in OF_MATERIAL and _given(case, field) is not None and not soaked
     return not case.computed and _takes_heat(case, field)
 
 
@@ -150,11 +150,6 @@ def _given(case: GearCase, field: str) -> object:
     for part in field.split("."):
         table = table.get(part) if isinstance(table, dict) else getattr(table, part, None)
     return table
-
-
-def _soaked(case: GearCase) -> bool:
-    """Whether the cold backlash hangs on how much the materials expand."""
-    return _given(case, "backlash.temperature") is not None
 
 
 def sampled(case: GearCase, columns: Columns, count: int) -> Samples:

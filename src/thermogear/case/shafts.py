@@ -8,11 +8,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 from thermogear.base.errors import InputError
 from thermogear.base.materials import Material
 from thermogear.case.build import named_material
+from thermogear.case.schema import GearFile
 from thermogear.case.shaft_plan import GRAVITY, LOSS_TIME, RINGS, BearingPlan, TrainPlan, section_at
 from thermogear.case.shaft_schema import BearingTable, DiscTable, ShaftTable, TrainTable
 from thermogear.gears.pair import GearPair
@@ -35,9 +36,6 @@ from thermogear.shafts.train import (
     Shaft,
     Unbalance,
 )
-
-if TYPE_CHECKING:
-    from thermogear.case.schema import GearFile
 
 _Made = TypeVar("_Made")
 
