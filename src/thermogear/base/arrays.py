@@ -10,16 +10,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = [
-    "Complexes", "DataArray", "DataTree", "Dataset", "Flags", "Floats", "Variable", "Whole",
-]  # fmt: skip
-
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
 Whole = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 if TYPE_CHECKING:
-    from xarray import DataArray, Dataset, DataTree, Variable
+    from xarray import DataArray as DataArray
+    from xarray import Dataset as Dataset
+    from xarray import DataTree as DataTree
+    from xarray import Variable as Variable
 else:
     DataArray = Dataset = DataTree = Variable = Any

@@ -5,6 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from thermogear.dynamics.geared_equation import GearedEquation
+from thermogear.dynamics.geared_equation import LocalBearing as LocalBearing
+from thermogear.dynamics.geared_equation import OuterForce as OuterForce
+from thermogear.dynamics.geared_equation import Wobble as Wobble
 from thermogear.dynamics.geared_map import GearedMap
 
 

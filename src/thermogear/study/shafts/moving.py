@@ -12,8 +12,7 @@ from thermogear.base.errors import InputError
 from thermogear.base.excitation import FrictionSplit, Periodic
 from thermogear.case.case import GearCase
 from thermogear.case.shaft_plan import TrainPlan
-from thermogear.dynamics.geared import GearedModel
-from thermogear.dynamics.geared_equation import LocalBearing, OuterForce, Wobble
+from thermogear.dynamics.geared import GearedModel, LocalBearing, OuterForce, Wobble
 from thermogear.mesh.tooth_friction import friction_split
 from thermogear.shafts.assembly import Assembly
 from thermogear.shafts.bearings.laws import ElementLaw, RingLaw
