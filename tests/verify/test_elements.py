@@ -19,6 +19,7 @@ from thermogear.gears.tooth_mesh import (
     plain_across,
     tooth_mesh,
 )
+from thermogear.gears.tooth_table import Sector
 from thermogear.verify.elements import ReferencePatch, library
 from thermogear.verify.sector import FlankSector
 
@@ -85,26 +86,16 @@ def test_rigid_motions_cost_nothing_and_a_stretch_costs_its_area(gear: Gear) -> 
 @pytest.mark.parametrize("gear", [PINION, SMALL, UNDERCUT], ids=lambda g: f"z{g.teeth}")
 def test_pressure_has_the_base_circle_as_its_lever(gear: Gear) -> None:
     """Every normal of an involute touches the base circle: moment = F r_b."""
-    t, density = pitch_point(gear), Density()
-    centre, (low, high) = 0.5 * gear.base_radius * t * t, Profile(gear).ends
-    arcs = graded(
-        low=low, high=high, centre=centre, core=1.25 * A, fine=A / 3, rate=1.6, coarse=gear.module
-    )
-    mesh = tooth_mesh(gear, across=plain_across(density), arcs=arcs, density=density)
-
-    def pressure(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        arc = 0.5 * ((x * x + y * y) / gear.base_radius - gear.base_radius)
-        return 2.0 / (np.pi * A) * np.sqrt(np.maximum(1.0 - ((arc - centre) / A) ** 2, 0.0))
-
-    load, total = ReferencePatch.of(mesh.patch).pressure_load(mesh.flank, pressure)
-    # the rule cannot know where the root ends; what it misses is divided out
-    assert total == pytest.approx(1.0, rel=5e-4)
-    x, y = mesh.patch.nodes.T
+    t = pitch_point(gear)
+    sector = Sector.of(gear, gear.material.poisson_ratio)
+    arcs, widths = np.array([0.5 * gear.base_radius * t * t]), np.array([A])
+    load = sector.loads(arcs=arcs, widths=widths)[:, 0]
+    x, y = sector.patch.nodes.T
     turning = np.stack([-y, x], axis=-1).ravel()
-    assert load @ turning / total == pytest.approx(gear.base_radius, rel=1e-7)
+    assert load @ turning == pytest.approx(gear.base_radius, rel=1e-7)
     # into the tooth, along its inward normal; over the contact that turns by a little
-    force = load.reshape(-1, 2).sum(axis=0) / total
     beta = t - gear.base_half_angle
+    force = load.reshape(-1, 2).sum(axis=0)
     assert force == pytest.approx([-np.cos(beta), -np.sin(beta)], abs=3e-4)
 
 

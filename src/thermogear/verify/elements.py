@@ -18,9 +18,6 @@ from thermogear.base.arrays import Floats
 from thermogear.base.errors import of_extra
 from thermogear.gears.elements import Integers, Patch
 
-_EDGE_RULE = np.polynomial.legendre.leggauss(24)
-"""Rule on a side of an element; many points, for the Hertzian pressure ends in a root."""
-
 
 def library(name: str = "skfem") -> Any:
     """scikit-fem, or one line that says what to install."""
@@ -101,27 +98,6 @@ class ReferencePatch(Patch):
         theirs = fe.BilinearForm(energy).assemble(self._basis).tocsr()
         order = self._places.ravel()
         return csc_matrix(theirs[order][:, order])
-
-    def pressure_load(
-        self, edge: Integers, pressure: Callable[[Floats, Floats], Floats]
-    ) -> tuple[Floats, float]:
-        """Nodal forces of ``pressure``(x, y) on the boundary ``edge``, its nodes in order.
-
-        Corners and mid-sides alternate; the material lies to the left of the way along them.
-        Returns the load per unit width and the integral of the pressure along the edge.
-        """
-        sides = np.stack([edge[:-2:2], edge[1:-1:2], edge[2::2]], axis=1)
-        x, weight = _EDGE_RULE
-        shape = np.stack([0.5 * x * (x - 1.0), 1.0 - x * x, 0.5 * x * (x + 1.0)])
-        slope = np.stack([x - 0.5, -2.0 * x, x + 0.5])
-        at = np.einsum("kq,skc->csq", shape, self.nodes[sides])
-        along = np.einsum("kq,skc->csq", slope, self.nodes[sides])
-        force = pressure(at[0], at[1]) * weight
-        into = np.stack([-along[1], along[0]])
-        parts = np.einsum("kq,sq,csq->skc", shape, force, into)
-        out = np.zeros((self.nodes.shape[0], 2))
-        np.add.at(out, sides, parts)
-        return out.ravel(), float(np.sum(force * np.hypot(*along)))
 
     def thermal_load(self, strain: Callable[[Floats, Floats], Floats]) -> Floats:
         """Nodal forces of a free thermal strain, ``strain(x, y)``, unit modulus, plane stress."""
