@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.arrays import Floats
-from thermogear.base.errors import InputError, nearest
+from thermogear.base.errors import require_choice
 from thermogear.gears.candidates import MeshPoints, mesh_points
 from thermogear.gears.contact import pair_reduced_modulus, reduced_modulus
 from thermogear.gears.corner import flank_ends
@@ -78,14 +78,7 @@ class LoadedModel:
             ("contact", CONTACT_LAWS),
             ("start", STARTS),
         ):
-            value = getattr(self, name)
-            if value not in known:
-                raise InputError(
-                    f"loaded.{name}",
-                    repr(value),
-                    allowed=" | ".join(known),
-                    fix=nearest(str(value), known),
-                )
+            require_choice(f"loaded.{name}", getattr(self, name), known)
 
 
 TEETH = {

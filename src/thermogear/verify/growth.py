@@ -14,7 +14,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import splu
 
 from thermogear.base.arrays import Floats
-from thermogear.base.errors import InputError, nearest
+from thermogear.base.errors import InputError, require_choice
 from thermogear.gears.elements import Integers
 from thermogear.gears.geometry import Gear
 from thermogear.gears.tooth_mesh import (
@@ -78,8 +78,7 @@ def finite_flank_growth(
     "rigid" (not moved) or "shaft" (moved by lambda t_x r_x), free to slide around. Raises
     InputError for radii off the flank, an unknown bore and when scikit-fem is missing.
     """
-    if bore not in BORES:
-        raise InputError("bore", repr(bore), allowed=" | ".join(BORES), fix=nearest(bore, BORES))
+    require_choice("bore", bore, BORES)
     if field.gradient.size != 1:
         raise InputError("field", f"{field.gradient.size} states", allowed="one state")
     r = np.asarray(radius, dtype=float)
