@@ -10,7 +10,7 @@ import numpy as np
 
 from thermogear.base.errors import InputError
 from thermogear.case.charts import Chart
-from thermogear.case.flank_schema import ReliefTable, ToothProfilesTable, ToothTable
+from thermogear.case.flank_schema import ToothProfilesTable, ToothTable
 from thermogear.case.schema import GearFile, GearTable
 from thermogear.gears.candidates import mesh_points
 from thermogear.gears.deviations import (
@@ -234,7 +234,7 @@ def _given(
     table: GearTable = getattr(file.gears, gear)
     for end, relief in (("tip", table.tip_relief), ("root", table.root_relief)):
         if relief is not None:
-            yield f"{end}_relief", partial(_relief, gear, end, relief)
+            yield f"{end}_relief", partial(Relief, gear, end=end, **relief.model_dump())
     yield from _of_teeth(gear, file, pair)
     if table.pressure_angle_error is not None:
         yield "pressure_angle_error", partial(PressureAngleError, gear, table.pressure_angle_error)
@@ -244,17 +244,6 @@ def _given(
             "profile",
             partial(FlankTable, gear, radius=flank.radius, added=flank.added, flank=flank.flank),
         )
-
-
-def _relief(gear: str, end: str, table: ReliefTable) -> Relief:
-    return Relief(
-        gear,
-        amount=table.amount,
-        length=table.length,
-        end=end,
-        shape=table.shape,
-        flank=table.flank,
-    )
 
 
 def relief_text(gear: str, relief: Relief) -> str:
