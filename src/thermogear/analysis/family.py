@@ -132,11 +132,9 @@ class ModelFamily:
 
     def inputs(self) -> dict[str, Any]:
         """The model's fields that do not vary."""
-        found: dict[str, Any] = {"type": type(self.model).__name__}
-        for field in fields(self.model):
-            if field.name not in self.names:
-                found[field.name] = _plain(getattr(self.model, field.name))
-        return found
+        held = [field.name for field in fields(self.model) if field.name not in self.names]
+        plain = {name: _plain(getattr(self.model, name)) for name in held}
+        return {"type": type(self.model).__name__, **plain}
 
     def __call__(self, points: Floats) -> Any:
         columns = np.asarray(points, dtype=float)

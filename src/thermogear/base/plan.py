@@ -114,10 +114,11 @@ def keys_of(plan: Plan) -> list[Key]:
 
 def ranges_of(plan: Plan, key: Key) -> dict[str, slice]:
     """The stretch of every cut dimension that a chunk covers."""
-    found, sizes = {}, plan.sizes
-    for place, (name, length) in zip(key, plan.cuts.items(), strict=True):
-        found[name] = slice(place * length, min((place + 1) * length, sizes[name]))
-    return found
+    sizes = plan.sizes
+    return {
+        name: slice(place * length, min((place + 1) * length, sizes[name]))
+        for place, (name, length) in zip(key, plan.cuts.items(), strict=True)
+    }
 
 
 def region_of(plan: Plan, key: Key, variable: Variable) -> tuple[slice, ...]:

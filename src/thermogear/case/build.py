@@ -110,11 +110,13 @@ class TemperatureRule:
 
 def own_materials(file: GearFile) -> dict[str, Material]:
     """The materials that the file describes itself."""
-    own = {}
-    for name, table in file.materials.items():
-        values = table.model_dump(exclude_none=True)
-        own[name] = _under(f"materials.{name}", partial(Material, name=name, **values))
-    return own
+    return {
+        name: _under(
+            f"materials.{name}",
+            partial(Material, name=name, **table.model_dump(exclude_none=True)),
+        )
+        for name, table in file.materials.items()
+    }
 
 
 def named_material(name: str, at: str, known: Mapping[str, _Made]) -> _Made:

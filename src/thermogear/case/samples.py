@@ -383,9 +383,11 @@ def _cycle(
         samples.cycles[key] = cycle
     cyclic = [name for name in want if name not in BODIES_OF]
     found = {name: np.asarray(values) for name, values in cycle.quantities(cyclic).items()}
-    for name in want:
-        if name in BODIES_OF:
-            found[name] = np.broadcast_to(BODIES_OF[name](operating), hot.count).copy()
+    found |= {
+        name: np.broadcast_to(BODIES_OF[name](operating), hot.count).copy()
+        for name in want
+        if name in BODIES_OF
+    }
     if balance is not None:
         lost = state.open(case, balance, given=temperature is not None)
         found["status"] = np.where(lost, HEAT_NOT_SETTLED, found["status"])

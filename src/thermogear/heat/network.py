@@ -126,11 +126,7 @@ class ThermalNetwork:
     @property
     def nodes(self) -> tuple[str, ...]:
         """All node names in the order the links name them."""
-        seen: dict[str, None] = {}
-        for link in self.links:
-            seen[link.first] = None
-            seen[link.second] = None
-        return tuple(seen)
+        return tuple(dict.fromkeys(end for one in self.links for end in (one.first, one.second)))
 
     @property
     def free(self) -> tuple[str, ...]:

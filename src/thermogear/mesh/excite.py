@@ -122,17 +122,20 @@ def excitations(
     status = np.asarray(cycle["status"], dtype=np.int8)
     moving = moves(status)
     told: Any = cycle if "mesh_periods" in cycle else getattr(cycle, "attrs", {})
-    samples, periods = {}, int(np.nanmax(told.get("mesh_periods", 1)))
-    for name in ("mesh_stiffness", "spring_error"):
-        values = np.asarray(cycle[name], dtype=float)
-        samples[name] = fourier_rows(np.where(moving[:, None], values, 1.0), harmonics * periods)
+    periods = int(np.nanmax(told.get("mesh_periods", 1)))
+    springs, heat = (
+        fourier_rows(
+            np.where(moving[:, None], np.asarray(cycle[name], dtype=float), 1.0),
+            harmonics * periods,
+        )
+        for name in ("mesh_stiffness", "spring_error")
+    )
     given = over_turn(Periodic.columns([transmission_error]), periods)
-    heat = samples["spring_error"]
     width = max(given.shape[1], heat.shape[1])
     torque = np.asarray(cycle["pinion_torque"], dtype=float)
     return Excitations(
         status=status,
-        stiffness=samples["mesh_stiffness"],
+        stiffness=springs,
         error=padded(given, width) + padded(heat, width),
         half_backlash=np.asarray(cycle["half_backlash"], dtype=float),
         reference_half_backlash=np.asarray(cycle["cold_half_backlash"], dtype=float),

@@ -63,8 +63,7 @@ def conclusion(grids: Mapping[str, Dataset]) -> Dataset:
             rank[i, j, :2] = [
                 _rank_along(mine, columns[name], axis) for axis, name in enumerate(columns)
             ]
-            for k, other in enumerate(values.values()):
-                rank[i, j, 2 + k] = _rank(mine, other)
+            rank[i, j, 2:] = [_rank(mine, other) for other in values.values()]
             rising[i, j] = [_rises(mine, axis) for axis in (0, 1)]
             by_torque[i, j] = [_rises(mine[:, t], 0) for t in range(torque.size)]
             by_speed[i, j] = [_rises(mine[s], 0) for s in range(speed.size)]

@@ -72,17 +72,14 @@ class Reduction:
 
 def interface_of(assembly: Assembly) -> tuple[str, ...]:
     """Coordinates that contacts act on: gears, bearings that are not linear, seats, housing."""
-    wanted: set[int] = set()
-    for shaft in SHAFTS:
-        node = assembly.at_gear(shaft)
-        wanted |= set(np.flatnonzero(np.any(node[:, [0, 1, 4]] != 0.0, axis=1)).tolist())
-    for place in assembly.bearings:
-        if not place.bearing.law.linear:
-            wanted |= set(np.flatnonzero(np.any(place.directions != 0.0, axis=1)).tolist())
-    for row, name in enumerate(assembly.coordinates):
-        if " seat." in name or name.startswith("casing."):
-            wanted.add(row)
-    return tuple(assembly.coordinates[row] for row in sorted(wanted))
+    felt = [assembly.at_gear(shaft)[:, [0, 1, 4]] for shaft in SHAFTS]
+    felt += [one.directions for one in assembly.bearings if not one.bearing.law.linear]
+    touched = np.any(np.hstack(felt) != 0.0, axis=1)
+    return tuple(
+        name
+        for name, here in zip(assembly.coordinates, touched, strict=True)
+        if here or " seat." in name or name.startswith("casing.")
+    )
 
 
 def usual(assembly: Assembly, modes: int) -> int:

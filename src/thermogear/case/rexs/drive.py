@@ -112,12 +112,11 @@ class Drive:
 
     def _parallel(self, first: Component, second: Component) -> bool:
         """Whether the u axes of both shafts point the same way; so where nothing is said."""
-        axes = []
-        for gear in (first, second):
-            axes.append(
-                self.reader.vector(self.model.at(self.of_gear.get(gear.id)), "u_axis_vector")
-                or self.reader.vector(gear, "u_axis_vector")
-            )
+        axes = [
+            self.reader.vector(self.model.at(self.of_gear.get(gear.id)), "u_axis_vector")
+            or self.reader.vector(gear, "u_axis_vector")
+            for gear in (first, second)
+        ]
         if axes[0] is None or axes[1] is None:
             return True
         return sum(a * b for a, b in zip(axes[0], axes[1], strict=True)) >= 0.0
