@@ -192,11 +192,12 @@ class TrainPlan(TrainParts):
     @property
     def heated_names(self) -> dict[str, str]:
         """Name of every bearing in the heat network, by its own."""
-        found: dict[str, str] = {}
-        for shaft in SHAFTS:
-            mine = sorted((b for b in self.bearings if b.shaft == shaft), key=lambda b: b.position)
-            found |= {one.name: f"{shaft}_bearing_{n}" for n, one in enumerate(mine, 1)}
-        return found
+        along = sorted(self.bearings, key=lambda b: b.position)
+        return {
+            one.name: f"{shaft}_bearing_{n}"
+            for shaft in SHAFTS
+            for n, one in enumerate((b for b in along if b.shaft == shaft), 1)
+        }
 
     def heat(self, pair: GearPair, *, coefficient: float) -> ShaftHeat:
         """Shafts and bearings for the heat network.

@@ -294,12 +294,12 @@ class Drive:
         miss = np.abs(matrix @ solution - right)
         if miss.size and miss.max() > _LOSSES * np.abs(right).max():
             return {}
-        found: dict[int, float] = {}
-        for k, (stage, *_) in enumerate(self.meshes):
-            if not free.size or np.abs(free[:, k]).max() < _UNIQUE:
-                idle = abs(solution[k]) < _IDLE * np.abs(right).max()
-                found[stage.id] = 0.0 if idle else float(solution[k])
-        return found
+        torques = np.where(np.abs(solution) < _IDLE * np.abs(right).max(), 0.0, solution)
+        return {
+            stage.id: float(torques[k])
+            for k, (stage, *_) in enumerate(self.meshes)
+            if not free.size or np.abs(free[:, k]).max() < _UNIQUE
+        }
 
     def _external(
         self, over: dict[int, dict[str, Attribute]], speeds: dict[int, float]
