@@ -134,9 +134,8 @@ class BasinPlan:
         }
 
     def coordinates(self) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]:
-        named = (("displacement", "1"), ("velocity", "1"))
-        if self.dimension != 2:
-            named = plane_of(self.model).words
+        plain = (("displacement", "1"), ("velocity", "1"))
+        named = plain if self.dimension == 2 else plane_of(self.model).words
         return {
             name: ((name,), np.array(values), {"units": unit, "long_name": f"start {words}"})
             for name, values, (words, unit) in zip("xv", (self.x, self.v), named, strict=True)

@@ -161,9 +161,10 @@ def _under(prefix: str, make: Callable[[], _Made], *, own_rack: bool = False) ->
         inner, got = error.field, error.got
         for start in ("material.", "lubricant."):
             inner = inner.removeprefix(start)
-        where = f"{prefix}.{inner}"
-        if inner in ("module", "pressure_angle") or (inner.startswith("rack.") and not own_rack):
-            where = f"gears.{inner}"
+        common = inner in ("module", "pressure_angle") or (
+            inner.startswith("rack.") and not own_rack
+        )
+        where = f"{'gears' if common else prefix}.{inner}"
         if inner.endswith("tip_radius"):
             where = where.removesuffix("tip_radius") + "tip_diameter"
             got = f"a radius of {got}"

@@ -26,10 +26,8 @@ def line_of(text: str, field: str) -> int | None:
     """
     places = _places(text)
     parts = _parts(field)
-    for length in range(len(parts), 0, -1):
-        if parts[:length] in places:
-            return places[parts[:length]]
-    return None
+    above = (parts[:length] for length in range(len(parts), 0, -1))
+    return next((places[one] for one in above if one in places), None)
 
 
 def _parts(path: str) -> tuple[str, ...]:

@@ -146,10 +146,11 @@ class ElasticPair(ABC):
         """
         if self.hot.model.sharing == "loaded":
             return loaded_share(self, s)
-        if self.hot.model.sharing == "equal":
-            shares = np.broadcast_to(equal_share(self.pair, s), (self.hot.count, s.size))
-        else:
-            shares = stiffness_share(self.pair, s[None, :], self.start, *self.moduli)
+        shares = (
+            np.broadcast_to(equal_share(self.pair, s), (self.hot.count, s.size))
+            if self.hot.model.sharing == "equal"
+            else stiffness_share(self.pair, s[None, :], self.start, *self.moduli)
+        )
         return PathShare(shares, np.zeros(shares.shape, np.int8))
 
     @abstractmethod

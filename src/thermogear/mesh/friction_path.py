@@ -86,10 +86,8 @@ class FrictionPath:
     def inlet_temperature(self) -> Floats:
         """Temperature [K] of the oil that enters the contact, (count, 1)."""
         operating = self.hot.operating
-        if self.hot.model.inlet == "body":
-            found = operating.flanks
-        else:
-            found = np.asarray(operating.oil_temperature, dtype=float)
+        body = self.hot.model.inlet == "body"
+        found = operating.flanks if body else np.asarray(operating.oil_temperature, dtype=float)
         return np.broadcast_to(found, (self.hot.count,))[:, None]
 
     @property
