@@ -25,7 +25,6 @@ from thermogear.analysis.labels import label
 from thermogear.analysis.orbits import Orbit
 from thermogear.analysis.section import lanes_of
 from thermogear.base.errors import InputError, ThermogearError
-from thermogear.dynamics.exact_map import scales
 from thermogear.dynamics.models import TorsionalModel
 from thermogear.dynamics.return_map import Visit, return_map
 
@@ -100,7 +99,7 @@ class Plain:
         self.n = drawn.orbit.period
         self.span = abs(drawn.to - self.start)
         self.to = drawn.to
-        self.unit = np.append(scales(lanes_of(self.family(self.start))), self.span)
+        self.unit = np.append(lanes_of(self.family(self.start)).unit[0], self.span)
         self.state = drawn.orbit.state
 
     def gap(self, u: Floats) -> tuple[Floats, Visit]:

@@ -7,8 +7,11 @@ import json
 import os
 import pickle
 import platform
+from collections import OrderedDict
 from collections.abc import Callable, Generator
 from contextlib import nullcontext
+from functools import partial
+from hashlib import sha256
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,7 +21,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as the command line does
 import numpy as np
 import pytest
 from markupsafe import Markup
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from plain_numbers import told_as_text, told_in_csv
 from thermogear import Gear, GearPair, Operating, Temperatures, __version__
@@ -245,6 +248,31 @@ def warmed_once(monkeypatch: pytest.MonkeyPatch) -> None:
         return _WARMED[key]
 
     monkeypatch.setattr(asked, "warm_up", once)
+
+
+_LOOKED: OrderedDict[tuple[str, bytes], Any] = OrderedDict()
+"""What :func:`looked_once` has found, by the function and the samples; the last 32."""
+
+
+@pytest.fixture
+def looked_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A record's lines and its tracked line are looked for once for the same samples.
+
+    For a test that measures one record with several options: both are functions of the samples
+    alone. A test that calls them itself has them anew.
+    """
+    from thermogear.measured import changing, gearing
+
+    def once(look: Callable[[NDArray[np.float64]], Any], table: NDArray[np.float64]) -> Any:
+        key = look.__name__, sha256(f"{table.shape}".encode() + table.tobytes()).digest()
+        if key not in _LOOKED:
+            _LOOKED[key] = look(table)
+        if len(_LOOKED) > 32:
+            _LOOKED.popitem(last=False)
+        return _LOOKED[key]
+
+    for module, name in ((changing, "tracked_shaft"), (gearing, "sharp_peaks")):
+        monkeypatch.setattr(module, name, partial(once, getattr(module, name)))
 
 
 @pytest.fixture(scope="session")

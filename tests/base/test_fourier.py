@@ -46,7 +46,7 @@ def test_taylor_tables(count: int) -> None:
     centres, half = (np.arange(count) + 0.5) / count, np.full(count, 0.5 / count)
     direct = _of_harmonics(ROWS, centres, half, 8)
     scale = np.abs(direct).max(axis=0)
-    assert np.all(np.abs(fourier.taylor(ROWS, count, 8) - direct) <= 1e-11 * scale)
+    assert np.all(np.abs(fourier.taylor(ROWS, count=count, order=8) - direct) <= 1e-11 * scale)
 
 
 @pytest.mark.parametrize("order", [0, 1, 3])

@@ -166,6 +166,19 @@ def test_heat_on_leaves_the_given_temperatures_out(name: str) -> None:
         turned(on, {"gears": 100.0})
 
 
+def test_a_dial_of_eccentricity_keeps_its_angle_and_takes_half_a_run_out() -> None:
+    stated = (("gears.wheel.eccentricity", '{run_out = "12 um", angle = "90 deg"}'),)
+    case = case_of("own", stated)
+    before = {one.name: one.value for one in dials(case)}
+    assert before["wheel_eccentricity"] == pytest.approx(6.0, rel=1e-12)
+    assert before["pinion_eccentricity"] == 0.0
+    changed = case_of("own", turned(case, {"wheel_eccentricity": 9.0}))
+    table = changed.file.gears.wheel.eccentricity
+    assert table is not None
+    assert (table.amount, table.angle) == pytest.approx((9e-6, 0.5 * math.pi), rel=1e-12)
+    assert changed.period.mesh_periods == changed.pair.wheel.teeth
+
+
 REFUSED = {
     "speed": (-1.0, 0.0, 1e9, math.nan, math.inf, -math.inf, 1e308),
     "torque": (-5.0, 1e300, math.nan),
@@ -174,6 +187,8 @@ REFUSED = {
     "backlash": (-1.0, 1e3, math.nan),
     "damping": (-0.1, 17.0, math.nan),
     "error": (-3.0, 1e9, math.nan),
+    "pinion_eccentricity": (-1.0, 1e9, math.nan),
+    "wheel_eccentricity": (-1.0, 1e9, math.nan),
 }
 
 

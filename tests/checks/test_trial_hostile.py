@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scripts import ROOT, script
 
-COUNT = 10
+COUNT = 6
 
 
 @pytest.mark.slow

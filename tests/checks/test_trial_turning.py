@@ -18,13 +18,13 @@ TRIAL = script("trial_turning")
 
 @pytest.mark.parametrize("kind", TRIAL.KINDS[:3])
 def test_orders_over_speed_are_within_their_intervals(kind: str) -> None:
-    """One draw of `make trial-turning`, shorter: 95 % of about 100 amplitudes that share nothing.
+    """One draw of `make trial-turning`, shorter: 95 % of about 70 amplitudes that share nothing.
 
     Neighbouring steps share their samples. Of 100 draws of 95 % less than 90 % hold once in 87
     times; the draw is fixed.
     """
     random = np.random.default_rng([TRIAL.SEED, 99, TRIAL.KINDS.index(kind)])
-    run = TRIAL.drawn(random, seconds=10.0)
+    run = TRIAL.drawn(random, seconds=7.0)
     found = TRIAL.read(run, kind, random)
     off = np.abs(TRIAL.judged(run, found)[:, 1])
     assert found.slices is not None
@@ -51,7 +51,7 @@ def test_orders_over_speed_are_within_their_intervals(kind: str) -> None:
 
 def test_a_tacho_in_another_file_is_placed_by_its_time() -> None:
     random = np.random.default_rng(7)
-    run = TRIAL.drawn(random, seconds=6.0)
+    run = TRIAL.drawn(random, seconds=4.0)
     a = Record((Channel("a", run.values, "g"),), "made", TRIAL.RATE, "made", start=3.0)
     late = 2 * 12_800 // 10
     own = Record((Channel("n", 60 * run.speed[late:], "rpm"),), "n", TRIAL.RATE, "made", start=3.2)
@@ -67,7 +67,7 @@ def test_a_tacho_in_another_file_is_placed_by_its_time() -> None:
 
 def test_teeth_and_pulses_per_turn_are_found() -> None:
     random = np.random.default_rng(11)
-    run = TRIAL.drawn(random, seconds=5.0)
+    run = TRIAL.drawn(random, seconds=3.5)
     fast = replace(run, turns=4 * run.turns)
     four = Channel("tacho", TRIAL.pulses(fast, random), "V")
     record = Record((Channel("a", run.values, "g"), four), "x", TRIAL.RATE, "made", tacho="tacho")

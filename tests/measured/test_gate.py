@@ -17,6 +17,8 @@ from thermogear.measured.record import Channel, Record
 from thermogear.measured.reduction import Measurement, measure
 from thermogear.signals.quality import damages, filled
 
+pytestmark = pytest.mark.usefixtures("looked_once")
+
 RATE, TEETH, MESH, COUNT = 2560.0, 25, 401.3, 8192
 SPEED = 2.0 * np.pi * MESH / TEETH
 

@@ -22,6 +22,8 @@ from thermogear.measured.record import Channel, Record
 from thermogear.measured.reduction import Measurement, measure
 from thermogear.signals.integration import trapezoid_factor
 
+pytestmark = pytest.mark.usefixtures("looked_once")
+
 THESIS = ((419.7, 10.4e-6), (832.58, 19.3e-6), (1251.6, 48.5e-6))
 
 
@@ -243,7 +245,7 @@ def test_a_line_beside_the_shaft_s_is_named_and_says_nothing_of_sidebands(order:
             assert found[name].half_width < 0.1
 
 
-@pytest.mark.parametrize("frequency", [419.7, 1251.6])
+@pytest.mark.parametrize("frequency", [1251.6])
 def test_orders_that_the_record_cannot_hold_are_refused(frequency: float) -> None:
     record, rate, shaft = tone(frequency, 10e-6), 25_600.0, frequency / 25
     lowest, highest = rate / (1 << 16) / shaft, rate / 2 / shaft
@@ -257,8 +259,7 @@ def test_orders_that_the_record_cannot_hold_are_refused(frequency: float) -> Non
         assert [line.kind for line in inside.lines].count("order") == 1
 
 
-@pytest.mark.parametrize("rate", [25_600.0, None])
-@pytest.mark.parametrize("frequency", [832.58, 1251.6])
+@pytest.mark.parametrize(("frequency", "rate"), [(832.58, 25_600.0), (1251.6, None)])
 def test_harmonics_above_the_band_are_told(frequency: float, rate: float | None) -> None:
     record = replace(tone(frequency, 10e-6), rate=rate)
     fit = int(25_600.0 / 2.56 / frequency)

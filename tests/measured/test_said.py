@@ -27,6 +27,8 @@ from thermogear.views.page import Gallery, Shown
 from thermogear.views.picture import Curve, Points
 from thermogear.views.write import page_of
 
+pytestmark = pytest.mark.usefixtures("looked_once")
+
 TEETH, PULSES, RATE, SECONDS = 20, 2, 2000.0, 5.0
 FIRST, LAST = 600.0, 1320.0  # rpm
 
@@ -161,7 +163,7 @@ def test_teeth_of_one_gear_with_the_speed_of_the_other_are_told_and_right_ones_a
     """Both statements that are right are silent; both that are crossed are told, with no speed."""
     random = np.random.default_rng(20261126)
     two_gears = 0
-    for teeth, rpm in pairs(random, 6):
+    for teeth, rpm in pairs(random, 3):
         record = pair(random, teeth, rpm)
         speeds = rpm, rpm * teeth[0] / teeth[1]
         for own in (0, 1):
@@ -184,7 +186,7 @@ def test_teeth_of_one_gear_with_the_speed_of_the_other_are_told_and_right_ones_a
                     told_speeds = [crossed[k] for k in ("speed", "mate_speed", "teeth_speed")]
                     expected = [nominal, speeds[whose], speeds[own]]
                     assert np.array(told_speeds) / RPM == pytest.approx(expected, rel=1e-3), case
-    assert two_gears >= 9  # of 12: elsewhere the mate is not decided, and the speed alone is told
+    assert two_gears >= 4  # of 6: elsewhere the mate is not decided, and the speed alone is told
 
 
 def with_tacho() -> Record:
@@ -271,7 +273,7 @@ def spectrum(found: Measurement) -> Shown:
     return gallery.pictures[0]
 
 
-@pytest.mark.parametrize("seed", [41, 42, 43])
+@pytest.mark.parametrize("seed", [41, 42])
 def test_a_run_has_no_order_in_its_spectrum_over_time(seed: int) -> None:
     """In hertz to half the rate, and nothing marked: no line of a run has one frequency."""
     random = np.random.default_rng(seed)

@@ -22,6 +22,8 @@ from thermogear.measured.reduction import Measurement
 from thermogear.measured.several import Several, result_of_several, several
 from thermogear.views.write import page_of
 
+pytestmark = pytest.mark.usefixtures("looked_once")
+
 RATE = 5120.0
 WORDS = (
     "rate", "unit", "scale", "teeth", "speed", "tacho", "tacho_scale", "pulses", "harmonics",
@@ -166,7 +168,7 @@ def mesh_change(found: Several, record: int = 1) -> float:
     return float(found.change[record, found.keys.index(("acc", "mesh x 1"))])
 
 
-TRAINS = [((17, 43), (22, 61)), ((29, 71), (19, 67)), ((37, 53), (15, 44)), ((23, 59), (31, 73))]
+TRAINS = [((17, 43), (22, 61)), ((37, 53), (15, 44))]
 
 
 @pytest.mark.parametrize(("first", "second"), TRAINS)
@@ -216,7 +218,7 @@ def test_a_drift_of_speed_still_compares(seed: int) -> None:
     assert [n for n in result_of_several(found).notices if n.level != "info"] == []
 
 
-@pytest.mark.parametrize("ratio", [0.5, 0.71, 1.31, 1.486, 2.0])
+@pytest.mark.parametrize("ratio", [0.5, 1.31, 2.0])
 def test_another_speed_is_told_where_the_teeth_decide_and_withheld_where_nothing_does(
     ratio: float,
 ) -> None:

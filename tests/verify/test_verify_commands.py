@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from said import numbers
 from thermogear.base.errors import InputError
 from thermogear.case.examples import example_text
 from thermogear.front.verify_commands import verify
+from thermogear.verify import checks, pairs
 
 pytestmark = pytest.mark.slow
 
@@ -24,12 +26,28 @@ def case(tmp_path: Path) -> str:
     return str(path)
 
 
+@pytest.fixture
+def one_check(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is checked first is found again whatever is asked: for tests of what is printed."""
+    check, kept = checks.check_stiffness, list[checks.StiffnessCheck]()
+
+    def once(*asked: Any, **how: Any) -> checks.StiffnessCheck:
+        if not kept:
+            kept.append(check(*asked, **how))
+        return kept[0]
+
+    monkeypatch.setattr(checks, "check_stiffness", once)
+
+
 def call(*arguments: str) -> Result:
     return CliRunner().invoke(verify, list(arguments))
 
 
-def test_stiffness_prints_model_elements_and_difference(case: str) -> None:
-    done = call("stiffness", case, "--positions", "1")
+@pytest.mark.usefixtures("one_check")
+def test_stiffness_as_a_table_and_as_json(case: str) -> None:
+    """Both of one check: what is printed of it is in question here."""
+    asked = ("stiffness", case, "--positions", "1")
+    done = call(*asked)  # at the greatest torque of the case, 100 N m
     assert done.exit_code == 0, done.output
     assert "corner" in done.output
     rows = [line.split() for line in done.output.splitlines() if line.startswith("  0.")]
@@ -40,13 +58,9 @@ def test_stiffness_prints_model_elements_and_difference(case: str) -> None:
         # N/mm over N/(mm um) is um
         assert error == pytest.approx(load / model - load / finite, abs=2e-3)
         assert abs(error) < 0.03 * load / finite
-
-
-def test_stiffness_as_json(case: str) -> None:
-    done = call("stiffness", case, "--positions", "1", "--torque", "200", "--json")
-    content = json.loads(done.output)
-    assert content["torque"] == 200.0
-    assert content["line_load_n_per_m"] == pytest.approx(200.0 / 58.7308e-3 / 25e-3, rel=1e-5)
+    content = json.loads(call(*asked, "--torque", "100", "--json").output)
+    assert content["torque"] == 100.0
+    assert content["line_load_n_per_m"] == pytest.approx(100.0 / 58.7308e-3 / 25e-3, rel=1e-5)
     ratio = np.array(content["model"]) / np.array(content["finite_elements"]) - 1.0
     assert ratio == pytest.approx(content["relative_difference"], rel=1e-9)
 
@@ -60,23 +74,22 @@ def test_growth_of_both_gears(case: str) -> None:
     assert np.max(np.abs(content["wheel"]["difference"])) < 0.7e-6
 
 
+@pytest.mark.usefixtures("one_check")
 def test_the_fixed_pairs(monkeypatch: pytest.MonkeyPatch) -> None:
-    import thermogear.verify.pairs as pairs
-
+    monkeypatch.setattr(checks, "inner_phases", lambda *_: (0.3, 0.8))
     # the whole list is computed in the tests of the checks; here its printing
-    published, far = pairs.published_pair(), pairs.far_pairs()
-    pairs_drawn = pairs.drawn_pairs()
-    monkeypatch.setattr(pairs, "own_pairs", lambda: far[:1])
-    monkeypatch.setattr(pairs, "far_pairs", lambda: (published,))
-    monkeypatch.setattr(pairs, "corner_pairs", lambda: (published,))
-    monkeypatch.setattr(pairs, "drawn_pairs", lambda: pairs_drawn[-3:-2])
+    published = pairs.published_pair()
+    for group in ("own", "far", "corner", "drawn"):
+        named = published._replace(name=f"{group}, {published.name}")
+        monkeypatch.setattr(pairs, f"{group}_pairs", lambda named=named: (named,))
     roots = pairs.root_pairs()
     monkeypatch.setattr(pairs, "root_pairs", lambda: roots[2:])
     done = call("pairs")
     assert done.exit_code == 0, done.output
-    lines = done.output.splitlines()
-    assert [4.0, 20.0, 35.0, 25.0] in [numbers(line)[:4] for line in lines]
-    model, finite, off = numbers(lines[-1])[-3:]
+    told = [line for line in done.output.splitlines() if published.name in line]
+    heads = [line for line in told if not line.startswith("worst")]
+    assert [numbers(line)[:4] for line in heads] == [[5.0, 25.0, 75.0, 200.0]] * 5
+    model, finite, off = numbers(done.output.splitlines()[-1])[-3:]
     assert off == pytest.approx(100.0 * (model / finite - 1.0), abs=0.01)
 
 

@@ -37,7 +37,7 @@ def bound(coefficients: Complexes, order: int = 0) -> Floats:
     return np.asarray(greatest / np.cos(np.pi / 8.0))
 
 
-def taylor(coefficients: Complexes, count: int, order: int) -> Floats:
+def taylor(coefficients: Complexes, *, count: int, order: int) -> Floats:
     """Taylor coefficients on ``count`` equal parts of the period: (part, row, order + 1).
 
     p = sum_m t_m u^m with u from -1 to 1 over a part: t_m is the series of

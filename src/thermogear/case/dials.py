@@ -20,6 +20,7 @@ from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import STILL
 from thermogear.case.case import GearCase
 from thermogear.case.thermal_state import HOT
+from thermogear.gears.deviations import GEARS
 
 Changes = tuple[tuple[str, str], ...]
 """Dotted fields of the file and what is put there; nothing: the field is left out."""
@@ -87,6 +88,11 @@ def _kinds(case: GearCase) -> dict[str, _Kind]:
         _Kind("damping", "damping ratio", "", ("dynamics.damping_ratio",)),
         _Kind("error", "transmission error, first harmonic", "um",
               ("transmission_error.harmonics",)),
+        *(
+            _Kind(f"{gear}_eccentricity", f"{gear}'s eccentricity", "um",
+                  (f"gears.{gear}.eccentricity",))
+            for gear in GEARS
+        ),
     )  # fmt: skip
     return {one.name: one for one in found}
 
@@ -121,6 +127,9 @@ def dials(case: GearCase) -> list[Dial]:
         "damping": (zeta, (0.0, max(0.3, 2.0 * zeta))),
         "error": (error, (0.0, max(20.0, 4.0 * error))),
     }
+    for gear in GEARS:
+        amount, _ = _eccentricity(case, gear)
+        values[f"{gear}_eccentricity"] = (amount, (0.0, max(40.0, 2.0 * amount)))
     return [_dial(kinds[name], value, ends) for name, (value, ends) in values.items()]
 
 
@@ -146,6 +155,9 @@ def turned(case: GearCase, values: Mapping[str, float]) -> Changes:
         text = f"{_text(value)} {dial.unit}".strip()
         if name == "error":
             found.append((dial.fields[0], _harmonics(case, value)))
+        elif name.endswith("eccentricity"):
+            _, angle = _eccentricity(case, name.partition("_")[0])
+            found.append((dial.fields[0], literal({"amount": text, "angle": f"{angle!r} rad"})))
         elif name == "backlash" and not _given(case, "backlash.value"):
             said = {"value": text, "direction": "normal", "extent": "total"}
             found.append(("backlash", literal(said)))
@@ -223,6 +235,14 @@ def _first(case: GearCase) -> float:
     """The amplitude [m] of the first harmonic of the kinematic error."""
     harmonics = case.transmission_error.harmonics
     return abs(harmonics[0]) if len(harmonics) else 0.0
+
+
+def _eccentricity(case: GearCase, gear: str) -> tuple[float, float]:
+    """Amount [um] and angle [rad] that the file gives a gear; none is 0."""
+    table = getattr(case.file.gears, gear).eccentricity
+    if table is None:
+        return 0.0, 0.0
+    return 1e6 * (0.5 * table.run_out if table.amount is None else table.amount), table.angle
 
 
 def _harmonics(case: GearCase, micrometres: float) -> str:

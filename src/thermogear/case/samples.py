@@ -8,7 +8,7 @@ finish, moduli, expansion, damping and error may be a column.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import KW_ONLY, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -66,7 +66,7 @@ BODIES_OF: dict[str, Callable[[Operating], ArrayLike]] = {
 """What is wanted of the operating points themselves, no quantity of the mesh cycle."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Samples:
     """``case`` with its operating points in columns, and what else vibration needs.
 
@@ -74,7 +74,6 @@ class Samples:
     (sample, 2). ``cycles``: those that the motion was made of, for the answers that follow.
     """
 
-    _: KW_ONLY
     case: GearCase
     damping_ratio: Floats
     error: Floats
@@ -125,7 +124,7 @@ def takes(case: GearCase, field: str) -> bool:
         # the heat balance knows one housing and one width
         return not case.computed
     if table.startswith("materials."):
-        # a soaked backlash hangs on how much the materials expand
+        # a backlash given at a temperature hangs on how much the materials expand
         soaked = _given(case, "backlash.temperature") is not None
         return last in OF_MATERIAL and _given(case, field) is not None and not soaked
     return not case.computed and _takes_heat(case, field)

@@ -214,7 +214,7 @@ def _taylor(lanes: LaneTables, name: str, centres: Floats, half: Floats, order: 
     coefficients = getattr(lanes, name)
     pieces: tuple[Pieces | None, ...] = getattr(lanes, name + "_pieces")
     if lanes.by_fft and np.ptp(half) < 1e-6 * half[0]:
-        return fourier.taylor(coefficients, centres.size, order)
+        return fourier.taylor(coefficients, count=centres.size, order=order)
     if len(lanes) == 1 and pieces[0] is None:
         return _of_one(coefficients.tobytes(), centres.tobytes(), half.tobytes(), order)
     out = _of_harmonics(coefficients, centres, half, order)

@@ -50,6 +50,19 @@ class TurnTables:
     mesh_periods: int
     _sampled: dict[int, tuple[Floats, Floats, Floats]] = field(default_factory=dict, init=False)
 
+    def from_greatest(self) -> TurnTables:
+        """The same turn begun at the mesh period whose error is greatest at its phase 0.
+
+        So a run begins at the same teeth however they are numbered.
+        """
+        error = self.sampled(STEPS)[2][::STEPS]
+        shift = int(np.argmax(error)) / self.mesh_periods
+        stiffness, error = (
+            row * np.exp(2j * np.pi * shift * np.arange(row.size))
+            for row in (self.stiffness, self.error)
+        )
+        return TurnTables(stiffness=stiffness, error=error, mesh_periods=self.mesh_periods)
+
     def sampled(self, steps: int) -> tuple[Floats, Floats, Floats]:
         """k and e'' (phase in turns) at half steps, e at the ``steps`` of every mesh period."""
         if steps not in self._sampled:
@@ -63,6 +76,15 @@ class TurnTables:
         return self._sampled[steps]
 
 
+def longest(mesh_periods: int) -> int:
+    """How many mesh periods a motion over a turn of so many is followed.
+
+    >>> longest(40), longest(1890)
+    (4080, 7560)
+    """
+    return max(LEAST_TURNS, MOST_MESH_PERIODS // mesh_periods) * mesh_periods
+
+
 def _series(coefficients: Complexes, count: int) -> Floats:
     """A Fourier series at ``count`` uniform phases, more than twice its harmonics."""
     half = 0.5 * coefficients
@@ -73,8 +95,8 @@ def _series(coefficients: Complexes, count: int) -> Floats:
 @dataclass(frozen=True, eq=False, kw_only=True)
 class TurnMotions:
     """One entry per run: ``period`` in turns (0: none was seen), ``state`` (run, 2) at phase 0, and
-    over its cycle, or the later half of what was followed where none is: greatest and least force
-    k f over the mean stiffness, greatest and least x + e, share of time out of drive-side contact.
+    over its cycle (else nan): greatest and least force k f over the mean stiffness, greatest and
+    least x + e, share of time out of drive-side contact.
     """
 
     period: NDArray[np.int32]
@@ -130,7 +152,7 @@ def _follow(
     decay = 2.0 * math.log(1.0 / DIED_OUT) / np.maximum(lanes.damping[index], 1e-9)
     ahead = float((decay / lanes.period[index]).max()) * mesh
     first = math.ceil(min(max(ahead, 1.0), MOST_MESH_PERIODS)) * steps
-    most = max(LEAST_TURNS, MOST_MESH_PERIODS // mesh)
+    most = longest(mesh) // mesh
     x, v = out.state[index].T.copy()
     ends, felt = np.empty((most + 1, 2, index.size)), np.empty((most, 5, index.size))
     active = np.arange(index.size)
@@ -153,15 +175,13 @@ def _follow(
         felt[number][:, active] = run(0, turn)
         ends[number + 1][:, active] = x[active], v[active]
         cycle = _cycle(ends[: number + 2][:, :, active] / lanes.backlash[index[active]])
-        last = number + 1 == most
-        done = (cycle > 0) | last
-        for length in np.unique(cycle[done]):
-            rows = active[done & (cycle == length)]
-            span = length or max(most // 2, 1)
-            _keep(out, index[rows], felt[number + 1 - span : number + 1][:, :, rows], turn)
+        for length in np.unique(cycle[cycle > 0]):
+            rows = active[cycle == length]
+            over = felt[number + 1 - length : number + 1][:, :, rows]
+            _keep(out, index[rows], over, turn)
             out.period[index[rows]] = length
-            out.state[index[rows]] = ends[number + 1][:, rows].T
-        active = active[~done]
+        out.state[index[active]] = ends[number + 1][:, active].T
+        active = active[cycle == 0]
         if not active.size:
             return
 

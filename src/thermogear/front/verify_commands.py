@@ -132,7 +132,13 @@ def growth(case: str, overrides: tuple[str, ...], bore: str, as_json: bool) -> N
             reference=heat.reference,
         )
         found = check_growth(gear, field, bore=bore)
-        content[name] = _growth_numbers(found)
+        content[name] = {
+            "unit": "m",
+            "radius": found.radius.tolist(),
+            "model": found.model.tolist(),
+            "finite_elements": found.finite.tolist(),
+            "difference": found.difference.tolist(),
+        }
         _say(
             as_json,
             "",
@@ -228,16 +234,6 @@ def _stiffness_numbers(found: StiffnessCheck) -> dict[str, Any]:
         "worst_deflection_error_m": float(found.error[found.worst]),
         "worst_share_difference": found.worst_share,
         "peak_to_peak_m": dict(zip(("model", "finite_elements"), found.peak_to_peak, strict=True)),
-    }
-
-
-def _growth_numbers(found: GrowthCheck) -> dict[str, Any]:
-    return {
-        "unit": "m",
-        "radius": found.radius.tolist(),
-        "model": found.model.tolist(),
-        "finite_elements": found.finite.tolist(),
-        "difference": found.difference.tolist(),
     }
 
 

@@ -127,7 +127,10 @@ def _pool(cores: int) -> Iterator[ProcessPoolExecutor]:
     """Processes that start anew, so that no lock is inherited; on an error or Ctrl+C they end."""
     before = set(multiprocessing.active_children())
     pool = ProcessPoolExecutor(
-        cores, mp_context=multiprocessing.get_context("spawn"), initializer=_deaf
+        cores,
+        mp_context=multiprocessing.get_context("spawn"),
+        initializer=signal.signal,  # Ctrl+C is the parent's: it ends its children
+        initargs=(signal.SIGINT, signal.SIG_IGN),
     )
     try:
         yield pool
@@ -137,11 +140,6 @@ def _pool(cores: int) -> Iterator[ProcessPoolExecutor]:
         raise
     finally:
         pool.shutdown(cancel_futures=True)
-
-
-def _deaf() -> None:
-    """Ctrl+C is the parent's: it ends its children."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def cores_here() -> int:

@@ -113,7 +113,11 @@ def passed(channels: Sequence[Channel], longest: int) -> Passed:
     count = len(channels[0])
     table = np.stack([c.values(0, stop=min(count, longest)) for c in channels])
     through = _without_copies(Passed(channels=list(channels), table=table))
-    found = [_examined(values) for values in through.table]
+    # spikes that are many are no spikes
+    found = [
+        [one for one in damages(x) if one.kind != "spikes" or one.count <= FILLED * x.size]
+        for x in through.table
+    ]
     gone = np.zeros(through.table.shape[-1], dtype=bool)
     for own in found:
         lost = _lost(own, gone.size)
@@ -129,13 +133,6 @@ def passed(channels: Sequence[Channel], longest: int) -> Passed:
         through.cut(first, stop=stop)
     _proportions(through)
     return through
-
-
-def _examined(values: Floats) -> list[Damage]:
-    """The channel's damages; spikes that are many are no spikes."""
-    return [
-        one for one in damages(values) if one.kind != "spikes" or one.count <= FILLED * values.size
-    ]
 
 
 def _lost(own: Sequence[Damage], size: int) -> NDArray[np.bool_]:

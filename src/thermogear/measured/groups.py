@@ -11,7 +11,7 @@ and for a fifth of them by an eighth of a bin more.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,11 +41,10 @@ LONGEST_COMB = 400
 _COMB_BELOW = special.log_ndtr(-_LEVELS[:, None] / np.array(COMB_SPREADS))  # (level, spread)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Seen:
     """Log evidence of each group over chance, and the lines each holds (index, -1: none)."""
 
-    _: KW_ONLY
     evidence: Floats
     lines: NDArray[np.int64]
 
@@ -94,13 +93,12 @@ def falling(
     return tuple(Seen(evidence=e, lines=n) for e, n in zip(evidence, upto.lines, strict=True))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class _Looked:
     """What is at foretold places (group, member): a line that is there, or none that would be
     seen; the line's ``height`` [nepers over the threshold], and log ``gain`` of its place over
     chance; its index (-1: none)."""
 
-    _: KW_ONLY
     there: Floats
     missing: Floats
     height: Floats

@@ -5,7 +5,7 @@ They need no teeth: their heights follow the resonances of the metal, neighbour 
 
 from __future__ import annotations
 
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
@@ -42,11 +42,10 @@ _SAME = 1e-4  # two steps are one
 _NEAR = 0.1  # bins: a step that teeth foretell
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Comb:
     """Lines every ``step`` +- ``error`` [cycles/sample], and their log evidence alone."""
 
-    _: KW_ONLY
     step: float
     error: float
     evidence: float

@@ -44,7 +44,9 @@ def join_records(records: Sequence[Record], how: str, *, names: Sequence[str] = 
         raise InputError("join", repr(how), allowed=" or ".join(JOINS))
     if len(records) < 2:
         raise InputError("join", f"{len(records)} record", allowed="two files or more of one run")
-    files = _short(names or [one.source for one in records])
+    paths = [Path(name) for name in names or [one.source for one in records]]
+    require_once(paths)
+    files = shown_names(paths)
     rate = _one_rate(records, files)
     join = _channels if how == "channels" else _pieces
     found = join(records, files, rate)
@@ -52,14 +54,17 @@ def join_records(records: Sequence[Record], how: str, *, names: Sequence[str] = 
     return replace(found, notices=(*_merged(records, files), *found.notices), rate_doubt=doubt)
 
 
-def _short(names: Sequence[str]) -> list[str]:
-    """The files' names; with their folders where two files are named alike."""
-    paths = [Path(name) for name in names]
-    twice = [name for name, count in Counter(map(str, paths)).items() if count > 1]
+def require_once(files: Sequence[Path]) -> None:
+    """Refuse a file that is named twice."""
+    twice = [str(path) for path, count in Counter(files).items() if count > 1]
     if twice:
         raise InputError("file", twice[0], why="it is named twice", fix="name every file once")
-    alike = len({path.name for path in paths}) < len(paths)
-    return [str(path) if alike else path.name for path in paths]
+
+
+def shown_names(files: Sequence[Path]) -> list[str]:
+    """The files' names, with their folders where two are alike."""
+    alike = len({file.name for file in files}) < len(files)
+    return [str(file) if alike else file.name for file in files]
 
 
 def _merged(records: Sequence[Record], files: Sequence[str]) -> list[Notice]:

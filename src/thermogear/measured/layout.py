@@ -26,15 +26,13 @@ _META = re.compile(r"^[\s#%;/!\"']*([^:=,;\t]{2,40}?)\s*[:=,;\t]\s*\"?([^\s\"]+)
 class Layout:
     """How the numbers of a text file are written: found from its first lines.
 
-    ``separator`` None: runs of blanks. ``paired``: commas part both numbers and decimals, two
-    fields make one number. ``skip``: lines before the first row. ``commented``: what follows the
-    columns is a comment; ``clocks``: clock stamps are turned to seconds; ``waves``: what a LabVIEW
-    header says.
+    ``separator`` None: runs of blanks. ``skip``: lines before the first row. ``commented``: what
+    follows the columns is a comment; ``clocks``: clock stamps are turned to seconds; ``waves``:
+    what a LabVIEW header says.
     """
 
     separator: str | None
     decimal: str
-    paired: bool
     columns: int
     names: list[str]
     units: list[str | None]
@@ -85,23 +83,20 @@ def find_layout(head: list[str], path: Path, options: ReadOptions) -> Layout:
         above = [line for line in head[: comment[0]] if line.strip()]
         above.append((separator or " ").join(table[comment[0]]))
     names, units = _header(above, separator, width)
-    paired = separator == "," and _paired(
-        [table[i] for i in rows if i >= start], len(names), path, options
-    )
-    columns = width // 2 if paired else width
-    if columns > MOST_COLUMNS:
-        why = f"{columns} columns; allowed 1..{MOST_COLUMNS} (channels stand side by side)"
+    if separator == ",":
+        below = [table[i] for i in rows if i >= start]
+        _require_one_meaning(below, len(names), path, options.decimal)
+    if width > MOST_COLUMNS:
+        why = f"{width} columns; allowed 1..{MOST_COLUMNS} (channels stand side by side)"
         raise refused(path, "text", why)
-    layout = Layout(separator, decimal, paired, columns, names, units, start)
+    layout = Layout(separator, decimal, width, names, units, start)
     layout.commented = comment is not None
     _of_labview(layout, above)
-    if paired:
-        layout.notices.append(Notice.of("commas_ambiguous"))
-    if len(names) != columns:
+    if len(names) != width:
         if len(names) > 1:
-            layout.notices.append(Notice.of("names_do_not_fit", names=len(names), columns=columns))
-        layout.names = [f"column {i + 1}" for i in range(columns)]
-        layout.units = [None] * columns
+            layout.notices.append(Notice.of("names_do_not_fit", names=len(names), columns=width))
+        layout.names = [f"column {i + 1}" for i in range(width)]
+        layout.units = [None] * width
     _facts(layout, above)
     return layout
 
@@ -194,38 +189,22 @@ def _header(
     )
 
 
-def _paired(rows: list[list[str]], named: int, path: Path, options: ReadOptions) -> bool:
-    """Comma separators: whether two fields make one number with a decimal comma."""
+def _require_one_meaning(
+    rows: list[list[str]], named: int, path: Path, decimal: str | None
+) -> None:
+    """Refuse commas that may part the fields and be decimal signs as well."""
     width = len(rows[0])
-    if options.decimal == "." or (named == width and options.decimal is None):
-        return False
+    if decimal == "." or (decimal is None and named == width):
+        return
     rows = [row for row in rows if len(row) == width]
     whole = all("." not in cell for row in rows for cell in row)
     halves = width % 2 == 0 and all(
         re.fullmatch(r"\d+([eE][+-]?\d+)?", cell) for row in rows for cell in row[1::2]
     )
-    if options.decimal == "," or (named and 2 * named == width):
-        if not (whole and halves):
-            why = "the fields do not pair into numbers with a decimal comma"
-            odd = next((c for row in rows for c in row if "." in c), None)
-            why += "" if odd is None else f": {odd[:20]!r} holds a point"
-            raise refused(path, "text", why, "--decimal ." if odd else None)
-        return True
-    if whole and 0 < named < width < 2 * named:
-        raise refused(
-            path,
-            "text",
-            f"{named} names over rows of {width} fields: some commas part numbers and some are "
-            "decimal; save it with another separator",
-        )
-    if whole and halves and not named:
-        raise refused(
-            path,
-            "text",
-            f"rows of {width} whole fields may be {width} integers or {width // 2} numbers with "
-            "a decimal comma: give --decimal . or --decimal ,",
-        )
-    return False
+    pairs = named < width <= 2 * named or (halves and not named)
+    if decimal == "," or (whole and pairs):
+        why = f"commas part the {width} fields of a row and may be decimal signs as well"
+        raise refused(path, "text", why, "--decimal . or save it with another separator")
 
 
 def _facts(layout: Layout, above: list[str]) -> None:

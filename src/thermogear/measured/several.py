@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +16,7 @@ from thermogear.base.errors import InputError, nearest
 from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import label
 from thermogear.measured.at_once import Row, rows_of
+from thermogear.measured.joined import require_once, shown_names
 from thermogear.measured.reduction import Measurement
 from thermogear.measured.same_line import ALIKE, Turns, compare
 from thermogear.results.result import Notice, Result, now
@@ -110,9 +110,7 @@ def files_of(named: Sequence[str | Path]) -> list[Path]:
         raise InputError("file", where, why="no file is in it", fix="name files, or their folder")
     if len(found) > MOST:
         raise InputError("file", f"{len(found)} files", allowed=f"1..{MOST}")
-    twice = [str(path) for path, count in Counter(found).items() if count > 1]
-    if twice:
-        raise InputError("file", twice[0], why="it is named twice", fix="name every file once")
+    require_once(found)
     return found
 
 
@@ -140,7 +138,7 @@ def several(
     with more than one ``read`` must be a function that a new process can import, and a script
     needs its ``if __name__ == "__main__":``.
     """
-    shown = _shown(files)
+    shown = shown_names(files)
     if baseline not in ("first", "last") and _place(baseline, files, shown) is None:
         fix = nearest(baseline, [*shown, "first", "last"])
         raise InputError("--baseline", baseline, allowed="first, last or one of the files", fix=fix)
@@ -214,12 +212,6 @@ def _nothing_compared(
         if hint is None
         else hint.text,
     )
-
-
-def _shown(files: Sequence[Path]) -> list[str]:
-    """The files' names, with their folders where two are alike."""
-    alike = len({file.name for file in files}) < len(files)
-    return [str(file) if alike else file.name for file in files]
 
 
 def _place(baseline: str, files: Sequence[Path], shown: Sequence[str]) -> int | None:

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import IO
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermogear.base.arrays import Floats
 from thermogear.base.cells import MISSING, NUMBER, cells_of
@@ -28,7 +27,7 @@ from thermogear.measured.options import (
     too_large,
 )
 from thermogear.measured.parts import with_gaps
-from thermogear.measured.record import BLOCK, Channel, Notice, Record
+from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.store import ColumnStore, StoredColumn
 from thermogear.measured.traps import (
     MOST_STAMPS,
@@ -231,25 +230,19 @@ def _fields(line: str, layout: Layout) -> list[str]:
     cells = cells_of(line, layout.separator)
     if layout.commented:
         cells = cells[: layout.columns]
-    if layout.paired:
-        whole = iter(cells)
-        cells = [f"{left}.{right}" for left, right in zip(whole, whole, strict=False)]
     return cells
 
 
 def _table(block: list[str], layout: Layout, path: Path, number: int, last: bool) -> Floats:
-    if not layout.paired:
-        swap = layout.decimal == "," and layout.separator != ","
-        plain = [line.replace(",", ".") for line in block] if swap else block
-        try:
-            used = range(layout.columns) if layout.commented else None
-            table = np.loadtxt(
-                plain, delimiter=layout.separator, ndmin=2, comments=None, usecols=used
-            )
-            if table.shape[1] == layout.columns:
-                return table
-        except (ValueError, UserWarning):
-            table = np.empty((0, 0))  # gaps, quotes or a broken row: cell by cell below
+    swap = layout.decimal == "," and layout.separator != ","
+    plain = [line.replace(",", ".") for line in block] if swap else block
+    try:
+        used = range(layout.columns) if layout.commented else None
+        table = np.loadtxt(plain, delimiter=layout.separator, ndmin=2, comments=None, usecols=used)
+        if table.shape[1] == layout.columns:
+            return table
+    except (ValueError, UserWarning):
+        table = np.empty((0, 0))  # gaps, quotes or a broken row: cell by cell below
     rows: list[list[float]] = []
     for place, line in enumerate(block):
         cells = _fields(line, layout)
@@ -257,8 +250,7 @@ def _table(block: list[str], layout: Layout, path: Path, number: int, last: bool
             continue
         if len(cells) == layout.columns - 1 and layout.separator is not None:
             raw = line.rstrip("\r\n")
-            fields = 0 if layout.paired else raw.count(layout.separator) + 1
-            if raw.endswith(layout.separator) or fields == layout.columns:
+            if raw.endswith(layout.separator) or raw.count(layout.separator) + 1 == layout.columns:
                 cells.append("")  # an empty last cell, not a missing one
         if len(cells) != layout.columns:
             if last and place == len(block) - 1:
@@ -310,12 +302,9 @@ def _record(
         t = np.asarray(columns[place][:MOST_STAMPS])
         if t.size < len(columns[place]):
             notes.append(Notice.of("rate_of_first_rows", rows=t.size, column=names[place]))
-        repeats, known = _repeats(columns, t.size), rate is not None
-        base = read_time(names[place], units[place], t, repeats=repeats, stated=known)
+        base = read_time(names[place], units[place], t, stated=rate is not None)
         notes += base.notices
         start, gaps, jitter = base.start, base.gaps, base.jitter
-        if base.drop:
-            columns = _without(columns, base.drop)
         if (
             base.rate is not None
             and rate is not None
@@ -371,27 +360,3 @@ def _stated(layout: Layout, keep: list[int]) -> Stated:
 def _empty(column: Floats | StoredColumn) -> bool:
     """Whether a column holds no number."""
     return not np.any(np.isfinite(column[:MOST_STAMPS]))
-
-
-def _repeats(columns: Sequence[Floats | StoredColumn], count: int) -> NDArray[np.bool_]:
-    """Of each of the first ``count`` rows, whether its every value repeats the row before."""
-    same = np.ones(count, dtype=np.bool_)
-    same[0] = False
-    for column in columns:
-        for start in range(0, count - 1, BLOCK):
-            part = column[start : min(start + BLOCK, count - 1) + 1]
-            same[start + 1 : start + part.size] &= part[1:] == part[:-1]
-    return same
-
-
-def _without(
-    columns: Sequence[Floats | StoredColumn], drop: Sequence[int]
-) -> Sequence[Floats | StoredColumn]:
-    """The columns without the rows ``drop``."""
-    kept = ColumnStore(len(columns))
-    gone = np.asarray(drop)
-    for start in range(0, len(columns[0]), BLOCK):
-        table = np.column_stack([c[start : start + BLOCK] for c in columns])
-        inside = gone[(gone >= start) & (gone < start + BLOCK)] - start
-        kept.append(np.delete(table, inside, axis=0))
-    return kept.columns()

@@ -48,7 +48,6 @@ MOST_STAMPS = 1 << 23
 _OFF = 0.5  # of a step: farthest of a stamp from an even clock, beside rounding
 _JITTER = 0.02  # of a step: jitter, or rounding, that is told
 _EXACTLY = 1e-8  # relative half width that is not told
-_LOW, _HIGH = 1e3, 1e6  # samples/s: between them records of vibration are taken
 
 
 def is_time_name(name: str) -> bool:
@@ -124,13 +123,12 @@ def unknown_unit(name: str) -> str:
 @dataclass(frozen=True, kw_only=True)
 class TimeBase:
     """What a time column says: rate [1/s] (None: it cannot be told) and the half width of its 95 %
-    interval, 0 where it is a usual rate; start, rows to drop, the stamps' ``jitter`` [steps rms];
+    interval, 0 where it is a usual rate; start, the stamps' ``jitter`` [steps rms];
     ``note``: how well they tell the rate."""
 
     rate: float | None
     start: float
     origin: str
-    drop: tuple[int, ...] = ()
     notices: tuple[Notice, ...] = ()
     gaps: tuple[tuple[int, int], ...] = ()
     half_width: float = 0.0
@@ -138,19 +136,11 @@ class TimeBase:
     note: str = ""
 
 
-def read_time(
-    name: str,
-    unit_name: str | None,
-    t: Floats,
-    *,
-    repeats: NDArray[np.bool_] | None = None,
-    stated: bool = False,
-) -> TimeBase:
+def read_time(name: str, unit_name: str | None, t: Floats, *, stated: bool = False) -> TimeBase:
     """Rate and start from a time column, or why it gives none.
 
-    ``t`` in the column's own unit; ``repeats``: of each row, whether its every value repeats the
-    row before; ``stated``: the file states its rate elsewhere. A time without a unit gives no rate.
-    A doubled stamp on a row that is doubled as a whole is one row written twice and is dropped.
+    ``t`` in the column's own unit; ``stated``: the file states its rate elsewhere. A time without
+    a unit gives no rate.
     Jumps by whole numbers of steps are dropped blocks: ``gaps`` (before which row, how many
     samples). Stamps may be rounded, also so that they repeat, and may jitter by half a step; any
     other irregularity gives no rate. The rate is that of
@@ -176,34 +166,19 @@ def read_time(
     grain = grain_of(t) * factor_of(unit_name)
     steps = np.diff(seconds)
     mean = float(seconds[-1] - seconds[0]) / (seconds.size - 1)
-    twice = np.flatnonzero(steps == 0.0) + 1
-    # stamps of few digits repeat by themselves
-    single = twice.size <= _FEW * steps.size
-    drop = tuple(int(i) for i in twice[repeats[twice]]) if repeats is not None and single else ()
-    notes: list[Notice] = []
-    if drop:
-        keep = np.ones(seconds.size, bool)
-        keep[list(drop)] = False
-        seconds, grain = seconds[keep], grain[keep]
-        steps = np.diff(seconds)
-        mean = float(seconds[-1] - seconds[0]) / (seconds.size - 1)
-        notes.append(
-            Notice.of("rows_written_twice", column=name, rows=len(drop), first=drop[0] + 1)
-        )
-    found = TimeBase(rate=None, start=float(seconds[0]), origin="", drop=drop)
+    found = TimeBase(rate=None, start=float(seconds[0]), origin="")
     if mean <= 0.0 or np.any(steps < 0):
         row = int(np.argmax(steps < 0)) + 2
-        return replace(found, notices=(*notes, Notice.of("time_falls", column=name, row=row)))
+        return replace(found, notices=(Notice.of("time_falls", column=name, row=row),))
     if not RATE.least <= 1.0 / max(mean, 1e-300) <= RATE.most:
-        told = Notice.of("time_step_impossible", column=name, step=mean)
-        return replace(found, notices=(*notes, told))
-    return _paced(replace(found, notices=tuple(notes)), name, seconds, grain, unit_name)
+        return replace(found, notices=(Notice.of("time_step_impossible", column=name, step=mean),))
+    return _paced(found, name, seconds, grain, unit_name)
 
 
 def _paced(found: TimeBase, name: str, seconds: Floats, grain: Floats, unit_name: str) -> TimeBase:
     """What rising stamps [s], rounded to ``grain``, say: gaps, jitter and the rate, or none."""
     steps = np.diff(seconds)
-    notes = list(found.notices)
+    notes: list[Notice] = []
     jumps, ahead = jumps_of(seconds, grain=grain)
     gaps = _dropped(jumps, ahead, steps)
     place = np.arange(seconds.size, dtype=float)
@@ -224,7 +199,11 @@ def _paced(found: TimeBase, name: str, seconds: Floats, grain: Floats, unit_name
             )
         return replace(found, notices=(*notes, told))
     if gaps:
-        notes.append(_lost(name, gaps, found.drop))
+        samples = sum(missing for _, missing in gaps)
+        first = gaps[0][0] + 1
+        notes.append(
+            Notice.of("samples_lost", column=name, places=len(gaps), first=first, samples=samples)
+        )
     if pace.jitter > _JITTER:
         notes.append(
             Notice.of(
@@ -236,25 +215,8 @@ def _paced(found: TimeBase, name: str, seconds: Floats, grain: Floats, unit_name
             )
         )
     if unit_name != "s":
-        notes.append(_in_unit(name, unit_name, 1.0 / pace.step))
+        notes.append(Notice.of("time_unit", column=name, unit=unit_name))
     return _with_rate(replace(found, gaps=gaps, notices=tuple(notes)), name, pace)
-
-
-def _in_unit(name: str, unit_name: str, rate: float) -> Notice:
-    """The unit of a time column; asked about where it makes a ``rate`` [1/s] that is too high for
-    sensors of vibration, and a longer unit would not."""
-    slower = {each: rate * factor_of(unit_name) / factor_of(each) for each in ("us", "ms", "s")}
-    fits = {each: slow for each, slow in slower.items() if _LOW < slow < _HIGH}
-    if rate < _HIGH or not fits:
-        return Notice.of("time_unit", column=name, unit=unit_name)
-    return Notice.of(
-        "time_unit_doubtful",
-        column=name,
-        unit=unit_name,
-        rate=rate,
-        other_units=list(fits),
-        other_rates=list(fits.values()),
-    )
 
 
 def _with_rate(base: TimeBase, name: str, pace: Pace) -> TimeBase:
@@ -278,15 +240,6 @@ def _with_rate(base: TimeBase, name: str, pace: Pace) -> TimeBase:
         origin=f"time column {name!r}",
         note=note,
     )
-
-
-def _lost(column: str, gaps: tuple[tuple[int, int], ...], drop: tuple[int, ...]) -> Notice:
-    """Where blocks are dropped, in rows of the file: those written twice count there."""
-    first = gaps[0][0] + 1
-    for row in drop:
-        first += row < first
-    samples = sum(missing for _, missing in gaps)
-    return Notice.of("samples_lost", column=column, places=len(gaps), first=first, samples=samples)
 
 
 def _dropped(jumps: NDArray[np.intp], ahead: Floats, steps: Floats) -> tuple[tuple[int, int], ...]:
@@ -332,30 +285,19 @@ class Health:
 
 def health(channel: Channel) -> Health:
     """One pass over a channel, block by block."""
-    missing = gap = longest = 0
     low, high = np.inf, -np.inf
+    first, bad = 0, [np.empty(0, dtype=np.intp)]
     for block in channel.blocks():
         good = np.isfinite(block)
-        values = block
-        if not good.all():
-            bad = np.flatnonzero(~good)
-            missing += bad.size
-            values = block[good]
-            edges = np.flatnonzero(np.diff(bad) > 1)
-            firsts = bad[np.concatenate([[0], edges + 1])]
-            lasts = bad[np.concatenate([edges, [bad.size - 1]])]
-            runs = lasts - firsts + 1
-            if firsts[0] == 0:
-                runs[0] += gap
-            longest = max(longest, int(runs.max()))
-            gap = int(runs[-1]) if lasts[-1] == block.size - 1 else 0
-        else:
-            gap = 0
-        if values.size:
-            low, high = min(low, float(values.min())), max(high, float(values.max()))
+        low = min(low, float(np.min(block, where=good, initial=np.inf)))
+        high = max(high, float(np.max(block, where=good, initial=-np.inf)))
+        bad.append(first + np.flatnonzero(~good))
+        first += block.size
+    missing = np.concatenate(bad)
+    gaps = np.diff(np.flatnonzero(np.diff(missing, prepend=-2) > 1), append=missing.size)
     return Health(
-        missing=missing,
-        longest_gap=longest,
+        missing=missing.size,
+        longest_gap=int(gaps.max(initial=0)),
         zeros=low == high == 0.0,
         constant=low == high,
         peak=float(max(abs(low), abs(high))) if low <= high else 0.0,

@@ -6,7 +6,7 @@ high frequencies, but the power of the bands that they ring in swells with each 
 
 from __future__ import annotations
 
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -30,7 +30,7 @@ _TOPS = 20  # highest bins of a band that are tried
 _FIRST = 0.2  # least power of a rate over that of its harmonics
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Envelope:
     """A rate [cycles/sample] at which the power in ``band`` [cycles/sample] swells.
 
@@ -38,7 +38,6 @@ class Envelope:
     is 1; ``chance``: how often noise alone has one as high anywhere in a record.
     """
 
-    _: KW_ONLY
     rate: float
     band: tuple[float, float]
     powers: tuple[float, ...]

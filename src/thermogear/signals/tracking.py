@@ -212,7 +212,7 @@ def _followed(values: Floats, guess: Floats, half_width: float) -> tuple[Floats,
     width = max(half_width * near, 12.0 * spectrum.bin_width)
     if width > 0.2 * near:
         return None
-    found = follow_line(straight, float(per_cycle), frequency=near, half_width=width)
+    found = follow_line(straight, float(per_cycle), frequency=near, half_width=width, cut=False)
     if np.any(np.diff(found.cycles) <= 0.0):
         return None
     grid = float(np.ceil(guess[0])) + np.arange(found.cycles.size) / per_cycle

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from itertools import chain
 
 import numpy as np
 
@@ -21,6 +22,7 @@ from thermogear.mesh.model import MeshModel
 from thermogear.mesh.thermal import HotPair
 from thermogear.results.result import Notice, Result
 from thermogear.study.declared import Friction, declared
+from thermogear.study.notices import turn_notices
 
 
 def friction_path(case: GearCase, model: MeshModel, positions: int) -> FrictionPath:
@@ -117,7 +119,7 @@ def friction_survey(case: GearCase, *, progress: Progress = silent) -> Result:
         Friction.kind,
         f"Friction laws: {case.title}",
         {"laws": data},
-        _notices(state, words),
+        chain(turn_notices(case), _notices(state, words)),
         **case.provenance,
         laws=words,
     )

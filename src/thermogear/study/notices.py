@@ -24,6 +24,15 @@ def finished(data: Dataset, title: str = "") -> Result:
     return stored_dataset(with_notices(data), title)
 
 
+def turn_notices(case: GearCase, **data: str) -> Iterator[Notice]:
+    """That the teeth of ``case`` differ, and what is taken of them, where they do.
+
+    ``alike``: what is that of the mean tooth all the same.
+    """
+    if case.period.mesh_periods > 1:
+        yield Notice.of("turn_taken", mesh_periods=case.period.mesh_periods, **data)
+
+
 def contact_notices(data: Dataset) -> Iterator[Notice]:
     """What does not move; over which speeds contact is lost, and where the back flanks are hit."""
     status = data["status"].values

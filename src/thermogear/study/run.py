@@ -42,6 +42,7 @@ from thermogear.dynamics.models import TorsionalModel
 from thermogear.heat.film import regime
 from thermogear.mesh.balance_table import balance_dataset
 from thermogear.mesh.clearance import Clearance
+from thermogear.mesh.elastic import TURN_POSITIONS
 from thermogear.mesh.profile import profiles
 from thermogear.mesh.thermal import HotPair
 from thermogear.results.result import Notice, Result, now
@@ -53,6 +54,9 @@ from thermogear.study.drawing import drawn_points
 from thermogear.study.measured_flanks import measured_flanks
 from thermogear.study.motion import Motion, follow, follow_gears, still_values
 from thermogear.study.shafts.sketch import sketch
+
+MOST_KEPT = 1_000_000
+"""Values of a curve over the mesh phases of a turn, all operating points together: 8 MB."""
 
 
 def run(case: Case, *, progress: Progress = silent, alive: Alive = keep_going) -> Result:
@@ -238,7 +242,19 @@ def _split(whole: Dataset) -> dict[str, Dataset]:
     known = ~np.isnan(film.values)
     acting = np.where(known, regime(np.where(known, film.values, 0.0)), -1)
     path["regime"] = labelled("regime", (film.dims, acting))
-    return {"path": path, "mesh": whole[rest]}
+    return {"path": path, "mesh": _bounded(whole[rest])}
+
+
+def _bounded(mesh: Dataset) -> Dataset:
+    """``mesh`` with every so many-th position of a turn where it has more than it may keep.
+
+    As many of each mesh period, first ones among them; all figures are made before.
+    """
+    if "mesh_periods" not in mesh.attrs:
+        return mesh
+    least = mesh["mesh_stiffness"].size / MOST_KEPT
+    step = next((n for n in range(1, TURN_POSITIONS) if n >= least and TURN_POSITIONS % n == 0), 24)
+    return mesh.isel(mesh_phase=slice(None, None, step))
 
 
 def _motion(

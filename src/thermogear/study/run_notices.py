@@ -26,7 +26,7 @@ from thermogear.results.beside import from_data
 from thermogear.results.result import Notice
 from thermogear.results.tables import rows_along
 from thermogear.study.measured_flanks import measured_notices
-from thermogear.study.notices import friction_notices, heat_notices, jam_notices
+from thermogear.study.notices import friction_notices, heat_notices, jam_notices, turn_notices
 
 STUDIED_FREQUENCIES = (1.1, 1.3)
 """Frequency ratios of the thesis's bifurcation study."""
@@ -132,6 +132,7 @@ def _deviations(case: GearCase) -> Iterator[Notice]:
     if not case.deviations:
         return
     yield Notice.of("flanks_deviate", deviations=len(case.deviations))
+    yield from turn_notices(case, alike="pictures over a dial's temperature")
     if case.transmission_error.harmonics:
         yield Notice.of("kinematic_error_on_top")
     deaf = [m.name for m in case.models if m.stiffness != "loaded"]

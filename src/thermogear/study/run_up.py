@@ -237,8 +237,7 @@ class RunUpPlan:
         return found
 
     def finish(self, data: xr.Dataset) -> xr.Dataset:
-        of = self.case.period.mesh_periods
-        data = _with_folds(self, data) if self.branch_period > 0 and of == 1 else data
+        data = _with_folds(self, data) if self.branch_period > 0 else data
         data.attrs |= {
             "bundle": self.bundle,
             "pinion_torque": self.torque,
@@ -247,8 +246,6 @@ class RunUpPlan:
         }
         data = _with_jumps(self, data)
         told = [*range_notices(self.case, data), *difference_notices(data)]
-        if self.branch_period > 0 and of > 1:
-            told.append(Notice.of("folds_of_turn_not_located", mesh_periods=of))
         early = np.argwhere(data["left_early"].values > 0)
         if early.size:
             speeds = np.unique(np.array(self.speeds)[early[:, 2]])

@@ -191,7 +191,8 @@ def motions_of(
 
     Of teeth that are alike: :func:`~thermogear.analysis.side_by_side.motions_along` and
     :func:`figures_of`. Where they differ the motion over the turn of the gears is followed, each
-    start by itself; where motions are ``handed_on`` the neighbours' are starts too.
+    start by itself, their states at the mesh period of the greatest error; where motions are
+    ``handed_on`` the neighbours' are starts too.
     """
     if points.mesh_periods == 1:
         motions = motions_along(points.flat, starts)
@@ -226,7 +227,7 @@ def _over_the_turn(points: Points, starts: Floats) -> dict[str, Floats]:
             stiffness=here.flat.stiffness[0],
             error=here.error[0] / here.length[0],
             mesh_periods=points.mesh_periods,
-        )
+        ).from_greatest()
         each = np.repeat(np.arange(index.size), count)
         lanes = TurnLanes(
             mean=here.flat.force[each, 0].real,

@@ -37,7 +37,7 @@ from thermogear.mesh.trends import conclusion, verdicts
 from thermogear.results.beside import from_data
 from thermogear.results.result import Notice, Result
 from thermogear.study.declared import Temperature, declared
-from thermogear.study.notices import heat_notices, jam_notices
+from thermogear.study.notices import heat_notices, jam_notices, turn_notices
 from thermogear.study.scuffing import load_stage, not_steel
 
 LUBRICATIONS = ("mixed", "dry")
@@ -253,6 +253,7 @@ def _notices(
     settled = is_known(status)
     count = status.size
     yield from heat_notices(grid, settled, why)
+    yield from turn_notices(case)
     yield from from_data(grid)
     outside = settled & (grid["within_oil_range"].values == 0)
     low, high = case.stated.lubricant.temperature_range

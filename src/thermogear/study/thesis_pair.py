@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from thermogear.base.arrays import Dataset, Floats
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.base.parameters import PARAMETERS
 from thermogear.base.plan import gather
@@ -89,7 +89,9 @@ def thesis_pair(
             groups[f"diagrams/{name}"] = both.data
             matches[name] = both.rows("matches")
         if case.train is not None:
-            groups["play"] = _played(alone, progress)
+            # the drive train hot over the play of all its bearings, up and down
+            plan = case_diagram(alone, "bearings.all.play", PLAYS, branch_period=0, train=Train())
+            groups["play"] = gather(plan, progress=partial(progress, "bearing play"))
     except KeyboardInterrupt:
         cut = True
     told = [
@@ -160,12 +162,6 @@ def _axes(case: GearCase, point: Points, count: int) -> dict[str, Floats]:
         for name, some in ends.items()
         if np.isfinite(some).all()
     }
-
-
-def _played(case: GearCase, progress: Progress) -> Dataset:
-    """The drive train hot over the play of all its bearings, up and down."""
-    plan = case_diagram(case, "bearings.all.play", PLAYS, branch_period=0, train=Train())
-    return gather(plan, progress=partial(progress, "bearing play"))
 
 
 def _overlaid(case: GearCase, name: str, values: Floats, progress: Progress) -> Result:

@@ -28,6 +28,7 @@ from thermogear.mesh.warm_up import PHASES, Duty, WarmUp, meshing, warm_up, with
 from thermogear.mesh.warm_up_fit import Fit, fit_factors, require_factors, until
 from thermogear.results.result import Notice, Result
 from thermogear.study.declared import WarmUpSurvey, declared
+from thermogear.study.notices import turn_notices
 from thermogear.study.scuffing import borne_by
 
 FLAT = 5e-8
@@ -109,7 +110,14 @@ def warm_up_survey(
     if measured is not None:
         groups["record"] = _record(measured, course, shown)
     if found is not None:
-        groups["fit"] = _fit_dataset(found)
+        groups["fit"] = label(
+            {
+                "value": ("factor", [f.value for f in found.factors], "1", "factor"),
+                "low": ("factor", [f.low for f in found.factors], "1", "lower end, 95 %"),
+                "high": ("factor", [f.high for f in found.factors], "1", "upper end, 95 %"),
+            },
+            {"factor": [f.name for f in found.factors]},
+        )
     seconds = time.perf_counter() - began
     worst = _worst(case, course, steady)
     return Result.of(
@@ -376,18 +384,6 @@ def _record(measured: Measured, course: WarmUp, shown: Sequence[Shown]) -> Datas
     )
 
 
-def _fit_dataset(found: Fit) -> Dataset:
-    along = ("factor",)
-    return label(
-        {
-            "value": (along, [f.value for f in found.factors], "1", "factor"),
-            "low": (along, [f.low for f in found.factors], "1", "lower end, 95 %"),
-            "high": (along, [f.high for f in found.factors], "1", "upper end, 95 %"),
-        },
-        {"factor": [f.name for f in found.factors]},
-    )
-
-
 def _fit_words(found: Fit | None) -> dict[str, Any]:
     if found is None:
         return {}
@@ -445,6 +441,7 @@ def _notices(
     found: Fit | None,
     seconds: float,
 ) -> Iterator[Notice]:
+    yield from turn_notices(case, alike="flash, film, friction and stiffness over time")
     if jams := jams_of(course):
         yield Notice.of("pair_jams", time=jams[0])
     if course.course.too_hot:

@@ -260,9 +260,8 @@ def _fitting(
     gap = max(float(np.nanmin(one.back_gap)) for one in states)
     moved = closer = 1e-12
     for one in states:
-        moved = max(
-            [moved, *(_far(a, b) for a, b in zip(one.outlines, cold.outlines, strict=True))]
-        )
+        pairs = zip(one.outlines, cold.outlines, strict=True)
+        moved = max([moved, *(float(np.max(np.abs(a - b))) for a, b in pairs)])
         apart = one.centre_distance - distance
         for gear, other in ((PINION, WHEEL), (WHEEL, PINION)):
             tip = np.abs(one.outlines[gear]).max() - np.abs(tight[gear]).max()
@@ -273,10 +272,6 @@ def _fitting(
     wanted = min(max(min(limits), 1.0), 1000.0)
     power = 10.0 ** math.floor(math.log10(wanted))
     return next(step * power for step in (5.0, 2.0, 1.0) if step * power <= wanted)
-
-
-def _far(one: Points, other: Points) -> float:
-    return float(np.max(np.abs(one - other)))
 
 
 def _plain(value: float, digits: int = 5) -> float | None:

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 
 LONG = ("run-up", "answers", "shafts", "map")
+MOST_LIVE = 60
+"""Mesh periods of a turn that are shown while a dial moves; of more the mean tooth is."""
 CALM = 0.08
 """Seconds without a newer wish before a long part is begun: a dial that moves begins none."""
 
@@ -45,8 +47,13 @@ class Desk:
         ) as said:
             case = self.given.at(show.state)
         told = list(dict.fromkeys(str(one.message) for one in said))
+        # a longer turn would not follow a dial
+        of, seen = case.period.mesh_periods, case
+        if of > MOST_LIVE:
+            seen = case.mean_tooth()
+            told.append(f"The teeth differ over {of} mesh periods: here is their mean tooth alone")
         self.post("now", self._now(case, show, told))
-        look = Look(self.given, case, show, alive, self.kept)
+        look = Look(self.given, seen, show, alive, self.kept)
         for name in (one for one in PARTS if one in show.parts):
             alive()
             while name in LONG and time.monotonic() - came < CALM:

@@ -181,7 +181,11 @@ def _same(one: live.Motion, other: live.Motion) -> bool:
 
 
 def run_up(look: Look) -> Iterator[Part]:
-    """Hot first, then undeformed; what hangs on nothing that was turned stays."""
+    """Hot first, then undeformed; what hangs on nothing that was turned stays.
+
+    Of the mean tooth: a run-up over a turn takes minutes.
+    """
+    whole, look = look, replace(look, case=look.case.mean_tooth())
     speeds, kept = look.speeds, look.kept
     last = 0.0
     keys = {s: live.fingerprint(look.case, speeds, s) for s in ("hot", "undeformed")}
@@ -208,7 +212,7 @@ def run_up(look: Look) -> Iterator[Part]:
         yield _run_part(look, kept.runs[state], state)
         inside = speeds[0] <= look.speed <= speeds[-1]
         if inside and state == "hot" and "orbit" in look.show.parts:
-            yield _orbit(look, dict(live.ends_at(kept.runs["hot"], look.speed)))
+            yield _orbit(whole, dict(live.ends_at(kept.runs["hot"], look.speed)))
 
 
 def _jammed(look: Look, state: str) -> list[str]:
@@ -225,7 +229,7 @@ def _runs(look: Look) -> Picture | None:
 
 
 def _run_part(look: Look, one: live.LiveRunUp, state: str) -> Part:
-    lines = []
+    lines = ["of the mean tooth over one mesh period"] * (look.case.file.gears.period == "mesh")
     for name, run in look.kept.runs.items():
         if not run.preview:
             notices = (*contact_notices(run.data), *difference_notices(run.data))

@@ -119,7 +119,7 @@ class App:
 
     def asgi(self) -> Guarded:
         names = {
-            "/": ("text/html", _page(self.token)),
+            "/": ("text/html", _text("app.html").replace("TOKEN", self.token)),
             "/app.js": ("text/javascript", _script()),
             "/app.css": ("text/css", _style()),
             "/schema.json": ("application/json", _schema()),
@@ -203,10 +203,6 @@ def _served(kind: str, text: str) -> Callable[[Any], Awaitable[Response]]:
 
 def _text(name: str) -> str:
     return (files("thermogear.front.app") / "page" / name).read_text("utf-8")
-
-
-def _page(token: str) -> str:
-    return _text("app.html").replace("TOKEN", token)
 
 
 def _script() -> str:

@@ -29,8 +29,8 @@ class RollingBearing:
 
     >>> from thermogear.shafts.bearings.catalogue import catalogue_bearing
     >>> one = catalogue_bearing("6205")
-    >>> f"{one.outer_order:.4f} {one.inner_order:.4f}"
-    '3.5722 5.4278'
+    >>> f"{one.outer_order:.4f}"
+    '3.5722'
     """
 
     designation: str = ""
@@ -134,24 +134,9 @@ class RollingBearing:
         return roller_coefficient(float(self.element_length or 0.0))
 
     @property
-    def cage_order(self) -> float:
-        """Turns of the cage per turn of the inner ring, (1 - g)/2."""
-        return 0.5 * (1.0 - self.ratio)
-
-    @property
     def outer_order(self) -> float:
         """Elements passing a point of the outer ring, Z (1 - g)/2: varying compliance, BPFO."""
         return 0.5 * self.elements * (1.0 - self.ratio)
-
-    @property
-    def inner_order(self) -> float:
-        """Elements passing a point of the inner ring, Z (1 + g)/2: BPFI."""
-        return 0.5 * self.elements * (1.0 + self.ratio)
-
-    @property
-    def spin_order(self) -> float:
-        """Turns of an element about itself, cos a (1 - g^2)/(2 g); a defect strikes twice."""
-        return float(np.cos(self.contact_angle) * (1.0 - self.ratio**2) / (2.0 * self.ratio))
 
     @property
     def outer_ring_mass(self) -> float:

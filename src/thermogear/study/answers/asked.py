@@ -25,6 +25,7 @@ from thermogear.case.duty import chosen_point, point_duty
 from thermogear.case.points import excitations, points_of
 from thermogear.case.response import VALUES
 from thermogear.case.thermal_state import HOT, ThermalState
+from thermogear.dynamics.turns import longest
 from thermogear.gears.deviations import Deviation
 from thermogear.gears.turn import mean_tooth, numbered_from
 from thermogear.mesh.balance import Gearbox, HeatBalance
@@ -291,7 +292,8 @@ class Asked:
         if not self.case.stated.torque[point] > 0.0:
             return "there is no load"
         slow = "it turns too slowly to vibrate"
-        return slow if self.slow(point) else f"no motion is steady within {RULE.cap} mesh periods"
+        most = RULE.cap if self.mesh_periods == 1 else longest(self.mesh_periods)
+        return slow if self.slow(point) else f"no motion is steady within {most} mesh periods"
 
     @cached_property
     def motion(self) -> dict[str, Floats]:

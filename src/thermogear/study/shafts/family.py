@@ -123,11 +123,8 @@ class TrainFamily:
             case = case.with_values(
                 {name: float(v[self.operating]) for name, v in here.items()}, told=False
             )
-        return self._one_bundle(case)
-
-    def _one_bundle(self, case: GearCase) -> GearCase:
-        names = [m.name for m in self.case.models]
-        return replace(case, models=(case.models[names.index(self.bundle)],))
+        (model,) = (one for one in case.models if one.name == self.bundle)
+        return replace(case, models=(model,))
 
     @cached_property
     def _reference(self) -> Reduction:

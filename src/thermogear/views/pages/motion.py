@@ -29,6 +29,7 @@ from thermogear.views.plots.parameters import page_words
 from thermogear.views.typesetting import prose
 
 Summary = dict[str, Any]
+MESH = "mesh periods"
 SECOND = "second_shown"
 PLANE = "Where the motion jumps or changes"
 
@@ -176,7 +177,7 @@ def _caption(kind: str, summary: Summary, groups: Groups) -> str:
         if "mesh_periods" in summary:
             words.append(
                 f"The orbit closes after turns of {summary['mesh_periods']} mesh periods; the "
-                "phase plane shows those in which it swings most."
+                "phase plane shows the first of them."
             )
         return " ".join(words)
     if kind == "branch":
@@ -226,9 +227,9 @@ def _headline(kind: str, summary: Summary) -> str:
 def _orbit_tables(summary: Summary) -> list[Block]:
     length = MICROMETRE if summary["units"] == "SI" else Display("–")
     share = summary["time_share"]
-    factor, of = summary["dynamic_load_factor"], summary.get("mesh_periods", 0)
+    factor, of = summary["dynamic_load_factor"], summary.get("mesh_periods", 1)
     values = {
-        "period n": (str(summary["period"]), f"turns of {of} mesh periods" if of else "mesh periods"),
+        "period n": (str(summary["period"]), f"turns of {of} mesh periods" if of > 1 else MESH),
         **{
             f"multiplier {i}": (_complex(mu), f"modulus {mu['modulus']:.9f}")
             for i, mu in enumerate(summary["multipliers"], start=1)

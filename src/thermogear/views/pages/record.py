@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from thermogear.base.arrays import Dataset
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.display import HERTZ, SPEED, number
 from thermogear.results.result import Result
 from thermogear.views.columns import Column, by_name, key, pairs
@@ -61,41 +61,46 @@ def _record(results: Result) -> Section | None:
     data, whole = results.group("record"), results.group("whole")
     if data is None:
         return None
-    rate = results.text("rate")
-    unit = results.text("unit") or "the file's numbers"
-    x_words = "time [s]" if rate else "sample [–]"
-
-    def make() -> Picture:
-        panel = Panel(Axis(x_words), Axis(f"reading [{unit}]"))
-        count = min(data.sizes["sample"], 2048)
-        place = data["record_sample"].values[:count]
-        x = place / float(rate) if rate else place
-        for channel, colour in zip(data["channel"].values[:4], _COLOURS, strict=False):
-            values = data["record_reading"].sel(channel=channel).values[:count]
-            panel.curve(x, values, colour=colour, width=0.6, label=str(channel))
-        return Picture([[panel]], size=(WIDE, 2.8), legend=4)
-
-    def make_whole() -> Picture:
-        assert whole is not None
-        panel = Panel(Axis(x_words), Axis(f"reading [{unit}]"))
-        place = whole["piece_sample"].values
-        x = place / float(rate) if rate else place
-        for channel, colour in zip(whole["channel"].values[:4], _COLOURS, strict=False):
-            one = whole.sel(channel=channel)
-            low, high = one["piece_lowest"].values, one["piece_highest"].values
-            panel.band(x, low=low, high=high, colour=colour, opacity=0.4, label=str(channel))
-        return Picture([[panel]], size=(WIDE, 2.8), legend=4)
-
     pictures = Pictures()
     if whole is not None:
-        caption = "Lowest to highest reading of each piece, after repair: a burst, a drift or a "
-        caption += "pause shows here."
-        needs = ["piece_lowest", "piece_highest"]
-        pictures.add("whole", "The whole record", caption, whole, needs, make_whole, wide=True)
-    caption = "The first samples, unfiltered."
-    needs = ["record_reading"]
-    pictures.add("record", "Start of the record", caption, data, needs, make, wide=True)
+        pictures.add(
+            "whole", "The whole record",
+            "Lowest to highest reading of each piece, after repair: a burst, a drift or a pause "
+            "shows here.",
+            whole, ("piece_lowest", "piece_highest"), partial(_whole_record, results, whole),
+            wide=True,
+        )  # fmt: skip
+    pictures.add(
+        "record", "Start of the record", "The first samples, unfiltered.", data,
+        ("record_reading",), partial(_start_of_record, results, data), wide=True,
+    )  # fmt: skip
     return Section("record", "Time record", pictures.take(), folded=False)
+
+
+def _over_time(results: Result, samples: Floats) -> tuple[Panel, Floats]:
+    """An empty panel of readings, and where ``samples`` stand in it."""
+    rate = results.text("rate")
+    x = Axis("time [s]" if rate else "sample [–]")
+    panel = Panel(x, Axis(f"reading [{_unit(results)}]"))
+    return panel, samples / float(rate) if rate else samples
+
+
+def _start_of_record(results: Result, data: Dataset) -> Picture:
+    shown = data.isel(sample=slice(2048))
+    panel, x = _over_time(results, shown["record_sample"].values)
+    for channel, colour in zip(data["channel"].values[:4], _COLOURS, strict=False):
+        values = shown["record_reading"].sel(channel=channel).values
+        panel.curve(x, values, colour=colour, width=0.6, label=str(channel))
+    return Picture([[panel]], size=(WIDE, 2.8), legend=4)
+
+
+def _whole_record(results: Result, whole: Dataset) -> Picture:
+    panel, x = _over_time(results, whole["piece_sample"].values)
+    for channel, colour in zip(whole["channel"].values[:4], _COLOURS, strict=False):
+        one = whole.sel(channel=channel)
+        low, high = one["piece_lowest"].values, one["piece_highest"].values
+        panel.band(x, low=low, high=high, colour=colour, opacity=0.4, label=str(channel))
+    return Picture([[panel]], size=(WIDE, 2.8), legend=4)
 
 
 def _spectrum(results: Result) -> Section | None:

@@ -50,7 +50,9 @@ def blocks(results: Result, pictures: Pictures) -> list[Block]:
         f"{data.attrs['fixed']}"
     )
     said = [Text(prose(text)) for text in (str(data.attrs["sentence"]), decides)]
-    drawn = [*pictures.take(), _shares(data), _assumed(data)]
+    caption = "What is assumed of the rig, all ours unless said."
+    assumed = declared(caption, ASSUMED, rows_along(data, "input"), names=3, wordy=True)
+    drawn = [*pictures.take(), _shares(data), assumed]
     return [*said, *drawn, Text(prose(how))]
 
 
@@ -83,11 +85,6 @@ ASSUMED = (
     Column("range", lambda row: prose(row["input_range"])),
     Column("reason or source", lambda row: prose(row["input_why"])),
 )
-
-
-def _assumed(data: Dataset) -> Table:
-    caption = "What is assumed of the rig, all ours unless said."
-    return declared(caption, ASSUMED, rows_along(data, "input"), names=3, wordy=True)
 
 
 IN_JSON = tuple(map(key, ("hits", "share", "share_low", "share_high")))

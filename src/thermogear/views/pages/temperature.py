@@ -42,7 +42,16 @@ def page(result: Result) -> Page:
     rows = result.rows("verdicts")
     told = [reaches("Over all operating points.", REACH, data)]
     if rows:
-        told.append(_conclusion_table(rows))
+        caption = (
+            "The thesis's first conclusion, checked over the map. Rank correlations with speed and "
+            "torque are means over the lines of the grid."
+        )
+        told.append(
+            declared(
+                caption, CONCLUSION, rows, names=3,
+                marked=lambda row: row["verdict"] != "holds", wordy=True,
+            )
+        )  # fmt: skip
     status = data["status"].values
     count = {word: int((status == place).sum()) for place, word in enumerate(STATUS)}
     summary = (
@@ -93,18 +102,6 @@ CONCLUSION = (
     Column("found", lambda row: prose(row["found"])),
     Column("verdict", "verdict"),
 )
-
-
-def _conclusion_table(rows: Sequence[Row]) -> Table:
-    return declared(
-        "The thesis's first conclusion, checked over the map. Rank correlations with speed and "
-        "torque are means over the lines of the grid.",
-        CONCLUSION,
-        rows,
-        names=3,
-        marked=lambda row: row["verdict"] != "holds",
-        wordy=True,
-    )
 
 
 POINT = (Column("speed", "pinion_speed", exactly), Column("torque", "pinion_torque", exactly))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
-from typing import Any
 
 import numpy as np
 
@@ -58,8 +57,7 @@ ORDERS = (
 TORUS = (
     "The motion never returns: it has two base frequencies, and its sections fill a closed curve, "
     "or a few that they visit in turn, where the torus began at an orbit of so many periods. "
-    "The colour is the second phase at the section, once around from 0 over a half to 1; marked on "
-    "a single curve are its quarters. A second frequency is known but for whole multiples of the "
+    "A second frequency is known but for whole multiples of the "
     "mesh's and for its sign: the one below half the mesh frequency is told."
 )
 FRAMES = 16
@@ -471,12 +469,6 @@ def bearing_force_order(data: Dataset, operating: int) -> Picture:
     return Picture(rows, size=(WIDE, 2.6 * len(rows) + 0.3), legend=4)
 
 
-HUES = ("#d62f4b", "#e8743b", "#d9a400", "#8fae2e", "#2f9e5f", "#17a2a2", "#2f7fc4", "#4a58c9",
-        "#7a49c0", "#a845b8", "#c93f98", "#d5386f")  # fmt: skip
-"""Colours once around: the last is next to the first."""
-QUARTERS = (("0", 0.0), ("¼", 0.25), ("½", 0.5), ("¾", 0.75))
-
-
 def turning(data: Dataset, operating: int) -> list[int]:
     """Places of the states whose motion at this operating point lies on a torus."""
     found = data["label"].values[:, operating]
@@ -484,51 +476,27 @@ def turning(data: Dataset, operating: int) -> list[int]:
 
 
 def torus_section(data: Dataset, operating: int) -> Picture:
-    """Sections of a quasi-periodic motion, coloured by its second phase, on their closed curves."""
+    """Sections of a quasi-periodic motion on their closed curves."""
     here = data.isel(operating=operating)
     mesh = float(here["mesh_frequency"])
     panels = []
     for s in turning(data, operating):
         one = here.isel(state=s)
-        nu = float(one["second_frequency"])
-        x, y = (
-            MICROMETRE(one["section_deflection"].values),
-            MILLIMETRE_PER_SECOND(one["section_rate"].values),
-        )
+        second, state = float(one["second_frequency"]) * mesh, names_of(here, "state")[s]
         panel = Panel(
             Axis("approach along the drive flank [µm]", margin=0.1),
             Axis("its rate [mm/s]", margin=0.1),
-            f"{names_of(here, 'state')[s]}: mesh {mesh:.1f} Hz, second base frequency "
-            f"{nu * mesh:.1f} Hz",
+            f"{state}: mesh {mesh:.1f} Hz, second base frequency {second:.1f} Hz",
         )
-        own = (
+        panel.points(
+            MICROMETRE(one["section_deflection"].values),
+            MILLIMETRE_PER_SECOND(one["section_rate"].values),
+            colour=STATES.get(state, INK), size=4.5,
+        )  # fmt: skip
+        panel.curve(
             MICROMETRE(one["torus_deflection"].values),
             MILLIMETRE_PER_SECOND(one["torus_rate"].values),
-        )
-        panel.curve(
-            *own, colour=INK, width=0.8, order=2.5, label="closed curve through the sections"
-        )
-        kept = np.isfinite(x) & np.isfinite(y)
-        around = np.mod(nu * np.arange(x.size), 1.0)
-        part = np.minimum((around * len(HUES)).astype(int), len(HUES) - 1)
-        for hue, colour in enumerate(HUES):
-            chosen = kept & (part == hue)
-            if chosen.any():
-                panel.points(x[chosen], y[chosen], colour=colour, size=4.5)
-        if np.isfinite(own).all():  # of several curves none is numbered
-            _quarters(panel, own)
+            colour=INK, width=0.8, order=2.5, label="closed curve through the sections",
+        )  # fmt: skip
         panels.append(panel)
     return Picture([panels], size=(WIDE if len(panels) > 1 else 6.4, 4.0))
-
-
-def _quarters(panel: Panel, curve: tuple[Any, Any]) -> None:
-    """Turns of the second phase beside the curve, outside of it."""
-    x, y = curve
-    middle = np.array([np.mean(x), np.mean(y)])
-    spread = np.array([np.ptp(x), np.ptp(y)])
-    for words, turn in QUARTERS:
-        at = round(turn * (x.size - 1))
-        out = (np.array([x[at], y[at]]) - middle) / np.where(spread > 0.0, spread, 1.0)
-        long = float(np.hypot(*out)) or 1.0
-        panel.points([x[at]], [y[at]], colour=INK, size=7.0, open=True)
-        panel.text(x[at], y[at], words, offset=(11.0 * out[0] / long, 11.0 * out[1] / long))

@@ -24,7 +24,7 @@ MOST_LINES = 16
 TICKS = 14
 NAMED = 6
 """Lines named in a panel: the greatest in as many stretches."""
-KINDS = {"mesh": INK, "pinion": HOT, "wheel": COLD, "other": OKABE_ITO[2]}
+COLOURS = {"mesh": INK, "pinion": HOT, "wheel": COLD, "other": OKABE_ITO[2]}
 """Kinds of lines of a turn and their colours; others lie beside the mesh, or are of both shafts or
 of the hunting tooth."""
 LINES = (
@@ -51,18 +51,14 @@ TEETH = (
     key("position_m", "position"),
     key("mate", lambda row: int(row["mate"]) or None),
 )
-ASSEMBLIES = (
-    key("wheel_tooth"),
-    key("peak_to_peak_m", "peak_to_peak_error"),
-    key("unloaded_peak_to_peak_m", "unloaded_swing"),
-)
 SWINGS = ("transmission_error", "unloaded_error", "mesh_synchronous_error")
 
 
 def lines(turn: Dataset) -> list[dict[str, Any]]:
     """All lines of the loaded error with their names, the greatest first."""
     of, rows = int(turn.attrs["mesh_periods"]), rows_along(turn, "order")
-    period = Period(of, tuple(int(z) for z in turn.attrs["teeth"]))
+    pinion, wheel = (int(z) for z in turn.attrs["teeth"])
+    period = Period(of, (pinion, wheel))
     named = [row | {"name": period.line(round(row["order"] * of))} for row in rows]
     return sorted(named, key=lambda row: -float(row["line_amplitude"]))
 
@@ -79,9 +75,6 @@ def numbers(groups: Mapping[str, Dataset]) -> dict[str, Any]:
         "lines": [in_full(LINES, row) for row in lines(turn)[:MOST_LINES]],
         "teeth": [in_full(TEETH, row) for row in rows_along(groups["teeth"], "tooth")],
     }
-    if "assemblies" in groups:
-        ways = groups["assemblies"]
-        found["assemblies"] = [in_full(ASSEMBLIES, row) for row in rows_along(ways, "wheel_tooth")]
     return {"turn": found}
 
 
@@ -183,18 +176,13 @@ def error_of_turn(data: Dataset) -> Picture:
     return Picture([[whole], [near]], size=(WIDE, 6.2), legend=2, top=0.75, above=1.0)
 
 
-def _kind(name: str) -> str:
-    """The kind of the line with this ``name``, of :data:`KINDS`."""
-    last = name.split()[-1]
-    return "other" if " + " in name or " − " in name or last not in KINDS else last
-
-
 def orders_of_turn(data: Dataset) -> Picture:
     """Lines of the loaded error: those of the shafts, and of the mesh with its side lines."""
     rows = lines(data)
     order = np.array([row["order"] for row in rows])
     amplitude = MICROMETRE(np.array([row["line_amplitude"] for row in rows]))
-    kinds = np.array([_kind(row["name"]) for row in rows])
+    plain = [row["name"].lstrip("0123456789 ") for row in rows]  # no side line
+    kinds = np.array([name if name in COLOURS else "other" for name in plain])
     floor, top = floor_of(amplitude, order=order, highest=4.0)
     panels = []
     for words, factor, high in (
@@ -204,7 +192,7 @@ def orders_of_turn(data: Dataset) -> Picture:
         y = Axis("amplitude of the loaded error [µm]", low=10.0 * floor, high=8.0 * top,
                  log="decades")  # fmt: skip
         panel, x = Panel(Axis(words, low=0.0, high=high), y), order * factor
-        for kind, colour in KINDS.items():
+        for kind, colour in COLOURS.items():
             (some,) = np.nonzero((kinds == kind) & (x < high))
             some = some[np.argsort(x[some])]
             draw_lines(panel, order=x[some], amplitude=amplitude[some], colour=colour, label=kind)

@@ -56,7 +56,7 @@ def page(result: Result) -> Page:
         Shown(
             "sensors",
             "What thermometers show, and what is true",
-            _sensor_words(result.table("sensors")),
+            "; ".join(f"{k}: {words}" for k, words in result.table("sensors").items()) + ".",
             partial(sensors, data, record, logarithmic=logarithmic),
             wide=True,
         ),
@@ -153,10 +153,6 @@ def _course_words(worst: Mapping[str, Any], logarithmic: bool, measured: bool) -
     if logarithmic:
         words.append("Time runs logarithmically.")
     return " ".join(words)
-
-
-def _sensor_words(names: Mapping[str, str]) -> str:
-    return "; ".join(f"{name}: {words}" for name, words in names.items()) + "."
 
 
 def _thousandths(kelvin: float) -> str:

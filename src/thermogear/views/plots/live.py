@@ -23,6 +23,8 @@ from thermogear.views.style import COLD, FAINT, HOT, INK, OKABE_ITO, QUIET, STAT
 from thermogear.views.typesetting import FAR, axis_label, shown
 
 DASHED = (3, 2)
+SHOWN = 6
+"""Mesh periods of a turn that are drawn."""
 STARTS = {"the case's start": INK, "running up": OKABE_ITO[2], "running down": OKABE_ITO[3]}
 """Where a motion comes from, and its colour."""
 
@@ -129,9 +131,13 @@ def orbits(found: Mapping[str, Dataset]) -> Picture:
     history = Panel(Axis(axis_label("time")), Axis(x), "Time history")
     spectra = {name: one for name, one in found.items() if "line_amplitude" in one}
     for name, data in found.items():
-        colour = STARTS.get(name, INK)
+        colour, of = STARTS.get(name, INK), int(data.attrs.get("mesh_periods", 1))
         t, at, speed = (shown(data, n) for n in ("time", "displacement", "velocity"))
-        if "order" in data:  # a closed orbit
+        if of > 1:  # a closed orbit of many mesh periods
+            part = slice(0, SHOWN * t.size // max(of * int(data["orbit_period"]), SHOWN))
+            t, at, speed = t[part], at[part], speed[part]
+            phase.title = history.title = f"{SHOWN} mesh periods of the turn of {of}"
+        elif "order" in data:  # a closed orbit
             t = np.append(t, t[-1] + (t[1] - t[0]))
             at, speed = np.append(at, at[0]), np.append(speed, speed[0])
         phase.curve(at, speed, colour=colour, width=1.2, label=name)

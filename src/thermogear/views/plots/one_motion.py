@@ -51,7 +51,7 @@ def orbit_picture(data: Dataset) -> Picture:
             ("velocity", data["velocity"].values[0]),
         )
     )
-    loop = slice(None) if of == 1 else _widest(x, each=round(x.size / (period * of)))
+    loop = slice(None if of == 1 else 1 + LOOPS * round(x.size / (period * of)))
     along, whole = t * period * of / t[-1], length(x)
     t, x, v = refined(t[loop], x=x[loop], v=v[loop], times=4)
     x, v = length(x), speed(v)
@@ -72,14 +72,6 @@ def orbit_picture(data: Dataset) -> Picture:
     unit = _multipliers(data["multiplier_real"].values, data["multiplier_imag"].values)
     spectrum = _spectrum(data, length)
     return Picture([[history, phase], [unit, spectrum]], size=(WIDE, 6.6), above=0.95, between=0.9)
-
-
-def _widest(x: Floats, *, each: int) -> slice:
-    """The :data:`LOOPS` mesh periods, of so many samples ``each``, in which ``x`` swings most."""
-    shown = min(LOOPS, x.size // each) * each
-    starts = np.arange(0, x.size - shown + 1, each)
-    widest = int(np.argmax([np.ptp(x[start : start + shown]) for start in starts]))
-    return slice(starts[widest], starts[widest] + shown)
 
 
 def edges_in_sight(data: Dataset) -> list[float]:

@@ -1,0 +1,86 @@
+"""Answers of gears whose teeth differ: over the turn, of one assembly, beside the others."""
+
+import numpy as np
+import pytest
+
+from thermogear.case.case import GearCase, gear_case, load_case
+from thermogear.results.answer import Answer
+from thermogear.study.answers.survey import answers
+
+pytestmark = pytest.mark.filterwarnings("ignore::thermogear.base.errors.ValidityWarning")
+CASE = """[gears]
+module = "3 mm"
+face_width = "30 mm"
+[gears.pinion]
+teeth = 20
+pitch_errors = {pinion}
+[gears.wheel]
+teeth = 40
+pitch_errors = {wheel}
+[transmission_error]
+harmonics = []
+[oil]
+name = "ISO VG 100"
+[operating]
+speed = "3000 rpm"
+torque = "80 N m"
+"""
+PINION = np.round(3.0 * np.sin(2.3 * np.arange(20) ** 2), 3)
+WHEEL = np.round(3.5 * np.cos(1.7 * np.arange(40) ** 2), 3)
+
+
+def _case(pinion: int = 0, wheel: int = 0) -> GearCase:
+    """Pitch errors of some micrometres, the teeth numbered from others."""
+    lists = {
+        name: str([f"{error} um" for error in np.roll(errors, first)])
+        for name, errors, first in (("pinion", PINION, pinion), ("wheel", WHEEL, wheel))
+    }
+    small = ("grid.path_positions=41", "grid.mesh_positions=48", "grid.harmonics=12")
+    return gear_case(load_case(CASE.format(**lists), small))
+
+
+def _numbers(answer: Answer) -> np.ndarray:
+    figures = (np.ravel(value) for value in answer.figures.values())
+    return np.concatenate([[answer.value or 0.0], *(f for f in figures if f.dtype.kind in "if")])
+
+
+@pytest.fixture(scope="module")
+def told() -> dict[str, Answer]:
+    return {answer.name: answer for answer in answers(_case()).answers}
+
+
+def test_a_renumbered_assembly_has_the_same_answers(told: dict[str, Answer]) -> None:
+    # gcd(20, 40) = 20 divides 3 - 23
+    for answer in answers(_case(pinion=3, wheel=23)).answers:
+        assert answer.sentence == told[answer.name].sentence
+        np.testing.assert_allclose(
+            _numbers(answer), _numbers(told[answer.name]), rtol=1e-9, atol=1e-12
+        )
+
+
+def test_the_limit_is_for_what_repeats_with_the_mesh(told: dict[str, Answer]) -> None:
+    error = told["transmission_error"].figures
+    assert error["turn"] == 40
+    # teeth that are all alike have 2.3 um
+    assert 10.0 < error["cold"] < 16.0
+    assert told["transmission_error"].value == error["mesh"] < 5.0
+
+
+def test_other_assemblies_are_told_beside_it(told: dict[str, Answer]) -> None:
+    for name, of_its_own in (("transmission_error", "hot"), ("dynamic_factor", "own")):
+        figures = told[name].figures
+        assert (figures["assemblies"], figures["possible"]) == (8, 20)
+        assert figures["smallest"] <= figures[of_its_own] <= figures["largest"]
+        assert figures["largest"] > 1.05 * figures["smallest"]
+    stated = gear_case(load_case(_case().text, ["gears.marks=[1, 1]"]))
+    assert stated.assembly_count == 20
+    assert "possible" not in {name for answer in answers(stated).answers for name in answer.figures}
+
+
+def test_teeth_that_differ_lose_contact_where_their_mean_tooth_does_not(
+    told: dict[str, Answer],
+) -> None:
+    mean = {answer.name: answer for answer in answers(_case().mean_tooth()).answers}
+    assert told["dynamic_factor"].value > 1.3 * mean["dynamic_factor"].value
+    first = told["contact_loss"].figures["ranges"][0][0]
+    assert first < 0.8 * mean["contact_loss"].figures["ranges"][0][0]
