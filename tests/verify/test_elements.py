@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -20,6 +19,7 @@ from thermogear.gears.tooth_mesh import (
     plain_across,
     tooth_mesh,
 )
+from thermogear.gears.tooth_table import Sector
 from thermogear.verify.elements import ReferencePatch, library
 from thermogear.verify.sector import FlankSector
 
@@ -83,50 +83,19 @@ def test_rigid_motions_cost_nothing_and_a_stretch_costs_its_area(gear: Gear) -> 
     assert area == pytest.approx(sector_area(gear), rel=1e-4)
 
 
-def pressure_load(
-    nodes: np.ndarray, edge: np.ndarray, pressure: Callable[[np.ndarray, np.ndarray], np.ndarray]
-) -> tuple[np.ndarray, float]:
-    """Nodal forces of ``pressure``(x, y) on the boundary ``edge``, its nodes in order.
-
-    Corners and mid-sides alternate; the material lies to the left of the way along them.
-    Returns the load per unit width and the integral of the pressure along the edge.
-    """
-    sides = np.stack([edge[:-2:2], edge[1:-1:2], edge[2::2]], axis=1)
-    x, weight = np.polynomial.legendre.leggauss(24)
-    shape = np.stack([0.5 * x * (x - 1.0), 1.0 - x * x, 0.5 * x * (x + 1.0)])
-    slope = np.stack([x - 0.5, -2.0 * x, x + 0.5])
-    at = np.einsum("kq,skc->csq", shape, nodes[sides])
-    along = np.einsum("kq,skc->csq", slope, nodes[sides])
-    force = pressure(at[0], at[1]) * weight
-    into = np.stack([-along[1], along[0]])
-    out = np.zeros(nodes.shape)
-    np.add.at(out, sides, np.einsum("kq,sq,csq->skc", shape, force, into))
-    return out.ravel(), float(np.sum(force * np.hypot(*along)))
-
-
 @pytest.mark.parametrize("gear", [PINION, SMALL, UNDERCUT], ids=lambda g: f"z{g.teeth}")
 def test_pressure_has_the_base_circle_as_its_lever(gear: Gear) -> None:
     """Every normal of an involute touches the base circle: moment = F r_b."""
-    t, density = pitch_point(gear), Density()
-    centre, (low, high) = 0.5 * gear.base_radius * t * t, Profile(gear).ends
-    arcs = graded(
-        low=low, high=high, centre=centre, core=1.25 * A, fine=A / 3, rate=1.6, coarse=gear.module
-    )
-    mesh = tooth_mesh(gear, across=plain_across(density), arcs=arcs, density=density)
-
-    def pressure(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        arc = 0.5 * ((x * x + y * y) / gear.base_radius - gear.base_radius)
-        return 2.0 / (np.pi * A) * np.sqrt(np.maximum(1.0 - ((arc - centre) / A) ** 2, 0.0))
-
-    load, total = pressure_load(mesh.patch.nodes, mesh.flank, pressure)
-    # the rule cannot know where the root ends; what it misses is divided out
-    assert total == pytest.approx(1.0, rel=5e-4)
-    x, y = mesh.patch.nodes.T
+    t = pitch_point(gear)
+    sector = Sector.of(gear, gear.material.poisson_ratio)
+    arcs, widths = np.array([0.5 * gear.base_radius * t * t]), np.array([A])
+    load = sector.loads(arcs=arcs, widths=widths)[:, 0]
+    x, y = sector.patch.nodes.T
     turning = np.stack([-y, x], axis=-1).ravel()
-    assert load @ turning / total == pytest.approx(gear.base_radius, rel=1e-7)
+    assert load @ turning == pytest.approx(gear.base_radius, rel=1e-7)
     # into the tooth, along its inward normal; over the contact that turns by a little
-    force = load.reshape(-1, 2).sum(axis=0) / total
     beta = t - gear.base_half_angle
+    force = load.reshape(-1, 2).sum(axis=0)
     assert force == pytest.approx([-np.cos(beta), -np.sin(beta)], abs=3e-4)
 
 

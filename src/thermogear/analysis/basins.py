@@ -134,13 +134,11 @@ class BasinPlan:
         }
 
     def coordinates(self) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]:
-        named = (("displacement", "1"), ("velocity", "1"))
-        if self.dimension != 2:
-            named = plane_of(self.model).words
-        grid = zip("xv", (self.x, self.v), named, strict=True)
+        plain = (("displacement", "1"), ("velocity", "1"))
+        named = plain if self.dimension == 2 else plane_of(self.model).words
         return {
             name: ((name,), np.array(values), {"units": unit, "long_name": f"start {words}"})
-            for name, values, (words, unit) in grid
+            for name, values, (words, unit) in zip("xv", (self.x, self.v), named, strict=True)
         }
 
     def needs(self, key: Key) -> Key | None:
@@ -287,8 +285,7 @@ def single(model: object) -> Lanes | tuple[object, ...]:
 
 def _states(model: object, pairs: Floats) -> Floats:
     """The states (start, d) that ``pairs`` (start, 2) of the plane stand for."""
-    one_mass = isinstance(single(model), Lanes)
-    return pairs if one_mass else plane_of(model).starts(pairs)
+    return pairs if isinstance(single(model), Lanes) else plane_of(model).starts(pairs)
 
 
 def _shown(model: object, states: Floats) -> Floats:

@@ -216,9 +216,7 @@ def _may_hide(beside: Point | None, a: Point, b: Point) -> bool:
     along = -near if near < far else width + far
     for name in HIDDEN:
         one, other, third = (float(attrgetter(name)(p)) for p in (a, b, beside))
-        if name != "margin" and one * other < 0.0:
-            continue
-        if not np.isfinite(one + other + third):
+        if (name != "margin" and one * other < 0.0) or not np.isfinite(one + other + third):
             continue
         slope = (other - one) / width
         bend = ((third - one) / along - slope) / (along - width)

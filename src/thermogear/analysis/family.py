@@ -132,11 +132,9 @@ class ModelFamily:
 
     def inputs(self) -> dict[str, Any]:
         """The model's fields that do not vary."""
-        found: dict[str, Any] = {"type": type(self.model).__name__}
-        for field in fields(self.model):
-            if field.name not in self.names:
-                found[field.name] = _plain(getattr(self.model, field.name))
-        return found
+        held = [field.name for field in fields(self.model) if field.name not in self.names]
+        plain = {name: _plain(getattr(self.model, name)) for name in held}
+        return {"type": type(self.model).__name__, **plain}
 
     def __call__(self, points: Floats) -> Any:
         columns = np.asarray(points, dtype=float)
@@ -154,8 +152,7 @@ class ModelFamily:
 def _plain(value: object) -> object:
     """A field as plain numbers and texts."""
     if isinstance(value, Periodic):
-        pairs = [[c.real, c.imag] for c in value.harmonics]
-        return {"mean": value.mean, "harmonics": pairs}
+        return {"mean": value.mean, "harmonics": [[c.real, c.imag] for c in value.harmonics]}
     if isinstance(value, Pieces):
         return {"starts": list(value.starts), "pieces": [list(c) for c in value.coefficients]}
     if is_dataclass(value) and not isinstance(value, type):
@@ -199,8 +196,7 @@ def lanes_and_status(
     lanes = lanes_of(made)
     if len(lanes) == 1 and len(points) > 1:
         lanes = lanes.take(np.zeros(len(points), int))
-    status = np.asarray(getattr(made, "status", np.zeros(len(points))), dtype=np.int8)
-    return lanes, status
+    return lanes, np.asarray(getattr(made, "status", np.zeros(len(points))), dtype=np.int8)
 
 
 def taken(lanes: Lanes | Sequence[object], index: NDArray[np.int64]) -> Lanes | tuple[object, ...]:

@@ -124,8 +124,7 @@ def label(
 def _any(model: object, initial_state: ArrayLike, search: Search) -> Label:
     """The label of a model of any dimension by its return map alone."""
     section = return_map(model)
-    start = starts_of(initial_state, 1, dimension=section.dimension)[0]
-    motion = settle(section, start, search)
+    motion = settle(section, starts_of(initial_state, 1, dimension=section.dimension)[0], search)
     exponent = None
     if np.isfinite(motion.lyapunov) and motion.batches.size:
         exponent = Lyapunov(

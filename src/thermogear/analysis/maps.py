@@ -287,16 +287,20 @@ def parameter_map(
     >>> found.period.values.tolist()
     [[1, 1], [1, 1]]
     """
-    plan = map_plan(
-        model,
-        axes,
-        initial_state=initial_state,
-        rule=rule,
-        refine=refine,
-        tile=tile,
-        stride=stride,
+    return gather(
+        map_plan(
+            model,
+            axes,
+            initial_state=initial_state,
+            rule=rule,
+            refine=refine,
+            tile=tile,
+            stride=stride,
+        ),
+        threads=threads,
+        progress=progress,
+        alive=alive,
     )
-    return gather(plan, threads=threads, progress=progress, alive=alive)
 
 
 def map_plan(

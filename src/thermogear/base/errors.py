@@ -164,8 +164,6 @@ def short(value: object) -> str:
         text = f"a whole number of about {int(value.bit_length() * 0.30103) + 1} digits"
     elif isinstance(value, int | float):
         text = f"{value:.15g}" if isinstance(value, float) else str(value)
-    elif isinstance(value, str):
-        text = repr(value)
     else:
-        text = str(value)
+        text = repr(value) if isinstance(value, str) else str(value)
     return text if len(text) <= 60 else text[:57] + "..."

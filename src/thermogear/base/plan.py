@@ -45,8 +45,7 @@ class Variable:
 
 def real(dims: tuple[str, ...], words: str, units: str, *inner: str) -> Variable:
     """A stored number over ``dims`` and ``inner`` ones, nan where none was computed."""
-    about = {"long_name": words, "units": units}
-    return Variable((*dims, *inner), "float64", float("nan"), about)
+    return Variable((*dims, *inner), "float64", float("nan"), {"long_name": words, "units": units})
 
 
 def axis_coordinates(
@@ -115,10 +114,11 @@ def keys_of(plan: Plan) -> list[Key]:
 
 def ranges_of(plan: Plan, key: Key) -> dict[str, slice]:
     """The stretch of every cut dimension that a chunk covers."""
-    found, sizes = {}, plan.sizes
-    for place, (name, length) in zip(key, plan.cuts.items(), strict=True):
-        found[name] = slice(place * length, min((place + 1) * length, sizes[name]))
-    return found
+    sizes = plan.sizes
+    return {
+        name: slice(place * length, min((place + 1) * length, sizes[name]))
+        for place, (name, length) in zip(key, plan.cuts.items(), strict=True)
+    }
 
 
 def region_of(plan: Plan, key: Key, variable: Variable) -> tuple[slice, ...]:

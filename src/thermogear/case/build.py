@@ -110,11 +110,13 @@ class TemperatureRule:
 
 def own_materials(file: GearFile) -> dict[str, Material]:
     """The materials that the file describes itself."""
-    own = {}
-    for name, table in file.materials.items():
-        values = table.model_dump(exclude_none=True)
-        own[name] = _under(f"materials.{name}", partial(Material, name=name, **values))
-    return own
+    return {
+        name: _under(
+            f"materials.{name}",
+            partial(Material, name=name, **table.model_dump(exclude_none=True)),
+        )
+        for name, table in file.materials.items()
+    }
 
 
 def named_material(name: str, at: str, known: Mapping[str, _Made]) -> _Made:
@@ -159,9 +161,10 @@ def _under(prefix: str, make: Callable[[], _Made], *, own_rack: bool = False) ->
         inner, got = error.field, error.got
         for start in ("material.", "lubricant."):
             inner = inner.removeprefix(start)
-        where = f"{prefix}.{inner}"
-        if inner in ("module", "pressure_angle") or (inner.startswith("rack.") and not own_rack):
-            where = f"gears.{inner}"
+        common = inner in ("module", "pressure_angle") or (
+            inner.startswith("rack.") and not own_rack
+        )
+        where = f"{'gears' if common else prefix}.{inner}"
         if inner.endswith("tip_radius"):
             where = where.removesuffix("tip_radius") + "tip_diameter"
             got = f"a radius of {got}"
@@ -335,8 +338,7 @@ def inertias(file: GearFile, pair: GearPair) -> tuple[tuple[float, float], str]:
 
     def disc(gear: Gear) -> float:
         outer = gear.pitch_radius if radius == "pitch" else gear.tip_radius
-        inner = gear.bore_radius if bored else 0.0
-        return disc_inertia(gear, radius=outer, bore_radius=inner)
+        return disc_inertia(gear, radius=outer, bore_radius=gear.bore_radius if bored else 0.0)
 
     words = f"solid discs of {radius} radius, {'bored' if bored else 'unbored'}"
     return (disc(pair.pinion), disc(pair.wheel)), words

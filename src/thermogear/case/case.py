@@ -425,8 +425,7 @@ def case_of(
 
     ``told`` False leaves out its assumptions and warnings, for a case that nobody sees.
     """
-    kind = data.get("kind", "gear")
-    file = DimensionlessFile if kind == "dimensionless" else GearFile
+    file = DimensionlessFile if data.get("kind", "gear") == "dimensionless" else GearFile
     try:
         read: GearFile | DimensionlessFile = file.model_validate(data)
     except ValidationError as error:
@@ -471,8 +470,7 @@ def case_of(
 
 def _decided(case: GearCase) -> dict[str, str]:
     around = case.gearbox.surroundings
-    graded = unmeasured(case.file)
-    found = decided(case.pair, case.cold_backlash, around, case.accuracy, graded)
+    found = decided(case.pair, case.cold_backlash, around, case.accuracy, unmeasured(case.file))
     choices = [model.choices() for model in case.models]
     found |= {
         f"model.{name}": " and ".join(dict.fromkeys(str(one[name]) for one in choices))

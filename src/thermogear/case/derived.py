@@ -69,16 +69,12 @@ def _pair(case: GearCase) -> list[Fact]:
         Fact("path of contact from the pinion's tangent point", name, 1e3 * value, "mm")
         for name, value in zip("ABCDE", path, strict=True)
     ]
-    cold = case.cold_backlash
-    found.append(
-        Fact("backlash on the line of action", "cold half backlash", 1e6 * cold.half, "um")
-    )
+    group, cold = "backlash on the line of action", case.cold_backlash
+    sizes = {"cold half backlash": cold.half}
     if cold.least != cold.most:
-        group = "backlash on the line of action"
-        found.append(Fact(group, "least cold half backlash", 1e6 * cold.least, "um"))
-        found.append(Fact(group, "most cold half backlash", 1e6 * cold.most, "um"))
-    found.append(Fact("backlash on the line of action", "from", cold.origin))
-    return found
+        sizes |= {"least cold half backlash": cold.least, "most cold half backlash": cold.most}
+    found += [Fact(group, name, 1e6 * size, "um") for name, size in sizes.items()]
+    return [*found, Fact(group, "from", cold.origin)]
 
 
 def _gear(name: str, gear: Gear, start: float) -> list[Fact]:
@@ -119,10 +115,14 @@ def _train(case: GearCase) -> list[Fact]:
     if plan is None:
         return []
     group = "shafts and bearings"
-    found = []
-    for name, shaft in zip(SHAFTS, plan.shafts, strict=True):
-        text = f"{1e3 * shaft.length:.6g} mm, gear at {1e3 * shaft.gear_position:.6g} mm"
-        found.append(Fact(group, f"{name}'s shaft", text))
+    found = [
+        Fact(
+            group,
+            f"{name}'s shaft",
+            f"{1e3 * shaft.length:.6g} mm, gear at {1e3 * shaft.gear_position:.6g} mm",
+        )
+        for name, shaft in zip(SHAFTS, plan.shafts, strict=True)
+    ]
     even = np.full((len(plan.bearings), 4), plan.reference)
     plays = 2.0 * plan.half_plays(even, reference=plan.reference)
     for one, play in zip(plan.bearings, plays, strict=True):
@@ -144,15 +144,15 @@ def _oil(oil: Lubricant) -> list[Fact]:
 
 
 def _operating(case: GearCase) -> list[Fact]:
-    found = []
-    for speed in case.speeds:
-        rpm = f"{speed / RPM:.6g} rpm"
-        mesh = case.pair.pinion.teeth * speed / (2.0 * math.pi)
-        found.append(Fact("mesh frequency", f"at {rpm}", mesh, "Hz"))
-    for torque in case.torques:
-        force = torque / case.pair.pinion.base_radius
-        found.append(Fact("normal force", f"at {torque:.6g} N m", force, "N"))
-    return found
+    z, radius = case.pair.pinion.teeth, case.pair.pinion.base_radius
+    found = [
+        Fact("mesh frequency", f"at {speed / RPM:.6g} rpm", z * speed / (2.0 * math.pi), "Hz")
+        for speed in case.speeds
+    ]
+    return found + [
+        Fact("normal force", f"at {torque:.6g} N m", torque / radius, "N")
+        for torque in case.torques
+    ]
 
 
 def _held(case: GearCase) -> list[Fact]:

@@ -35,30 +35,6 @@ GIVEN = (
 """Fields that give a temperature which the heat balance could compute."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Dial:
-    """A quantity one turns, in ``unit``: ``value`` now, from ``low`` to ``high`` by ``step``.
-
-    ``fields`` are those of the case file that it puts; ``held`` says why it cannot be turned now.
-    """
-
-    name: str
-    title: str
-    unit: str
-    value: float
-    low: float
-    high: float
-    step: float
-    fields: tuple[str, ...]
-    held: str = ""
-
-    @property
-    def row(self) -> dict[str, Any]:
-        """For a page; the value None where the heat balance found none."""
-        found = {one: getattr(self, one) for one in self.__dataclass_fields__}
-        return found | {"value": self.value if math.isfinite(self.value) else None}
-
-
 @dataclass(frozen=True)
 class _Kind:
     """What a dial is, before anything is computed of it."""
@@ -68,6 +44,25 @@ class _Kind:
     unit: str
     fields: tuple[str, ...]
     held: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Dial(_Kind):
+    """A quantity one turns, in ``unit``: ``value`` now, from ``low`` to ``high`` by ``step``.
+
+    ``fields`` are those of the case file that it puts; ``held`` says why it cannot be turned now.
+    """
+
+    value: float
+    low: float
+    high: float
+    step: float
+
+    @property
+    def row(self) -> dict[str, Any]:
+        """For a page; the value None where the heat balance found none."""
+        found = {one: getattr(self, one) for one in self.__dataclass_fields__}
+        return found | {"value": self.value if math.isfinite(self.value) else None}
 
 
 def _kinds(case: GearCase) -> dict[str, _Kind]:
@@ -213,10 +208,12 @@ def _dial(kind: _Kind, value: float, ends: tuple[float, float]) -> Dial:
     step = 10.0 ** math.floor(math.log10(max(high - low, 1e-9) / 200.0))
     low, high = step * math.floor(low / step), step * math.ceil(high / step)
     return Dial(
-        name=kind.name, title=kind.title, unit=kind.unit, value=float(f"{value:.10g}"),
-        low=float(f"{low:.6g}"), high=float(f"{high:.6g}"), step=float(f"{step:.6g}"),
-        fields=kind.fields, held=kind.held,
-    )  # fmt: skip
+        **vars(kind),
+        value=float(f"{value:.10g}"),
+        low=float(f"{low:.6g}"),
+        high=float(f"{high:.6g}"),
+        step=float(f"{step:.6g}"),
+    )
 
 
 def _wide(value: float) -> tuple[float, float]:

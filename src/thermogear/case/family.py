@@ -301,8 +301,7 @@ class GearFamily:
                     (GEARS_AT,) if self.names[i] == GEARS_AT else fields_of(self.names[i])
                 )
             }
-            names = [self.names[i] for i in read]
-            yield names, values, index, columns
+            yield [self.names[i] for i in read], values, index, columns
 
     def _case_with(self, names: Sequence[str], values: Floats) -> GearCase:
         """The case with parameters of its file put to other ``values`` (SI)."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from thermogear.base.errors import InputError
 from thermogear.case.charts import Chart
-from thermogear.case.flank_schema import ReliefTable, ToothProfilesTable, ToothTable
+from thermogear.case.flank_schema import ToothProfilesTable, ToothTable
 from thermogear.case.schema import GearFile, GearTable
 from thermogear.gears.candidates import mesh_points
 from thermogear.gears.deviations import (
@@ -218,10 +218,9 @@ def _graded(file: GearFile, pair: GearPair) -> tuple[Deviation, ...]:
 
 def unmeasured(file: GearFile) -> list[str]:
     """The gears whose flanks neither a table nor a chart gives."""
-    tables = {"pinion": file.gears.pinion, "wheel": file.gears.wheel}
     return [
         name
-        for name, table in tables.items()
+        for name, table in {"pinion": file.gears.pinion, "wheel": file.gears.wheel}.items()
         if table.profile is None
         and not table.tooth_profiles
         and getattr(file.flanks, name, None) is None
@@ -235,7 +234,7 @@ def _given(
     table: GearTable = getattr(file.gears, gear)
     for end, relief in (("tip", table.tip_relief), ("root", table.root_relief)):
         if relief is not None:
-            yield f"{end}_relief", partial(_relief, gear, end, relief)
+            yield f"{end}_relief", partial(Relief, gear, end=end, **relief.model_dump())
     yield from _of_teeth(gear, file, pair)
     if table.pressure_angle_error is not None:
         yield "pressure_angle_error", partial(PressureAngleError, gear, table.pressure_angle_error)
@@ -245,17 +244,6 @@ def _given(
             "profile",
             partial(FlankTable, gear, radius=flank.radius, added=flank.added, flank=flank.flank),
         )
-
-
-def _relief(gear: str, end: str, table: ReliefTable) -> Relief:
-    return Relief(
-        gear,
-        amount=table.amount,
-        length=table.length,
-        end=end,
-        shape=table.shape,
-        flank=table.flank,
-    )
 
 
 def relief_text(gear: str, relief: Relief) -> str:

@@ -87,8 +87,7 @@ class OnePoint:
     def excitation(self) -> Excitation:
         """k(t), e(t), backlash and force in SI; InputError where nothing moves."""
         _ = self.points
-        whole = GearFamily(self.gears, (), state=self._held)
-        found = whole.excitations(np.empty((1, 0))).one(0)
+        found = GearFamily(self.gears, (), state=self._held).excitations(np.empty((1, 0))).one(0)
         assert found is not None  # the point moves
         return found
 
@@ -140,8 +139,7 @@ class OnePoint:
         numbers = self.parameters
         if name in numbers:
             return numbers[name]
-        gears = self.gears
-        at = self.operating or gears.stated
+        at = self.operating or self.gears.stated
         here = {
             "pinion_speed": at.speed,
             "pinion_torque": at.torque,

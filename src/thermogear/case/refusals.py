@@ -26,10 +26,8 @@ def line_of(text: str, field: str) -> int | None:
     """
     places = _places(text)
     parts = _parts(field)
-    for length in range(len(parts), 0, -1):
-        if parts[:length] in places:
-            return places[parts[:length]]
-    return None
+    above = (parts[:length] for length in range(len(parts), 0, -1))
+    return next((places[one] for one in above if one in places), None)
 
 
 def _parts(path: str) -> tuple[str, ...]:
@@ -121,8 +119,7 @@ def _said(complaint: dict[str, Any], file: type[BaseModel]) -> InputError:
         return _unknown_key(location, field, file)
     if kind == "missing":
         reader = reader_at(file, location)
-        key = location[-1]
-        fix = f"write {key} = {reader.example}" if reader else f"add the table [{field}]"
+        fix = f"write {location[-1]} = {reader.example}" if reader else f"add the table [{field}]"
         return InputError(field, "nothing", why="needed", fix=fix)
     if kind in _SHAPES:
         allowed, why = _SHAPES[kind]
@@ -167,8 +164,7 @@ def table_at(file: type[BaseModel], location: tuple[int | str, ...]) -> type[Bas
             continue
         if table is None or str(part) not in table.model_fields:
             return None
-        annotation = table.model_fields[str(part)].annotation
-        table, waiting = models_of(annotation)
+        table, waiting = models_of(table.model_fields[str(part)].annotation)
     return table
 
 

@@ -118,13 +118,11 @@ def takes(case: GearCase, field: str) -> bool:
     table, _, last = field.rpartition(".")
     if field in FREE:
         return True
-    if field == "backlash.value":
+    if field == "backlash.value" or field in OF_OIL:
         return _given(case, field) is not None
     if field in WIDTHS:
         # the heat balance knows one housing and one width
         return not case.computed
-    if field in OF_OIL:
-        return _given(case, field) is not None
     if table.startswith("materials."):
         # a backlash given at a temperature hangs on how much the materials expand
         soaked = _given(case, "backlash.temperature") is not None
@@ -332,8 +330,7 @@ def quasi_static(
             if places.size == 1:
                 refused.append(error)
                 return []
-        halves = np.split(places, [places.size // 2])
-        return [part for half in halves for part in asked(half)]
+        return [part for half in np.split(places, [places.size // 2]) for part in asked(half)]
 
     chunks = (np.arange(first, min(first + BATCH, count)) for first in range(0, count, BATCH))
     parts = [part for places in chunks for part in asked(places)]
@@ -385,9 +382,11 @@ def _cycle(
         samples.cycles[key] = cycle
     cyclic = [name for name in want if name not in BODIES_OF]
     found = {name: np.asarray(values) for name, values in cycle.quantities(cyclic).items()}
-    for name in want:
-        if name in BODIES_OF:
-            found[name] = np.broadcast_to(BODIES_OF[name](operating), hot.count).copy()
+    found |= {
+        name: np.broadcast_to(BODIES_OF[name](operating), hot.count).copy()
+        for name in want
+        if name in BODIES_OF
+    }
     if balance is not None:
         lost = state.open(case, balance, given=temperature is not None)
         found["status"] = np.where(lost, HEAT_NOT_SETTLED, found["status"])

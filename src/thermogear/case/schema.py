@@ -737,9 +737,12 @@ def json_schema() -> dict[str, Any]:
     for table in schema["$defs"].values():
         for entry in table["properties"].values():
             # a default is an SI number or nothing; neither could be written in a file as it is
-            if entry.get("type") == "string" and not isinstance(entry.get("default"), str):
-                entry.pop("default", None)
-            if entry.get("default", "") is None or "$ref" in entry:
+            given = entry.get("default")
+            if (
+                given is None
+                or "$ref" in entry
+                or (entry.get("type") == "string" and not isinstance(given, str))
+            ):
                 entry.pop("default", None)
     kinds = {"GearFile": "gear", "DimensionlessFile": "dimensionless"}
     for name, kind in kinds.items():

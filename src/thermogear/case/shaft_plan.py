@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -14,6 +14,8 @@ from thermogear.base.materials import MATERIALS
 from thermogear.base.notice import Notice
 from thermogear.gears.pair import GearPair
 from thermogear.heat.shaft_heat import CoefficientFriction, Friction, HeatedBearing, ShaftHeat
+from thermogear.mesh.balance import HeatBalance
+from thermogear.mesh.operating import Operating
 from thermogear.shafts.bearings.clearance import Fit, mounted_clearance
 from thermogear.shafts.bearings.friction import PalmgrenFriction, SkfFriction
 from thermogear.shafts.bearings.geometry import RollingBearing
@@ -29,10 +31,6 @@ from thermogear.shafts.train import (
     Shaft,
     TrainParts,
 )
-
-if TYPE_CHECKING:
-    from thermogear.mesh.balance import HeatBalance
-    from thermogear.mesh.operating import Operating
 
 _Made = TypeVar("_Made")
 GRAVITY = 9.80665
@@ -194,11 +192,12 @@ class TrainPlan(TrainParts):
     @property
     def heated_names(self) -> dict[str, str]:
         """Name of every bearing in the heat network, by its own."""
-        found: dict[str, str] = {}
-        for shaft in SHAFTS:
-            mine = sorted((b for b in self.bearings if b.shaft == shaft), key=lambda b: b.position)
-            found |= {one.name: f"{shaft}_bearing_{n}" for n, one in enumerate(mine, 1)}
-        return found
+        along = sorted(self.bearings, key=lambda b: b.position)
+        return {
+            one.name: f"{shaft}_bearing_{n}"
+            for shaft in SHAFTS
+            for n, one in enumerate((b for b in along if b.shaft == shaft), 1)
+        }
 
     def heat(self, pair: GearPair, *, coefficient: float) -> ShaftHeat:
         """Shafts and bearings for the heat network.

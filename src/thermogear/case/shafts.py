@@ -8,11 +8,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 from thermogear.base.errors import InputError
 from thermogear.base.materials import Material
 from thermogear.case.build import named_material
+from thermogear.case.schema import GearFile
 from thermogear.case.shaft_plan import GRAVITY, LOSS_TIME, RINGS, BearingPlan, TrainPlan, section_at
 from thermogear.case.shaft_schema import BearingTable, DiscTable, ShaftTable, TrainTable
 from thermogear.gears.pair import GearPair
@@ -35,9 +36,6 @@ from thermogear.shafts.train import (
     Shaft,
     Unbalance,
 )
-
-if TYPE_CHECKING:
-    from thermogear.case.schema import GearFile
 
 _Made = TypeVar("_Made")
 
@@ -63,10 +61,9 @@ def train_plan(
     table = file.train or TrainTable()
     bearings = _bearings(file, shafts, known, pair)
     given = inertias if file.inertia.model == "given" else (None, None)
-    gears = (pair.pinion, pair.wheel)
     bodies = tuple(
         _body(gear, section_at(shaft, shaft.gear_position).outer_diameter, polar)
-        for gear, shaft, polar in zip(gears, shafts, given, strict=True)
+        for gear, shaft, polar in zip((pair.pinion, pair.wheel), shafts, given, strict=True)
     )
     casing = None
     if file.housing.mass is not None and file.housing.mount_stiffness is not None:
@@ -209,9 +206,8 @@ def _beside_the_gear(one: BearingPlan, shaft: Shaft, pair: GearPair) -> None:
     face = pair.pinion.face_width if one.shaft == SHAFTS[0] else pair.wheel.face_width
     if abs(one.position - shaft.gear_position) <= 0.5 * face:
         ends = [1e3 * (shaft.gear_position + side * 0.5 * face) for side in (-1.0, 1.0)]
-        field = one.field if one.field.startswith("shafts") else f"{one.field}.position"
         raise InputError(
-            field,
+            one.field if one.field.startswith("shafts") else f"{one.field}.position",
             f"a bearing at {1e3 * one.position:.6g} mm",
             allowed=f"beyond the {one.shaft}'s face, {ends[0]:.6g} to {ends[1]:.6g} mm",
             fix="move the bearing, or the gear by gear_position",
@@ -233,8 +229,7 @@ def _bearings(
     fields = [f"bearings[{n}]" for n in range(len(file.bearings) - 2 * len(ends))]
     fields += [field for field in ends for _ in range(2)]
     for number, (at, table) in enumerate(zip(fields, file.bearings, strict=True)):
-        shaft = shafts[SHAFTS.index(table.shaft)]
-        found.append(_bearing(at, number, table, shaft, file, known))
+        found.append(_bearing(at, number, table, shafts[SHAFTS.index(table.shaft)], file, known))
     for name in SHAFTS:
         mine = sorted((b for b in found if b.shaft == name), key=lambda b: b.position)
         if len(mine) < 2:
@@ -303,14 +298,13 @@ def _bearing(
     fit = None
     if rolling is not None:
         housing = named_material(file.housing.material, "housing.material", known)
-        bore = min(under.inner_diameter, 0.95 * rolling.bore)
         fit = Fit(
             ring=RINGS,
             shaft=under.material,
             housing=housing,
             shaft_interference=table.shaft_interference,
             housing_interference=table.housing_interference,
-            shaft_bore=bore,
+            shaft_bore=min(under.inner_diameter, 0.95 * rolling.bore),
         )
     skf = rolling is not None and has_skf(rolling)
     friction = table.friction or ("skf" if skf else "palmgren")

@@ -133,10 +133,7 @@ class GearedEquation:
         told: list[Function | None] = [self.mesh_stiffness, self.error]
         if self.friction_jumps is None:
             told += [self.friction_at_pitch, self.friction_per_metre]
-        for one in told:
-            if isinstance(one, Pieces):
-                own |= set(one.starts)
-        return tuple(sorted(own))
+        return tuple(sorted(own.union(*(one.starts for one in told if isinstance(one, Pieces)))))
 
     @property
     def size(self) -> int:

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from thermogear import __version__
 from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.bounds import whole
-from thermogear.base.errors import InputError, nearest
+from thermogear.base.errors import InputError, require_choice
 from thermogear.base.period import turns
 from thermogear.dynamics import adaptive, exact
 from thermogear.dynamics.blocks import Pace, Progress, run_blocks
@@ -34,11 +34,7 @@ RK4_BLOCK = 64
 
 def _choose(model: object, method: str) -> tuple[str, str]:
     """The method and why it was taken."""
-    if method != "auto" and method not in METHODS:
-        known = ["auto", *METHODS]
-        raise InputError(
-            "method", repr(method), allowed=" | ".join(known), fix=nearest(method, known)
-        )
+    require_choice("method", method, ["auto", *METHODS])
     if method != "auto":
         if method == "exact" and not isinstance(model, ClearanceModel):
             raise InputError(
@@ -117,8 +113,7 @@ def _rk4_block(
         advance_rk4(stiffness, force, damping, backlash, step, x, v, sections, none, stride)
     result.sections[index, 0, 0] = x
     result.sections[index, 1, 0] = v
-    periods = result.sections.shape[2] - 1
-    for first, count in pace.chunks(periods, lanes=index.size):
+    for first, count in pace.chunks(result.sections.shape[2] - 1, lanes=index.size):
         sections = np.empty((count, 2, index.size), precision)
         path = np.empty((count * samples, 2, index.size), precision) if samples else none
         advance_rk4(stiffness, force, damping, backlash, step, x, v, sections, path, stride)

@@ -380,9 +380,10 @@ def periodic_table(
     at = 0.5 * (edges[:-1] + edges[1:])[:, None] + width[:, None] * points
     fit = np.linalg.inv(np.vander(points, DEGREE + 1, increasing=True))
     table = np.zeros((width.size, DEGREE + 1, 8))
-    scale = width[:, None] ** -np.arange(DEGREE + 1.0)
+    scale, broken = width[:, None] ** -np.arange(DEGREE + 1.0), np.zeros(8, np.int64)
     for place, one in own:
         table[:, :, place] = (one(at) @ fit.T) * scale
+        broken[place] = isinstance(one, Pieces)
     table[:, :, k.BACK_ERROR] = -table[:, :, k.ERROR]
     table[:, :-1, k.RATE] = table[:, 1:, k.ERROR] * np.arange(1.0, DEGREE + 1.0)
     guide = np.searchsorted(edges, np.arange(count) / count, side="right") - 1
@@ -390,8 +391,5 @@ def periodic_table(
     if not inner and any(isinstance(one, Pieces) for _, one in own):
         inner = [0.5]
     borders = np.array([*inner, 1.0])
-    broken = np.zeros(8, np.int64)
-    for place, one in own:
-        broken[place] = isinstance(one, Pieces)
     broken[[k.RATE, k.BACK_ERROR]] = broken[k.ERROR]
     return edges, guide.astype(np.int64), table.ravel(), borders, broken

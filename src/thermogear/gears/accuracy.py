@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.base.errors import InputError, nearest
+from thermogear.base.errors import InputError, require_choice
 
 _MM, _UM = 1e-3, 1e-6
 _STEP = math.sqrt(2.0)  # from grade to grade
@@ -136,13 +136,7 @@ def flank_class(
 
 
 def _require(edition: str, grade: int, teeth: int, **sizes: float) -> None:
-    if edition not in _GRADES:
-        raise InputError(
-            "accuracy.edition",
-            repr(edition),
-            allowed=" | ".join(EDITIONS),
-            fix=nearest(str(edition), EDITIONS),
-        )
+    require_choice("accuracy.edition", edition, EDITIONS)
     best, worst = _GRADES[edition]
     whole = isinstance(grade, int | np.integer) and not isinstance(grade, bool)
     if not whole or not best <= grade <= worst:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import re
 
-from thermogear.base.errors import InputError, nearest
+from thermogear.base.errors import InputError, require_choice
 from thermogear.gears.backlash import BacklashSpan, backlash_span
 from thermogear.gears.pair import GearPair
 
@@ -81,13 +81,7 @@ def upper_allowance(diameter: float, series: str) -> float:
     >>> f"{1e6 * upper_allowance(80e-3, 'cd'):.0f} um"
     '-70 um'
     """
-    if series not in ALLOWANCES:
-        raise InputError(
-            "thickness.series",
-            repr(series),
-            allowed=" | ".join(ALLOWANCES),
-            fix=nearest(series, ALLOWANCES),
-        )
+    require_choice("thickness.series", series, ALLOWANCES)
     values = ALLOWANCES[series]
     return -values[_step(diameter, len(values))] * _UM
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.arrays import Floats
-from thermogear.base.errors import InputError, nearest
+from thermogear.base.errors import InputError, require_choice
 from thermogear.gears.contact import mirror_position
 from thermogear.gears.corner import ContactPoint, contact_point
 from thermogear.gears.deviations import Contacts
@@ -57,10 +57,7 @@ def mesh_points(
     phi = np.atleast_1d(np.asarray(phase, dtype=float))
     if phi.ndim != 1 or not np.all(np.isfinite(phi)):
         raise InputError("phase", f"shape {phi.shape}", allowed="one axis of finite numbers")
-    if flank not in ("drive", "back"):
-        raise InputError(
-            "flank", repr(flank), allowed="drive | back", fix=nearest(flank, ("drive", "back"))
-        )
+    require_choice("flank", flank, ("drive", "back"))
     period = np.floor(phi)
     if not np.any(period != period[:1]):
         return _at(pair, phi.tobytes(), flank, extended)
@@ -102,8 +99,7 @@ def _at(pair: GearPair, phases: bytes, flank: str, extended: bool) -> MeshPoints
         number = period[:, None] - ranks
         following = number
     else:
-        mirror = (mirror_position(pair) - 2.0 * start) / pitch
-        phi = mirror - phi
+        phi = (mirror_position(pair) - 2.0 * start) / pitch - phi
         period = np.floor(phi)
         number = ranks - period[:, None]
         following = number + 1

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.arrays import Floats
-from thermogear.base.errors import InputError, nearest
+from thermogear.base.errors import InputError, require_choice
 from thermogear.gears.accuracy import flank_tolerances
 from thermogear.gears.geometry import Gear
 from thermogear.gears.iso6336 import iso6336_stiffness, pinion_first
@@ -141,10 +141,7 @@ def running_in(
     >>> f"{1e6 * less:.2f} um"
     '0.75 um'
     """
-    if surface not in SURFACES:
-        raise InputError(
-            "surface", repr(surface), allowed=" | ".join(SURFACES), fix=nearest(surface, SURFACES)
-        )
+    require_choice("surface", surface, SURFACES)
     v = np.asarray(pitch_speed, dtype=float)
     if surface == "case-hardened":
         return np.full(v.shape, min(0.075 * deviation, 3e-6))

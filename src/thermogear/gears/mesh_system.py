@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.arrays import Floats
-from thermogear.base.errors import InputError, nearest
+from thermogear.base.errors import require_choice
 from thermogear.gears.candidates import MeshPoints, mesh_points
 from thermogear.gears.contact import pair_reduced_modulus, reduced_modulus
 from thermogear.gears.corner import flank_ends
@@ -78,14 +78,7 @@ class LoadedModel:
             ("contact", CONTACT_LAWS),
             ("start", STARTS),
         ):
-            value = getattr(self, name)
-            if value not in known:
-                raise InputError(
-                    f"loaded.{name}",
-                    repr(value),
-                    allowed=" | ".join(known),
-                    fix=nearest(str(value), known),
-                )
+            require_choice(f"loaded.{name}", getattr(self, name), known)
 
 
 TEETH = {
@@ -177,8 +170,7 @@ def as_drawn(
         more = damage.softer(points.contacts, parameters[i], angles[i], model.plane)
         parts[i] = parts[i][0] + more[0], parts[i][1] + more[1]
     tooth, body = (np.stack(part) for part in zip(*parts, strict=True))
-    lever = at.lever[..., None]
-    return Drawn(tooth / at.lever**2, body / (lever * at.lever[..., None, :]), places)
+    return Drawn(tooth / at.lever**2, body / (at.lever[..., None] * at.lever[..., None, :]), places)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -233,8 +225,7 @@ class MeshSystem:
         lead = np.broadcast_shapes(
             shape, gap.shape[:-2], *(np.shape(e) for m in moduli for e in (m.tooth, m.body))
         )
-        cases = int(np.prod(lead, dtype=np.int64))
-        whole = (cases, positions, count)
+        whole = (int(np.prod(lead, dtype=np.int64)), positions, count)
         gaps, edges = (
             one[None]
             if gap.ndim == 2

@@ -77,8 +77,7 @@ def weber_approach(
     '2.08 um'
     """
     f, a = np.asarray(force, dtype=float), np.asarray(half_width, dtype=float)
-    loaded = f > 0.0
-    eta = np.asarray(depth, dtype=float) / np.where(loaded, a, 1.0)
+    eta = np.asarray(depth, dtype=float) / np.where(f > 0.0, a, 1.0)
     # sqrt(1 + eta^2) - eta without the difference
     narrow = 1.0 / (np.hypot(1.0, eta) + eta)
     bracket = np.arcsinh(eta) - poisson / (1.0 - poisson) * eta * narrow
@@ -267,8 +266,7 @@ def pair_compliances(
         second.tooth,
         pair.wheel.material.poisson_ratio,
     )
-    contact = 1.0 / yang_sun_stiffness(modulus, width)
-    return PairCompliances(parts[0], parts[1], contact)
+    return PairCompliances(parts[0], parts[1], 1.0 / yang_sun_stiffness(modulus, width))
 
 
 def pair_stiffness(
@@ -337,8 +335,7 @@ def mesh_figures(
     length = pair.path.e - pair.path.a
     ratio = length / pair.base_pitch
     nodes, weights = gauss(32)
-    s = pair.path.a + 0.5 * length * (1.0 + nodes)
-    single = pair_stiffness(pair, s, start, pinion, wheel)
+    single = pair_stiffness(pair, pair.path.a + 0.5 * length * (1.0 + nodes), start, pinion, wheel)
     mean = float(0.5 * ratio * np.sum(weights * single))
     # between the jumps at phase 0 and eps - floor(eps) the number of pairs is constant
     change = ratio - np.floor(ratio + 1e-12)

@@ -15,7 +15,7 @@ from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
 from thermogear.base.arrays import Floats
-from thermogear.base.errors import InputError, nearest
+from thermogear.base.errors import InputError, require_choice
 from thermogear.gears.geometry import Gear
 
 STARTS = {
@@ -86,11 +86,8 @@ def start_angle(gear: Gear, start: str) -> float:
     >>> f"{math.degrees(start_angle(Gear(20, 4e-3), '30-degree')):.1f} deg"
     '43.8 deg'
     """
-    if start == "root-circle":
-        return 0.5 * np.pi
-    if start == "30-degree":
-        return section_angle(gear, CRITICAL_SLOPE)
-    raise InputError("start", repr(start), allowed=" | ".join(STARTS), fix=nearest(start, STARTS))
+    require_choice("start", start, STARTS)
+    return 0.5 * np.pi if start == "root-circle" else section_angle(gear, CRITICAL_SLOPE)
 
 
 def section_angle(gear: Gear, slope: float) -> float:

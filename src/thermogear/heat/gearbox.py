@@ -314,10 +314,9 @@ def body_places(
     """
     low, high = np.asarray(body, dtype=float), np.asarray(tooth, dtype=float)
     ring, teeth = _outer_resistances(gear)
-    root = low + (high - low) * (ring / (ring + teeth))
     return (
         (body_radius(gear), low),
-        (gear.root_radius, np.asarray(root)),
+        (gear.root_radius, np.asarray(low + (high - low) * (ring / (ring + teeth)))),
         (tooth_radius(gear), high),
     )
 

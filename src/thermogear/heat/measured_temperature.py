@@ -273,5 +273,4 @@ class ThermocoupleReading:
             return indicated + flux * depth / self.conductivity
 
         best = {"indicated": self.indicated, "flux": self.flux, "depth": self.depth}
-        spread = {name: getattr(self, f"u_{name}") for name in best}
-        return _propagate(value, best, spread)
+        return _propagate(value, best, {name: getattr(self, f"u_{name}") for name in best})

@@ -126,11 +126,7 @@ class ThermalNetwork:
     @property
     def nodes(self) -> tuple[str, ...]:
         """All node names in the order the links name them."""
-        seen: dict[str, None] = {}
-        for link in self.links:
-            seen[link.first] = None
-            seen[link.second] = None
-        return tuple(seen)
+        return tuple(dict.fromkeys(end for one in self.links for end in (one.first, one.second)))
 
     @property
     def free(self) -> tuple[str, ...]:
@@ -180,8 +176,7 @@ class ThermalNetwork:
             # relative to one given temperature: no digits lost to the absolute scale
             datum = given[..., held[:1]]
             push = heat[..., free] - np.einsum("...ij,...j->...i", across, given[..., held] - datum)
-            rise = np.linalg.solve(inner, push[..., None])[..., 0]
-            temperature[..., free] = rise + datum
+            temperature[..., free] = np.linalg.solve(inner, push[..., None])[..., 0] + datum
         datum = temperature[..., :1]
         flow = heat - np.einsum("...ij,...j->...i", laplacian, temperature - datum)
         names = self.nodes

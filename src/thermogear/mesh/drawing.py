@@ -206,12 +206,10 @@ def _outlines(
 ) -> tuple[Floats, Floats]:
     """(radius, angle) of one gear at every operating point, (count, point)."""
     pair = hot.pair
-    found = []
-    for half in hot.half_backlash:
-        back = 0.5 * float(half) - 0.25 * pair.normal_backlash
-        found.append(
-            outline(gear, set_back=back, pair=pair, deviations=deviations, fineness=fineness)
-        )
+    found = [
+        outline(gear, set_back=back, pair=pair, deviations=deviations, fineness=fineness)
+        for back in (0.5 * hot.half_backlash - 0.25 * pair.normal_backlash).tolist()
+    ]
     radius = np.stack([one.radius for one in found])
     angle = np.stack([one.angle for one in found])
     far, turned = hot.grown(gear, radius, angle)

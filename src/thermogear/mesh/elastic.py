@@ -146,10 +146,11 @@ class ElasticPair(ABC):
         """
         if self.hot.model.sharing == "loaded":
             return loaded_share(self, s)
-        if self.hot.model.sharing == "equal":
-            shares = np.broadcast_to(equal_share(self.pair, s), (self.hot.count, s.size))
-        else:
-            shares = stiffness_share(self.pair, s[None, :], self.start, *self.moduli)
+        shares = (
+            np.broadcast_to(equal_share(self.pair, s), (self.hot.count, s.size))
+            if self.hot.model.sharing == "equal"
+            else stiffness_share(self.pair, s[None, :], self.start, *self.moduli)
+        )
         return PathShare(shares, np.zeros(shares.shape, np.int8))
 
     @abstractmethod
@@ -190,8 +191,7 @@ class TextbookPair(ElasticPair):
     def over(self, phase: Floats) -> MeshCurves:
         k = mesh_stiffness(self.pair, phase[None, :], self.start, *self.moduli)
         k = np.tile(k * self.hot.widened, self.mesh_periods)
-        unsaid = np.full(self.hot.count, np.nan)
-        return MeshCurves(k, None, self.force[:, None] / k, unsaid)
+        return MeshCurves(k, None, self.force[:, None] / k, np.full(self.hot.count, np.nan))
 
 
 @dataclass(frozen=True, eq=False)

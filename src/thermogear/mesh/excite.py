@@ -34,8 +34,7 @@ def disc_inertia(gear: Gear, *, radius: float, bore_radius: float = 0.0) -> floa
     """
     if not 0.0 <= bore_radius < radius:
         raise InputError("bore_radius", f"{bore_radius} m", allowed=f"0 <= r_x < {radius} m")
-    density = gear.material.density
-    return 0.5 * math.pi * density * gear.face_width * (radius**4 - bore_radius**4)
+    return 0.5 * math.pi * gear.material.density * gear.face_width * (radius**4 - bore_radius**4)
 
 
 def excitation(
@@ -123,17 +122,20 @@ def excitations(
     status = np.asarray(cycle["status"], dtype=np.int8)
     moving = moves(status)
     told: Any = cycle if "mesh_periods" in cycle else getattr(cycle, "attrs", {})
-    samples, periods = {}, int(np.nanmax(told.get("mesh_periods", 1)))
-    for name in ("mesh_stiffness", "spring_error"):
-        values = np.asarray(cycle[name], dtype=float)
-        samples[name] = fourier_rows(np.where(moving[:, None], values, 1.0), harmonics * periods)
+    periods = int(np.nanmax(told.get("mesh_periods", 1)))
+    springs, heat = (
+        fourier_rows(
+            np.where(moving[:, None], np.asarray(cycle[name], dtype=float), 1.0),
+            harmonics * periods,
+        )
+        for name in ("mesh_stiffness", "spring_error")
+    )
     given = over_turn(Periodic.columns([transmission_error]), periods)
-    heat = samples["spring_error"]
     width = max(given.shape[1], heat.shape[1])
     torque = np.asarray(cycle["pinion_torque"], dtype=float)
     return Excitations(
         status=status,
-        stiffness=samples["mesh_stiffness"],
+        stiffness=springs,
         error=padded(given, width) + padded(heat, width),
         half_backlash=np.asarray(cycle["half_backlash"], dtype=float),
         reference_half_backlash=np.asarray(cycle["cold_half_backlash"], dtype=float),

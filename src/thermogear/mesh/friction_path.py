@@ -86,10 +86,8 @@ class FrictionPath:
     def inlet_temperature(self) -> Floats:
         """Temperature [K] of the oil that enters the contact, (count, 1)."""
         operating = self.hot.operating
-        if self.hot.model.inlet == "body":
-            found = operating.flanks
-        else:
-            found = np.asarray(operating.oil_temperature, dtype=float)
+        body = self.hot.model.inlet == "body"
+        found = operating.flanks if body else np.asarray(operating.oil_temperature, dtype=float)
         return np.broadcast_to(found, (self.hot.count,))[:, None]
 
     @property
@@ -122,8 +120,9 @@ class FrictionPath:
         """Where the film's inlet leaves the range of the oil's viscosity line, (count,)."""
         low, high = self.hot.operating.lubricant.temperature_range
         warm = self.inlet_temperature[:, 0]
-        thin = self.inlet_oil.kinematic[:, 0] < THINNEST
-        return np.asarray((warm < low) | (warm > high) | thin)
+        return np.asarray(
+            (warm < low) | (warm > high) | (self.inlet_oil.kinematic[:, 0] < THINNEST)
+        )
 
     def warn_beyond_oil(self) -> None:
         """ValidityWarning with temperatures and range where ``beyond_oil``."""
@@ -142,10 +141,8 @@ class FrictionPath:
     @cached_property
     def bath_viscosity(self) -> Floats:
         """eta [Pa s] of the oil supply, (count, 1), which laws of mean friction take."""
-        operating = self.hot.operating
-        supplied = np.asarray(operating.oil_temperature, dtype=float)
-        spread = np.broadcast_to(supplied, (self.hot.count,))[:, None]
-        return dynamic_viscosity(self._oil, spread)
+        supplied = np.asarray(self.hot.operating.oil_temperature, dtype=float)
+        return dynamic_viscosity(self._oil, np.broadcast_to(supplied, (self.hot.count,))[:, None])
 
     @cached_property
     def velocities(self) -> tuple[Floats, Floats]:

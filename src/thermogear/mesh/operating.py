@@ -252,10 +252,9 @@ class Operating:
             changed[name] = np.broadcast_to(
                 wanted, np.broadcast_shapes(bodies[name].shape, wanted.shape)
             )
-        oil = beside(oil_now, followed["housing"])
         there = replace(
             self,
-            oil_temperature=oil,
+            oil_temperature=beside(oil_now, followed["housing"]),
             temperatures=replace(t, **changed),
             flank_temperature=None,
         )

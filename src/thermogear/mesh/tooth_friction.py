@@ -87,11 +87,11 @@ def friction_split(
     if not 0.0 < accuracy < 1.0:
         raise InputError("accuracy", accuracy, allowed="0 < accuracy < 1")
     chosen = MeshModel.consistent() if model is None else model
-    found, alike = [], mean_tooth(pair, deviations)
-    for place in range(operating.speed.size):
-        own = elastic_pair(HotPair(pair, operating.point(place), chosen), alike)
-        found.append(_split(own, accuracy))
-    return tuple(found)
+    alike = mean_tooth(pair, deviations)
+    return tuple(
+        _split(elastic_pair(HotPair(pair, operating.point(place), chosen), alike), accuracy)
+        for place in range(operating.speed.size)
+    )
 
 
 def rubbing(elastic: ElasticPair, phase: Floats) -> Rubbing | None:

@@ -63,8 +63,7 @@ def conclusion(grids: Mapping[str, Dataset]) -> Dataset:
             rank[i, j, :2] = [
                 _rank_along(mine, columns[name], axis) for axis, name in enumerate(columns)
             ]
-            for k, other in enumerate(values.values()):
-                rank[i, j, 2 + k] = _rank(mine, other)
+            rank[i, j, 2:] = [_rank(mine, other) for other in values.values()]
             rising[i, j] = [_rises(mine, axis) for axis in (0, 1)]
             by_torque[i, j] = [_rises(mine[:, t], 0) for t in range(torque.size)]
             by_speed[i, j] = [_rises(mine[s], 0) for s in range(speed.size)]
@@ -164,17 +163,13 @@ def _below(grids: Mapping[str, Dataset]) -> tuple[Floats, Floats]:
         return float(np.mean((first < second)[known])) if known.any() else float("nan")
 
     below = [share(mixed[of].values, dry[of].values) for of in QUANTITIES.values()]
-    along = {"friction": "friction_along", "flash": "flash_along"}
     pitch = np.abs(mixed["flash_along"].values) + np.abs(dry["flash_along"].values) > 1e-9
-    every = []
-    for name in QUANTITIES:
-        if name not in along:
-            every.append(float("nan"))
-            continue
-        one, two = (g[along[name]].values for g in (mixed, dry))
-        # at the pitch point nothing flashes: there is nothing to compare
-        every.append(share(np.where(pitch, one, np.nan), two))
-    return np.array(below), np.array(every)
+    # at the pitch point nothing flashes: there is nothing to compare; growth has no path
+    every = [
+        share(np.where(pitch, mixed[name].values, np.nan), dry[name].values)
+        for name in ("friction_along", "flash_along")
+    ]
+    return np.array(below), np.array([*every, np.nan])
 
 
 def verdicts(checked: Dataset) -> list[dict[str, str]]:

@@ -183,8 +183,7 @@ class WarmUp:
 
     @property
     def margin(self) -> Floats:
-        teeth = self.temperatures["pinion_tooth"]
-        return np.asarray(self._clearance.jam_temperature - teeth)
+        return np.asarray(self._clearance.jam_temperature - self.temperatures["pinion_tooth"])
 
     def _gap(self, state: State, piece: ArrayLike) -> Floats:
         """Least half backlash [m] of states (count,) in ``piece`` of the duty."""

@@ -72,17 +72,14 @@ class Reduction:
 
 def interface_of(assembly: Assembly) -> tuple[str, ...]:
     """Coordinates that contacts act on: gears, bearings that are not linear, seats, housing."""
-    wanted: set[int] = set()
-    for shaft in SHAFTS:
-        node = assembly.at_gear(shaft)
-        wanted |= set(np.flatnonzero(np.any(node[:, [0, 1, 4]] != 0.0, axis=1)).tolist())
-    for place in assembly.bearings:
-        if not place.bearing.law.linear:
-            wanted |= set(np.flatnonzero(np.any(place.directions != 0.0, axis=1)).tolist())
-    for row, name in enumerate(assembly.coordinates):
-        if " seat." in name or name.startswith("casing."):
-            wanted.add(row)
-    return tuple(assembly.coordinates[row] for row in sorted(wanted))
+    felt = [assembly.at_gear(shaft)[:, [0, 1, 4]] for shaft in SHAFTS]
+    felt += [one.directions for one in assembly.bearings if not one.bearing.law.linear]
+    touched = np.any(np.hstack(felt) != 0.0, axis=1)
+    return tuple(
+        name
+        for name, here in zip(assembly.coordinates, touched, strict=True)
+        if here or " seat." in name or name.startswith("casing.")
+    )
 
 
 def usual(assembly: Assembly, modes: int) -> int:
@@ -96,8 +93,7 @@ def reduced(assembly: Assembly, coordinates: int | None = None) -> Reduction:
     At least the interface is kept, less one for the rotation. Raises InputError for a number below
     that or above all, or where a motion is free with the interface held.
     """
-    names = interface_of(assembly)
-    kept = np.array([assembly.index[name] for name in names], dtype=int)
+    kept = np.array([assembly.index[name] for name in interface_of(assembly)], dtype=int)
     rest = np.setdiff1d(np.arange(assembly.size), kept)
     least, most = kept.size - 1, assembly.size - 1
     wanted = most if coordinates is None else coordinates
@@ -119,8 +115,7 @@ def reduced(assembly: Assembly, coordinates: int | None = None) -> Reduction:
     whole = np.zeros((assembly.size, wanted + 1))
     whole[kept, np.arange(kept.size)] = 1.0
     if rest.size:
-        symmetric = 0.5 * (inner + inner.T)
-        square, shapes = scipy.linalg.eigh(symmetric, mass)
+        square, shapes = scipy.linalg.eigh(0.5 * (inner + inner.T), mass)
         if square[0] <= DROPPED * square[-1]:
             raise InputError(
                 "shafts",

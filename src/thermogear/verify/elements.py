@@ -18,8 +18,6 @@ from thermogear.base.arrays import Floats
 from thermogear.base.errors import of_extra
 from thermogear.gears.elements import Integers, Patch
 
-"""Rule on a side of an element; many points, for the Hertzian pressure ends in a root."""
-
 
 def library(name: str = "skfem") -> Any:
     """scikit-fem, or one line that says what to install."""
@@ -49,11 +47,11 @@ class ReferencePatch(Patch):
     def _local_order(self) -> Integers:
         """Node numbers (element, 9) in the library's order: corners, sides, centre."""
         corner = {0: (0, 0), 1: (0, 2), 2: (2, 2), 3: (2, 0)}
-        spots = [corner[i] for i in range(4)]
-        for a, b in library().MeshQuad.elem.refdom.facets:
-            spots.append(((corner[a][0] + corner[b][0]) // 2, (corner[a][1] + corner[b][1]) // 2))
-        spots.append((1, 1))
-        rows, columns = zip(*spots, strict=True)
+        sides = [
+            ((corner[a][0] + corner[b][0]) // 2, (corner[a][1] + corner[b][1]) // 2)
+            for a, b in library().MeshQuad.elem.refdom.facets
+        ]
+        rows, columns = zip(*corner.values(), *sides, (1, 1), strict=True)
         return np.asarray(self.cells[:, rows, columns])
 
     @cached_property

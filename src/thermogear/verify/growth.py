@@ -14,7 +14,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import splu
 
 from thermogear.base.arrays import Floats
-from thermogear.base.errors import InputError, nearest
+from thermogear.base.errors import InputError, require_choice
 from thermogear.gears.elements import Integers
 from thermogear.gears.geometry import Gear
 from thermogear.gears.tooth_mesh import (
@@ -38,8 +38,7 @@ def flank_radii(gear: Gear, count: int = 7) -> Floats:
 
 def _arcs(gear: Gear, radius: Floats, density: Density) -> tuple[Floats, Integers]:
     """Corners of the flank's mesh with one at each asked radius, and which those are."""
-    profile = Profile(gear)
-    low, high = profile.ends
+    low, high = Profile(gear).ends
     asked = 0.5 * (radius**2 / gear.base_radius - gear.base_radius)
     stops = np.unique(np.concatenate([[low], np.clip(asked, low, high), [high]]))
     # rounding may set two stops a hair apart, which would leave an element without area
@@ -79,8 +78,7 @@ def finite_flank_growth(
     "rigid" (not moved) or "shaft" (moved by lambda t_x r_x), free to slide around. Raises
     InputError for radii off the flank, an unknown bore and when scikit-fem is missing.
     """
-    if bore not in BORES:
-        raise InputError("bore", repr(bore), allowed=" | ".join(BORES), fix=nearest(bore, BORES))
+    require_choice("bore", bore, BORES)
     if field.gradient.size != 1:
         raise InputError("field", f"{field.gradient.size} states", allowed="one state")
     r = np.asarray(radius, dtype=float)
@@ -98,8 +96,7 @@ def finite_flank_growth(
     arcs, asked = _arcs(gear, r.ravel(), mesh)
     tooth = tooth_mesh(gear, across=across, arcs=arcs, density=mesh)
     patch, of_tooth = united(foot, tooth)
-    expansion = gear.material.thermal_expansion
-    moved = _displacement(patch, foot, field, expansion, bore)
+    moved = _displacement(patch, foot, field, gear.material.thermal_expansion, bore)
 
     # the tooth's flank begins with the fillet's rows; the asked corners count from the tip
     flank = of_tooth[tooth.flank]

@@ -49,8 +49,7 @@ def _gear(
 
 def published_pair() -> CheckedPair:
     """m 5, 25/75, bores 20/60, 200 N/mm: the pair with a published finite-element table."""
-    pair = GearPair(_gear(25, 5, 20, 20), _gear(75, 5, 60, 20))
-    return CheckedPair("m 5, 25/75", pair, 200e3)
+    return CheckedPair("m 5, 25/75", GearPair(_gear(25, 5, 20, 20), _gear(75, 5, 60, 20)), 200e3)
 
 
 def own_pairs() -> tuple[CheckedPair, ...]:
@@ -193,11 +192,14 @@ def _draw(rng: np.random.Generator, kind: str) -> GearPair:
     tall = kind == "contact ratio above 2"
     rack = Rack(addendum=1.3, dedendum=1.6, fillet_radius=0.2) if tall else Rack(fillet_radius=0.25)
     rim = rng.uniform(1.2, 1.5, 2) if kind == "thin rim" else rng.uniform(2.0, 5.0, 2)
-    gears = []
-    for z, x, wall in zip((teeth, mate), shifts, rim, strict=True):
-        root = _gear(z, module, 0.1, 20, x, rack, angle).root_radius / _MM
-        gears.append(_gear(z, module, root - float(wall) * module, 20, x, rack, angle))
-    pinion, wheel = gears
+    roots = [
+        _gear(z, module, 0.1, 20, x, rack, angle).root_radius / _MM
+        for z, x in zip((teeth, mate), shifts, strict=True)
+    ]
+    pinion, wheel = (
+        _gear(z, module, root - float(wall) * module, 20, x, rack, angle)
+        for z, x, root, wall in zip((teeth, mate), shifts, roots, rim, strict=True)
+    )
     pair = GearPair(pinion, wheel)
     if kind != "mate's tip at the form circle":
         return pair

@@ -112,13 +112,11 @@ class Drive:
 
     def _parallel(self, first: Component, second: Component) -> bool:
         """Whether the u axes of both shafts point the same way; so where nothing is said."""
-        axes = []
-        for gear in (first, second):
-            shaft = self.model.at(self.of_gear.get(gear.id))
-            axes.append(
-                self.reader.vector(shaft, "u_axis_vector")
-                or self.reader.vector(gear, "u_axis_vector")
-            )
+        axes = [
+            self.reader.vector(self.model.at(self.of_gear.get(gear.id)), "u_axis_vector")
+            or self.reader.vector(gear, "u_axis_vector")
+            for gear in (first, second)
+        ]
         if axes[0] is None or axes[1] is None:
             return True
         return sum(a * b for a, b in zip(axes[0], axes[1], strict=True)) >= 0.0
@@ -132,8 +130,7 @@ class Drive:
     def _load(self, stage: Stage, case: LoadCase | None) -> Load:
         over: dict[int, dict[str, Attribute]] = {} if case is None else case.components
         speeds, read, signed = self.speeds(over)
-        first = stage.gears[0]
-        shaft = self.of_gear.get(first.id)
+        shaft = self.of_gear.get(stage.gears[0].id)
         speed = speeds.get(shaft) if shaft is not None else None
         torque = self._torque(stage, over, speeds)
         unit = next(iter(self.model.of_type("gear_unit")), None)
@@ -297,12 +294,12 @@ class Drive:
         miss = np.abs(matrix @ solution - right)
         if miss.size and miss.max() > _LOSSES * np.abs(right).max():
             return {}
-        found: dict[int, float] = {}
-        for k, (stage, *_) in enumerate(self.meshes):
-            if not free.size or np.abs(free[:, k]).max() < _UNIQUE:
-                idle = abs(solution[k]) < _IDLE * np.abs(right).max()
-                found[stage.id] = 0.0 if idle else float(solution[k])
-        return found
+        torques = np.where(np.abs(solution) < _IDLE * np.abs(right).max(), 0.0, solution)
+        return {
+            stage.id: float(torques[k])
+            for k, (stage, *_) in enumerate(self.meshes)
+            if not free.size or np.abs(free[:, k]).max() < _UNIQUE
+        }
 
     def _external(
         self, over: dict[int, dict[str, Attribute]], speeds: dict[int, float]

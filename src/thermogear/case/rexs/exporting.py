@@ -31,7 +31,7 @@ from thermogear.case.rexs.model import (
 )
 from thermogear.case.rexs.values import values
 from thermogear.case.thermal_state import HOT
-from thermogear.gears.deviations import Relief
+from thermogear.gears.deviations import Relief, active_profile
 from thermogear.gears.geometry import Gear
 from thermogear.heat.lubrication import kinematic_viscosity
 
@@ -89,8 +89,7 @@ class _Maker:
 
     def relate(self, kind: str, order: int | None = None, **refs: int) -> None:
         """A relation with the next id; references by their roles."""
-        ident = len(self.model.relations) + 1
-        self.model.relate(Relation(ident, kind, order, tuple(refs.items())))
+        self.model.relate(Relation(len(self.model.relations) + 1, kind, order, tuple(refs.items())))
 
     # --- the whole ------------------------------------------------------------------------
     def made(self, computed: tuple[Any, Any] | None) -> Model:
@@ -317,8 +316,6 @@ def _results(point: Any, version: str) -> list[Attribute]:
 
 def _relief_ends(case: GearCase, gear: Gear, one: Relief) -> tuple[float, ...]:
     """Diameters [m] where a relief is deepest and where it starts."""
-    from thermogear.gears.deviations import active_profile
-
     start, _, tip = active_profile(case.pair, one.gear)
     both = (tip, tip - one.length) if one.end == "tip" else (start, start + one.length)
     return tuple(2.0 * math.hypot(gear.base_radius, rho) for rho in both)

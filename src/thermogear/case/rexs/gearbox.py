@@ -53,10 +53,9 @@ def stages(model: Model) -> list[Stage]:
 def _lacking(number: int, gears: tuple[Component, ...], carried: bool) -> InputError | None:
     field = f"stage {number}"
     if len(gears) < 2:
-        count = "no gear" if not gears else "one gear"
         return InputError(
             f"{field}.gears",
-            count,
+            "no gear" if not gears else "one gear",
             allowed="gear_1 and gear_2",
             why="its relation 'stage' names no two gears of the file",
         )
@@ -64,7 +63,7 @@ def _lacking(number: int, gears: tuple[Component, ...], carried: bool) -> InputE
         return InputError(f"{field}.gears", "one gear twice", allowed="two gears")
     for gear in gears:
         if gear.type == "ring_gear":
-            return _internal(f"{field}.{gear.type} {gear.id}", "a ring gear")
+            return internal(f"{field}.{gear.type} {gear.id}", "a ring gear")
         if gear.type not in GEARS:
             return InputError(
                 f"{field}.gears", gear.called, allowed="cylindrical gears", why="no spur gear"
@@ -80,7 +79,8 @@ def _lacking(number: int, gears: tuple[Component, ...], carried: bool) -> InputE
     return None
 
 
-def _internal(field: str, got: str) -> InputError:
+def internal(field: str, got: str) -> InputError:
+    """What is said of a ring gear."""
     return InputError(
         field,
         got,
@@ -88,11 +88,6 @@ def _internal(field: str, got: str) -> InputError:
         why="internal gears are not computed",
         fix="take another stage",
     )
-
-
-def internal(field: str, teeth: int) -> InputError:
-    """A gear whose negative number of teeth makes it an internal one."""
-    return _internal(f"{field}.number_of_teeth", f"{teeth}, an internal gear")
 
 
 def assembled(model: Model) -> Iterator[tuple[Component, Component]]:

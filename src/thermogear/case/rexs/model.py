@@ -133,13 +133,9 @@ class Model:
 
     def referenced(self, origin: int, *types: str) -> list[Component]:
         """What a component refers to, of these types."""
-        found = []
-        for one in self.related("reference", "ordered_reference"):
-            if one.role("origin") == origin:
-                other = self.at(one.role("referenced"))
-                if other is not None and other.type in types:
-                    found.append(other)
-        return found
+        every = self.related("reference", "ordered_reference")
+        found = (self.at(one.role("referenced")) for one in every if one.role("origin") == origin)
+        return [one for one in found if one is not None and one.type in types]
 
 
 def too_many(what: str, most: int) -> InputError:

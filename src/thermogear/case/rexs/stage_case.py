@@ -39,7 +39,7 @@ def require_spur(reader: Reader, stage: Stage) -> tuple[int, int]:
         if found is None:
             raise InputError(f"{where}.number_of_teeth", "nothing", allowed="a whole number")
         if found < 0:
-            raise gearbox.internal(where, found)
+            raise gearbox.internal(f"{where}.number_of_teeth", f"{found}, an internal gear")
         if found == 0:
             raise InputError(f"{where}.number_of_teeth", 0, allowed=">= 1")
         teeth.append(found)
@@ -429,12 +429,11 @@ def _operating(
             made.unused.append(f"{load.name}: the other gear drives there")
         elif load.speed and load.torque:
             turns = abs(load.speed * scale) / RPM
-            moment = abs(load.torque * other)
             made.loads.append(
                 Operating(
                     name=load.name,
                     speed=_tidy(turns),
-                    torque=_tidy(moment),
+                    torque=_tidy(abs(load.torque * other)),
                     duration=load.duration,
                     share=load.share,
                 )

@@ -70,11 +70,12 @@ def label_of(text: str) -> str:
 
 def _described(reader: Reader, made: Draft, one: Component, label: str) -> bool:
     """Put the table of a material; False where the file says nothing of it."""
-    found = {}
-    for field, attribute, allowed, _ in _VALUES:
-        value = reader.number(one, attribute)
-        if value is not None and _allowed(made, one, attribute, value, allowed):
-            found[field] = value
+    found = {
+        field: value
+        for field, attribute, allowed, _ in _VALUES
+        if (value := reader.number(one, attribute)) is not None
+        and _allowed(made, one, attribute, value, allowed)
+    }
     if not found:
         made.unused.append(f"{one.called}: no value that is used; the gear is of steel")
         return False
