@@ -100,7 +100,8 @@ def _confirmed(
         if not most(first, ends, len(walks)):
             break
     if agreed(first, ends):
-        ends += _together(section, partial(_left, alive=alive), walks)
+        left = partial(_left, alive=alive)
+        ends += _together(section, left, walks)
     else:
         ends += [End(None, walk.discarded) for walk in walks]
     return judged(first, ends)
@@ -270,7 +271,8 @@ def _mean(section: ReturnMap, means: Floats, periods: int) -> tuple[float, float
 def _smooth(growth: Floats) -> Floats:
     """Means of ``growth`` (period, k) over each batch under a smooth window (batch, k)."""
     batches = growth.reshape(LONG_BATCHES, -1, growth.shape[1])
-    return np.asarray(np.einsum("bpk,p->bk", batches, smooth_window(batches.shape[1])))
+    window = smooth_window(batches.shape[1])
+    return np.asarray(np.einsum("bpk,p->bk", batches, window))
 
 
 def leading(

@@ -134,7 +134,8 @@ def chaotic_index(known: Sequence[Attractor], field: Field, state: Floats) -> in
 
 
 def _orbit(field: Field, point: Floats, period: int, multiplier: complex) -> Attractor:
-    points = field.one.visit(point[None], period).points[0, :-1]
+    run = field.one.visit(point[None], period)
+    points = run.points[0, :-1]
     exponent = float(np.log(abs(multiplier)) / (period * field.period))
     trap = _trap(field, points, multiplier, period)
     return Attractor(

@@ -185,7 +185,8 @@ def _cut(arm: Branch) -> tuple[str, ...]:
 
 
 def _stored(data: Dataset, lines: list[_Line], family: Family) -> Dataset:
-    shape = (len(lines), max([1, *(line.values.size for line in lines)]))
+    longest = max([1, *(line.values.size for line in lines)])
+    shape = (len(lines), longest)
     value, x, v = (np.full(shape, np.nan) for _ in range(3))
     size = np.full(shape, np.nan)
     for n, line in enumerate(lines):

@@ -135,7 +135,8 @@ def mirrored(lanes: Lanes, period: int) -> bool:
 
     Of odd n a force of odd orders and a stiffness of even ones do it, of even n no force at all.
     """
-    if any(piece is not None for piece in (*lanes.stiffness_pieces, *lanes.force_pieces)):
+    tables = (*lanes.stiffness_pieces, *lanes.force_pieces)
+    if any(piece is not None for piece in tables):
         return False
     if period % 2 == 0:
         return not np.any(lanes.force)

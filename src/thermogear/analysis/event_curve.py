@@ -184,13 +184,15 @@ def _first(walk: Bordered, bifurcation: Bifurcation, start: float, ahead: Floats
     first = walk.correct(guess, normal=ahead, direction=ahead, reach=0.1)
     if first is not None:
         return first
-    return walk.searched(guess, walk.on_line(guess, held=-1), direction=ahead, farthest=0.01)
+    line = walk.on_line(guess, held=-1)
+    return walk.searched(guess, line, direction=ahead, farthest=0.01)
 
 
 def _step(walk: Bordered, here: Located, step: float) -> tuple[Located | None, float]:
     """The next point and the step that may follow; None where there is none."""
     while step > SHORTEST:
-        there = _tried(walk, here, here.scaled + step * here.tangent, step)
+        guess = here.scaled + step * here.tangent
+        there = _tried(walk, here, guess, step)
         if there is None:
             step *= 0.5
             continue

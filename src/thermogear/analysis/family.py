@@ -152,7 +152,8 @@ class ModelFamily:
 def _plain(value: object) -> object:
     """A field as plain numbers and texts."""
     if isinstance(value, Periodic):
-        return {"mean": value.mean, "harmonics": [[c.real, c.imag] for c in value.harmonics]}
+        pairs = [[c.real, c.imag] for c in value.harmonics]
+        return {"mean": value.mean, "harmonics": pairs}
     if isinstance(value, Pieces):
         return {"starts": list(value.starts), "pieces": [list(c) for c in value.coefficients]}
     if is_dataclass(value) and not isinstance(value, type):
@@ -196,7 +197,8 @@ def lanes_and_status(
     lanes = lanes_of(made)
     if len(lanes) == 1 and len(points) > 1:
         lanes = lanes.take(np.zeros(len(points), int))
-    return lanes, np.asarray(getattr(made, "status", np.zeros(len(points))), dtype=np.int8)
+    status = np.asarray(getattr(made, "status", np.zeros(len(points))), dtype=np.int8)
+    return lanes, status
 
 
 def taken(lanes: Lanes | Sequence[object], index: NDArray[np.int64]) -> Lanes | tuple[object, ...]:

@@ -124,7 +124,8 @@ def label(
 def _any(model: object, initial_state: ArrayLike, search: Search) -> Label:
     """The label of a model of any dimension by its return map alone."""
     section = return_map(model)
-    motion = settle(section, starts_of(initial_state, 1, dimension=section.dimension)[0], search)
+    start = starts_of(initial_state, 1, dimension=section.dimension)[0]
+    motion = settle(section, start, search)
     exponent = None
     if np.isfinite(motion.lyapunov) and motion.batches.size:
         exponent = Lyapunov(

@@ -112,7 +112,8 @@ class Orbit:
         count = self.sampling(per_period)
         turn = count * self.lanes.mesh_periods
         visit = return_map(self.lanes, turn).visit(self.state, self.period, sampled=True)
-        return np.arange(self.period * turn) / count, visit.samples[:, 0], visit.samples[:, 1]
+        phase = np.arange(self.period * turn) / count
+        return phase, visit.samples[:, 0], visit.samples[:, 1]
 
     def extremes(self, per_period: int = 256) -> tuple[float, float]:
         """Least and largest x on the orbit, between the samples too."""

@@ -433,7 +433,8 @@ def _accept(
     ok = np.isfinite(size) & (size < 1.0) & (late <= rule.settled)
     ok &= (late < early) | (late <= 1e-10)
     chosen = lanes[ok]
-    result.label[chosen] = np.where((size > rule.near_border)[ok], UNDECIDED, PERIODIC)
+    near = size > rule.near_border
+    result.label[chosen] = np.where(near[ok], UNDECIDED, PERIODIC)
     result.period[chosen] = n
     result.point[chosen] = run.points[ok, 0]
     result.multiplier[chosen] = mu[ok]

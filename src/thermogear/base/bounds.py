@@ -109,7 +109,8 @@ def floats(name: str, values: ArrayLike, unit: str = "") -> Floats:
 
 def _is_number(value: object) -> bool:
     """Whether ``value`` is one real number; a truth value is none."""
-    return isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
+    numeric = isinstance(value, int | float | np.integer | np.floating)
+    return numeric and not isinstance(value, bool)
 
 
 def whole(name: str, value: float, *, least: int) -> int:

@@ -146,7 +146,8 @@ def _read_group(group: h5py.Group, dimensions: Mapping[int, str]) -> xr.Dataset:
         ):
             continue
         dims = tuple(dimensions[number] for number in one.attrs.get("_Netcdf4Coordinates", ()))
-        values = np.asarray(one.asstr()[()], str) if h5py.check_string_dtype(one.dtype) else one[()]
+        text = h5py.check_string_dtype(one.dtype)
+        values = np.asarray(one.asstr()[()], str) if text else one[()]
         own = _read_attributes(one)
         if values.dtype.kind == "i" and "missing_value" in own:
             # a count stays whole here; others read a missing number

@@ -45,7 +45,8 @@ class Variable:
 
 def real(dims: tuple[str, ...], words: str, units: str, *inner: str) -> Variable:
     """A stored number over ``dims`` and ``inner`` ones, nan where none was computed."""
-    return Variable((*dims, *inner), "float64", float("nan"), {"long_name": words, "units": units})
+    about = {"long_name": words, "units": units}
+    return Variable((*dims, *inner), "float64", float("nan"), about)
 
 
 def axis_coordinates(

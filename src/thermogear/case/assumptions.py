@@ -261,7 +261,8 @@ def _defaults(
         elif name not in table.model_fields_set and field.description and name not in _SILENT:
             path = dotted((*above, name))
             text = decided.get(path) or _shown(value, field)
-            found.append(Assumption(path, text, f"{LEFT}{field.description}", _real(value)))
+            reason = f"{LEFT}{field.description}"
+            found.append(Assumption(path, text, reason, _real(value)))
     return found
 
 

@@ -338,7 +338,8 @@ def inertias(file: GearFile, pair: GearPair) -> tuple[tuple[float, float], str]:
 
     def disc(gear: Gear) -> float:
         outer = gear.pitch_radius if radius == "pitch" else gear.tip_radius
-        return disc_inertia(gear, radius=outer, bore_radius=gear.bore_radius if bored else 0.0)
+        inner = gear.bore_radius if bored else 0.0
+        return disc_inertia(gear, radius=outer, bore_radius=inner)
 
     words = f"solid discs of {radius} radius, {'bored' if bored else 'unbored'}"
     return (disc(pair.pinion), disc(pair.wheel)), words

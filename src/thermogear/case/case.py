@@ -425,7 +425,8 @@ def case_of(
 
     ``told`` False leaves out its assumptions and warnings, for a case that nobody sees.
     """
-    file = DimensionlessFile if data.get("kind", "gear") == "dimensionless" else GearFile
+    kind = data.get("kind", "gear")
+    file = DimensionlessFile if kind == "dimensionless" else GearFile
     try:
         read: GearFile | DimensionlessFile = file.model_validate(data)
     except ValidationError as error:
@@ -470,7 +471,8 @@ def case_of(
 
 def _decided(case: GearCase) -> dict[str, str]:
     around = case.gearbox.surroundings
-    found = decided(case.pair, case.cold_backlash, around, case.accuracy, unmeasured(case.file))
+    graded = unmeasured(case.file)
+    found = decided(case.pair, case.cold_backlash, around, case.accuracy, graded)
     choices = [model.choices() for model in case.models]
     found |= {
         f"model.{name}": " and ".join(dict.fromkeys(str(one[name]) for one in choices))

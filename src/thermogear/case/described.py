@@ -49,5 +49,6 @@ def _facts(field: FieldInfo) -> dict[str, Any]:
     if several:
         named = getattr(annotation, "__origin__", None) is dict
         return {"x-kind": "named tables" if named else "tables"}
-    truth = any(bool in (one, *get_args(one)) for one in [annotation, *get_args(annotation)])
+    inner = [annotation, *get_args(annotation)]
+    truth = any(bool in (one, *get_args(one)) for one in inner)
     return {"x-kind": "yes/no" if truth else "table"}

@@ -301,7 +301,8 @@ class GearFamily:
                     (GEARS_AT,) if self.names[i] == GEARS_AT else fields_of(self.names[i])
                 )
             }
-            yield [self.names[i] for i in read], values, index, columns
+            names = [self.names[i] for i in read]
+            yield names, values, index, columns
 
     def _case_with(self, names: Sequence[str], values: Floats) -> GearCase:
         """The case with parameters of its file put to other ``values`` (SI)."""

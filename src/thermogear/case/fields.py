@@ -82,7 +82,8 @@ class Measure(Reader):
             return f">= {self.low}" if self.low else (f"<= {self.high}" if self.high else None)
         low, unit = self.low.split(" ", 1)
         high, unit_of_high = self.high.split(" ", 1)
-        return f"{low}..{high} {unit}" if unit == unit_of_high else f"{self.low}..{self.high}"
+        same = unit == unit_of_high
+        return f"{low}..{high} {unit}" if same else f"{self.low}..{self.high}"
 
     def read(self, raw: object) -> float:
         try:

@@ -187,11 +187,12 @@ class _Block:
                 )
             for cell, column in zip(cells, self.head, strict=True):
                 if not NUMBER.match(cell):
+                    gap = cell.lower() in MISSING
                     raise InputError(
                         "",
                         f"{self.name} line {line}: {short(cell)} in column '{column}'",
                         allowed="a number",
-                        fix="leave the row, or the tooth, out" if cell.lower() in MISSING else None,
+                        fix="leave the row, or the tooth, out" if gap else None,
                     )
             found.append([float(cell) for cell in cells])
         values = np.array(found)
@@ -220,7 +221,8 @@ def _blocks(name: str, text: str, said: dict[str, tuple[str, str]]) -> list[_Blo
             _fact(name, number, bare, said)
         elif _is_header(bare):
             separator = next((one for one in ";\t" if one in line), ",")
-            found.append(_Block(name, number, cells_of(line.strip(), separator), separator))
+            head = cells_of(line.strip(), separator)
+            found.append(_Block(name, number, head, separator))
             _position_name(found[-1])
         elif found:
             found[-1].rows.append((number, line.strip()))
@@ -338,7 +340,8 @@ def _trace(block: _Block, place: int) -> tuple[str, int, float]:
         most = float(np.abs(block.values()[:, place]).max())
         likely, words_ = ("mm", "millimetres") if most < 0.2 else ("um", "micrometres")
         ask = f"are the values, up to {most:.6g}, {words_}? then write '{words} [{likely}]'"
-    return side[0], int(number[0]) if number else 1, _scale(block, place, "length", ask)
+    scale = _scale(block, place, "length", ask)
+    return side[0], int(number[0]) if number else 1, scale
 
 
 def _pitch(blocks: Iterable[_Block]) -> dict[str, Floats]:

@@ -218,9 +218,10 @@ def _graded(file: GearFile, pair: GearPair) -> tuple[Deviation, ...]:
 
 def unmeasured(file: GearFile) -> list[str]:
     """The gears whose flanks neither a table nor a chart gives."""
+    tables = {"pinion": file.gears.pinion, "wheel": file.gears.wheel}
     return [
         name
-        for name, table in {"pinion": file.gears.pinion, "wheel": file.gears.wheel}.items()
+        for name, table in tables.items()
         if table.profile is None
         and not table.tooth_profiles
         and getattr(file.flanks, name, None) is None

@@ -85,10 +85,11 @@ class _Place:
 
     def below(self, key: str, about: Mapping[str, Any], held: bool) -> _Place:
         """The place of the table ``key`` in this one."""
+        words = "" if held else about.get("x-left-out") or self.left_out
         return _Place(
             table=_table_of(about),
             path=(*self.path, key),
-            left_out="" if held else about.get("x-left-out") or self.left_out,
+            left_out=words,
             there=held or (self.there and self.needs(key)),
         )
 

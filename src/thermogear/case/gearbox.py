@@ -121,7 +121,8 @@ def heated(
     table = GearboxTable() if file.gearbox is None else file.gearbox
     places = [[b.position for b in train.bearings if b.shaft == name] for name in SHAFTS]
     width = max(max(mine) - min(mine) for mine in places)
-    walls = housing_box(pair, max(0.0, 0.5 * (width - pair.face_width)), table.immersion, housing)
+    beside = max(0.0, 0.5 * (width - pair.face_width))
+    walls = housing_box(pair, beside, table.immersion, housing)
     around = replace(
         box.surroundings,
         train=drawn,

@@ -87,7 +87,8 @@ class OnePoint:
     def excitation(self) -> Excitation:
         """k(t), e(t), backlash and force in SI; InputError where nothing moves."""
         _ = self.points
-        found = GearFamily(self.gears, (), state=self._held).excitations(np.empty((1, 0))).one(0)
+        whole = GearFamily(self.gears, (), state=self._held)
+        found = whole.excitations(np.empty((1, 0))).one(0)
         assert found is not None  # the point moves
         return found
 
@@ -139,7 +140,8 @@ class OnePoint:
         numbers = self.parameters
         if name in numbers:
             return numbers[name]
-        at = self.operating or self.gears.stated
+        gears = self.gears
+        at = self.operating or gears.stated
         here = {
             "pinion_speed": at.speed,
             "pinion_torque": at.torque,

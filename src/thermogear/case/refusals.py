@@ -119,7 +119,8 @@ def _said(complaint: dict[str, Any], file: type[BaseModel]) -> InputError:
         return _unknown_key(location, field, file)
     if kind == "missing":
         reader = reader_at(file, location)
-        fix = f"write {location[-1]} = {reader.example}" if reader else f"add the table [{field}]"
+        key = location[-1]
+        fix = f"write {key} = {reader.example}" if reader else f"add the table [{field}]"
         return InputError(field, "nothing", why="needed", fix=fix)
     if kind in _SHAPES:
         allowed, why = _SHAPES[kind]
@@ -164,7 +165,8 @@ def table_at(file: type[BaseModel], location: tuple[int | str, ...]) -> type[Bas
             continue
         if table is None or str(part) not in table.model_fields:
             return None
-        table, waiting = models_of(table.model_fields[str(part)].annotation)
+        annotation = table.model_fields[str(part)].annotation
+        table, waiting = models_of(annotation)
     return table
 
 

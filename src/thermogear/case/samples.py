@@ -330,7 +330,8 @@ def quasi_static(
             if places.size == 1:
                 refused.append(error)
                 return []
-        return [part for half in np.split(places, [places.size // 2]) for part in asked(half)]
+        halves = np.split(places, [places.size // 2])
+        return [part for half in halves for part in asked(half)]
 
     chunks = (np.arange(first, min(first + BATCH, count)) for first in range(0, count, BATCH))
     parts = [part for places in chunks for part in asked(places)]

@@ -78,16 +78,18 @@ class ShaftTable(Table):
         if self.sections and any(one is not None for one in uniform):
             raise InputError("", "sections beside a length or diameter", fix="leave one out")
         if not self.sections and None in (self.length, self.diameter):
+            missing = "length" if self.length is None else "diameter"
             raise InputError(
-                "length" if self.length is None else "diameter",
+                missing,
                 "nothing",
                 why="a shaft needs sections, or length and diameter of one",
                 fix='write sections = [{ length = "120 mm", diameter = "30 mm" }]',
             )
         for number, one in enumerate(self.pieces):
             if one.inner_diameter >= one.diameter:
+                at = f"sections[{number}].inner_diameter" if self.sections else "inner_diameter"
                 raise InputError(
-                    f"sections[{number}].inner_diameter" if self.sections else "inner_diameter",
+                    at,
                     f"{1e3 * one.inner_diameter:.6g} mm",
                     allowed=f"< {1e3 * one.diameter:.6g} mm, the outer diameter",
                 )

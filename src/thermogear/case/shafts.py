@@ -61,9 +61,10 @@ def train_plan(
     table = file.train or TrainTable()
     bearings = _bearings(file, shafts, known, pair)
     given = inertias if file.inertia.model == "given" else (None, None)
+    gears = (pair.pinion, pair.wheel)
     bodies = tuple(
         _body(gear, section_at(shaft, shaft.gear_position).outer_diameter, polar)
-        for gear, shaft, polar in zip((pair.pinion, pair.wheel), shafts, given, strict=True)
+        for gear, shaft, polar in zip(gears, shafts, given, strict=True)
     )
     casing = None
     if file.housing.mass is not None and file.housing.mount_stiffness is not None:
@@ -206,8 +207,9 @@ def _beside_the_gear(one: BearingPlan, shaft: Shaft, pair: GearPair) -> None:
     face = pair.pinion.face_width if one.shaft == SHAFTS[0] else pair.wheel.face_width
     if abs(one.position - shaft.gear_position) <= 0.5 * face:
         ends = [1e3 * (shaft.gear_position + side * 0.5 * face) for side in (-1.0, 1.0)]
+        field = one.field if one.field.startswith("shafts") else f"{one.field}.position"
         raise InputError(
-            one.field if one.field.startswith("shafts") else f"{one.field}.position",
+            field,
             f"a bearing at {1e3 * one.position:.6g} mm",
             allowed=f"beyond the {one.shaft}'s face, {ends[0]:.6g} to {ends[1]:.6g} mm",
             fix="move the bearing, or the gear by gear_position",
@@ -229,7 +231,8 @@ def _bearings(
     fields = [f"bearings[{n}]" for n in range(len(file.bearings) - 2 * len(ends))]
     fields += [field for field in ends for _ in range(2)]
     for number, (at, table) in enumerate(zip(fields, file.bearings, strict=True)):
-        found.append(_bearing(at, number, table, shafts[SHAFTS.index(table.shaft)], file, known))
+        shaft = shafts[SHAFTS.index(table.shaft)]
+        found.append(_bearing(at, number, table, shaft, file, known))
     for name in SHAFTS:
         mine = sorted((b for b in found if b.shaft == name), key=lambda b: b.position)
         if len(mine) < 2:
@@ -298,13 +301,14 @@ def _bearing(
     fit = None
     if rolling is not None:
         housing = named_material(file.housing.material, "housing.material", known)
+        bore = min(under.inner_diameter, 0.95 * rolling.bore)
         fit = Fit(
             ring=RINGS,
             shaft=under.material,
             housing=housing,
             shaft_interference=table.shaft_interference,
             housing_interference=table.housing_interference,
-            shaft_bore=min(under.inner_diameter, 0.95 * rolling.bore),
+            shaft_bore=bore,
         )
     skf = rolling is not None and has_skf(rolling)
     friction = table.friction or ("skf" if skf else "palmgren")

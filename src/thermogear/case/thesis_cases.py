@@ -37,9 +37,10 @@ def _example(name: str) -> Any:
 
 def _is_rig(case: GearCase) -> bool:
     rig: GearCase = _example(RIG)
+    axes = ("speeds", "torques", "gear_temperatures")
     return same(_stated(case), _stated(rig)) and all(
         any(same(value, known) for known in getattr(rig, name))
-        for name in ("speeds", "torques", "gear_temperatures")
+        for name in axes
         for value in getattr(case, name)
     )
 

@@ -126,7 +126,8 @@ class ExactMaps:
             return self
         (steps,) = _aligned((self.steps.shape[0], -(-keep.size // 8), 11, 8))
         place = np.arange(keep.size)
-        steps[:, place // 8, :, place % 8] = self.steps[:, keep // 8, :, keep % 8]
+        rows = self.steps[:, keep // 8, :, keep % 8]
+        steps[:, place // 8, :, place % 8] = rows
         (curves,) = _aligned((self.curves.shape[0], keep.size, self.curves.shape[2]), of=np.empty)
         np.take(self.curves, keep, axis=1, out=curves, mode="clip")
         return replace(
@@ -398,7 +399,8 @@ def _borders(count: int, jumps: tuple[float, ...], samples: int) -> tuple[Floats
     borders = np.unique(np.concatenate([uniform, jumps]))
     marks = np.zeros(borders.size - 1, np.uint8)
     if samples > 0:
-        marks[np.searchsorted(borders, uniform[: -1 : count // samples])] = 1
+        at = uniform[: -1 : count // samples]
+        marks[np.searchsorted(borders, at)] = 1
     return borders, marks
 
 

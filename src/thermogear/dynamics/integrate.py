@@ -113,7 +113,8 @@ def _rk4_block(
         advance_rk4(stiffness, force, damping, backlash, step, x, v, sections, none, stride)
     result.sections[index, 0, 0] = x
     result.sections[index, 1, 0] = v
-    for first, count in pace.chunks(result.sections.shape[2] - 1, lanes=index.size):
+    periods = result.sections.shape[2] - 1
+    for first, count in pace.chunks(periods, lanes=index.size):
         sections = np.empty((count, 2, index.size), precision)
         path = np.empty((count * samples, 2, index.size), precision) if samples else none
         advance_rk4(stiffness, force, damping, backlash, step, x, v, sections, path, stride)

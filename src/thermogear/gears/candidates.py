@@ -99,7 +99,8 @@ def _at(pair: GearPair, phases: bytes, flank: str, extended: bool) -> MeshPoints
         number = period[:, None] - ranks
         following = number
     else:
-        phi = (mirror_position(pair) - 2.0 * start) / pitch - phi
+        mirror = (mirror_position(pair) - 2.0 * start) / pitch
+        phi = mirror - phi
         period = np.floor(phi)
         number = ranks - period[:, None]
         following = number + 1

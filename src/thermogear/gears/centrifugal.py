@@ -75,7 +75,8 @@ def _stretched(gear: Gear, bore: str) -> tuple[Floats, Floats]:
     steel = gear.material
 
     def summed(values: Floats) -> Floats:
-        return np.concatenate([[0.0], np.cumsum(0.5 * (values[1:] + values[:-1]) * np.diff(r))])
+        steps = 0.5 * (values[1:] + values[:-1]) * np.diff(r)
+        return np.concatenate([[0.0], np.cumsum(steps)])
 
     mass = summed(steel.density * width * r)
     pull = mass[-1] - mass

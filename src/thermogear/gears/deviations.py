@@ -282,7 +282,8 @@ class FlankTable(FlankShape):
 
     def taken_off(self, pair: GearPair, rho: Floats) -> Floats:
         """e = -S(r), r = sqrt(r_b^2 + rho^2)."""
-        radius = np.hypot(pair.gear(self.gear).base_radius, rho)
+        gear = pair.gear(self.gear)
+        radius = np.hypot(gear.base_radius, rho)
         return -_interpolate(radius, np.asarray(self.radius), np.asarray(self.added))
 
     def borders(self, pair: GearPair) -> Floats:

@@ -68,7 +68,8 @@ class Patch:
         Shapes (element, point, 3, 18) and (element, point); the 18 unknowns of an element are x
         and y of its nodes in turn. Raises ValueError for an element that is turned inside out.
         """
-        frame = np.einsum("aqn,enc->eqac", _SLOPES, self.nodes[self.cells.reshape(-1, 9)])
+        corners = self.nodes[self.cells.reshape(-1, 9)]
+        frame = np.einsum("aqn,enc->eqac", _SLOPES, corners)
         area = frame[..., 0, 0] * frame[..., 1, 1] - frame[..., 0, 1] * frame[..., 1, 0]
         if not np.all(area * np.sign(area[0, 0]) > 0.0):
             raise ValueError("an element is turned inside out")

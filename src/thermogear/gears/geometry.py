@@ -314,10 +314,11 @@ class Gear:
                     f"(no undercut from {self.minimum_profile_shift:.3f})",
                 )
         if not self.tip_thickness > 0.0:
+            pointed = self.pointed_radius
             raise GeometryError(
                 "tip_radius",
                 millimetres(self.tip_radius),
-                allowed=f"< {millimetres(self.pointed_radius)}",
+                allowed=f"< {millimetres(pointed)}",
                 why="the tooth is pointed at that radius (tip thickness "
                 f"{millimetres(self.tip_thickness)}, x = {self.profile_shift:g})",
                 fix="lower the tip radius or the profile shift",

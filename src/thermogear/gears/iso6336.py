@@ -138,7 +138,8 @@ def iso6336_stiffness(
         pressure_angle=first.pressure_angle,
         blank_factor=blank,
     )
-    single = single * np.minimum(np.asarray(line_load, dtype=float) / _LOW_LOAD, 1.0) ** 0.25
+    load = np.asarray(line_load, dtype=float)
+    single = single * np.minimum(load / _LOW_LOAD, 1.0) ** 0.25
     return IsoStiffness(theory, single, single * (0.75 * pair.contact_ratio + 0.25))
 
 

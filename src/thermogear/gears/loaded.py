@@ -151,11 +151,12 @@ def solve_mesh(
     load = np.asarray(normal_force, dtype=float)
     if not np.all(np.isfinite(load) & (load >= 0.0)):
         raise InputError("normal_force", f"{load} N", allowed=">= 0, finite")
+    moduli = (pinion or Moduli.of(pair.pinion), wheel or Moduli.of(pair.wheel))
     system = MeshSystem.of(
         pair,
         shape=load.shape,
         phase=phase,
-        moduli=(pinion or Moduli.of(pair.pinion), wheel or Moduli.of(pair.wheel)),
+        moduli=moduli,
         deviations=deviations,
         model=model or LoadedModel(),
         flank=flank,
@@ -230,11 +231,12 @@ def mesh_force(
     delta = np.asarray(deflection, dtype=float)
     if not np.all(np.isfinite(delta)):
         raise InputError("deflection", f"{delta} m", allowed="finite")
+    moduli = (pinion or Moduli.of(pair.pinion), wheel or Moduli.of(pair.wheel))
     system = MeshSystem.of(
         pair,
         shape=delta.shape,
         phase=phase,
-        moduli=(pinion or Moduli.of(pair.pinion), wheel or Moduli.of(pair.wheel)),
+        moduli=moduli,
         deviations=deviations,
         model=model or LoadedModel(),
         flank=flank,

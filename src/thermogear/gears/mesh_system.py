@@ -170,7 +170,8 @@ def as_drawn(
         more = damage.softer(points.contacts, parameters[i], angles[i], model.plane)
         parts[i] = parts[i][0] + more[0], parts[i][1] + more[1]
     tooth, body = (np.stack(part) for part in zip(*parts, strict=True))
-    return Drawn(tooth / at.lever**2, body / (at.lever[..., None] * at.lever[..., None, :]), places)
+    lever = at.lever[..., None]
+    return Drawn(tooth / at.lever**2, body / (lever * at.lever[..., None, :]), places)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -225,7 +226,8 @@ class MeshSystem:
         lead = np.broadcast_shapes(
             shape, gap.shape[:-2], *(np.shape(e) for m in moduli for e in (m.tooth, m.body))
         )
-        whole = (int(np.prod(lead, dtype=np.int64)), positions, count)
+        cases = int(np.prod(lead, dtype=np.int64))
+        whole = (cases, positions, count)
         gaps, edges = (
             one[None]
             if gap.ndim == 2

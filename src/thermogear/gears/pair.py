@@ -226,7 +226,8 @@ class GearPair:
             np.interp(radius, np.hypot(x, y), np.arctan2(x, y)),
             other.half_thickness_angle(np.maximum(radius, other.form_radius)),
         )
-        return float(np.max(radius * (half - np.angle(point) + axis))) <= _CLEAR * other.module
+        deepest = float(np.max(radius * (half - np.angle(point) + axis)))
+        return deepest <= _CLEAR * other.module
 
     def gear(self, name: str) -> Gear:
         """The gear called "pinion" or "wheel"."""
@@ -250,7 +251,8 @@ class GearPair:
     @property
     def operating_pressure_angle(self) -> float:
         """alpha_w = arccos((r_b1 + r_b2)/a_w) [rad]."""
-        return math.atan2(self.line_of_action, self.pinion.base_radius + self.wheel.base_radius)
+        both = self.pinion.base_radius + self.wheel.base_radius
+        return math.atan2(self.line_of_action, both)
 
     @cached_property
     def line_of_action(self) -> float:

@@ -306,7 +306,8 @@ def _side(
         "wave": wave * limits.profile_form * heights[1],
         "phase": phase + p.phase_scatter * rng.standard_normal(teeth),
     }
+    rows = zip(*(column.tolist() for column in columns.values()), strict=True)
     return tuple(
         ToothProfile(of[0], waves=waves, flank=of[1], **dict(zip(columns, row, strict=True)))
-        for row in zip(*(column.tolist() for column in columns.values()), strict=True)
+        for row in rows
     )

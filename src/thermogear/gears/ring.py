@@ -59,7 +59,8 @@ def rim_compliance(
     tau = mu * ((power - 1.0) * b - n[:, None] * a) * at_rim
     u_rim, v_rim = a * at_rim, b * at_rim
     u_bore, v_bore = a * at_bore, b * at_bore
-    for i in np.nonzero(n == 1.0)[0]:
+    first = np.nonzero(n == 1.0)[0]
+    for i in first:
         # u = ln(r/R), v = -ln(r/R) + d
         d = -(1.0 + nu) / (3.0 - nu)
         logarithm = np.log(ratio)
@@ -139,7 +140,8 @@ def foot_load(gear: Gear, t: ArrayLike) -> Floats:
     """
     beta = np.asarray(t, dtype=float) - gear.base_half_angle
     lever = gear.base_radius / gear.root_radius
-    return np.stack([-np.sin(beta), np.full_like(beta, lever), np.cos(beta) - lever], axis=-1)
+    cosine = np.cos(beta)
+    return np.stack([-np.sin(beta), np.full_like(beta, lever), cosine - lever], axis=-1)
 
 
 def body_matrices(

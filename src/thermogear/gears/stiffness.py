@@ -77,7 +77,8 @@ def weber_approach(
     '2.08 um'
     """
     f, a = np.asarray(force, dtype=float), np.asarray(half_width, dtype=float)
-    eta = np.asarray(depth, dtype=float) / np.where(f > 0.0, a, 1.0)
+    loaded = f > 0.0
+    eta = np.asarray(depth, dtype=float) / np.where(loaded, a, 1.0)
     # sqrt(1 + eta^2) - eta without the difference
     narrow = 1.0 / (np.hypot(1.0, eta) + eta)
     bracket = np.arcsinh(eta) - poisson / (1.0 - poisson) * eta * narrow
@@ -266,7 +267,8 @@ def pair_compliances(
         second.tooth,
         pair.wheel.material.poisson_ratio,
     )
-    return PairCompliances(parts[0], parts[1], 1.0 / yang_sun_stiffness(modulus, width))
+    contact = 1.0 / yang_sun_stiffness(modulus, width)
+    return PairCompliances(parts[0], parts[1], contact)
 
 
 def pair_stiffness(
@@ -335,7 +337,8 @@ def mesh_figures(
     length = pair.path.e - pair.path.a
     ratio = length / pair.base_pitch
     nodes, weights = gauss(32)
-    single = pair_stiffness(pair, pair.path.a + 0.5 * length * (1.0 + nodes), start, pinion, wheel)
+    s = pair.path.a + 0.5 * length * (1.0 + nodes)
+    single = pair_stiffness(pair, s, start, pinion, wheel)
     mean = float(0.5 * ratio * np.sum(weights * single))
     # between the jumps at phase 0 and eps - floor(eps) the number of pairs is constant
     change = ratio - np.floor(ratio + 1e-12)

@@ -198,7 +198,8 @@ def _pressure_load(gear: Gear, tooth: Tooth, centre: float, half_width: float) -
     The pressure acts along the involute's normal; what overhangs the tip is left out and the rest
     is scaled to a unit force. Arcs in metres.
     """
-    low, high = Profile(gear).ends
+    profile = Profile(gear)
+    low, high = profile.ends
     angle = np.pi * np.arange(1, _PRESSURE + 1) / (_PRESSURE + 1)
     arc, weight = centre + half_width * np.cos(angle), np.sin(angle) ** 2
     weight = np.where((arc >= low) & (arc <= high), weight, 0.0)

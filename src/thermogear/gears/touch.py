@@ -274,7 +274,8 @@ def _averaged(pair: GearPair, name: str, at: Floats, spread: float) -> tuple[Flo
     if spread == 0.0:
         return at[:, None], np.ones(1)
     ends = flank_ends(pair)[GEARS.index(name)]
-    return _pressed(at, ends, pair.gear(name).base_radius, pair.line_of_action, spread), _WEIGHTS
+    base = pair.gear(name).base_radius
+    return _pressed(at, ends, base, pair.line_of_action, spread), _WEIGHTS
 
 
 def _polynomials(
@@ -305,7 +306,8 @@ def _polynomials(
         there += shape.taken_off(pair, string)
     values = values.reshape(-1, *nodes.shape)
     powers = np.ascontiguousarray(values @ _TO_POWERS.T)
-    return borders, powers, np.ptp(values, axis=(1, 2))[:, None], there.reshape(-1, string.size)
+    span = np.ptp(values, axis=(1, 2))[:, None]
+    return borders, powers, span, there.reshape(-1, string.size)
 
 
 def _pressed(

@@ -116,7 +116,8 @@ class ContactState:
     @property
     def oil_viscosity(self) -> Floats:
         """eta [Pa s] of the supplied oil: ``bath_viscosity``, or ``viscosity`` where left out."""
-        return np.asarray(self.viscosity if self.bath_viscosity is None else self.bath_viscosity)
+        given = self.viscosity if self.bath_viscosity is None else self.bath_viscosity
+        return np.asarray(given)
 
     @property
     def sliding(self) -> Floats:

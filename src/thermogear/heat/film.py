@@ -324,7 +324,8 @@ def regime(film_parameter: ArrayLike) -> NDArray[np.int64]:
     thickness = np.asarray(film_parameter, dtype=float)
     if np.any(np.isnan(thickness)):
         raise InputError("film parameter", "nan", allowed="a number, or inf without load")
-    return np.asarray(np.digitize(thickness, [1.0, 3.0, np.inf]), dtype=np.int64)
+    index = np.digitize(thickness, [1.0, 3.0, np.inf])
+    return np.asarray(index, dtype=np.int64)
 
 
 def regime_shares(film_parameter: ArrayLike) -> Floats:

@@ -322,7 +322,8 @@ class LambdaBlend(Bounded):
 
     def __call__(self, state: ContactState) -> Floats:
         share = doleschel_share(state.needed("central_film_parameter", self.name))
-        return _spread(share * self.boundary + (1.0 - share) * self.film(state), state)
+        mu = share * self.boundary + (1.0 - share) * self.film(state)
+        return _spread(mu, state)
 
 
 def _of_mesh(

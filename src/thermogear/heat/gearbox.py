@@ -314,9 +314,10 @@ def body_places(
     """
     low, high = np.asarray(body, dtype=float), np.asarray(tooth, dtype=float)
     ring, teeth = _outer_resistances(gear)
+    root = low + (high - low) * (ring / (ring + teeth))
     return (
         (body_radius(gear), low),
-        (gear.root_radius, np.asarray(low + (high - low) * (ring / (ring + teeth)))),
+        (gear.root_radius, np.asarray(root)),
         (tooth_radius(gear), high),
     )
 

@@ -273,4 +273,5 @@ class ThermocoupleReading:
             return indicated + flux * depth / self.conductivity
 
         best = {"indicated": self.indicated, "flux": self.flux, "depth": self.depth}
-        return _propagate(value, best, {name: getattr(self, f"u_{name}") for name in best})
+        spread = {name: getattr(self, f"u_{name}") for name in best}
+        return _propagate(value, best, spread)

@@ -176,7 +176,8 @@ class ThermalNetwork:
             # relative to one given temperature: no digits lost to the absolute scale
             datum = given[..., held[:1]]
             push = heat[..., free] - np.einsum("...ij,...j->...i", across, given[..., held] - datum)
-            temperature[..., free] = np.linalg.solve(inner, push[..., None])[..., 0] + datum
+            rise = np.linalg.solve(inner, push[..., None])[..., 0]
+            temperature[..., free] = rise + datum
         datum = temperature[..., :1]
         flow = heat - np.einsum("...ij,...j->...i", laplacian, temperature - datum)
         names = self.nodes

@@ -127,13 +127,14 @@ def mesh_cycle(
         coordinates["wheel_radius"] = (ALONG, r2)
     if any("mesh_phase" in dims for dims, _ in variables.values()):
         coordinates["mesh_phase"] = (("mesh_phase",), turn_phases(cycle.mesh_periods, cycle.phase))
+    points = pair.path
     return label(
         variables,
         coordinates,
         {
             "bundle": hot.model.name,
             "choices": json.dumps(hot.model.choices()),
-            "path_points": json.dumps({k.upper(): v for k, v in pair.path._asdict().items()}),
+            "path_points": json.dumps({k.upper(): v for k, v in points._asdict().items()}),
             "contact_ratio": pair.contact_ratio,
             **({"mesh_periods": cycle.mesh_periods} if cycle.mesh_periods > 1 else {}),
         },

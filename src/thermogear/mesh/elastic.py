@@ -191,7 +191,8 @@ class TextbookPair(ElasticPair):
     def over(self, phase: Floats) -> MeshCurves:
         k = mesh_stiffness(self.pair, phase[None, :], self.start, *self.moduli)
         k = np.tile(k * self.hot.widened, self.mesh_periods)
-        return MeshCurves(k, None, self.force[:, None] / k, np.full(self.hot.count, np.nan))
+        unsaid = np.full(self.hot.count, np.nan)
+        return MeshCurves(k, None, self.force[:, None] / k, unsaid)
 
 
 @dataclass(frozen=True, eq=False)

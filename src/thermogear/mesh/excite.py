@@ -34,7 +34,8 @@ def disc_inertia(gear: Gear, *, radius: float, bore_radius: float = 0.0) -> floa
     """
     if not 0.0 <= bore_radius < radius:
         raise InputError("bore_radius", f"{bore_radius} m", allowed=f"0 <= r_x < {radius} m")
-    return 0.5 * math.pi * gear.material.density * gear.face_width * (radius**4 - bore_radius**4)
+    density = gear.material.density
+    return 0.5 * math.pi * density * gear.face_width * (radius**4 - bore_radius**4)
 
 
 def excitation(

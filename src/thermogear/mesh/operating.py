@@ -252,9 +252,10 @@ class Operating:
             changed[name] = np.broadcast_to(
                 wanted, np.broadcast_shapes(bodies[name].shape, wanted.shape)
             )
+        oil = beside(oil_now, followed["housing"])
         there = replace(
             self,
-            oil_temperature=beside(oil_now, followed["housing"]),
+            oil_temperature=oil,
             temperatures=replace(t, **changed),
             flank_temperature=None,
         )

@@ -252,10 +252,11 @@ def integral_rating(
     """
     load, v = _load_and_speed(pair, torque, speed, scuffing.overload)
     oil = np.asarray(scuffing.oil_temperature, dtype=float)
+    working = pair.operating_pressure_angle
     friction = iso_13989_2(
         load,
         # 2 v tan(alpha_w) cos(alpha) on the reference circle is 2 v_t sin(alpha_w) on this one
-        2.0 * v * np.sin(pair.operating_pressure_angle),
+        2.0 * v * np.sin(working),
         float(reduced_radius(pair, pair.path.c)),
         dynamic_viscosity(scuffing.lubricant, oil),
         _mean_roughness(pair),

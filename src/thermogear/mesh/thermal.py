@@ -131,7 +131,8 @@ class HotPair:
         gears: dict[str, Any] = {
             name: kelvin + rise for name, kelvin in t.bodies.items() if name != "housing"
         }
-        return replace(self, operating=replace(self.operating, temperatures=replace(t, **gears)))
+        hotter = replace(t, **gears)
+        return replace(self, operating=replace(self.operating, temperatures=hotter))
 
     # --- growth ---------------------------------------------------------------------
     def _pull(self, gear: Gear) -> Floats:
@@ -301,5 +302,6 @@ def thesis_thermal_stiffness(
     gear heats: heat is no spring.
     """
     force = hot.operating.torque / hot.pair.pinion.base_radius
-    grown = _carried(pair_positions(hot.pair, phase), lambda s: np.add(*hot.growth(s)), weights)
+    drive = pair_positions(hot.pair, phase)
+    grown = _carried(drive, lambda s: np.add(*hot.growth(s)), weights)
     return np.divide(force[:, None], grown, out=np.zeros_like(grown), where=grown > 0.0)

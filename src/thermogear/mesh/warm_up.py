@@ -183,7 +183,8 @@ class WarmUp:
 
     @property
     def margin(self) -> Floats:
-        return np.asarray(self._clearance.jam_temperature - self.temperatures["pinion_tooth"])
+        teeth = self.temperatures["pinion_tooth"]
+        return np.asarray(self._clearance.jam_temperature - teeth)
 
     def _gap(self, state: State, piece: ArrayLike) -> Floats:
         """Least half backlash [m] of states (count,) in ``piece`` of the duty."""

@@ -201,7 +201,8 @@ class LinearTrain:
             raise InputError("order", order, allowed="> 0")
         t, train = self.basis, self.assembly
         stiff = t.T @ self.stiffness @ t
-        moving = t.T @ (train.mass - 1j * train.frame.sense * train.gyroscopic / order) @ t
+        sense = train.frame.sense
+        moving = t.T @ (train.mass - 1j * sense * train.gyroscopic / order) @ t
         if not self.symmetric:
             square, vectors = scipy.linalg.eig(stiff, moving)
             real = (square.real > 0.0) & (np.abs(square.imag) < 1e-6 * np.abs(square))

@@ -93,7 +93,8 @@ def reduced(assembly: Assembly, coordinates: int | None = None) -> Reduction:
     At least the interface is kept, less one for the rotation. Raises InputError for a number below
     that or above all, or where a motion is free with the interface held.
     """
-    kept = np.array([assembly.index[name] for name in interface_of(assembly)], dtype=int)
+    names = interface_of(assembly)
+    kept = np.array([assembly.index[name] for name in names], dtype=int)
     rest = np.setdiff1d(np.arange(assembly.size), kept)
     least, most = kept.size - 1, assembly.size - 1
     wanted = most if coordinates is None else coordinates
@@ -115,7 +116,8 @@ def reduced(assembly: Assembly, coordinates: int | None = None) -> Reduction:
     whole = np.zeros((assembly.size, wanted + 1))
     whole[kept, np.arange(kept.size)] = 1.0
     if rest.size:
-        square, shapes = scipy.linalg.eigh(0.5 * (inner + inner.T), mass)
+        symmetric = 0.5 * (inner + inner.T)
+        square, shapes = scipy.linalg.eigh(symmetric, mass)
         if square[0] <= DROPPED * square[-1]:
             raise InputError(
                 "shafts",

@@ -38,7 +38,8 @@ def flank_radii(gear: Gear, count: int = 7) -> Floats:
 
 def _arcs(gear: Gear, radius: Floats, density: Density) -> tuple[Floats, Integers]:
     """Corners of the flank's mesh with one at each asked radius, and which those are."""
-    low, high = Profile(gear).ends
+    profile = Profile(gear)
+    low, high = profile.ends
     asked = 0.5 * (radius**2 / gear.base_radius - gear.base_radius)
     stops = np.unique(np.concatenate([[low], np.clip(asked, low, high), [high]]))
     # rounding may set two stops a hair apart, which would leave an element without area
@@ -96,7 +97,8 @@ def finite_flank_growth(
     arcs, asked = _arcs(gear, r.ravel(), mesh)
     tooth = tooth_mesh(gear, across=across, arcs=arcs, density=mesh)
     patch, of_tooth = united(foot, tooth)
-    moved = _displacement(patch, foot, field, gear.material.thermal_expansion, bore)
+    expansion = gear.material.thermal_expansion
+    moved = _displacement(patch, foot, field, expansion, bore)
 
     # the tooth's flank begins with the fillet's rows; the asked corners count from the tip
     flank = of_tooth[tooth.flank]

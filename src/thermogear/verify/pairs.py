@@ -49,7 +49,8 @@ def _gear(
 
 def published_pair() -> CheckedPair:
     """m 5, 25/75, bores 20/60, 200 N/mm: the pair with a published finite-element table."""
-    return CheckedPair("m 5, 25/75", GearPair(_gear(25, 5, 20, 20), _gear(75, 5, 60, 20)), 200e3)
+    pair = GearPair(_gear(25, 5, 20, 20), _gear(75, 5, 60, 20))
+    return CheckedPair("m 5, 25/75", pair, 200e3)
 
 
 def own_pairs() -> tuple[CheckedPair, ...]:

@@ -48,7 +48,8 @@ class Draft:
 
     def read(self, path: str, found: Read, source: str) -> None:
         """One more line as the file has it."""
-        self.lines.append(Line(path, found.number if not found.unit else found.text, READ, source))
+        value = found.number if not found.unit else found.text
+        self.lines.append(Line(path, value, READ, source))
 
     @property
     def both(self) -> tuple[tuple[str, Component], ...]:

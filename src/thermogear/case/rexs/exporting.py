@@ -89,7 +89,8 @@ class _Maker:
 
     def relate(self, kind: str, order: int | None = None, **refs: int) -> None:
         """A relation with the next id; references by their roles."""
-        self.model.relate(Relation(len(self.model.relations) + 1, kind, order, tuple(refs.items())))
+        ident = len(self.model.relations) + 1
+        self.model.relate(Relation(ident, kind, order, tuple(refs.items())))
 
     # --- the whole ------------------------------------------------------------------------
     def made(self, computed: tuple[Any, Any] | None) -> Model:

@@ -53,9 +53,10 @@ def stages(model: Model) -> list[Stage]:
 def _lacking(number: int, gears: tuple[Component, ...], carried: bool) -> InputError | None:
     field = f"stage {number}"
     if len(gears) < 2:
+        count = "no gear" if not gears else "one gear"
         return InputError(
             f"{field}.gears",
-            "no gear" if not gears else "one gear",
+            count,
             allowed="gear_1 and gear_2",
             why="its relation 'stage' names no two gears of the file",
         )

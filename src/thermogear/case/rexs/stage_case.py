@@ -429,11 +429,12 @@ def _operating(
             made.unused.append(f"{load.name}: the other gear drives there")
         elif load.speed and load.torque:
             turns = abs(load.speed * scale) / RPM
+            moment = abs(load.torque * other)
             made.loads.append(
                 Operating(
                     name=load.name,
                     speed=_tidy(turns),
-                    torque=_tidy(abs(load.torque * other)),
+                    torque=_tidy(moment),
                     duration=load.duration,
                     share=load.share,
                 )

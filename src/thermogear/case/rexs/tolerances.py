@@ -64,7 +64,8 @@ def backlash_lines(reader: Reader, made: Draft) -> None:
             note,
         )
     play, origin, note = _distance(reader, made)
-    made.put("backlash.tolerances.centre_distance", [_um(one) for one in play], origin, note)
+    texts = [_um(one) for one in play]
+    made.put("backlash.tolerances.centre_distance", texts, origin, note)
 
 
 def _thickness(
