@@ -45,8 +45,10 @@ from thermogear.case.shaft_plan import TrainPlan
 from thermogear.case.shafts import train_plan
 from thermogear.case.source import case_text, folder_of
 from thermogear.case.units import shown
+from thermogear.gears.accuracy import flank_class
 from thermogear.gears.deviations import Deviation
 from thermogear.gears.pair import GearPair
+from thermogear.gears.population import measured
 from thermogear.gears.turn import turn_period
 from thermogear.heat.gearbox import Surroundings, fluid_from
 from thermogear.mesh.balance import Gearbox, HeatBalance, heat_balance
@@ -68,7 +70,7 @@ def decided(
         "backlash.value": f"{shown(2.0 * backlash.half, 'length')}, total, normal",
     }
     known = "" if accuracy is None else f"{accuracy}, {' and '.join(graded)}"
-    found["flanks.accuracy"] = known or "none: the tables of ISO 1328-1 end before these gears"
+    found["flanks.accuracy"] = known or "none acts: nominal flanks, or gears beyond ISO 1328-1"
     found |= {
         "gearbox.housing_area": shown(around.housing_area, "area", 3),
         "gearbox.housing_coefficient": shown(
@@ -226,6 +228,21 @@ class GearCase(Case):
         made = case_of(overridden(self.data, ((field, value),)), self.text, changes, told=False)
         kept = tuple(one for one in self.assumptions if one.field != field)
         return replace(gear_case(made), assumptions=kept)
+
+    @cached_property
+    def turn_class(self) -> int | None:
+        """The worse class of ISO 1328-1:2013 of both gears as they are over a turn.
+
+        Of the drive flanks about the bore, all deviations in it; None where one has none.
+        """
+        grades = [
+            flank_class(
+                gear.teeth, gear.module, rounded=False,
+                figures=measured(self.pair, name, self.deviations, "drive"),
+            )
+            for name, gear in (("pinion", self.pair.pinion), ("wheel", self.pair.wheel))
+        ]  # fmt: skip
+        return None if None in grades else max(filter(None, grades))
 
     @property
     def measured_class(self) -> int | None:

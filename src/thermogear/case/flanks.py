@@ -67,6 +67,11 @@ def deviations(
                     fix=error.fix,
                 ) from error
             found.append(deviation)
+    if file.flanks is not None and file.flanks.teeth == "measured" and not measured:
+        raise InputError(
+            "flanks.teeth", "'measured'", why="no chart of every tooth is given",
+            fix="name the charts in flanks.pinion and flanks.wheel",
+        )  # fmt: skip
     found += [one for chart in measured for one in _charted(file, pair, chart)]
     found += _graded(file, pair)
     first = {gear: first_tooth(file, gear) for gear in GEARS}
@@ -86,6 +91,7 @@ def _of_teeth(
 ) -> Iterator[tuple[str, Callable[[], Deviation]]]:
     """(field, maker) of what may differ from tooth to tooth of one gear."""
     table: GearTable = getattr(file.gears, gear)
+    _require_differing(gear, table.teeth_differ)
     if table.pitch_errors is not None or any(one.index for one in table.teeth_differ):
         field = "pitch_errors" if table.pitch_errors is not None else "teeth_differ"
         yield field, partial(_index, gear, file, pair)
@@ -98,6 +104,22 @@ def _of_teeth(
         single = [one for one in table.teeth_differ if one.flank == flank]
         if any(one.slope or one.form for one in single):
             yield "teeth_differ", partial(_single_teeth, gear, single, table.teeth)
+
+
+def _require_differing(gear: str, given: Sequence[ToothTable]) -> None:
+    """Refuse a tooth of a side named twice, or with nothing that differs."""
+    named = [(one.tooth, one.flank) for one in given]
+    for place, one in enumerate(given):
+        field = f"gears.{gear}.teeth_differ[{place}]"
+        if named.count(named[place]) > 1:
+            raise InputError(
+                field, f"tooth {one.tooth} twice", allowed="each tooth of a side once",
+                fix="put what differs into one entry",
+            )  # fmt: skip
+        if not (one.index or one.slope or one.form):
+            raise InputError(
+                field, f"tooth {one.tooth} without a difference", fix="give index, slope or form"
+            )
 
 
 def _index(gear: str, file: GearFile, pair: GearPair) -> PitchError:
@@ -138,7 +160,9 @@ def _every_tooth(gear: str, table: ToothProfilesTable, teeth: int) -> ToothShape
     for name, values in columns.items():
         if len(values) not in (1, teeth):
             each = f"one for each of the {teeth} teeth, or " * (teeth > 1)
-            raise InputError(name, f"{len(values)} values", allowed=f"{each}one")
+            raise InputError(
+                name, f"{len(values)} values", allowed=f"{each}one", fix="list them tooth by tooth"
+            )
     rows = zip(*(np.broadcast_to(one, teeth).tolist() for one in columns.values()), strict=True)
     made = partial(WavyProfile, gear, waves=table.waves, flank=table.flank)
     return ToothShapes(gear, tuple(made(**dict(zip(columns, row, strict=True))) for row in rows))
@@ -147,9 +171,7 @@ def _every_tooth(gear: str, table: ToothProfilesTable, teeth: int) -> ToothShape
 def _single_teeth(gear: str, given: Sequence[ToothTable], teeth: int) -> ToothShapes:
     """Slope and form of the teeth that differ on one side, none of the others."""
     shapes: list[FlankShape] = [WavyProfile(gear, slope=0.0, flank=given[0].flank)] * teeth
-    for place, one in enumerate(given):
-        if one.tooth in [other.tooth for other in given[:place]]:
-            raise InputError("", f"tooth {one.tooth} twice", allowed="each tooth of a side once")
+    for one in given:
         (shapes[_place(one, teeth)],) = _every_tooth(gear, one, 1).shapes
     return ToothShapes(gear, tuple(shapes))
 
@@ -167,7 +189,7 @@ def accuracy(file: GearFile, pair: GearPair) -> int | None:
     Left out it is 6 for metal, 9 for plastics, and none where the tables of ISO 1328-1 end.
     """
     table = file.flanks
-    if table is None or not unmeasured(file):
+    if table is None or not unmeasured(file) or file.gears.part == "nominal":
         return None
     if table.accuracy is not None:
         return table.accuracy

@@ -95,8 +95,9 @@ def _series(coefficients: Complexes, count: int) -> Floats:
 @dataclass(frozen=True, eq=False, kw_only=True)
 class TurnMotions:
     """One entry per run: ``period`` in turns (0: none was seen), ``state`` (run, 2) at phase 0, and
-    over its cycle (else nan): greatest and least force k f over the mean stiffness, greatest and
-    least x + e, share of time out of drive-side contact.
+    over its cycle, or the later half of what was followed where none was seen: greatest and least
+    force k f over the mean stiffness, greatest and least x + e, share of time out of drive-side
+    contact.
     """
 
     period: NDArray[np.int32]
@@ -175,10 +176,11 @@ def _follow(
         felt[number][:, active] = run(0, turn)
         ends[number + 1][:, active] = x[active], v[active]
         cycle = _cycle(ends[: number + 2][:, :, active] / lanes.backlash[index[active]])
-        for length in np.unique(cycle[cycle > 0]):
-            rows = active[cycle == length]
-            over = felt[number + 1 - length : number + 1][:, :, rows]
-            _keep(out, index[rows], over, turn)
+        seen = cycle > 0 if number + 1 < most else np.ones(active.size, bool)
+        for length in np.unique(cycle[seen]):
+            rows = active[seen & (cycle == length)]
+            span = length or most // 2
+            _keep(out, index[rows], felt[number + 1 - span : number + 1][:, :, rows], turn)
             out.period[index[rows]] = length
         out.state[index[active]] = ends[number + 1][:, active].T
         active = active[cycle == 0]

@@ -22,6 +22,10 @@ CSV, HIDDEN = "thermogear.csv", "thermogear.hidden"
 _Command = TypeVar("_Command", bound=Callable[..., Any])
 
 
+OF_PART = ("gears.period=", "gears.part=")
+"""What ``--turn``, ``--mean-tooth`` and ``--part`` stand for."""
+
+
 def _with_part(
     context: click.Context, _: click.Parameter, given: tuple[str, ...]
 ) -> tuple[str, ...]:
@@ -158,7 +162,14 @@ def load(path: str, changes: tuple[str, ...]) -> GearCase | DimensionlessCase:
     """The case of a command, its file or a ready-made one."""
     from thermogear.case.case import load_case
 
-    return load_case(Path(path), changes)
+    try:
+        return load_case(Path(path), changes)
+    except InputError as error:
+        if error.field == "gears" and any(change.startswith(OF_PART) for change in changes):
+            raise InputError(
+                "--turn, --mean-tooth or --part", "a case without gears", fix="leave it out"
+            ) from error
+        raise
 
 
 def heat_once(axes: Collection[str], state: str | None) -> None:

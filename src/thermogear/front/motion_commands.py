@@ -82,7 +82,9 @@ def _case(options: dict[str, Any]) -> Any:
     name = options["case"]
     if name is None:
         if options["overrides"]:
-            raise InputError("--set", options["overrides"][0], why="no case is named")
+            raise InputError(
+                "--set, --turn or --part", options["overrides"][0], why="no case is named"
+            )
         return None
     return delivery.load(name, options["overrides"])
 

@@ -278,7 +278,7 @@ def runup(
     from thermogear.case.thermal_state import UNDEFORMED, ThermalState
     from thermogear.study.run_up import run_up_plan
 
-    read = delivery.load_gears(case, options["overrides"])
+    read = _of_mean_tooth(delivery.load_gears(case, options["overrides"]), options)
     speeds = grid("rpm", rpm) * RPM
     bundle, state = _choice(read, options)
     if hot and options["state"] is not None:
@@ -300,7 +300,7 @@ def sweep(case: str, over: tuple[str, ...], output: str, as_json: bool, **option
     from thermogear.case.axes import parse_axes
     from thermogear.study.sweep import sweep_plan
 
-    read = delivery.load_gears(case, options["overrides"])
+    read = _of_mean_tooth(delivery.load_gears(case, options["overrides"]), options)
     axes = parse_axes(read, over)
     delivery.heat_once(axes, options["state"])
     bundle, state = _choice(read, options)

@@ -56,18 +56,18 @@ class Study:
 
     ``home``: module and name of the function that carries it out; ``of``: what it is a study of,
     the gears or one point of a case. A directory of results may be left out where there are words
-    on it, ``stores``. ``mean_tooth``: it takes one mesh period of gears whose teeth differ, unless
-    the case states otherwise.
+    on it, ``stores``. ``mean_tooth``: it takes one mesh period of gears whose teeth differ, "always"
+    or "unless stated" otherwise by the case.
     """
 
     kind: ClassVar[str]
     home: ClassVar[str]
     of: ClassVar[str]
     stores: ClassVar[str]
-    mean_tooth: ClassVar[bool]
+    mean_tooth: ClassVar[str]
 
     def __init_subclass__(
-        cls, kind: str, home: str, of: str = "gears", stores: str = "", mean_tooth: bool = False
+        cls, kind: str, home: str, of: str = "gears", stores: str = "", mean_tooth: str = ""
     ) -> None:
         cls.kind, cls.home, cls.of, cls.stores = kind, home, of, stores
         cls.mean_tooth = mean_tooth
@@ -123,14 +123,19 @@ def declared(study: type[Study]) -> Callable[[Callable[P, Result]], Callable[P, 
             given = bound.arguments
             asked = study(**{name: given[name] for name in names & given.keys()})
             notices: tuple[Notice, ...] = ()
+            subject = next(iter(given))
             if study.of == "gears":
                 from thermogear.case.case import gear_case
 
-                subject = next(iter(given))
                 case = gear_case(given[subject])
                 if study.mean_tooth:
-                    given[subject] = case.unless_stated("period", "mesh")
-                    notices = tuple(mean_tooth_notices(case, given[subject]))
+                    always = study.mean_tooth == "always"
+                    taken = case.mean_tooth() if always else case.unless_stated("period", "mesh")
+                    given[subject] = taken
+                    notices = tuple(mean_tooth_notices(case, taken))
+            elif study.mean_tooth and given[subject].operating is not None:
+                case = given[subject].gears
+                notices = tuple(mean_tooth_notices(case, case.mean_tooth()))
             result = function(*bound.args, **bound.kwargs).with_(asked=asked.asked({}))
             return replace(result, notices=(*notices, *result.notices))
 
@@ -374,7 +379,7 @@ class WarmUpSurvey(Study, kind="warmup", home="thermogear.study.warm_up:warm_up_
 
 @dataclass(frozen=True, kw_only=True)
 class ReliefSurvey(
-    Study, kind="relief", mean_tooth=True, home="thermogear.study.relief:relief_survey"
+    Study, kind="relief", mean_tooth="always", home="thermogear.study.relief:relief_survey"
 ):
     """Find the tip relief that makes CASE's hot pair run most evenly under load.
 
@@ -447,7 +452,7 @@ class Contact(Study, kind="contact", home="thermogear.study.contact:loaded_surve
 class Sensitivity(
     Study,
     kind="sensitivity",
-    mean_tooth=True,
+    mean_tooth="unless stated",
     home="thermogear.study.sensitivity:sensitivity_around",
     stores="Store the study and its page in DIR.",
 ):
@@ -478,7 +483,7 @@ class Sensitivity(
 
 @dataclass(frozen=True)
 class Statics(
-    Study, kind="statics", mean_tooth=True, home="thermogear.study.shafts.statics:statics"
+    Study, kind="statics", mean_tooth="always", home="thermogear.study.shafts.statics:statics"
 ):
     """Loads of CASE's shafts and bearings at rest under torque, cold and hot.
 
@@ -493,7 +498,7 @@ COUNT = range(1, 61)
 
 @dataclass(frozen=True, kw_only=True)
 class NaturalModes(
-    Study, kind="modes", mean_tooth=True, home="thermogear.study.shafts.modes:modes"
+    Study, kind="modes", mean_tooth="always", home="thermogear.study.shafts.modes:modes"
 ):
     """Natural frequencies of CASE's drive train, and which part bends in each mode.
 
@@ -508,7 +513,7 @@ class NaturalModes(
 
 @dataclass(frozen=True, kw_only=True)
 class Campbell(
-    Study, kind="campbell", mean_tooth=True, home="thermogear.study.shafts.campbell:campbell"
+    Study, kind="campbell", mean_tooth="always", home="thermogear.study.shafts.campbell:campbell"
 ):
     """Critical speeds of CASE's drive train, cold and hot, and what vibrates there.
 
@@ -583,7 +588,7 @@ class Lyapunov(
 class SharedForce(
     Study,
     kind="shared",
-    mean_tooth=True,
+    mean_tooth="always",
     home="thermogear.study.shared_force:shared_results",
     of="point from rest",
 ):

@@ -24,13 +24,13 @@ def finished(data: Dataset, title: str = "") -> Result:
     return stored_dataset(with_notices(data), title)
 
 
-def turn_notices(case: GearCase, **data: str) -> Iterator[Notice]:
+def turn_notices(case: GearCase, alike: str | None = None) -> Iterator[Notice]:
     """That the teeth of ``case`` differ, and what is taken of them, where they do.
 
     ``alike``: what is that of the mean tooth all the same.
     """
     if case.period.mesh_periods > 1:
-        yield Notice.of("turn_taken", mesh_periods=case.period.mesh_periods, **data)
+        yield Notice.of("turn_taken", mesh_periods=case.period.mesh_periods, alike=alike)
 
 
 def contact_notices(data: Dataset) -> Iterator[Notice]:

@@ -259,7 +259,7 @@ def _orbit_notices(orbit: Orbit, low: float, b: float, asked: int | None) -> Ite
         yield Notice.of("other_period", asked=wanted, period=least)
     if low > b:
         yield Notice.of("motion_linear")
-    elif low > -b:
+    elif low > -b and orbit.lanes.mesh_periods == 1:  # b' of a turn is its mean
         # y = x - b' stays; the back flank stands at y = -2 b'
         yield Notice.of("back_flank_not_reached", down_to=max(0.5 * (b - low), 0.0))
     if not orbit.stable:

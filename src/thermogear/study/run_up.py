@@ -416,7 +416,7 @@ def run_up_plan(
     block: int = BLOCK,
 ) -> RunUpPlan:
     """The plan of :func:`run_up`; ``block`` speeds are computed, and given out, together."""
-    case = gear_case(case)
+    case = gear_case(case).unless_stated("period", "mesh")
     axis = np.sort(axis_values("speeds", speeds))
     given = (UNDEFORMED, HOT) if temperatures is None else map(ThermalState.of, temperatures)
     states = tuple(_held(case, state) for state in given)

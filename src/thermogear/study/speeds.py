@@ -64,7 +64,9 @@ MOTIONS = {
 class Speeds:
     """What a look over the speeds found: ``columns`` over (motion), and what is read off it.
 
-    Among them the ``state`` (motion, 2) that a motion goes on from, which is not stored.
+    Among them the ``state`` (motion, 2) that a motion goes on from, which is not stored, nor are,
+    over a turn, ``parted`` and ``struck``: whether flanks part and teeth hit the back side, also in
+    motions that do not settle.
     """
 
     columns: Mapping[str, ArrayLike]
@@ -115,12 +117,14 @@ class Speeds:
     @property
     def lost(self) -> list[tuple[float, float]]:
         """Ranges [rad/s] in which the flanks part."""
-        return self.ranges(self.column("contact_loss_share") > LOST)
+        parted = self.column("contact_loss_share") > LOST
+        return self.ranges(parted | (np.asarray(self.columns.get("parted", 0.0)) > 0.0))
 
     @property
     def back(self) -> list[tuple[float, float]]:
         """Ranges [rad/s] in which a tooth hits the back side."""
-        return self.ranges(self.column("mesh_force_min") < 0.0)
+        struck = self.column("mesh_force_min") < 0.0
+        return self.ranges(struck | (np.asarray(self.columns.get("struck", 0.0)) > 0.0))
 
     @property
     def several(self) -> list[tuple[float, float]]:
@@ -177,7 +181,7 @@ def look(mesh: Excitations, *, teeth: int, own: Floats) -> Speeds:
     along = mesh.take(np.zeros(ratio.size, int))
     lanes = points_of(replace(along, mesh_frequency=natural * ratio))
     motions, found = motions_of(lanes, starts_of(lanes), handed_on=True)
-    columns: dict[str, ArrayLike] = {name: found[name] for name in VALUES}
+    columns: dict[str, ArrayLike] = dict(found)
     closed = motions.period * lanes.mesh_periods
     columns |= {"period": closed, "label_code": motions.label, "state": motions.state}
     columns["pinion_speed"] = lanes.mesh_frequency[motions.lane] / teeth
@@ -207,7 +211,7 @@ def motions_of(
         rows["lane"].astype(np.int64), np.stack([rows["x"], rows["v"]], axis=1),
         rows["label"].astype(np.int8), rows["period"].astype(np.int32),
     )  # fmt: skip
-    return motions, {name: rows[name] for name in VALUES}
+    return motions, {name: rows[name] for name in (*VALUES, "parted", "struck")}
 
 
 def _over_the_turn(points: Points, starts: Floats) -> dict[str, Floats]:
@@ -238,24 +242,28 @@ def _over_the_turn(points: Points, starts: Floats) -> dict[str, Floats]:
         motions = follow_turns(tables, lanes, starts[index].reshape(-1, 2))
         newton = here.stiffness[each] * here.length[each]
         force = newton[:, None] * motions.force
+        # figures of what does not repeat hang on where it was begun; that flanks part does not
+        known = np.where(motions.period > 0, 1.0, np.nan)
         columns = {
             "lane": index[each],
             "frequency_ratio": (here.mesh_frequency / here.rate)[each],
-            "dynamic_factor": np.abs(force).max(axis=1) / here.force[each],
-            "dte_peak_to_peak": here.length[each] * np.ptp(motions.travel, axis=1),
-            "contact_loss_share": motions.lost,
-            "mesh_force_min": force[:, 1],
+            "dynamic_factor": known * np.abs(force).max(axis=1) / here.force[each],
+            "dte_peak_to_peak": known * here.length[each] * np.ptp(motions.travel, axis=1),
+            "contact_loss_share": known * motions.lost,
+            "mesh_force_min": known * force[:, 1],
+            "parted": motions.lost > LOST,
+            "struck": force[:, 1] < 0.0,
             "period": motions.period,
             "label": np.where(motions.period > 0, PERIODIC, UNDECIDED),
             "x": motions.state[:, 0],
             "v": motions.state[:, 1],
         }
-        known: list[dict[str, float]] = []
+        several: list[dict[str, float]] = []
         for values in zip(*columns.values(), strict=True):
             row = dict(zip(columns, map(float, values), strict=True))
-            if not any(_alike(row, other) for other in known):
-                known.append(row)
-        rows += known
+            if not any(_alike(row, other) for other in several):
+                several.append(row)
+        rows += several
     rows.sort(key=lambda row: row["lane"])
     return {name: np.array([row[name] for row in rows]) for name in rows[0]}
 

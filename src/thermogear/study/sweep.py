@@ -151,7 +151,7 @@ def sweep_plan(
     record: Recording = RECORD,
 ) -> SweepPlan:
     """The plan of :func:`sweep`."""
-    case = gear_case(case)
+    case = gear_case(case).unless_stated("period", "mesh")
     if not axes:
         raise InputError("axes", "none", allowed="at least one parameter")
     named = _by_long_names(axes)

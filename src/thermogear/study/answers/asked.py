@@ -247,6 +247,15 @@ class Asked:
         return found
 
     @cached_property
+    def tightest(self) -> Speeds | None:
+        """The same with the least half backlash of a turn all along; None where it is one."""
+        if self.mesh_periods == 1 or self.speeds is None:
+            return None
+        mesh = excitations(self.case, self._part([self.hardest]))
+        tight = replace(mesh, half_backlash=self.hot["least_half_backlash"][[self.hardest]])
+        return look(tight, teeth=self.case.pair.pinion.teeth, own=self.case.stated.speed)
+
+    @cached_property
     def assemblies(self) -> tuple[Floats, Floats]:
         """Static error [m] peak to peak and dynamic factor, greatest of the motions, of assemblies.
 

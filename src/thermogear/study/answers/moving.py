@@ -59,16 +59,20 @@ def speeds(asked: Asked) -> Iterator[Answer]:
     ends = (float(speed.min()), float(speed.max()))
     open_at = "; at {unsettled} of {speeds} speeds no motion settles" * (found.unsettled > 0)
     of_open = {"unsettled": found.unsettled, "speeds": found.grid.size} if open_at else {}
+    tight = asked.tightest
     for name, ranges, happens, never, apart in (
         ("contact_loss", found.lost,
          ("Flanks lose contact", ", for up to {most:.0f %} of the time"),
          "Flanks keep contact at every", parted),
-        ("back_contact", found.back, ("Teeth hit the back side", ""),
+        ("back_contact", (tight or found).back, ("Teeth hit the back side", ""),
          "No tooth hits the back side at any",
          struck),
     ):  # fmt: skip
         words, figures = told(ranges, ends=ends)
         sentence = f"{happens[0]} {words}{happens[1]}" if ranges else f"{never} {LOOKED}"
+        if name == "back_contact" and tight is not None:
+            sentence += ", were the backlash all along the least of the turn, {gap:.1f µm}"
+            figures["gap"] = 2e6 * float(asked.hot["least_half_backlash"][asked.hardest])
         if apart.any():
             sentence += (
                 f"; {'so' if ranges else 'otherwise'} at {{points}} of {{of}} operating points"
@@ -85,7 +89,9 @@ def speeds(asked: Asked) -> Iterator[Answer]:
     sentence = (
         f"Two motions exist {words}: it may jump there, up and down elsewhere"
         if found.several
-        else f"One motion exists at every {LOOKED}{': no jump' * (found.open == 0)}"
+        else f"One motion exists at every {LOOKED}: no jump"
+        if found.open == 0
+        else f"Where motions settle, one exists at every {LOOKED}"
     )
     if several.any():
         sentence += "; two or more at {points} of {of} operating points"
@@ -218,7 +224,7 @@ def errors(asked: Asked) -> Iterator[Answer]:
             continue
         figures |= {name: float(values[point]) for name, values in swing.items()}
         over = ", over the turn of {turn} mesh periods," * (turn > 1)
-        of_mesh = ", of which {mesh:.2f µm} repeat with the mesh" * (turn > 1)
+        of_mesh = ", of which the {mesh:.2f µm} that repeat with the mesh are judged" * (turn > 1)
         figures |= {"turn": turn, "mesh": float(with_mesh[point])} if turn > 1 else {}
         sentence = (
             f"Static and loaded{over} it is {{cold:.2f µm}} peak to peak undeformed, "
@@ -259,6 +265,8 @@ def _of_the_mesh(error: Floats, turn: int) -> Floats:
 def _class(case: GearCase) -> tuple[int, str, str]:
     """The class of ISO 1328-1 that the flanks are of, the worse gear's and 6 where none is known;
     the edition that counts so, and how it is known."""
+    if case.period.mesh_periods > 1 and (grade := case.turn_class) is not None:
+        return grade, EDITIONS[0], ", as its teeth are"
     drawn = case.file.flanks if case.accuracy is not None else None
     known = [grade for grade in (case.accuracy, case.measured_class) if grade is not None]
     whose = "" if drawn else ", profiles as measured" if known else ", assumed"
@@ -352,8 +360,10 @@ def _relief(asked: Asked) -> Answer:
         "undeformed": float(amounts[other]),
         "left": float(hot[other]),
     }
+    of_whom = "it" if asked.mesh_periods == 1 else "the mean tooth's"
     sentence = (
-        "A linear tip relief of {relief:.1f µm} on both gears makes it {before:.2f µm} → "
+        f"A linear tip relief of {{relief:.1f µm}} on both gears makes {of_whom} "
+        "{before:.2f µm} → "
         "{after:.2f µm} hot; the best one undeformed, {undeformed:.1f µm}, leaves "
         "{left:.2f µm} hot."
         if gain >= 1.0
