@@ -129,13 +129,14 @@ REFUSED = {
         '"20 um"',
     'gears.wheel.tooth_profiles=[{slope=["1 um", "2 um"]}]':
         "gears.wheel.tooth_profiles[0].slope: got 2 values; allowed one for each of the 40 teeth, "
-        "or one",
+        "or one; list them tooth by tooth",
     "gears.pinion.teeth_differ=[{tooth=21, slope='1 um'}]":
         "gears.pinion.teeth_differ: got tooth 21; allowed 1..20",
     "gears.pinion.teeth_differ=[{tooth=21, index='1 um'}]":
         "gears.pinion.teeth_differ: got tooth 21; allowed 1..20",
     "gears.pinion.teeth_differ=[{tooth=2, slope='1 um'}, {tooth=2, form='1 um'}]":
-        "gears.pinion.teeth_differ: got tooth 2 twice; allowed each tooth of a side once",
+        "gears.pinion.teeth_differ[0]: got tooth 2 twice; allowed each tooth of a side once; put "
+        "what differs into one entry",
     "gears.pinion.pitch_errors_along='arc'":
         "gears.pinion.pitch_errors_along: got an unknown key; [gears.pinion] does not have it; did "
         "you mean 'pitch_errors'?",
@@ -143,7 +144,7 @@ REFUSED = {
         "gears.pitch_errors_along: got 'chord'; allowed line of action | arc; write for "
         'instance "line of action"',
     "gears.pinion.teeth_differ=[{tooth=2, slope=['1 um', '2 um']}]":
-        "gears.pinion.teeth_differ.slope: got 2 values; allowed one",
+        "gears.pinion.teeth_differ.slope: got 2 values; allowed one; list them tooth by tooth",
     "gears.marks=[21, 1]": "gears.marks[0]: got 21; allowed 1..20",
     "gears.marks=[1]":
         "gears.marks: got a list of 1; allowed 2 entries; write for instance [1, 1]",

@@ -558,7 +558,10 @@ def test_path_with_a_zero_byte(failing: Run) -> None:
     [
         (("rn",), "unknown command 'rn'; did you mean 'run'?"),
         (("frobnicate",), "unknown command 'frobnicate'; did you mean 'friction'?"),
-        (("run", "x.toml", "--ouptu", "d"), "No such option '--ouptu'. Did you mean '--output'?"),
+        (
+            ("run", "x.toml", "--referense"),
+            "No such option '--referense'. Did you mean '--reference'?",
+        ),
         (("run", "x.toml"), "Missing option '-o' / '--output'."),
         (("run",), "Missing argument 'CASE'."),
         (

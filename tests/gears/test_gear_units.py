@@ -154,6 +154,10 @@ FORMULAS: dict[str, tuple[tuple[int, int, int], Formula]] = {
     "first_touch of teeth that differ": (LENGTH, lambda g: touched(g, differing(g))),
     "tooth_angle": (NUMBER, lambda g: turn.tooth_angle(g.pair, "wheel")),
     "turn_period": (NUMBER, lambda g: turn.turn_period(g.pair, differing(g)).mesh_periods),
+    "numbered_from": (
+        LENGTH,
+        lambda g: touched(g, [turn.numbered_from(g.pair, d, wheel=3) for d in differing(g)]),
+    ),
     "mean_tooth": (LENGTH, lambda g: touched(g, turn.mean_tooth(g.pair, differing(g)))),
     "flank_point": (LENGTH, lambda g: tooth.flank_point(g.gear, g.t)[:2]),
     "start_angle": (NUMBER, lambda g: tooth.start_angle(g.gear, "30-degree")),

@@ -12,7 +12,7 @@ from thermogear.base.errors import InputError
 from thermogear.base.excitation import Excitation, Periodic
 from thermogear.base.pair_springs import PairSprings
 from thermogear.dynamics.kernels.shared import advance_shared
-from thermogear.dynamics.models import require
+from thermogear.dynamics.models import require_finite
 from thermogear.dynamics.outcome import Result, dataset
 
 NO_ERROR = Periodic(0.0)
@@ -45,7 +45,7 @@ class LoadSharedModel:
 
     def __post_init__(self) -> None:
         for name in ("mass", "mesh_frequency", "half_backlash", "damping"):
-            require(self, name, positive=name != "damping", floor=True)
+            require_finite(self, name, positive=name != "damping", floor=True)
 
     @classmethod
     def from_excitation(

@@ -43,8 +43,16 @@ class ClearanceModel(Protocol):
         """Flat parameter arrays, one entry per lane."""
 
 
-def require(owner: object, name: str, *, positive: bool = False, floor: bool = False) -> None:
-    """Finite, and > 0 or >= 0 where asked; scalars stay scalars."""
+def require_finite(
+    owner: object, name: str, *, positive: bool = False, floor: bool = False
+) -> None:
+    """Hold that a field of ``owner`` is finite, and > 0 or >= 0 where asked; scalars stay scalars.
+
+    >>> spring = Periodic(1.0)
+    >>> require_finite(spring, "mean", positive=True)
+    >>> spring.mean
+    1.0
+    """
     values = np.asarray(getattr(owner, name), dtype=float)
     allowed = "> 0, finite" if positive else ">= 0, finite" if floor else "finite"
     good = np.isfinite(values)
@@ -86,11 +94,11 @@ class TorsionalModel:
     thermal_stiffness: ArrayLike = 0.0
 
     def __post_init__(self) -> None:
-        require(self, "damping_ratio", floor=True)
-        require(self, "frequency", positive=True)
+        require_finite(self, "damping_ratio", floor=True)
+        require_finite(self, "frequency", positive=True)
         for name in ("stiffness_amplitude", "mean_force", "force_amplitude", "thermal_stiffness"):
-            require(self, name)
-        require(self, "half_backlash", positive=True)
+            require_finite(self, name)
+        require_finite(self, "half_backlash", positive=True)
         stiffness = np.asarray(self.thermal_stiffness, dtype=float)
         if np.any(stiffness <= -1.0):
             raise InputError(
@@ -178,7 +186,7 @@ class DeadZoneModel:
     def __post_init__(self) -> None:
         Period(self.mesh_periods)
         for name in ("damping_ratio", "frequency", "half_backlash"):
-            require(self, name, positive=name != "damping_ratio", floor=True)
+            require_finite(self, name, positive=name != "damping_ratio", floor=True)
             if np.ndim(getattr(self, name)) > 1:
                 raise InputError(name, f"{np.ndim(getattr(self, name))} axes", allowed="0 or 1")
         for name in ("stiffness", "force"):
@@ -339,7 +347,7 @@ class PairModel:
             if name != "torques" and min(pair) <= 0.0:
                 raise InputError(name, pair, allowed="> 0")
         for name in ("damping", "half_backlash", "mesh_frequency"):
-            require(self, name, positive=name != "damping", floor=True)
+            require_finite(self, name, positive=name != "damping", floor=True)
         if self.stiffness.mean <= 0.0:
             raise InputError("stiffness", self.stiffness.mean, allowed="a mean > 0")
 

@@ -56,8 +56,8 @@ class Study:
 
     ``home``: module and name of the function that carries it out; ``of``: what it is a study of,
     the gears or one point of a case. A directory of results may be left out where there are words
-    on it, ``stores``. ``mean_tooth``: it takes one mesh period of gears whose teeth differ, "always"
-    or "unless stated" otherwise by the case.
+    on it, ``stores``. ``mean_tooth``: it takes one mesh period of gears whose teeth differ,
+    "always" or "unless stated" otherwise by the case.
     """
 
     kind: ClassVar[str]
