@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
@@ -84,6 +85,13 @@ def speeds(asked: Asked) -> Iterator[Answer]:
         figures |= of_open
         value = 100.0 * float(np.mean(apart)) if apart.size else float("nan")
         yield answer(SPEEDS, name, f"{sentence}.", value, figures=figures, units=OF_SPEEDS)
+    yield _coexisting(asked, found, moves, ends)
+
+
+def _coexisting(
+    asked: Asked, found: Speeds, moves: NDArray[np.bool_], ends: tuple[float, float]
+) -> Answer:
+    """Whether a second motion exists; ``moves`` (point, motion): what settles at its own speeds."""
     words, figures = told(found.several, ends=ends)
     several = moves.sum(axis=1) > 1
     sentence = (
@@ -106,7 +114,7 @@ def speeds(asked: Asked) -> Iterator[Answer]:
         found.open > 0
     )
     figures |= {"open": found.open, "speeds": found.grid.size}
-    yield answer(SPEEDS, "coexisting", f"{sentence}.", value, figures=figures, units=OF_SPEEDS)
+    return answer(SPEEDS, "coexisting", f"{sentence}.", value, figures=figures, units=OF_SPEEDS)
 
 
 def _faster(asked: Asked, sentence: str) -> str:
