@@ -99,6 +99,7 @@ nitpicky = True
 nitpick_ignore_regex = [
     (r"py:.*", r"(?!thermogear\.).*"),
     (r"py:.*", r"thermogear\.(\w+\.)+_\w+"),
+    (r"py:class", r"thermogear\.(study\.declared\.T|base\.kernel_cache\.(Kernel|Function))"),
     (r"py:.*", r"thermogear\.case\.friction_schema\.\w+Table"),
     (r"py:.*", r"thermogear\.case\.schema\.ModelTable"),
 ]

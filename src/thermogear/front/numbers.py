@@ -11,7 +11,7 @@ from thermogear.base.errors import InputError, short
 from thermogear.study.declared import numbers
 
 
-class Number(click.ParamType[float | int]):
+class NumberType(click.ParamType[float | int]):
     """A number, or a whole one; ``allowed`` in words, ``example`` of one."""
 
     def __init__(self, allowed: str, example: str, *, whole: bool = False) -> None:
@@ -33,8 +33,8 @@ class Number(click.ParamType[float | int]):
 def number(
     option: str, words: str, allowed: str, example: str, *, whole: bool = False, **more: Any
 ) -> Callable[[Any], Any]:
-    """A click option that takes a :class:`Number`; ``words`` of its help."""
-    return click.option(option, type=Number(allowed, example, whole=whole), help=words, **more)
+    """A click option that takes a :class:`NumberType`; ``words`` of its help."""
+    return click.option(option, type=NumberType(allowed, example, whole=whole), help=words, **more)
 
 
 def grid(option: str, text: str) -> Any:

@@ -66,7 +66,7 @@ class RootTable(Flank):
 def root_table(gear: Gear, plane: str = "stress") -> RootTable:
     """The stresses of ``gear``, remembered by its shape in modules and its Poisson's ratio.
 
-    plane: a key of :data:`~thermogear.gears.tooth_table.PLANES`.
+    plane: "stress" or "strain", as of :func:`~thermogear.gears.tooth_table.tooth_table`.
 
     >>> root_table(Gear(25, 5e-3)).slope.size
     18
