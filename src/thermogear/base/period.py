@@ -40,15 +40,15 @@ class Period:
         A shaft is given only where a whole number of its turns fills the period; the hunting
         tooth only where the same two teeth meet once in a period.
         """
-        found = {}
+        orders = {}
         if self.teeth is not None:
             for name, z in zip(("pinion", "wheel"), self.teeth, strict=True):
                 if self.mesh_periods % z == 0:
-                    found[name] = self.mesh_periods // z
-        found["mesh"] = self.mesh_periods
+                    orders[name] = self.mesh_periods // z
+        orders["mesh"] = self.mesh_periods
         if self.teeth is not None and self.mesh_periods == math.lcm(*self.teeth):
-            found["hunting_tooth"] = 1
-        return found
+            orders["hunting_tooth"] = 1
+        return orders
 
     def line(self, order: int) -> str:
         """The name of an ``order`` of the period: of a harmonic of the mesh, or of what lies by it.

@@ -198,7 +198,7 @@ def _turn(case: GearCase) -> list[Fact]:
     counts |= {f"order of the {k.replace('_', ' ')}": v for k, v in period.orders.items()}
     counts |= {"turns of the pinion until the same teeth meet": turns}
     counts |= {"assemblies that differ": case.assembly_count}
-    found = [Fact("period of all deviations", name, count) for name, count in counts.items()]
+    facts = [Fact("period of all deviations", name, count) for name, count in counts.items()]
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
         for flank in ("drive", "back"):
             figures = measured(pair, name, case.deviations, flank)
@@ -206,8 +206,8 @@ def _turn(case: GearCase) -> list[Fact]:
             sizes = zip(("f_p", "F_p", "f_Halpha", "f_falpha", "F_alpha"), figures, strict=True)
             text = ", ".join(f"{word} {1e6 * size:.2f}" for word, size in sizes)
             text += f" um: {'no class' if grade is None else f'class {grade}'}"
-            found.append(Fact(f"{name} about its bore", f"{flank} flanks", text))
-    return found
+            facts.append(Fact(f"{name} about its bore", f"{flank} flanks", text))
+    return facts
 
 
 def _measured(chart: Chart, single: bool) -> list[Fact]:
