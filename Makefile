@@ -14,7 +14,7 @@ BENCH_STAMP := .bench-venv/.installed
 AUDIT_BIN := .audit-venv/bin
 AUDIT_STAMP := .audit-venv/.installed
 
-.PHONY: audit bench bench-coordinates bench-geared bench-measure bench-paths bench-shafts bench-train-map check chromium clean compile demo friction-evidence house licences lint lock look lowest mutate release-check same sbom test trial-answers trial-app trial-attacks trial-base-sets trial-branches trial-coverage trial-damage trial-defects trial-experiment trial-heat trial-hostile trial-kills trial-labels trial-located trial-long trial-matched trial-pairs trial-public trial-shafts trial-stamps trial-swings trial-teeth trial-trains trial-turn trial-turning trial-verdicts unit
+.PHONY: audit bench bench-coordinates bench-geared bench-measure bench-paths bench-shafts bench-train-map check chromium clean compile demo friction-evidence house licences lint lock look lowest mutate release-check same sbom test trial-answers trial-app trial-attacks trial-base-sets trial-branches trial-coverage trial-damage trial-defects trial-experiment trial-heat trial-hostile trial-kills trial-labels trial-located trial-long trial-matched trial-pairs trial-public trial-shafts trial-stamps trial-swings trial-trains trial-turn trial-turning trial-verdicts unit
 
 demo: $(STAMP)  ## the main job: the rig's case file to a report
 	$(BIN)/thermogear example rig > .venv/rig.toml
@@ -196,9 +196,6 @@ trial-swings: $(STAMP)  ## records whose speed, phase or load oscillates: do int
 
 trial-shafts: $(STAMP)  ## few turns of a shaft, an unknown shaft: do intervals hold? five minutes; SHAFTS=20 for a few; docs/trial_shafts.md
 	@OPENBLAS_NUM_THREADS=1 $(BIN)/python checks/trial_shafts.py $(SHAFTS)
-
-trial-teeth: $(STAMP)  ## 200 held-back records with known teeth or none, ten minutes; TEETH=20 for a few; docs/trial_teeth.md
-	@OPENBLAS_NUM_THREADS=1 $(BIN)/python checks/trial_teeth.py $(TEETH)
 
 trial-branches: $(STAMP)  ## random branches and run-ups against finer ones, ten minutes; docs/trial_branches.md
 	@$(BIN)/python checks/trial_branches.py

@@ -14,13 +14,11 @@ import time
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
-from unittest.mock import Mock, patch
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import signal
 
-from thermogear.measured.evidence import Evidence, weigh
 from thermogear.measured.record import Channel, Record
 from thermogear.measured.reduction import measure
 
@@ -202,15 +200,11 @@ def run(place: int, count: int, first: int = 0) -> Cell:
     """``count`` records of one scenario, from number ``first`` on, through ``measure``."""
     scenario, start = SCENARIOS[place], time.process_time()
     rows = []
-    # nine tenths of the time; of a steady line no digit depends on it (tests/checks)
-    none = weigh if scenario.wander else Mock(return_value=Evidence(hypotheses=()))
-    without = patch("thermogear.measured.gearing.weigh", none)
     for number in range(first, first + count):
         made = drawn(scenario, np.random.default_rng([SEED, place, number]))
-        with without:
-            found = measure(
-                made.record, teeth=TEETH, speed=made.nominal, sidebands=0, harmonics=len(HARMONICS)
-            )
+        found = measure(
+            made.record, teeth=TEETH, speed=made.nominal, sidebands=0, harmonics=len(HARMONICS)
+        )
         lines = {line.name: line for line in found.lines}
         if "mesh x 1" not in lines:  # no interval is stated
             continue
@@ -283,8 +277,7 @@ Made by `make trial-coverage`. Every record has a mesh line of amplitude 1 near 
 second harmonic of 0.5, sidebands of 12 and 5 %, and white noise of rms 0.1 where nothing else is
 said; 4 s at 2560 samples/s. Wandering quantities are stationary with an exponential correlation of
 the time said. `measure` is told 25 teeth and the nominal speed; the mesh frequency lies up to 2 %
-off. The weighing of teeth is left out where the speed is steady: the numbers are the same to the
-last digit.
+off.
 
 What is measured: the amplitude over the record, root of the mean square of a(t) in
 Re[a(t) exp(i phase)]; the mean frequency, turns over time; the shaft's mean speed. The table says

@@ -113,10 +113,10 @@ def rows(one: Said) -> list[str]:
     else:
         hertz = "" if rate is None else f", {mesh * rate:.6g} Hz"
         row("mesh line", f"{mesh:.6f} cycles/sample{hertz}")
-    row("teeth", _teeth(figures["found"]))
-    for other in figures["meshes"]:
-        weak = ", weak" if other["margin"] < 0.2 else ""
-        row("further mesh", f"order {other['order']:.3f} of the first shaft{weak}")
+    row("teeth", "confirmed" if figures["teeth_confirmed"] else "undecided")
+    for family in figures["families"]:
+        row("lines at equal distances", f"{family['distance']:.6f} cycles/sample to both sides of "
+            f"the mesh line and its harmonics: {family['lines']}")  # fmt: skip
     row("sidebands", _sidebands(lines))
     strongest = _strongest([line for line in lines if line["kind"] == "line"])
     if strongest:
@@ -134,18 +134,10 @@ def rows(one: Said) -> list[str]:
     return [*told, ""]
 
 
-def _teeth(found: dict[str, Any]) -> str:
-    """The verdict with the weights of gears, and of what has none."""
-    bare = [one for one in found["hypotheses"] if not any(m["teeth"] for m in one["meshes"])]
-    told = sorted([*found["gears"], *bare], key=lambda one: -float(one["weight"]))
-    weights = "; ".join(f"{one['words']}: {one['weight']:.3f}" for one in told[:4])
-    return f"{found['verdict']}{f' ({weights})' if weights else ''}"
-
-
 def _sidebands(lines: list[dict[str, Any]]) -> str:
     own = [line for line in lines if line["kind"] == "sideband"]
     if not own:
-        return "none read: no shaft is decided, and none is given"
+        return "none read: no teeth are given"
     clear = [line for line in own if (line["relative_half_width"] or _CLEAR) < _CLEAR]
     text = f"{len(clear)} of {len(own)} read to better than {100 * _CLEAR:.0f} %"
     return f"{text}; strongest {_strongest(clear)}" if clear else text

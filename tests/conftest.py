@@ -256,12 +256,12 @@ _LOOKED: OrderedDict[tuple[str, bytes], Any] = OrderedDict()
 
 @pytest.fixture
 def looked_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A record's lines and its tracked line are looked for once for the same samples.
+    """A record's tracked line is looked for once for the same samples.
 
-    For a test that measures one record with several options: both are functions of the samples
-    alone. A test that calls them itself has them anew.
+    For a test that measures one record with several options: it is a function of the samples alone.
+    A test that calls it itself has it anew.
     """
-    from thermogear.measured import changing, gearing
+    from thermogear.measured import changing
 
     def once(look: Callable[[NDArray[np.float64]], Any], table: NDArray[np.float64]) -> Any:
         key = look.__name__, sha256(f"{table.shape}".encode() + table.tobytes()).digest()
@@ -271,8 +271,7 @@ def looked_once(monkeypatch: pytest.MonkeyPatch) -> None:
             _LOOKED.popitem(last=False)
         return _LOOKED[key]
 
-    for module, name in ((changing, "tracked_shaft"), (gearing, "sharp_peaks")):
-        monkeypatch.setattr(module, name, partial(once, getattr(module, name)))
+    monkeypatch.setattr(changing, "tracked_shaft", partial(once, changing.tracked_shaft))
 
 
 @pytest.fixture(scope="session")

@@ -9,7 +9,6 @@ import pytest
 from scipy import stats
 from scripts import script
 
-from thermogear.measured.evidence import Evidence
 from thermogear.measured.gearing import Gearing
 from thermogear.measured.record import Channel, Record
 from thermogear.measured.reduction import measure
@@ -28,14 +27,6 @@ def test_intervals_hold(name: str) -> None:
     least = stats.binom.ppf(1e-4, RUNS, 0.95) / RUNS
     assert np.all(cell.held >= least)
     assert np.all(cell.widths[:2] < 2.0 * TRIAL.WIDEST)  # of few runs the sd itself is loose
-
-
-def test_weighing_teeth_changes_no_digit(monkeypatch: pytest.MonkeyPatch) -> None:
-    quick = TRIAL.run(0, 3)
-    monkeypatch.setattr(TRIAL, "Mock", lambda return_value: TRIAL.weigh)
-    whole = TRIAL.run(0, 3)
-    np.testing.assert_array_equal(quick.errors, whole.errors)
-    np.testing.assert_array_equal(quick.half_widths, whole.half_widths)
 
 
 def test_drawn_records_are_what_they_say() -> None:
@@ -75,14 +66,7 @@ def test_a_line_that_wanders_far_is_no_noise(seed: int) -> None:
     law = replace(TRIAL.SCENARIOS[7], wander=2e-2, seconds=8.0)
     made = TRIAL.drawn(law, np.random.default_rng(seed))
     (channel,) = made.record.channels
-    gearing = Gearing(
-        mesh_frequency=made.frequency / law.rate,
-        harmonics=(),
-        shafts=(),
-        meshes=(),
-        evidence=(),
-        weighed=Evidence(hypotheses=()),
-    )
+    gearing = Gearing(mesh_frequency=made.frequency / law.rate, harmonics=())
     turns = mesh_turns(channel.values()[None, :], gearing, teeth=TRIAL.TEETH, harmonics=2)
     assert turns.turning is not None
     assert abs(turns.frequency - made.frequency / law.rate) < 1.5 * turns.half_width
@@ -109,7 +93,6 @@ def test_far_wanders_are_followed(record: tuple[int, int], monkeypatch: pytest.M
     for what is not; what a turning line holds itself was asked for beside it."""
     seed, number = record
     monkeypatch.setattr(TRIAL, "SEED", seed)
-    monkeypatch.setattr(TRIAL, "weigh", lambda *_, **__: Evidence(hypotheses=()))
     name = "load wanders 5 % and speed 0.1 %, 1 s" if number == 164 else "speed wanders 1 %, 1 s"
     place = next(i for i, one in enumerate(TRIAL.SCENARIOS) if one.name == name)
     cell = TRIAL.run(place, 1, first=number)

@@ -1,4 +1,4 @@
-"""Speeds that swing a few times in a record: the angle, the amplitudes, the teeth. A few of the
+"""Speeds that swing a few times in a record: the angle, the amplitudes. A few of the
 trial's law; `make trial-swings` runs it whole."""
 
 from __future__ import annotations
@@ -9,10 +9,7 @@ import numpy as np
 import pytest
 from scripts import script
 
-from thermogear.measured.evidence import weigh
-from thermogear.measured.meshes import Stated
 from thermogear.measured.reduction import measure
-from thermogear.measured.straight import sharp_peaks
 from thermogear.signals.following import follow_line
 
 TRIAL = script("trial_swings")
@@ -102,14 +99,6 @@ def test_a_neighbour_on_one_side_is_no_swing() -> None:
     beside = TRIAL.Swing(40, 0.0, 0.0, 1.0, 9.0 * t, values + 0.3 * np.cos(2 * np.pi * 365.3 * t))
     widths = [measure(one.record, teeth=40).lines[0].half_width for one in (alone, beside)]
     assert widths[1] < 1.5 * widths[0]
-
-
-@pytest.mark.parametrize("number", range(2))
-def test_a_swinging_speed_hides_no_teeth(number: int) -> None:
-    made = slow(25_112_226 + number)
-    found = weigh(sharp_peaks(made.values[None, :]), Stated())
-    assert found.teeth in ((), (made.teeth,))
-    assert abs(found.mesh / (made.teeth * made.shaft / TRIAL.RATE) - 1.0) < made.size
 
 
 def test_sidebands_keep_their_own_phase_where_the_speed_swings() -> None:

@@ -228,7 +228,7 @@ def test_another_speed_is_told_where_the_teeth_decide_and_withheld_where_nothing
             signal(random, [((23, 57), size)], 900.0 * more, (1.0, 0.3), swell)
             for size, more in ((1.0, 1.0), (1.2, ratio))
         ]
-        found = compared(runs)
+        found = compared(runs, teeth=23)
         result = result_of_several(found)
         speeds = [one.data for one in result.notices if one.code == "speeds_differ"]
         if swell == 0.0:
@@ -284,7 +284,9 @@ def test_a_record_of_another_rate_is_at_its_own_speed_and_one_without_is_not_com
             Path(name): Record((Channel("acc", x, "g"),), name, own, "made")
             for name, x, own in zip("ab", runs, (8192.0, rate), strict=True)
         }
-        found = several(list(records), lambda path, of=records: reduction.measure(of[path]))  # type: ignore[misc]
+        found = several(
+            list(records), lambda path, of=records: reduction.measure(of[path], teeth=23)
+        )  # type: ignore[misc]
         assert found.ratio[1] == pytest.approx(ratio, rel=1e-3, nan_ok=True)
         assert np.isnan(mesh_change(found)) == (rate is None)
         apart = [told.data["frequency"] for _, told in found.apart]

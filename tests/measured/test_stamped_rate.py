@@ -96,22 +96,14 @@ def run_up(modulation: float, rate: float = 3200.0) -> Record:
     return Record((Channel("a", y, "g"),), "drawn", rate, "given")
 
 
-def test_teeth_of_a_run_up_without_a_tacho() -> None:
-    """What is left of the line that was followed is no sideband; stated teeth are evidence."""
-    for teeth in (None, 17):
-        found = measure(run_up(0.1), teeth=teeth, harmonics=1, sidebands=1)
-        assert found.gearing is not None
-        assert found.slices is not None
-        assert found.gearing.weighed.teeth == (17,)
-        assert all(one.teeth < 167 for one in found.gearing.weighed.gears)
-
-
-def test_a_run_up_that_tells_no_teeth_says_any() -> None:
-    found = measure(run_up(0.0), teeth=17, harmonics=1, sidebands=1)
-    assert found.gearing is not None
-    assert found.gearing.weighed.gears == ()
-    assert found.gearing.weighed.verdict == "undecided"
-    assert "fits" in found.gearing.evidence[-1]
+def test_a_run_up_without_a_tacho_names_no_teeth_and_confirms_those_given() -> None:
+    found = measure(run_up(0.1), harmonics=1, sidebands=1)
+    assert found.slices is not None
+    assert (found.teeth, found.slices.of_mesh) == (None, True)
+    for teeth, modulation in ((17, 0.1), (19, 0.1), (17, 0.0)):
+        gearing = measure(run_up(modulation), teeth=teeth, harmonics=1, sidebands=1).gearing
+        assert gearing is not None
+        assert gearing.confirmed == (teeth == 17 and modulation > 0.0)
 
 
 def test_pieces_of_one_run_with_coarse_stamps_join_without_a_gap() -> None:

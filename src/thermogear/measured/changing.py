@@ -11,7 +11,6 @@ from scipy import signal
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.measured.chain import Turning
-from thermogear.measured.evidence import Evidence
 from thermogear.measured.gate import Passed
 from thermogear.measured.gearing import Gearing
 from thermogear.measured.lines import MeasuredLine, Wanted, jittered, wanted_lines
@@ -160,10 +159,7 @@ def _steady(shaft: Shaft, angle: OrderAngle, notices: list[Notice]) -> Changing:
     gearing = angle.gearing or Gearing(
         mesh_frequency=mean,
         harmonics=(),
-        shafts=(),
-        meshes=(),
         evidence=(f"the mesh line is put at {angle.teeth} times the tacho's shaft",),
-        weighed=Evidence(hypotheses=()),
     )
     turns = MeshTurns(
         frequency=mean,

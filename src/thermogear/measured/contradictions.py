@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from thermogear.measured.gearing import Gearing, is_rank_of
 from thermogear.measured.record import Notice
 
 NEAR = 0.1
@@ -14,55 +15,46 @@ NEAR = 0.1
 _WHOLE = 0.02  # of a number of teeth or of pulses
 
 
-def of_teeth(given: int | None, found: Sequence[int]) -> Notice | None:
-    """Teeth ``given`` that are none of those ``found`` on the mesh line (none: undecided)."""
-    if given is None or not found or given in found:
-        return None
-    return Notice.of("teeth_contradicted", given=given, found=found)
-
-
-def of_pulses(
-    given: float | None, found: Sequence[int], mesh: float, *, teeth: int | None
-) -> Notice | None:
+def of_pulses(given: float | None, mesh: float, *, teeth: int | None) -> list[Notice]:
     """Pulses per turn ``given`` that put the mesh line at an order ``mesh`` of the tacho's shaft
-    which is no number of teeth ``found``, or, where these are undecided, given."""
-    known = list(found) or ([teeth] if teeth else [])
-    if given is None or not known or any(abs(mesh / z - 1.0) < _WHOLE for z in known):
-        return None
-    pulses = {z: given * z / mesh for z in known}
-    fitting = {z: round(p) for z, p in pulses.items() if abs(p - round(p)) < _WHOLE * p}
-    whole = len(known) == 1 and abs(mesh - round(mesh)) < _WHOLE
-    return Notice.of(
-        "pulses_contradict_teeth",
-        given=given,
-        teeth_given=None if found else teeth,
-        teeth_found=found or None,
-        order=mesh,
-        fitting=list(fitting.values()) or None,
-        of_teeth=list(fitting) or None,
-        mate=round(mesh) if whole else None,
-    )
+    which is not the number of ``teeth`` given."""
+    if given is None or teeth is None or abs(mesh / teeth - 1.0) < _WHOLE:
+        return []
+    pulses = given * teeth / mesh
+    fits = abs(pulses - round(pulses)) < _WHOLE * pulses
+    return [
+        Notice.of(
+            "pulses_contradict_teeth",
+            given=given,
+            teeth=teeth,
+            order=mesh,
+            fitting=round(pulses) if fits else None,
+            mate=round(mesh) if abs(mesh - round(mesh)) < _WHOLE else None,
+        )
+    ]
 
 
 def of_tacho_speed(
     *, pulses: float | None, given: float | None, own: float, orders: Sequence[float]
-) -> Notice | None:
+) -> list[Notice]:
     """A speed ``given`` [rad/s] that no shaft has: the tacho's turns at ``own`` [rad/s] with the
     ``pulses`` per turn given, others ``orders`` times as fast (1: itself)."""
     if pulses is None or given is None:
-        return None
+        return []
     shafts = [own * order for order in orders]
     if any(abs(given / one - 1.0) <= NEAR for one in shafts):
-        return None
+        return []
     would = round(pulses * own / given)
     fits = would and abs(pulses * own / given / would - 1) < NEAR
-    return Notice.of(
-        "pulses_contradict_speed",
-        given=pulses,
-        speed_found=own,
-        speed_given=given,
-        fitting=would if fits else None,
-    )
+    return [
+        Notice.of(
+            "pulses_contradict_speed",
+            given=pulses,
+            speed_found=own,
+            speed_given=given,
+            fitting=would if fits else None,
+        )
+    ]
 
 
 def of_speed(given: float | None, *, lowest: float, highest: float) -> Notice | None:
@@ -72,35 +64,13 @@ def of_speed(given: float | None, *, lowest: float, highest: float) -> Notice | 
     return Notice.of("speed_contradicted", given=given, lowest=lowest, highest=highest)
 
 
-def of_mate(teeth: int, *, speed: float, shaft: float, found: Sequence[int]) -> Notice | None:
-    """Which gear turns at the ``speed`` [rad/s] given, where that of the ``teeth`` given turns at
-    ``shaft`` [rad/s]; None where none of the teeth ``found`` on the same mesh line turns so, or
-    the gear of the teeth given does.
-
-    >>> of_mate(71, speed=129.12, shaft=52.74, found=[29, 71]).data["mate"]
-    29
-    """
-    if abs(shaft / speed - 1.0) <= NEAR:
-        return None
-    others = {z: shaft * teeth / z for z in found if z != teeth}
-    mate = min(others, key=lambda z: abs(others[z] / speed - 1.0), default=None)
-    if mate is None or abs(others[mate] / speed - 1.0) > NEAR:
-        return None
-    return Notice.of(
-        "speed_is_of_mate",
-        teeth=teeth,
-        speed=speed,
-        mate=mate,
-        mate_speed=others[mate],
-        teeth_speed=shaft,
-    )
-
-
-def of_line(given: float, *, found: float, weight: float) -> Notice | None:
-    """A mesh line that teeth and speed ``given`` place [cycles/sample], and is read there, where
-    nearly all the ``weight`` has another."""
-    if abs(found / given - 1.0) <= NEAR:
-        return None
-    return Notice.of(
-        "mesh_line_contradicted", given=given, found=found, weight=weight, ratio=found / given
-    )
+def of_line(near: Gearing, free: Gearing) -> list[Notice]:
+    """A mesh line that teeth and speed given place, and is read there, where it is the second or
+    third harmonic of a line as clear [cycles/sample]."""
+    rank = is_rank_of(near, free)
+    if not rank:
+        return []
+    given, clearest = near.mesh_frequency, free.mesh_frequency
+    return [
+        Notice.of("mesh_line_contradicted", given=given, found=clearest, ratio=clearest / given)
+    ]

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from thermogear.measured.gearing import Gearing
 from thermogear.measured.lines import MeasuredLine
 from thermogear.measured.record import Record
 from thermogear.measured.reduction import Measurement
@@ -17,15 +16,13 @@ from thermogear.measured.resonances import OrderSlices
 from thermogear.signals.slices import greatest
 
 _PLAIN = (
-    "teeth ratio ratio_error order score lines weight margin next_order rest powers chance share "
+    "teeth order lines powers chance share "
     "relative_half_width relative_standard_uncertainty bin_offset prominence steps damping turns"
 )
 UNITS: dict[str, str] = {
     **dict.fromkeys(_PLAIN.split(), "1"),
     **dict.fromkeys(("first", "last", "count"), "samples"),
-    **dict.fromkeys(
-        ("position", "mesh_position", "combs", "carrier", "low", "high"), "cycles/sample"
-    ),
+    **dict.fromkeys(("position", "mesh_position", "distance", "low", "high"), "cycles/sample"),
     **dict.fromkeys(("shaft_speed", "speed", "shaft_speed_range", "speed_range"), "rad/s"),
     "rate": "samples/s",
     "frequency": "Hz",
@@ -63,11 +60,10 @@ def figures(found: Measurement) -> dict[str, Any]:
         "shaft_speed": _known(first.shaft_speed) if first else None,
         "shaft_speed_half_width": _known(first.speed_half_width) if first else None,
         "shaft_speed_range": _range(run) if turning and run is not None else None,
-        "shafts": [vars(shaft) for shaft in gearing.shafts] if gearing else [],
-        "meshes": [vars(mesh) for mesh in gearing.meshes] if gearing else [],
+        "families": [vars(family) for family in gearing.families] if gearing else [],
         "evidence": evidence(found),
         "given": {"teeth": found.given[0], "speed": found.given[1]},
-        "found": _found(gearing),
+        "teeth_confirmed": gearing is not None and gearing.confirmed,
         "swelling": vars(found.swelling) if found.swelling else None,
         "findings": [one.as_dict() for one in found.findings],
         "lines": [_line(line, found.record) for line in found.lines],
@@ -184,40 +180,4 @@ def _slices(run: OrderSlices, record: Record) -> dict[str, Any]:
             }
             for one in run.resonances
         ],
-    }
-
-
-def _found(gearing: Gearing | None) -> dict[str, Any]:
-    """The verdict on the teeth, with the readings that carry weight; those and the rest are one."""
-    if gearing is None:
-        nothing: list[object] = []
-        open_to = {"teeth": nothing, "gears": nothing, "hypotheses": nothing, "rest": 0.0}
-        return {"verdict": "no gear found", **open_to}
-    weighed = gearing.weighed
-    return {
-        "verdict": weighed.verdict,
-        "teeth": [shaft.teeth for shaft in gearing.shafts],
-        "gears": [
-            {
-                "mesh_position": one.mesh,
-                "teeth": one.teeth,
-                "weight": one.weight,
-                "words": one.words,
-            }
-            for one in weighed.gears
-        ],
-        "hypotheses": [
-            {
-                "kind": one.kind,
-                "weight": one.weight,
-                "meshes": [
-                    {"mesh_position": gears.mesh, "teeth": list(gears.teeth)} for gears in one.gears
-                ],
-                "combs": list(one.combs),
-                "carrier": one.carrier,
-                "words": one.words,
-            }
-            for one in weighed.told
-        ],
-        "rest": weighed.rest,
     }

@@ -1,264 +1,89 @@
-"""The gearing found from the lines of a record, with the evidence: which line is the mesh's.
+"""The mesh line found among the lines of a record, and what stands at equal distances beside it.
 
-Everything here is in cycles per sample and in orders: no rate is needed and none is invented.
+Everything here is in cycles per sample and in orders: no rate is needed and none is invented. Lines
+alone name no teeth: those that a user gives are confirmed by their sidebands, or stay undecided.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from fractions import Fraction
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
-from thermogear.measured.evidence import Evidence, weigh
-from thermogear.measured.meshes import Stated
 from thermogear.measured.prominence import Prominence, prominence
-from thermogear.measured.record import Notice
-from thermogear.measured.straight import sharp_peaks
 from thermogear.signals.orders import line_angle, resample_by_angle, samples_per_cycle
 from thermogear.signals.spectra import amplitude_spectrum
-
-_FEWEST = 17  # teeth of a further mesh: below, a standard gear of 20 degrees is undercut
-_SIGNIFICANT = 6.0  # standard deviations of a mean over noise lines
-
-
-@dataclass(frozen=True, kw_only=True)
-class Shaft:
-    """A shaft seen by its sidebands: ``teeth`` = mesh line over shaft line, whole by law.
-
-    ``ratio`` +- ``ratio_error`` is the measured one, ``order`` that of the first shaft,
-    ``score`` the mean log prominence of its sidebands, ``lines`` how many of them are clear,
-    ``weight`` that of all hypotheses with this gear (:mod:`thermogear.measured.evidence`).
-    """
-
-    teeth: int
-    ratio: float
-    ratio_error: float
-    order: float
-    score: float
-    lines: int
-    weight: float
-
-
-@dataclass(frozen=True, kw_only=True)
-class Mesh:
-    """A further mesh: ``order`` of the first shaft, teeth on its two shafts, how sure.
-
-    ``margin``: score over the next candidate's; below ``WEAK`` the next one is nearly as good.
-    """
-
-    order: float
-    teeth: tuple[int, int]
-    score: float
-    margin: float
-    next_order: float
-
-    @property
-    def weak(self) -> bool:
-        """Whether the next candidate is nearly as good."""
-        return self.margin < WEAK
-
-
-WEAK = 0.2
-"""Margin (of mean log prominence) below which a further mesh is called weak."""
-
-
-def shafts_of(sharp: Prominence, top: int, weights: dict[int, float]) -> tuple[Shaft, ...]:
-    """The shafts of gears whose teeth are decided (teeth -> weight), the faster one first, with
-    the ratio that their sidebands around the harmonics up to ``top`` measure."""
-    harmonics = np.arange(1, top + 1)
-    teeth = sorted(weights)
-    found = []
-    for z in teeth:
-        ratio, error, lines, score = _measured(sharp, harmonics, z)
-        found.append(
-            Shaft(
-                teeth=z,
-                ratio=ratio,
-                ratio_error=error,
-                order=teeth[0] / z,
-                score=score,
-                lines=lines,
-                weight=weights[z],
-            )
-        )
-    return tuple(found)
-
-
-def _sides(harmonics: NDArray[np.int64], teeth: int, ranks: tuple[int, ...]) -> NDArray[np.float64]:
-    return np.array(
-        [h + s * n / teeth for h in harmonics for n in ranks for s in (-1, 1)], dtype=float
-    )
-
-
-def _measured(
-    sharp: Prominence, harmonics: NDArray[np.int64], teeth: int
-) -> tuple[float, float, int, float]:
-    """Mesh line over shaft line as the sidebands' own peaks measure it, its standard error, how
-    many of them are clear, and the mean log prominence of sidebands 1 to 3.
-
-    One bin at the shaft line is the error where fewer than three are clear.
-    """
-    score = float(np.mean(sharp.at(_sides(harmonics, teeth, (1, 2, 3)))))
-    unclear = float(teeth), teeth**2 / sharp.per_unit, 0, score
-    spacing = 1.0 / teeth
-    good = np.zeros(0, dtype=bool)
-    n = d = np.zeros(0)
-    # the nearest sidebands place the next ones: a guess half a bin off would miss the sixth
-    for reach in (1, 2, 3, 4, 6):
-        ranks, offsets = [], []
-        for h in harmonics:
-            for rank in (*range(-reach, 0), *range(1, reach + 1)):
-                place, height = sharp.peak(h + rank * spacing, reach=1)
-                if height > np.log(3.0):
-                    ranks.append(rank)
-                    offsets.append(place - h)
-        if len(ranks) < 3:
-            continue
-        n, d = np.asarray(ranks, dtype=float), np.asarray(offsets, dtype=float)
-        residual = d - n * float(np.median(d / n))
-        middle = max(1.4826 * float(np.median(np.abs(residual))), 0.02 / sharp.per_unit)
-        good = np.abs(residual) <= 3.0 * middle
-        if np.count_nonzero(good) < 3:
-            continue
-        spacing = float(np.dot(n[good], d[good]) / np.dot(n[good], n[good]))
-    if np.count_nonzero(good) < 3 or abs(spacing * teeth - 1.0) > 0.01:
-        return unclear
-    spread = float(np.std(d[good] - spacing * n[good])) / float(np.sqrt(np.dot(n[good], n[good])))
-    ratio = 1.0 / spacing
-    return ratio, max(spread, 1e-6 / teeth) * ratio**2, int(np.count_nonzero(good)), score
-
-
-def second_mesh(
-    sharp: Prominence, shafts: tuple[Shaft, ...], top: int, evidence: list[str]
-) -> tuple[Mesh, ...]:
-    """The mesh of the second with a slower shaft, by its harmonics among 1..4, where one shows."""
-    first, second = shafts[0].teeth, shafts[1].teeth
-    # a slower shaft: the line that stands out most below the second shaft's
-    low, high = int(np.ceil(6)), int(0.97 / second * sharp.per_unit)
-    if high - low < 8:
-        return ()
-    top_bin = low + int(np.argmax(sharp.level[low:high]))
-    place, height = sharp.peak(top_bin / sharp.per_unit, reach=1)
-    if height < max(_SIGNIFICANT * sharp.spread / 2.0, np.log(3.0)):
-        return ()
-    ratio = place * second  # slow shaft over second shaft
-    step = Fraction(ratio).limit_denominator(12)
-    if abs(float(step) - ratio) > 1.5 * second / sharp.per_unit or not 0 < step < 1:
-        return ()
-    evidence.append(
-        f"a slower shaft at order {place * first:.4f}: {step} of the second shaft "
-        f"({np.exp(height):.1f} times over the floor)"
-    )
-    scored: list[tuple[float, int]] = []
-    for m in range(1, 200):
-        driving, driven = step.numerator * m, step.denominator * m
-        if driving < _FEWEST or driven > 160:
-            continue
-        order = driving / second  # of the mesh
-        ranks = [
-            h
-            for h in range(1, 5)
-            if h * order < top + 0.5 and not _explained(h * order, first, second)
-        ]
-        if len(ranks) >= 2 and 1 in ranks:
-            score = float(np.mean(sharp.at(np.asarray(ranks) * order)))
-            scored.append((score, m))
-    scored.sort(reverse=True)
-    if len(scored) < 2 or scored[0][0] < 0.5 * np.log(3.0):
-        return ()
-    (score, m), (other, n) = scored[0], scored[1]
-    order = step.numerator * m * first / second
-    mesh = Mesh(
-        order=order,
-        teeth=(step.numerator * m, step.denominator * m),
-        score=score,
-        margin=score - other,
-        next_order=step.numerator * n * first / second,
-    )
-    sure = "weak: " if mesh.weak else ""
-    evidence.append(
-        f"{sure}second mesh at order {order:.3f} ({mesh.teeth[0]}/{mesh.teeth[1]} teeth): its "
-        f"harmonics stand {np.exp(score):.2f} times over the floor, those of the next candidate "
-        f"({mesh.next_order:.3f}) {np.exp(other):.2f} times"
-    )
-    return (mesh,)
-
-
-def _explained(order: float, first: int, second: int) -> bool:
-    """Whether a line (in mesh orders) is one of the first shaft's or a near sideband."""
-    turns = order * first
-    if abs(turns - round(turns)) < 1e-6:
-        return True
-    away = (order - round(order)) * second
-    return abs(away) < 3.5 and abs(away - round(away)) < 1e-6
-
 
 LONGEST = 1 << 19
 """Samples that the search looks at, from the start of the record."""
 
+FEWEST = 12
+"""Teeth: fewer are not made as power gears."""
+
 _HARMONICS = 5
-_SAME = 1e-3  # a mesh line's position from two ways of reading it
 _STANDS = float(np.log(3.0))  # over the floor
 _BINS = 1.5  # between a line and its harmonic's place over its rank
-_LIKELY = 0.5  # weight from which a mesh line is taken for the one to read lines at
 _NARROW = 0.006  # half width of the phase filter over the mesh line
-_FEW = 4.0  # turns over the record, below which nothing tells a gear from what is slower
-_SLOWEST = 32.0  # turns of a gear over the record: four of a mate eight times as large
+_RIVALS = 3  # other lines with harmonics that are looked at
+_AS_CLEAR = 0.6  # of the mean log prominence of the clearest line's harmonics
+_LOW_RANK = 3  # a gear has more teeth: a line at a half or a third of another is no shaft's
+_LOW_ORDER = 4  # of a shaft: unbalance, and what is off its axis
+_AROUND = 3  # harmonics about which sidebands are looked for
+_CONFIRMED = 0.8  # of the first sidebands about the harmonics that stand out
+_FAMILIES, _RANKS = 4, 6  # distances that are told, and ranks of a line in one of them
+_APART = 3.0  # bins between a harmonic and a line beside it
+_AT = 0.6  # bins between a line and its place
 
-SLOW = 12.0
-"""Turns of a gear over the record: four of a mate three times as large."""
+
+@dataclass(frozen=True, kw_only=True)
+class Family:
+    """Lines at one ``distance`` [cycles/sample] to both sides of the mesh line or of a harmonic;
+    ``lines``: how many of them stand out, about the first three harmonics."""
+
+    distance: float
+    lines: int
 
 
 @dataclass(frozen=True, kw_only=True)
 class Gearing:
-    """What a record's lines tell: mesh line [cycles/sample], the shafts of gears whose teeth are
-    decided (the fastest first), further meshes, the hypotheses and the evidence in words."""
+    """What a record's lines tell: mesh line [cycles/sample], how many times its ``harmonics`` stand
+    over the floor, ``families`` beside it, the ``evidence`` in words; ``confirmed``: whether it has
+    the sidebands of the teeth given; ``alone``: whether no other line has harmonics as clear."""
 
     mesh_frequency: float
     harmonics: tuple[float, ...]
-    shafts: tuple[Shaft, ...]
-    meshes: tuple[Mesh, ...]
-    evidence: tuple[str, ...]
-    weighed: Evidence
+    evidence: tuple[str, ...] = ()
+    families: tuple[Family, ...] = ()
+    confirmed: bool = False
+    alone: bool = True
 
     @property
-    def teeth(self) -> int | None:
-        """Teeth on the first shaft, None when no shaft shows."""
-        return self.shafts[0].teeth if self.shafts else None
+    def is_theirs(self) -> bool:
+        """Whether the line is the mesh line of the teeth given: by their sidebands, or because no
+        other may be."""
+        return self.confirmed or self.alone
 
 
 def find_gearing(
     channels: Sequence[Floats],
     near: float | None = None,
-    stated: Stated | None = None,
     *,
+    teeth: int | None = None,
     told_as: float = 1.0,
-    followed: float = 0.0,
 ) -> Gearing:
-    """Mesh line, shafts, tooth numbers and further meshes of one record.
+    """Mesh line of one record, and the lines at equal distances beside it.
 
-    1. Hypotheses on teeth, on impacts without teeth and on nothing at all are weighed
-       (:func:`~thermogear.measured.evidence.weigh`). Teeth are named where nearly all the weight
-       has them; else the record leaves them undecided and the alternatives are told.
-    2. Mesh line: that of the hypotheses; where they agree on none, or on one that is not seen while
-       teeth are undecided or is a harmonic of a line as high, the peak with the clearest harmonics
-       1..5 (``near`` [cycles/sample] restricts it to +-3 %).
-    3. The phase of that line is the angle: the record is resampled in mesh cycles, where the
-       decided shafts' sidebands measure mesh line over shaft line.
-    4. A further mesh turns on the second and on a slower shaft: its order is a whole multiple of
-       both, with 17 teeth or more (fewer are undercut as standard gears).
+    1. Mesh line: the peak with the clearest harmonics 1..5 (``near`` [cycles/sample] restricts it
+       to +-3 %). Without ``near``, of lines nearly as clear the first that has the sidebands of the
+       ``teeth`` given.
+    2. The phase of that line is the angle: the record is resampled in mesh cycles, in which lines
+       to both sides of a harmonic are told to a part of a bin.
 
-    ``channels``: one array each, equal lengths; ``stated``: teeth and shaft's turns per sample as a
-    user says, evidence like the lines; ``followed``: where the record is in the angle of the line
-    ``near``, the half width of the filter that followed it, over its frequency: what is nearer to
-    the line and its harmonics says nothing of teeth; ``told_as``: of places in words and weights,
-    where these arrays are resampled: samples of theirs in one of the record. Raises InputError when
-    no line is clear.
+    ``channels``: one array each, equal lengths; ``told_as``: of places in words, where these arrays
+    are resampled: samples of theirs in one of the record. Raises InputError when no line is clear.
     """
     table = np.stack([np.asarray(c, dtype=float)[:LONGEST] for c in channels])
     if not np.all(np.isfinite(table)):
@@ -267,110 +92,174 @@ def find_gearing(
     if table.size == 0 or table.shape[-1] < 256:
         raise InputError("record", f"{table.shape[-1]} samples", allowed=">= 256, not constant")
     raw = prominence(table, 1.0)
-    family = _clearest_family(raw, near)
-    peaks = sharp_peaks(table)
-    if near is not None and followed > 0.0:
-        peaks = peaks.without_skirts(near, followed)
-    weighed = weigh(peaks, stated)
-    rank = near / weighed.mesh if near is not None and weighed.mesh else 1.0
-    # a line that was followed may be a harmonic
-    ranks = range(1, _HARMONICS + 1) if followed > 0.0 else (1,)
-    if weighed.mesh_weight >= _LIKELY and any(abs(rank - one) < 0.03 for one in ranks):
-        likely = replace(_family(raw, weighed.mesh), mesh=weighed.mesh)
-        # harmonics alone make no mesh line while teeth are undecided: it must be seen itself
-        seen = likely.heights[0] > _STANDS and not _is_rank_of(raw, family, likely)
-        if weighed.teeth or seen:
-            family = likely
-    return _of_family(table, family, weighed, told_as)
+    lines = _lines(raw, near)
+    if not lines:
+        raise InputError("mesh line", "none", why="no line stands out of the floor")
+    clearest = max(lines, key=lambda line: line.score)
+    rivals = _rivals(raw, clearest, lines if near is None else _lines(raw, None), teeth)
+    gearing = _of_line(table, raw, clearest, teeth)
+    if teeth is not None and near is None and not gearing.confirmed:
+        others = (_of_line(table, raw, line, teeth) for line in rivals)
+        gearing = next((other for other in others if other.confirmed), gearing)
+    return replace(gearing, alone=not rivals, evidence=_words(gearing, told_as))
+
+
+def is_rank_of(higher: Gearing, lower: Gearing) -> int:
+    """2 or 3 where a line is that harmonic of another as clear, else 0. That is no shaft's: a gear
+    has more than three teeth.
+
+    >>> half, line = (Gearing(mesh_frequency=f, harmonics=(9.0,)) for f in (0.05, 0.1))
+    >>> is_rank_of(line, half), is_rank_of(half, line)
+    (2, 0)
+    """
+    ratio = higher.mesh_frequency / lower.mesh_frequency
+    rank = round(ratio)
+    whole = 2 <= rank <= _LOW_RANK and abs(ratio / rank - 1.0) < 1e-3
+    return rank if whole and lower.harmonics[0] >= higher.harmonics[0] else 0
+
+
+def _words(gearing: Gearing, told_as: float) -> tuple[str, ...]:
+    """The evidence, places times ``told_as``."""
+    heights = ", ".join(f"{height:.1f}" for height in gearing.harmonics)
+    words = [
+        f"mesh line near {gearing.mesh_frequency * told_as:.6f} cycles/sample: harmonics "
+        f"1..{len(gearing.harmonics)} stand {heights} times over the floor (mean of channels)"
+    ]
+    words += [
+        f"{family.lines} lines stand {family.distance * told_as:.6f} cycles/sample to both sides "
+        "of it and of its harmonics"
+        for family in gearing.families
+    ]
+    if not gearing.confirmed:
+        words.append(
+            "no tooth number is decided: it may be a shaft's own line and no mesh line ('mesh x n' "
+            "is its n-th harmonic all the same)"
+        )
+    return tuple(words)
 
 
 @dataclass(frozen=True)
-class _Family:
-    """A line and its harmonics: ``heights`` their log prominences, ``score`` the mean."""
+class _Line:
+    """A line and its harmonics: ``heights`` their log prominences, ``score`` how clear it is."""
 
     line: float
     mesh: float
     heights: tuple[float, ...]
     score: float
 
-
-def _is_rank_of(raw: Prominence, family: _Family, likely: _Family) -> bool:
-    """Whether a line is the second or third harmonic of a family that is as high at least. That
-    is no shaft's: a gear has more than three teeth."""
-    rank = round(likely.line / family.line)
-    heights = [float(raw.amplitude[round(one.line * raw.per_unit)]) for one in (family, likely)]
-    same = abs(likely.line - rank * family.line) * raw.per_unit < rank * _BINS
-    return rank in (2, 3) and same and heights[0] >= heights[1]
+    @property
+    def mean(self) -> float:
+        """Mean log prominence, against three harmonics at least."""
+        return sum(self.heights) / max(3, len(self.heights))
 
 
-def _of_family(table: Floats, family: _Family, weighed: Evidence, told_as: float) -> Gearing:
-    """The gearing with this family as the mesh line's, and the teeth decided for it."""
-    mesh = family.mesh
-    text = ", ".join(f"{np.exp(h):.1f}" for h in family.heights)
-    heights = tuple(float(np.exp(h)) for h in family.heights)
-    evidence = [
-        f"mesh line near {family.line * told_as:.6f} cycles/sample: harmonics 1..{len(heights)} "
-        f"stand {text} times over the floor (mean of channels)",
-    ]
-    same = weighed.teeth and abs(mesh / weighed.mesh - 1.0) < _SAME
-    teeth = dict(zip(weighed.teeth, weighed.weights, strict=True)) if same else {}
-    angle_of = _angle(table, mesh)
-    shafts: tuple[Shaft, ...] = ()
-    meshes: tuple[Mesh, ...] = ()
-    if angle_of is not None:
-        cycles, dropped, mesh = angle_of
-        kept = table[:, dropped : dropped + cycles.size]
-        top = max(1, min(_HARMONICS, int(0.45 / mesh)))
+def _of_line(table: Floats, raw: Prominence, line: _Line, teeth: int | None) -> Gearing:
+    """The gearing with this line as the mesh line."""
+    mesh = line.mesh
+    sharp = replace(raw, per_unit=raw.per_unit * mesh)
+    angle = _angle(table, mesh)
+    if angle is not None:
+        cycles, dropped, mesh = angle
         per_cycle = samples_per_cycle(mesh)
-        sharp = prominence(
-            resample_by_angle(kept, cycles, samples_per_turn=per_cycle), float(per_cycle)
-        )
-        shafts = shafts_of(sharp, top, teeth)
-        evidence += [
-            f"sidebands at mesh/{shaft.ratio:.3f} (+-{shaft.ratio_error:.3f}), {shaft.lines} of "
-            f"them over 3 times the floor: a gear of {shaft.teeth} teeth, shaft order "
-            f"{shaft.order:.4f}"
-            for shaft in shafts
-            if shaft.lines
-        ]
-        if len(shafts) > 1:
-            meshes = second_mesh(sharp, shafts, top, evidence)
-    if not shafts:
-        any_fits = "" if weighed.gears else ", any fits"
-        evidence.append(
-            f"no tooth number is decided{any_fits}: it may be a shaft's own line and no mesh line "
-            "('mesh x n' is its n-th harmonic all the same)"
-        )
+        kept = table[:, dropped : dropped + cycles.size]
+        straight = resample_by_angle(kept, cycles, samples_per_turn=per_cycle)
+        sharp = prominence(straight, float(per_cycle))
+    top = max(1, min(_AROUND, int(0.45 / mesh)))
+    ranks = [rank for rank in range(1, top + 1) if sharp.at(rank) > _STANDS]
+    sides = [] if teeth is None else _clear(sharp, ranks, 1.0 / teeth)
     return Gearing(
         mesh_frequency=mesh,
-        harmonics=heights,
-        shafts=shafts,
-        meshes=meshes,
-        evidence=tuple(evidence),
-        weighed=weighed.scaled(told_as),
+        harmonics=tuple(float(np.exp(height)) for height in line.heights),
+        families=tuple(
+            Family(distance=distance * mesh, lines=lines)
+            for distance, lines in _families(sharp, ranks)
+        ),
+        confirmed=bool(sides) and sum(sides) >= _CONFIRMED * len(sides),
     )
 
 
-def _clearest_family(raw: Prominence, near: float | None) -> _Family:
-    """The clearest family of harmonics; of a mesh line near ``near`` if given."""
-    level, per = raw.level, raw.per_unit
-    low, high = (5.0 / per, 0.45) if near is None else (0.97 * near, 1.03 * near)
+def _clear(sharp: Prominence, ranks: Sequence[int], distance: float) -> list[bool]:
+    """Whether a line stands out at the ``distance`` [mesh lines] below and above each harmonic."""
+    if distance * sharp.per_unit < _APART:
+        return []
+    places = [rank + sign * distance for rank in ranks for sign in (-1, 1)]
+    peaks = [sharp.peak(place, reach=1) for place in places]
+    return [
+        height > _STANDS and abs(at - place) * sharp.per_unit < _AT
+        for place, (at, height) in zip(places, peaks, strict=True)
+    ]
+
+
+def _families(sharp: Prominence, ranks: Sequence[int]) -> list[tuple[float, int]]:
+    """Distances [mesh lines] at which lines stand to both sides of a harmonic, the highest first,
+    and how many of them stand there."""
+    families: list[tuple[float, int]] = []
+    for peak in _peaks(sharp, low=0.5, high=max(ranks, default=0) + 0.5):
+        at, _ = sharp.peak(peak / sharp.per_unit, reach=0)
+        distance = abs(at - round(at))
+        parts = [max(1, round(distance / other)) for other, _ in families]
+        if any(
+            abs(distance - part * other) * sharp.per_unit < _BINS and part <= _RANKS
+            for part, (other, _) in zip(parts, families, strict=True)
+        ):
+            continue
+        clear = _clear(sharp, ranks, distance)
+        if any(below and above for below, above in zip(clear[::2], clear[1::2], strict=True)):
+            families.append((distance, sum(clear)))
+        if len(families) == _FAMILIES:
+            break
+    return families
+
+
+def _peaks(shown: Prominence, *, low: float, high: float) -> list[int]:
+    """Bins of what stands out between two places, the highest first, 400 at most."""
+    level, per = shown.level, shown.per_unit
     first, last = max(2, int(low * per)), min(level.size - 2, int(np.ceil(high * per)))
     inside = np.arange(first, last + 1)
-    if inside.size == 0:
-        raise InputError("mesh line", near, allowed="inside 0..0.45 cycles/sample")
     peaks = inside[
         (level[inside] >= level[inside - 1])
         & (level[inside] > level[inside + 1])
-        & (level[inside] > max(4.0 * raw.spread, _STANDS))
+        & (level[inside] > max(4.0 * shown.spread, _STANDS))
     ]
-    if peaks.size == 0:
-        raise InputError("mesh line", "none", why="no line stands out of the floor")
-    found = [_family(raw, peak / per) for peak in peaks[np.argsort(-level[peaks])][:400]]
-    return max(found, key=lambda family: family.score)
+    return [int(peak) for peak in peaks[np.argsort(-level[peaks])][:400]]
 
 
-def _family(raw: Prominence, near: float) -> _Family:
+def _rivals(
+    raw: Prominence, clearest: _Line, lines: Sequence[_Line], teeth: int | None
+) -> list[_Line]:
+    """Other lines with harmonics nearly as clear, the clearest first: none of its harmonics, and no
+    low order of a shaft that its teeth make, of the ``teeth`` given or of any that a gear has."""
+    rivals: list[_Line] = []
+    shafts = [clearest.mesh / teeth] if teeth else []
+    least = _AS_CLEAR * clearest.mean
+
+    def of(line: _Line, step: float, most: float = np.inf) -> bool:
+        rank = round(line.line / step)
+        return 1 <= rank <= most and abs(line.line - rank * step) * raw.per_unit < rank * _BINS
+
+    for line in sorted(lines, key=lambda other: -other.score):
+        if len(line.heights) < 2 or min(line.heights[:2]) < _STANDS or line.mean < least:
+            continue
+        if any(of(line, other.mesh) for other in (clearest, *rivals)):
+            continue
+        part = round(clearest.mesh / line.line)
+        whole = abs(clearest.mesh - part * line.line) * raw.per_unit < part * _BINS
+        if whole and part >= FEWEST:
+            shafts.append(line.line)
+        if not any(of(line, step, _LOW_ORDER) for step in shafts):
+            rivals.append(line)
+        if len(rivals) == _RIVALS:
+            break
+    return rivals
+
+
+def _lines(raw: Prominence, near: float | None) -> list[_Line]:
+    """What stands out of the floor with its harmonics; near ``near`` if given."""
+    low, high = (5.0 / raw.per_unit, 0.45) if near is None else (0.97 * near, 1.03 * near)
+    return [_line(raw, peak / raw.per_unit) for peak in _peaks(raw, low=low, high=high)]
+
+
+def _line(raw: Prominence, near: float) -> _Line:
     start, _ = raw.peak(near, reach=0)
     found: list[tuple[float, float]] = []
     fundamental = start
@@ -393,7 +282,7 @@ def _family(raw: Prominence, near: float) -> _Family:
     inside = raw.amplitude[np.minimum(bins.astype(int), raw.amplitude.size - 1)]
     share = float(np.sum(inside**2) / np.sum(raw.amplitude**2))
     # few harmonics below half the rate: measured against at least three
-    return _Family(
+    return _Line(
         start,
         mesh if abs(mesh / start - 1.0) < 1e-3 else start,
         heights,
@@ -423,34 +312,7 @@ def _near(count: int, frequency: float) -> slice:
     return slice(max(1, centre - 2), centre + 3)
 
 
-def known_teeth(gearing: Gearing, teeth: int | None) -> list[int]:
-    """Teeth of the shafts that are decided, and those given."""
-    given = [teeth] if teeth else []
-    return list(dict.fromkeys([*(shaft.teeth for shaft in gearing.shafts), *given]))
-
-
-def sides_of(gearing: Gearing, *, teeth: int | None, rank: int, mesh: float) -> tuple[float, ...]:
-    """Where the shafts' sidebands of a mesh harmonic stand, ``mesh`` in any unit."""
-    return tuple(
-        mesh * (rank + sign * n / z)
-        for z in known_teeth(gearing, teeth)
-        for n in (1, 2, 3)
-        for sign in (-1, 1)
-    )
-
-
-def told_of_mate(gearing: Gearing, *, teeth: int | None, samples: int) -> list[Notice]:
-    """What a slower mate that is not known would change: it may turn fewer than four times."""
-    known = known_teeth(gearing, teeth)
-    turns = gearing.mesh_frequency * samples / known[0] if known else np.inf
-    if len(known) != 1 or turns >= _SLOWEST:
-        return []
-    return [
-        Notice.of(
-            "mate_turned_little" if turns < SLOW else "mate_may_have_turned_little",
-            turns=turns,
-            teeth=known[0],
-            mate=round(turns * known[0] / _FEW),
-            least=_FEW,
-        )
-    ]
+def sides_of(*, teeth: int | None, rank: int, mesh: float) -> tuple[float, ...]:
+    """Where the sidebands of the ``teeth`` given stand about a mesh harmonic, ``mesh`` in any
+    unit."""
+    return tuple(mesh * (rank + sign * n / teeth) for n in (1, 2, 3) for sign in (-1, 1) if teeth)

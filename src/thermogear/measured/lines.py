@@ -12,7 +12,7 @@ from thermogear.base.arrays import Floats
 from thermogear.base.units import STANDARD_GRAVITY
 from thermogear.measured.chain import Chain, reduced
 from thermogear.measured.gate import turned_by
-from thermogear.measured.gearing import Gearing, known_teeth, sides_of
+from thermogear.measured.gearing import Gearing, sides_of
 from thermogear.measured.record import Channel, Record
 from thermogear.measured.turns import MeshTurns, unfollowed
 from thermogear.measured.units import kind_of
@@ -34,10 +34,10 @@ _NEAR = 4.0  # bins within which a stronger line reaches into an asked one
 class MeasuredLine:
     """One line of one channel. What the record does not allow is nan, never guessed.
 
-    ``kind``: "mesh" (harmonic of the mesh line), "sideband", "second mesh", "order" (asked for) or
-    "line" (prominent, and none of the others). ``order``
-    of the first shaft, ``position`` [cycles/sample], ``frequency`` [Hz]; ``reading`` peak
-    amplitude in the file's unit, ``acceleration`` [m/s^2], ``displacement`` [m].
+    ``kind``: "mesh" (harmonic of the mesh line), "sideband", "order" (asked for) or "line"
+    (prominent, and none of the others). ``order`` of the first shaft, ``position``
+    [cycles/sample], ``frequency`` [Hz]; ``reading`` peak amplitude in the file's unit,
+    ``acceleration`` [m/s^2], ``displacement`` [m].
 
     What is measured: the amplitude over the stretch, root of the mean square of the line's own
     a(t) in Re[a(t) exp(i phase)], and the mean frequency, the line's turns over their time.
@@ -131,9 +131,9 @@ def wanted_lines(
     sidebands: int,
     teeth: int | None = None,
 ) -> list[Wanted]:
-    """Harmonics of the mesh line with their sidebands and further meshes, below rate/2.56.
+    """Harmonics of the mesh line with the sidebands of ``teeth`` where these are given, below
+    rate/2.56.
 
-    Sidebands are those of the shafts that are decided and of ``teeth`` where they are given.
     Without a gearing the highest lines of ``values`` (sample,).
     """
     count = values.size
@@ -150,7 +150,6 @@ def wanted_lines(
                 )
         return found[:harmonics]
     mesh = gearing.mesh_frequency
-    shafts = known_teeth(gearing, teeth)
     found = []
     for rank in range(1, harmonics + 1):
         if 2.56 * rank * mesh > 1.0:  # not above rate/2.56
@@ -158,18 +157,11 @@ def wanted_lines(
         # speed wander spreads a harmonic in proportion to its rank
         reach = max(bins, 2e-4 * rank * mesh)
         found.append(Wanted("mesh", f"mesh x {rank}", position=rank * mesh, half_width=reach))
-        for own in shafts:
-            for n in range(1, sidebands + 1):
-                for sign in (-1, 1):
-                    place = rank * mesh + sign * n * mesh / own
-                    label = f"mesh x {rank} {'+' if sign > 0 else '-'} {n} shaft/{own}"
-                    found.append(Wanted("sideband", label, position=place, half_width=reach))
-    for number, other in enumerate(gearing.meshes, start=2):
-        place = other.order * mesh / gearing.shafts[0].teeth
-        label = f"mesh {number} (weak)" if other.weak else f"mesh {number}"
-        found.append(
-            Wanted("second mesh", label, position=place, half_width=max(bins, 2e-4 * place))
-        )
+        for n in range(1, sidebands + 1 if teeth else 1):
+            for sign in (-1, 1):
+                place = rank * mesh + sign * n * mesh / (teeth or 1)
+                label = f"mesh x {rank} {'+' if sign > 0 else '-'} {n} shaft/{teeth}"
+                found.append(Wanted("sideband", label, position=place, half_width=reach))
     if not found:
         found.append(Wanted("mesh", "mesh x 1", position=mesh, half_width=max(bins, 2e-4 * mesh)))
     return [w for w in found if bins < w.position < 0.5 - bins]
@@ -186,14 +178,12 @@ def other_lines(
     """Prominent lines that neither stand among the ``wanted`` nor belong to a mesh: three at most.
 
     ``strong``: (position, amplitude) of a channel's strongest lines, ``width`` of a bin
-    [cycles/sample]. To a mesh belong its harmonics and their sidebands of known shafts up to the
-    tenth. Such a line is an unbalance, a shaft beside, a bearing, a resonance: it says nothing of
-    sidebands.
+    [cycles/sample]. To a mesh belong its harmonics and the sidebands of the ``teeth`` given
+    up to the tenth. Such a line is an unbalance, a shaft beside, a bearing, a resonance: it says
+    nothing of sidebands.
     """
     mesh = gearing.mesh_frequency
-    known = known_teeth(gearing, teeth)
-    shaft = mesh / (known[0] if teeth is None else teeth) if known or teeth else None
-    further = [other.order * mesh / gearing.shafts[0].teeth for other in gearing.meshes]
+    shaft = mesh / teeth if teeth else None
     least = _PROMINENT * max((size for _, size in strong), default=0.0)
 
     def explained(place: float) -> bool:
@@ -203,15 +193,13 @@ def other_lines(
             for want in wanted
         ):
             return True
-        if any(abs(place - round(place / one) * one) < reach for one in (mesh, *further)
-               if place > 0.5 * one):  # fmt: skip
-            return True
-        away = abs(place - round(place / mesh) * mesh) if place > 0.5 * mesh else np.inf
-        return any(
-            round(away * z / mesh) <= _FAR and abs(away - round(away * z / mesh) * mesh / z) < reach
-            for z in known
-            if np.isfinite(away)
-        )
+        if place <= 0.5 * mesh:
+            return False
+        away = abs(place - round(place / mesh) * mesh)
+        if away < reach or shaft is None:
+            return away < reach
+        rank = round(away / shaft)
+        return rank <= _FAR and abs(away - rank * shaft) < reach
 
     found: list[Wanted] = []
     for place, size in sorted(strong, key=lambda one: -one[1]):
@@ -298,7 +286,6 @@ def channel_lines(
             own_power = max(reading.amplitude, 1e-300) ** 2
             missed[rank] = single.amplitude**2 * (1.0 + lacks) / own_power - 1.0
         amplitude, relative = _amplitude(reading, position, turns)
-        relative += turns.leaked(reading) if turns and want.kind == "mesh" else 0.0
         doubt = turns.doubt if turns else 0.0
         # with the power in doubt, or without; an angle that is another's smears all others
         itself = want.kind == "mesh" and rank == 1
@@ -435,8 +422,8 @@ def _amplitude(reading: Reading, position: float, turns: MeshTurns | None) -> tu
 
 
 def _sides(gearing: Gearing | None, teeth: int | None, want: Wanted) -> tuple[float, ...]:
-    """Where the shafts' sidebands of the nearest mesh harmonic stand [cycles/sample]."""
+    """Where the sidebands of the nearest mesh harmonic stand [cycles/sample]."""
     if gearing is None:
         return ()
     rank = max(1, int(np.rint(want.position / gearing.mesh_frequency)))
-    return sides_of(gearing, teeth=teeth, rank=rank, mesh=gearing.mesh_frequency)
+    return sides_of(teeth=teeth, rank=rank, mesh=gearing.mesh_frequency)

@@ -8,10 +8,8 @@ import numpy as np
 
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
-from thermogear.measured.contradictions import of_pulses, of_speed, of_tacho_speed, of_teeth
+from thermogear.measured.contradictions import of_pulses, of_speed, of_tacho_speed
 from thermogear.measured.gearing import Gearing, find_gearing
-from thermogear.measured.meshes import Stated
-from thermogear.measured.rate_check import SURE
 from thermogear.measured.record import Notice
 from thermogear.measured.shaft import VARIES, Shaft
 from thermogear.signals.orders import resample_by_angle
@@ -61,24 +59,17 @@ def order_angle(
     straight = [resample_by_angle(c, turns, samples_per_turn=per_turn) for c in loudest]
     near = 1.0 if shaft.line else float(teeth) if teeth and shaft.sure else None
     told_as = per_turn * mean
-    at, stated = None if near is None else near / per_turn, Stated(teeth=teeth)
-    gearing = _found(straight, at, stated, shaft.width, told_as)
+    gearing = _found(straight, None if near is None else near / per_turn, teeth, told_as)
     if near is not None and gearing is None:
-        gearing = _found(straight, None, stated, 0.0, told_as)
+        gearing = _found(straight, None, teeth, told_as)
     mesh = None if gearing is None else gearing.mesh_frequency * per_turn
     if mesh is None and teeth and not shaft.line:
         mesh = float(teeth)
-    z = _teeth_of(shaft, gearing, mesh, teeth, (speed, rate), told_as, notices)
-    decided = [one.teeth for one in gearing.shafts] if gearing else []
-    contradicted = [of_teeth(teeth, decided)]
+    z = _teeth_of(shaft, gearing, mesh, teeth, (speed, rate), notices)
     if steady:
-        orders = [1.0] if mesh is None else [1.0, *(mesh / z for z in decided)]
-        contradicted.append(
-            of_tacho_speed(pulses=shaft.pulses, given=speed, own=own, orders=orders)
-        )
-    if mesh is not None:
-        contradicted.append(of_pulses(shaft.pulses, decided, mesh, teeth=teeth))
-    notices += [one for one in contradicted if one is not None]
+        orders = [1.0, *([mesh / teeth] if mesh and teeth else [])]
+        notices += of_tacho_speed(pulses=shaft.pulses, given=speed, own=own, orders=orders)
+    notices += [] if mesh is None else of_pulses(shaft.pulses, mesh, teeth=teeth)
     factor = 1.0
     if shaft.line:
         factor = (mesh or 1.0) / (z or MESHES)
@@ -97,7 +88,7 @@ def order_angle(
     elif mesh is not None and teeth and abs(mesh / teeth - 1.0) > 0.02:
         factor = mesh / teeth
         notices.append(Notice.of("teeth_on_other_shaft", order=mesh, teeth=teeth, ratio=factor))
-    elif mesh is not None and not teeth and abs(mesh - round(mesh)) < 0.02 and mesh > 4.5:
+    elif gearing and mesh and gearing.alone and abs(mesh - round(mesh)) < 0.02 and mesh > 4.5:
         z = round(mesh)
         notices.append(Notice.of("teeth_by_tacho", order=mesh, teeth=z))
     return OrderAngle(
@@ -116,35 +107,28 @@ def _teeth_of(
     gearing: Gearing | None,
     mesh: float | None,
     teeth: int | None,
-    said: tuple[float | None, float | None],
-    told_as: float,
+    stated: tuple[float | None, float | None],
     notices: list[Notice],
 ) -> int | None:
-    """The teeth given, else those found. None where a run's line that was followed may be the mesh
-    line of another gear than that of the teeth given, whose speed is not the one ``said`` [rad/s],
-    with the rate."""
-    if teeth is None or gearing is None:
-        return teeth or (gearing.teeth if gearing else None)
-    if not shaft.line or shaft.span < VARIES:
+    """The teeth given. None where a run's line that was followed may be the mesh line of another
+    gear than theirs, whose speed is not the ``stated`` one [rad/s], with the rate."""
+    if teeth is None or gearing is None or not shaft.line or shaft.span < VARIES:
         return teeth
-    speed, rate = said
+    speed, rate = stated
     per_sample = 2.0 * np.pi * (mesh or 1.0) / teeth * (rate or 1.0)
-    low, high = (per_sample * one for one in shaft.speeds)
-    if speed is not None and of_speed(speed, lowest=low, highest=high) is None:
-        return teeth
-    line = gearing.mesh_frequency * told_as
-    least = teeth / shaft.turns.size
-    if gearing.weighed.share_of(line, teeth=teeth, least=least) >= SURE:
+    low, high = (per_sample * turning for turning in shaft.speeds)
+    fits = speed is not None and of_speed(speed, lowest=low, highest=high) is None
+    if fits or gearing.is_theirs:
         return teeth
     notices.append(Notice.of("followed_line_undecided", teeth=teeth))
     return None
 
 
 def _found(
-    table: list[Floats], near: float | None, stated: Stated, width: float, told_as: float
+    table: list[Floats], near: float | None, teeth: int | None, told_as: float
 ) -> Gearing | None:
     try:
-        return find_gearing(table, near, stated, followed=width, told_as=told_as)
+        return find_gearing(table, near, teeth=teeth, told_as=told_as)
     except InputError:
         return None
 

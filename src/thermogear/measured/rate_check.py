@@ -9,8 +9,6 @@ from thermogear.measured.contradictions import NEAR
 from thermogear.measured.gearing import Gearing
 from thermogear.measured.record import Notice, Record
 
-SURE = 0.9
-"""Weight of all that has one line, from which that line is beyond doubt."""
 _TOLD = 0.005
 
 
@@ -20,16 +18,14 @@ def check_rate(
     notices: list[Notice],
     *,
     teeth: int | None,
-    given: int | None,
     speed: float | None,
     undecided: bool = False,
 ) -> str:
     """Why the rate is doubtful, "" where it is not: against teeth and speed where these are known.
 
     A rate given that contradicts the file's is kept where teeth and speed confirm it. The rate is
-    doubted, beside the speed, only where the teeth are decided, or are ``given`` and the mesh line
-    is beyond doubt, and no reading of the lines with any weight fits the speed (and the teeth
-    ``given``, or those decided). ``undecided``: the mesh line may be another gear's.
+    doubted, beside the speed, only where the mesh line is that of the teeth given. ``undecided``:
+    it may be another gear's.
     """
     if teeth is None:
         return record.rate_doubt
@@ -66,13 +62,7 @@ def check_rate(
     ratio = implied / shaft
     if abs(ratio - 1.0) <= NEAR:
         return ""
-    weighed = gearing.weighed
-    if weighed.fits(shaft / record.rate, teeth=given, tolerance=NEAR):
-        return record.rate_doubt
-    if any(abs(implied * teeth / z / shaft - 1.0) <= NEAR for z in weighed.teeth):
-        return record.rate_doubt  # the speed given is that of the teeth found: others are told of
-    doubtless = given is not None and weighed.line_weight >= SURE
-    if weighed.verdict != "decided" and not doubtless:
+    if not gearing.is_theirs:
         # what the mesh line is, is open: it contradicts nobody
         notices.append(
             Notice.of("mesh_line_does_not_fit", line=gearing.mesh_frequency, given=speed)
@@ -87,7 +77,6 @@ def check_rate(
         rate=record.rate,
         ratio=ratio,
         fitting=record.rate / ratio,
-        teeth_given=None if given in (None, *weighed.teeth) else given,
     )
     notices.append(told)
     return told.text

@@ -28,7 +28,7 @@ from thermogear.measured.gate import (
     require_samples,
     require_sampling_rate,
 )
-from thermogear.measured.gearing import Gearing, told_of_mate
+from thermogear.measured.gearing import Gearing
 from thermogear.measured.lines import (
     Doubts,
     MeasuredLine,
@@ -41,13 +41,7 @@ from thermogear.measured.rate_check import check_rate
 from thermogear.measured.readers import read_record
 from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.resonances import OrderSlices
-from thermogear.measured.stated import (
-    expected_mesh,
-    settled_teeth,
-    speed_undecided,
-    stated_gearing,
-    stated_of,
-)
+from thermogear.measured.stated import expected_mesh, speed_undecided, stated_gearing
 from thermogear.measured.traps import unknown_unit
 from thermogear.measured.turns import MeshTurns, mesh_turns
 from thermogear.signals.envelope import envelope_rate
@@ -217,7 +211,7 @@ def measure(
     through = passed(chosen, LONGEST)
     notices = _of_the_read(notices, through, len(chosen[0]))
     given = teeth, speed
-    expected, stated = expected_mesh(record, teeth, speed), stated_of(record, teeth, speed)
+    expected = expected_mesh(record, teeth, speed)
     changing, said = read_in_angle(
         record,
         through,
@@ -235,8 +229,7 @@ def measure(
     if changing is not None:
         gearing, teeth, turns = changing.gearing, changing.teeth, changing.turns
     else:
-        gearing = stated_gearing(through.table, notices, expected, stated)
-        teeth = settled_teeth(gearing, teeth, notices)
+        gearing = stated_gearing(through.table, notices, expected=expected, teeth=teeth)
     if changing is not None and changing.slices is not None:
         return _of_slices(record, through, chain, changing, notices, given)
     through.findings += events_of(through)
@@ -247,18 +240,13 @@ def measure(
         # in a resampled record the lines stand at multiples of this mean and nowhere else
         gearing = replace(gearing, mesh_frequency=turns.frequency)
         turns = replace(turns, half_width=turns.half_width + through.turned)
-        notices += told_of_mate(gearing, teeth=teeth, samples=table.shape[-1])
     if gearing is not None:
-        size = table.shape[-1]
-        undecided = speed_undecided(
-            gearing, teeth=given[0], speed=speed, rate=record.rate, samples=size
-        )
+        undecided = speed_undecided(gearing, teeth=given[0], speed=speed, rate=record.rate)
         doubt = check_rate(
             record,
             gearing,
             notices,
             teeth=teeth,
-            given=given[0],
             speed=speed,
             undecided=undecided is not None,
         )

@@ -12,29 +12,26 @@ from typing import Any
 import numpy as np
 
 from thermogear.measured.contradictions import NEAR
-from thermogear.measured.gearing import Gearing
 from thermogear.measured.record import Notice
 from thermogear.measured.reduction import Measurement
 from thermogear.measured.shaft import given_shaft
 
 ALIKE = 0.02
 """Relative distance of two frequencies up to which a drift of speed explains it."""
-_WEIGHT = 0.1  # of a reading whose lines may be the mesh line
 
 
 @dataclass(frozen=True, kw_only=True)
 class Turns:
-    """What a record tells of its speed: the ``mesh`` line and what ``others`` may be one
-    [cycles/sample], the ``rate`` [samples/s] (None: unknown or doubtful) and what it is ``said`` to
-    be, ``teeth`` decided on that line, teeth and speed [rad/s] ``given``, the ``shaft``'s speed
-    [rad/s] or nan; of a tacho its name and turns per sample."""
+    """What a record tells of its speed: the ``mesh`` line [cycles/sample], the ``rate`` [samples/s]
+    (None: unknown or doubtful) and what it is ``said`` to be, teeth and speed [rad/s] ``given``,
+    whether the line has the sidebands of these teeth (``confirmed``), the ``shaft``'s speed [rad/s]
+    or nan; of a tacho its name and turns per sample."""
 
     mesh: float = float("nan")
-    others: tuple[float, ...] = ()
     rate: float | None = None
     said: float | None = None
-    teeth: tuple[int, ...] = ()
     given: tuple[int | None, float | None] = (None, None)
+    confirmed: bool = False
     shaft: float = float("nan")
     tacho: tuple[str, float] | None = None
 
@@ -62,7 +59,7 @@ class Turns:
     def is_stated(self) -> bool:
         """Whether teeth and speed given put the mesh line where it is."""
         teeth, speed = self.given
-        if teeth is None or speed is None or (self.teeth and teeth not in self.teeth):
+        if teeth is None or speed is None:
             return False
         return abs(2.0 * np.pi * self.hertz / (teeth * speed) - 1.0) <= NEAR
 
@@ -73,24 +70,13 @@ def turns_of(found: Measurement) -> Turns:
     sure = any(np.isfinite(line.frequency) for line in found.lines)
     return Turns(
         mesh=float("nan") if gearing is None else gearing.mesh_frequency,
-        others=() if gearing is None else _others(gearing),
         rate=record.rate if sure else None,
         said=record.rate,
-        teeth=() if gearing is None else gearing.weighed.teeth,
         given=found.given,
+        confirmed=gearing is not None and gearing.confirmed,
         shaft=next((line.shaft_speed for line in found.lines), float("nan")),
         tacho=_tacho(found),
     )
-
-
-def _others(gearing: Gearing) -> tuple[float, ...]:
-    """Lines that may be a mesh line of the record [cycles/sample], that one included."""
-    first = gearing.mesh_frequency / gearing.shafts[0].teeth if gearing.shafts else 0.0
-    places = [mesh.order * first for mesh in gearing.meshes]
-    places += [named.mesh for named in gearing.weighed.named]
-    likely = [one for one in gearing.weighed.hypotheses if one.weight >= _WEIGHT]
-    places += [place for one in likely for place in (*(own.mesh for own in one.gears), *one.combs)]
-    return tuple(place for place in dict.fromkeys(places) if place > 0.0)
 
 
 def _tacho(found: Measurement) -> tuple[str, float] | None:
@@ -108,14 +94,15 @@ def speed_ratio(own: Turns, base: Turns) -> tuple[float, dict[str, Any] | None]:
     the two are not one line, or may not be, empty where nothing does; then the ratio is nan.
 
     A tacho in both decides; else frequencies within 2 % of each other; else teeth and speed given
-    that fit both lines; else teeth decided on both, where neither record has a line at the other's
-    place as well.
+    that fit both lines; else the sidebands of the teeth given in both.
 
     >>> from dataclasses import replace
-    >>> slow, fast = (Turns(mesh=m, rate=1e3, said=1e3, teeth=(20, 31)) for m in (0.1, 0.2))
+    >>> slow, fast = (
+    ...     Turns(mesh=m, rate=1e3, said=1e3, given=(20, None), confirmed=True) for m in (0.1, 0.2)
+    ... )
     >>> speed_ratio(fast, slow)
     (2.0, None)
-    >>> speed_ratio(replace(fast, teeth=()), slow)
+    >>> speed_ratio(replace(fast, confirmed=False), slow)
     (nan, {})
     """
     scale = own.scale(base)
@@ -134,23 +121,10 @@ def speed_ratio(own: Turns, base: Turns) -> tuple[float, dict[str, Any] | None]:
         if abs(ratio / by_tacho - 1.0) <= ALIKE:
             return by_tacho, None
         return float("nan"), {"by_tacho": by_tacho}
-    both = len(own.teeth) > 1 and len(base.teeth) > 1
-    if both and not set(own.teeth) & set(base.teeth):  # both gears of two meshes
-        return float("nan"), {"teeth": own.teeth, "base_teeth": base.teeth}
-    known = own.is_stated() and base.is_stated()
-    if abs(ratio - 1.0) <= ALIKE or known or _by_teeth(own, base, scale):
+    by_teeth = own.confirmed and base.confirmed and own.given[0] == base.given[0]
+    if abs(ratio - 1.0) <= ALIKE or by_teeth or (own.is_stated() and base.is_stated()):
         return ratio, None
     return float("nan"), {}
-
-
-def _by_teeth(own: Turns, base: Turns, scale: float) -> bool:
-    """Whether the teeth decided say that two mesh lines are one, which nothing else may be."""
-    first, second = set(own.teeth), set(base.teeth)
-    if not first or not second or not (first <= second or second <= first):
-        return False
-    stays = (abs(place * scale / base.mesh - 1.0) <= ALIKE for place in own.others)
-    was = (abs(own.mesh * scale / place - 1.0) <= ALIKE for place in base.others)
-    return not any(stays) and not any(was)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -220,8 +194,6 @@ class Compared:
                 **self.turns.figures(""),
                 **self.base.figures("base_"),
                 by_tacho=self.why.get("by_tacho"),
-                teeth=self.why.get("teeth"),
-                base_teeth=self.why.get("base_teeth"),
             )
         if not self.moved:
             return None

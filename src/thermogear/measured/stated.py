@@ -1,4 +1,4 @@
-"""What a user states of gears and shaft: as evidence, as a place, and what it does not decide."""
+"""What a user states of gears and shaft: where it puts the mesh line, what stays undecided."""
 
 from __future__ import annotations
 
@@ -7,14 +7,12 @@ from numpy.typing import NDArray
 
 from thermogear.base.bounds import SPEED
 from thermogear.base.errors import InputError
-from thermogear.measured.contradictions import NEAR, of_line, of_mate, of_teeth
+from thermogear.measured.contradictions import NEAR, of_line
 from thermogear.measured.gearing import Gearing, find_gearing
-from thermogear.measured.meshes import Stated
-from thermogear.measured.rate_check import SURE
 from thermogear.measured.record import Notice, Record
 
-_MAINS = (50.0, 60.0)  # Hz
-_LEAST_TURNS = 1.0
+_EXACT = 0.03  # of the place of a line: a motor slips by less
+_AS_CLEAR = 0.6  # of the mean log prominence of the clearest line
 
 
 def expected_mesh(record: Record, teeth: int | None, speed: float | None) -> float | None:
@@ -28,105 +26,55 @@ def expected_mesh(record: Record, teeth: int | None, speed: float | None) -> flo
     return teeth * speed / (2.0 * np.pi) / record.rate
 
 
-def stated_of(record: Record, teeth: int | None, speed: float | None) -> Stated:
-    """Teeth, ``speed`` [rad/s] and the mains' frequencies as evidence."""
-    if record.rate is None:
-        return Stated(teeth=teeth)
-    shaft = None if speed is None else speed / (2.0 * np.pi) / record.rate
-    return Stated(teeth=teeth, shaft=shaft, mains=tuple(f / record.rate for f in _MAINS))
-
-
 def stated_gearing(
-    table: NDArray[np.float64], notices: list[Notice], expected: float | None, stated: Stated
+    table: NDArray[np.float64],
+    notices: list[Notice],
+    *,
+    expected: float | None,
+    teeth: int | None,
 ) -> Gearing | None:
-    """What the lines say, with what is stated as evidence; the expected place only where a line
-    is clear there as well."""
+    """The line at the ``expected`` place [cycles/sample], where one is clear there; else what the
+    lines say, with the ``teeth`` given."""
     try:
-        free: Gearing | None = find_gearing(list(table), stated=stated)
+        free: Gearing | None = find_gearing(list(table), teeth=teeth)
     except InputError as error:
         notices.append(Notice.of("no_mesh_line", reason=str(error)))
         free = None
-    if expected is None or (free and (_is_expected(free, expected) or _is_of_mate(free, stated))):
+    if expected is None or (free is not None and _is_expected(free, expected)):
         return free
-    if 5.0 / table.shape[-1] < expected < 0.45:
-        try:
-            near = find_gearing(list(table), expected, stated)
-        except InputError:
-            return free  # nothing stands where teeth and speed put the mesh line
-        heights = [float(np.mean(np.log(g.harmonics))) for g in (near, free) if g is not None]
-        if len(heights) == 1 or heights[0] > 0.6 * heights[1]:
-            weighed = near.weighed
-            if weighed.mesh_weight >= SURE and (
-                said := of_line(near.mesh_frequency, found=weighed.mesh, weight=weighed.mesh_weight)
-            ):
-                notices.append(said)
-            return near
-    return free
+    if not 5.0 / table.shape[-1] < expected < 0.45:
+        return free
+    try:
+        near = find_gearing(list(table), expected, teeth=teeth)
+    except InputError:
+        return free  # nothing stands where teeth and speed put the mesh line
+    if free is not None:
+        heights = [float(np.mean(np.log(line.harmonics))) for line in (near, free)]
+        if heights[0] <= _AS_CLEAR * heights[1]:
+            return free
+        notices += of_line(near, free)
+    return near
 
 
 def _is_expected(free: Gearing, expected: float) -> bool:
-    """Whether the line found is the one expected: a stated speed is nominal. A sideband of a line
-    beyond doubt may stand nearer to it."""
+    """Whether the line found is the one expected: a stated speed is nominal. A sideband of the mesh
+    line of the teeth given may stand nearer to it."""
     off = abs(free.mesh_frequency / expected - 1.0)
-    sure = free.weighed.mesh_weight >= SURE
-    return off < 0.03 or (off <= NEAR and sure)
-
-
-def _is_of_mate(free: Gearing, stated: Stated) -> bool:
-    """Whether the speed stated is that of the mate of the gear stated: of a mate of half or a third
-    of the teeth these two put the mesh line at a harmonic, where a line is as well."""
-    if stated.teeth is None or stated.shaft is None:
-        return False
-    shaft = 2.0 * np.pi * free.mesh_frequency / stated.teeth
-    speed = 2.0 * np.pi * stated.shaft
-    return _of_two_gears(free, teeth=stated.teeth, speed=speed, shaft=shaft) is not None
-
-
-def settled_teeth(gearing: Gearing | None, teeth: int | None, notices: list[Notice]) -> int | None:
-    """The teeth given, else those found; told where these contradict each other."""
-    if gearing is None:
-        return teeth
-    if (said := of_teeth(teeth, [shaft.teeth for shaft in gearing.shafts])) is not None:
-        notices.append(said)
-    return gearing.teeth if teeth is None else teeth
+    return off < _EXACT or (off <= NEAR and free.is_theirs)
 
 
 def speed_undecided(
-    gearing: Gearing,
-    *,
-    teeth: int | None,
-    speed: float | None,
-    rate: float | None,
-    samples: int,
+    gearing: Gearing, *, teeth: int | None, speed: float | None, rate: float | None
 ) -> Notice | None:
     """Where the line that is read may be the mesh line of another gear than that of the ``teeth``
     given, so that its shaft may turn otherwise: the shaft's speed is withheld.
 
-    Not where a ``speed`` [rad/s] is given that fits the line. One that fits the mate of the gear
-    of the ``teeth`` given says something else than these: which shaft is meant is not decided. A
-    comb is no mesh line of theirs where the gear turned less than once in the ``samples``.
+    Not where a ``speed`` [rad/s] is given that fits the line, nor where the line has the sidebands
+    of these teeth or no other line may be theirs.
     """
-    if teeth is None:
+    if teeth is None or gearing.is_theirs:
         return None
     shaft = gearing.mesh_frequency / teeth
-    if speed is not None and rate:
-        turns = 2.0 * np.pi * shaft * rate
-        if abs(turns / speed - 1.0) <= NEAR:
-            return None
-        if (crossed := _of_two_gears(gearing, teeth=teeth, speed=speed, shaft=turns)) is not None:
-            return crossed
-    least = _LEAST_TURNS * teeth / samples
-    share = gearing.weighed.share_of(gearing.mesh_frequency, teeth=teeth, least=least)
-    if share >= SURE:
+    if speed is not None and rate and abs(2.0 * np.pi * shaft * rate / speed - 1.0) <= NEAR:
         return None
-    return Notice.of(
-        "shaft_speed_undecided", teeth=teeth, line=gearing.mesh_frequency, weight=share
-    )
-
-
-def _of_two_gears(gearing: Gearing, *, teeth: int, speed: float, shaft: float) -> Notice | None:
-    """Where the teeth given are of one gear of the mesh and the ``speed`` [rad/s] of the other."""
-    on_line = list(gearing.weighed.teeth)
-    if teeth not in on_line:
-        return None  # teeth that are not found are told of as such
-    return of_mate(teeth, speed=speed, shaft=shaft, found=on_line)
+    return Notice.of("shaft_speed_undecided", teeth=teeth, line=gearing.mesh_frequency)

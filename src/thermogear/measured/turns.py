@@ -10,7 +10,7 @@ from scipy import signal
 
 from thermogear.base.arrays import Floats
 from thermogear.measured.chain import Turning
-from thermogear.measured.gearing import SLOW, Gearing, known_teeth, sides_of
+from thermogear.measured.gearing import Gearing, sides_of
 from thermogear.measured.record import Notice
 from thermogear.signals.following import (
     Followed,
@@ -19,7 +19,7 @@ from thermogear.signals.following import (
     follow_line,
     power_beyond,
 )
-from thermogear.signals.interval import APART, LEAK, Reading, read_line
+from thermogear.signals.interval import APART, Reading, read_line
 from thermogear.signals.lines import LineSpectrum, line_in, line_spectrum
 from thermogear.signals.orders import samples_per_cycle
 from thermogear.signals.strong import Strong, strong_lines, twins
@@ -51,7 +51,7 @@ class MeshTurns:
     ``unfollowed``: power beside the line that its reading lacks and that may be its own, of its
     power; ``spread``: what of ``half_width`` comes of that; ``doubt``: share of the power near the
     line that may be its own or others'; ``withheld``: why lines nearer to it and its harmonics than
-    ``near`` are; ``mate``: whether a gear that is not known may turn a few times.
+    ``near`` are.
     """
 
     frequency: float
@@ -66,16 +66,6 @@ class MeshTurns:
     doubt: float = 0.0
     withheld: Notice | None = None
     near: float = 0.0
-    mate: bool = False
-
-    def leaked(self, reading: Reading) -> float:
-        """What sidebands of a mate that is not known bring to a mesh line, over its amplitude,
-        where they may be what changes it, turns it or is beside it."""
-        if not self.mate:
-            return 0.0
-        told = 0.0 if reading.explained else reading.half_width / max(reading.amplitude, 1e-300)
-        change = np.linalg.norm([reading.changing, reading.turning, _of_neighbours(reading)])
-        return max(LEAK * float(change) - told, 0.0)
 
     def told_of(self, positions: Sequence[float]) -> list[Notice]:
         """What is told, with that lines at the ``positions`` are withheld, where some are."""
@@ -106,7 +96,7 @@ def mesh_turns(
     per_cycle = samples_per_cycle(gearing.mesh_frequency)
     values, spectrum = clearest(table, gearing.mesh_frequency)
     line = line_in(spectrum, near=gearing.mesh_frequency, half_width=_reach(spectrum, gearing))
-    beside = sides_of(gearing, teeth=teeth, rank=1, mesh=line.frequency)
+    beside = sides_of(teeth=teeth, rank=1, mesh=line.frequency)
     strong = strong_lines(spectrum)
     reading = read_line(spectrum, line.frequency, beside=beside, strong=strong)
     least = _wandering(spectrum, reading, beside, strong, harmonics)
@@ -115,11 +105,9 @@ def mesh_turns(
         turns = _follow(values, spectrum, line.frequency, per_cycle, least=least, beside=beside)
     nearest = min((abs(one - line.frequency) for one in beside), default=np.inf)
     few = nearest < _FEW * spectrum.bin_width
-    mate = len(known_teeth(gearing, teeth)) == 1 and nearest < SLOW * spectrum.bin_width
+    if turns is not None and few:
+        return _or_sidebands(turns, values, spectrum, reading, nearest)
     if turns is not None:
-        turns = replace(turns, mate=mate)
-        if few:
-            return _or_sidebands(turns, values, spectrum, reading, nearest)
         return _or_steady(turns, spectrum, reading, beside, strong)
     best = reading.frequency, reading.frequency_half_width
     for rank in range(2, harmonics + 1):
@@ -128,21 +116,18 @@ def mesh_turns(
         other = read_line(
             spectrum,
             rank * reading.frequency,
-            beside=sides_of(gearing, teeth=teeth, rank=rank, mesh=reading.frequency),
+            beside=sides_of(teeth=teeth, rank=rank, mesh=reading.frequency),
             strong=strong,
         )
         if other.frequency_half_width / rank < 0.5 * best[1]:  # not the luckier estimate: clearly
             best = other.frequency / rank, other.frequency_half_width / rank
     share, spread = unfollowed(spectrum, reading, beside, strong)
-    if mate:
-        spread = float(np.hypot(spread, _of_neighbours(reading) / np.pi * spectrum.bin_width))
     steady = MeshTurns(
         frequency=best[0],
         half_width=float(np.hypot(best[1], spread)),
         told=_beside(reading, least, share),
         unfollowed=share,
         spread=spread,
-        mate=mate,
     )
     return _or_sidebands(steady, values, spectrum, reading, nearest) if few else steady
 
@@ -263,11 +248,6 @@ def _or_sidebands(
         near=near,
         told=turns.told if turns.turning else (*turns.told, why),
     )
-
-
-def _of_neighbours(reading: Reading) -> float:
-    """Root of what lines fitted beside a line change of its power, over its amplitude."""
-    return float(np.sqrt(abs(reading.beside))) / max(reading.amplitude, 1e-300)
 
 
 def _beside(reading: Reading, least: float | None, share: float) -> tuple[Notice, ...]:

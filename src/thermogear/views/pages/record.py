@@ -232,10 +232,6 @@ def _comparison(results: Result) -> Section | None:
 # --- pictures -----------------------------------------------------------------------------------
 
 
-_TOLD = 5e-4
-"""Weight that three digits show."""
-
-
 def measured(result: Result) -> list[Block]:
     """Evidence, settings, and a row for each line."""
     found = result.table("figures")
@@ -301,38 +297,17 @@ def resonance(one: Mapping[str, Any]) -> str:
 
 
 def given_and_found(figures: Mapping[str, Any]) -> list[str]:
-    """What the user said, and what the lines say, apart; nothing for results of older versions."""
-    if "found" not in figures:
+    """What the user said, and whether lines confirm the teeth, apart; nothing for results of older
+    versions."""
+    if "teeth_confirmed" not in figures:
         return []
-    given, found = figures["given"], figures["found"]
+    given = figures["given"]
     said = [f"{given['teeth']} teeth"] if given["teeth"] is not None else []
     said += [f"{SPEED(given['speed']):.6g} rpm"] if given["speed"] is not None else []
-    told = [f"given: {', '.join(said) if said else 'neither teeth nor speed'}"]
-    if found["teeth"]:
-        return [*told, f"found: {_decided(found)}"]
-    told.append(f"found: {_open(found['verdict'])}")
-    told += [f"weight {one['weight']:.3f}: {one['words']}" for one in found["hypotheses"]]
-    if found.get("rest", 0.0) >= _TOLD:
-        told.append(f"weight {found['rest']:.3f}: all other readings")
-    return told
-
-
-def _decided(found: Mapping[str, Any]) -> str:
-    """Teeth with the weight of all readings that have them, and what is left for the others."""
-    gears = reversed(found.get("gears", []))
-    weights = {one["teeth"]: one["weight"] for one in gears}
-    told = [
-        f"{z} teeth, decided (weight {weights[z]:.4f}, of all readings without them "
-        f"{1.0 - weights[z]:.4f})"
-        if z in weights
-        else f"{z} teeth, decided"
-        for z in found["teeth"]
-    ]
-    return "; ".join(told)
-
-
-def _open(verdict: str) -> str:
-    return "no gear" if verdict == "no gear found" else "teeth undecided"
+    seen = "undecided"
+    if figures["teeth_confirmed"]:
+        seen = f"sidebands of the {given['teeth']} teeth given"
+    return [f"given: {', '.join(said) if said else 'neither teeth nor speed'}", f"teeth: {seen}"]
 
 
 def comparison(result: Result) -> list[Block]:
