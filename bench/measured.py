@@ -30,7 +30,7 @@ RECORDS, LENGTH = 100, 100_000
 STAGES = {
     "gate": "passed",
     "tacho or tracked line": "read_in_angle",
-    "teeth weighed": "stated_gearing",
+    "mesh line found": "stated_gearing",
     "mesh line's turns": "mesh_turns",
     "lines": "channel_lines",
 }

@@ -16,7 +16,7 @@ from scipy import io
 ROOT = Path(__file__).parents[1]
 
 SHORT, LONG = 288, 4096
-"""Samples: of the shortest record that passes the gate and of one in which teeth are weighed."""
+"""Samples: of the shortest record that passes the gate and of one whose mesh line has an angle."""
 
 RATE = 12_800.0
 JOINED = {"joined channels": "channels", "joined time": "time"}
@@ -92,7 +92,7 @@ def command(kind: str, folder: Path, count: int, path: Path) -> list[str]:
 def _table(
     train: Callable[..., NDArray[np.float64]], count: int, channels: int, seed: int = 1
 ) -> NDArray[np.float64]:
-    """A drive train's signal; the short one has too few mesh cycles for its teeth to be weighed."""
+    """A drive train's signal; the short one has too few mesh cycles for an angle."""
     position = 12.0 / count if count == SHORT else 0.0746
     return train(count, position, channels=channels, seed=seed)
 

@@ -58,7 +58,7 @@ COUNTS = {CASES: 5000}
 COUNT = 5300
 """Files of each kind that is not in ``COUNTS``."""
 LONG_SHARE = 0.005
-"""Of the records, so long that their teeth are weighed: what a file costs is that."""
+"""Of the records, so long that their mesh line has an angle: what a file costs is that."""
 KINDS = (CASES, *RECORDS)
 TEXTS = ("plain.csv", "clocks.csv", "rig.lvm", *JOINED, TACHO)
 SECONDS = 10.0
@@ -367,7 +367,7 @@ def work(jobs: list[tuple[str, int, int]], seed: int, keep: Path | None) -> None
                 (folder / "good.toml").write_text(cases()["rig.toml"], "utf-8")
                 tried(kind, 0, ["check", str(folder / "good.toml")], 0)
             else:
-                # what weighs teeth is loaded once, each reader by a record of its own
+                # what looks for lines is loaded once, each reader by a record of its own
                 _loaded(kind, folder, LONG if len(made) == 1 + (CASES in made) else SHORT)
         gc.collect()
         gc.freeze()  # what is loaded by now need not be gone through for every file
@@ -470,7 +470,7 @@ def page(found: dict[str, Sum], kept: dict[str, str]) -> str:
         "code 2 and one line (for a case file one for each fault). Seconds are those of the",
         "processor, bytes what a file takes beside the program at rest; a worker that would take",
         f"a gigabyte more is refused it. Records have {SHORT} samples and too few mesh cycles for",
-        "their teeth to be weighed, which would take nearly all of the time; one in",
+        "an angle to be found in them, which would take most of the time; one in",
         f"{1 / LONG_SHARE:.0f} has {LONG}.",
         "",
         f"| kind | files | read | refused | {' | '.join(NEVER)} | mean ms | longest s | most MB |",

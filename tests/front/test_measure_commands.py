@@ -48,7 +48,7 @@ def test_measure_prints_lines_settings_and_evidence(record: Path) -> None:
 
 
 def test_measure_as_json_and_as_a_page(record: Path, tmp_path: Path) -> None:
-    done = call(measure, record, "--json", "-o", tmp_path / "out")
+    done = call(measure, record, "--json", "--teeth", TEETH, "-o", tmp_path / "out")
     assert done.exit_code == 0, done.output
     found = json.loads(done.stdout)
     assert found["teeth"] == TEETH
@@ -136,7 +136,7 @@ def test_compare_as_json() -> None:
         ),
         (
             measure,
-            ["FILE", "--orders", 400],
+            ["FILE", "--teeth", TEETH, "--orders", 400],
             r"^orders: got 400; allowed 0\.02\d*\.\.153\.\d; from .* as --orders 153, or sample f",
         ),
         (

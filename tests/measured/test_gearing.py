@@ -62,7 +62,7 @@ def test_the_real_records_confirm_the_teeth_and_their_parts_alone(name: str) -> 
 @pytest.mark.parametrize(
     "teeth", [(32, 80, 48, 64), (25, 75, 20, 60), (20, 30, 25, 40), (23, 92, 31, 47)]
 )
-def test_the_mesh_line_of_synthetic_trains(
+def test_teeth_of_synthetic_trains(
     teeth: tuple[int, int, int, int], noise: float, compared: Compared
 ) -> None:
     table = list(mesh_train(60_000, 0.0713, teeth, noise))

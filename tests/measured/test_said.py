@@ -15,6 +15,7 @@ from thermogear.base.errors import InputError
 from thermogear.base.units import RPM
 from thermogear.measured.contradictions import of_line, of_pulses, of_speed
 from thermogear.measured.dataset import result_of
+from thermogear.measured.figures import figures
 from thermogear.measured.gearing import Gearing
 from thermogear.measured.record import Channel, Record
 from thermogear.measured.reduction import Measurement, measure
@@ -118,13 +119,13 @@ def test_a_speed_twice_too_fast_with_the_right_teeth_is_told() -> None:
 
 
 def test_what_agrees_or_is_open_is_no_contradiction() -> None:
-    assert of_pulses(2.0, 20.0, teeth=20) == []
-    assert of_pulses(2.0, 20.0, teeth=None) == []
-    assert of_pulses(None, 30.0, teeth=20) == []
+    assert of_pulses(2.0, mesh=20.0, teeth=20) == []
+    assert of_pulses(2.0, mesh=20.0, teeth=None) == []
+    assert of_pulses(None, mesh=30.0, teeth=20) == []
     assert of_speed(1000.0, lowest=1090.0, highest=2000.0) is None
     line, apart = (Gearing(mesh_frequency=f, harmonics=(9.0,)) for f in (0.2, 0.29))
     assert of_line(line, apart) == []
-    (unlike,) = of_pulses(1.0, 7.3, teeth=20)
+    (unlike,) = of_pulses(1.0, mesh=7.3, teeth=20)
     assert (unlike.data["teeth"], unlike.data["order"]) == (20, 7.3)
     assert unlike.data["fitting"] is unlike.data["mate"] is None
 
@@ -215,13 +216,14 @@ def test_a_stated_speed_tells_the_pulses_and_given_teeth_are_not_found_ones() ->
 
 def test_the_terminal_tells_what_was_given_and_that_teeth_are_undecided(run: Measurement) -> None:
     lines = page_of(result_of(run)).lines()
-    assert "teeth: sidebands of the 20 teeth given" in lines
+    (teeth,) = [line for line in lines if line.startswith("teeth: ")]
+    assert numbers(teeth) == [20.0]
     assert not [line for line in lines if "weight" in line]
     (mean,) = [line for line in lines if "shaft speed" in line]
     # three pulses said where there are two: the teeth given tell the speed of their shaft
     assert numbers(mean) == pytest.approx([960.0, 600.0, 1320.0], rel=0.09)
-    bare = page_of(result_of(measure(steady(), harmonics=1, sidebands=0))).lines()
-    assert {"given: neither teeth nor speed", "teeth: undecided"} <= set(bare)
+    bare = figures(measure(steady(), harmonics=1, sidebands=0))
+    assert (bare["teeth"], bare["teeth_confirmed"]) == (None, False)
 
 
 # --- the spectrum of the page ---------------------------------------------------------------------

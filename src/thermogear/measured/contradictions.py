@@ -15,7 +15,7 @@ NEAR = 0.1
 _WHOLE = 0.02  # of a number of teeth or of pulses
 
 
-def of_pulses(given: float | None, mesh: float, *, teeth: int | None) -> list[Notice]:
+def of_pulses(given: float | None, *, mesh: float, teeth: int | None) -> list[Notice]:
     """Pulses per turn ``given`` that put the mesh line at an order ``mesh`` of the tacho's shaft
     which is not the number of ``teeth`` given."""
     if given is None or teeth is None or abs(mesh / teeth - 1.0) < _WHOLE:

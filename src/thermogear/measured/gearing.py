@@ -1,4 +1,4 @@
-"""The mesh line found among the lines of a record, and what stands at equal distances beside it.
+"""The mesh line found among the lines of a record, and the lines at equal distances beside it.
 
 Everything here is in cycles per sample and in orders: no rate is needed and none is invented. Lines
 alone name no teeth: those that a user gives are confirmed by their sidebands, or stay undecided.
@@ -179,7 +179,7 @@ def _of_line(table: Floats, raw: Prominence, line: _Line, teeth: int | None) -> 
 
 
 def _clear(sharp: Prominence, ranks: Sequence[int], distance: float) -> list[bool]:
-    """Whether a line stands out at the ``distance`` [mesh lines] below and above each harmonic."""
+    """Whether lines stand out at the ``distance`` [mesh lines] below and above each harmonic."""
     if distance * sharp.per_unit < _APART:
         return []
     places = [rank + sign * distance for rank in ranks for sign in (-1, 1)]
@@ -212,7 +212,7 @@ def _families(sharp: Prominence, ranks: Sequence[int]) -> list[tuple[float, int]
 
 
 def _peaks(shown: Prominence, *, low: float, high: float) -> list[int]:
-    """Bins of what stands out between two places, the highest first, 400 at most."""
+    """Bins of lines that stand out between two places, the highest first, 400 at most."""
     level, per = shown.level, shown.per_unit
     first, last = max(2, int(low * per)), min(level.size - 2, int(np.ceil(high * per)))
     inside = np.arange(first, last + 1)
@@ -254,7 +254,7 @@ def _rivals(
 
 
 def _lines(raw: Prominence, near: float | None) -> list[_Line]:
-    """What stands out of the floor with its harmonics; near ``near`` if given."""
+    """Lines that stand out of the floor with their harmonics; near ``near`` if given."""
     low, high = (5.0 / raw.per_unit, 0.45) if near is None else (0.97 * near, 1.03 * near)
     return [_line(raw, peak / raw.per_unit) for peak in _peaks(raw, low=low, high=high)]
 

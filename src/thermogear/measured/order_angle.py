@@ -69,7 +69,7 @@ def order_angle(
     if steady:
         orders = [1.0, *([mesh / teeth] if mesh and teeth else [])]
         notices += of_tacho_speed(pulses=shaft.pulses, given=speed, own=own, orders=orders)
-    notices += [] if mesh is None else of_pulses(shaft.pulses, mesh, teeth=teeth)
+    notices += [] if mesh is None else of_pulses(shaft.pulses, mesh=mesh, teeth=teeth)
     factor = 1.0
     if shaft.line:
         factor = (mesh or 1.0) / (z or MESHES)

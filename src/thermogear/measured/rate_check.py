@@ -24,8 +24,8 @@ def check_rate(
     """Why the rate is doubtful, "" where it is not: against teeth and speed where these are known.
 
     A rate given that contradicts the file's is kept where teeth and speed confirm it. The rate is
-    doubted, beside the speed, only where the mesh line is that of the teeth given. ``undecided``:
-    it may be another gear's.
+    doubted, beside the speed, only where the mesh line has the sidebands of the teeth given.
+    ``undecided``: it may be another gear's.
     """
     if teeth is None:
         return record.rate_doubt
@@ -62,7 +62,7 @@ def check_rate(
     ratio = implied / shaft
     if abs(ratio - 1.0) <= NEAR:
         return ""
-    if not gearing.is_theirs:
+    if not gearing.confirmed:
         # what the mesh line is, is open: it contradicts nobody
         notices.append(
             Notice.of("mesh_line_does_not_fit", line=gearing.mesh_frequency, given=speed)

@@ -47,7 +47,7 @@ def stated_gearing(
     try:
         near = find_gearing(list(table), expected, teeth=teeth)
     except InputError:
-        return free  # nothing stands where teeth and speed put the mesh line
+        return free  # no line is where teeth and speed put that of the mesh
     if free is not None:
         heights = [float(np.mean(np.log(line.harmonics))) for line in (near, free)]
         if heights[0] <= _AS_CLEAR * heights[1]:
