@@ -82,25 +82,12 @@ def _scattered(x: Floats, random: Random, count: int, value: Callable[[int], Flo
     return y
 
 
-def _held(x: Floats, every: int) -> Floats:
-    return np.repeat(x[::every], every)[: x.size]
-
-
-def _dead(x: Floats, random: Random, share: float) -> Floats:
-    """A thousandth of the noise of a live sensor at the end."""
-    y = x - float(np.mean(x))
-    size = int(share * x.size)
-    y[-size:] = 1e-3 * random.normal(size=size)
-    return y
-
-
 DEFECTS: dict[str, Callable[[Floats, Random], Floats]] = {
     "clipping of 1 % of the samples": lambda x, r: _clipped(x, 0.01),
     "clipping of 4 %": lambda x, r: _clipped(x, 0.04),
     "clipping of 20 %": lambda x, r: _clipped(x, 0.20),
     "held for 3 % of the record": lambda x, r: _block(x, r, 0.03, None),
     "held for 15 % of the record": lambda x, r: _block(x, r, 0.15, None),
-    "every second sample repeated": lambda x, r: _held(x, 2),
     "zeros for 3 %": lambda x, r: _block(x, r, 0.03, 0.0),
     "zeros for 30 %": lambda x, r: _block(x, r, 0.30, 0.0),
     "12 spikes of 20 amplitudes": lambda x, r: _scattered(
@@ -110,11 +97,8 @@ DEFECTS: dict[str, Callable[[Floats, Random], Floats]] = {
     "1 % NaN, one by one": lambda x, r: _scattered(x, r, 102, lambda n: np.full(n, np.nan)),
     "NaN for 4 %": lambda x, r: _block(x, r, 0.04, float("nan")),
     "NaN for 20 %": lambda x, r: _block(x, r, 0.20, float("nan")),
-    "levels of 0.7 amplitudes": lambda x, r: np.round(x / 0.7) * 0.7,
-    "levels of 2 amplitudes": lambda x, r: np.round(x / 2.0) * 2.0,
     "a mean of 200 amplitudes": lambda x, r: x + 200.0,
     "a trend of 200 amplitudes": lambda x, r: x + 200.0 * np.arange(x.size) / x.size,
-    "a sensor that dies, dead for 30 %": lambda x, r: _dead(x, r, 0.3),
 }
 
 
@@ -167,10 +151,6 @@ def _two(x: Floats, other: Floats, rate: float = RATE) -> Record:
 
 FAULTS: dict[str, tuple[str, Callable[[Floats, Random], Record]]] = {
     "a block lost, time stamps jump": ("dropped there", _stamped),
-    "a channel is another's copy": (
-        "a copy of",
-        lambda x, r: _two(x, float(r.uniform(0.1, 10.0)) * x),
-    ),
     "an empty channel": ("no signal", lambda x, r: _two(x, np.zeros(x.size))),
     "a rate ten times that of the time stamps": (
         "is not the file's",
@@ -368,7 +348,7 @@ Made by `make trial-defects`. Each record is a drawn gear train of 4 s (mesh lin
 300 to 450 Hz, sidebands, noise of rms 0.05 to 0.6, a converter of 12, 16 or 24 bits) with one
 defect. Before: the flat-top line of the samples as they stand, of NaN the longest piece. Now: what
 `measure` states, or that it is withheld; a frequency that is withheld counts as held. The last
-five rows are faults around the samples: seen is whether a notice or the refusal tells of it.
+four rows are faults around the samples: seen is whether a notice or the refusal tells of it.
 """
 
 

@@ -260,26 +260,6 @@ def test_a_run_has_no_order_in_its_spectrum_over_time(seed: int) -> None:
     assert told == pytest.approx([speed.min(), speed.max()], rel=1e-4)
 
 
-@pytest.mark.parametrize(("wander", "seed"), [(0.0, 44), (0.0, 45), (0.0015, 46), (0.002, 47)])
-def test_marks_above_the_spectrum_are_explained_and_others_lie_on_it(
-    wander: float, seed: int
-) -> None:
-    random = np.random.default_rng(seed)
-    t = np.arange(20_000) / 5000.0
-    rpm = random.uniform(700.0, 1100.0)
-    turns = rpm / 60.0 * (t + wander * np.sin(2 * np.pi * t))
-    x = np.cos(46 * np.pi * turns) + 0.4 * np.cos(92 * np.pi * turns)
-    x += 0.05 * random.standard_normal(t.size)
-    record = Record((Channel("a", x, "g"),), "made", 5000.0, "made")
-    shown = spectrum(measure(record, teeth=23, harmonics=1, sidebands=0))
-    panel = shown.picture.panels[0][0]
-    (curve,) = [one for one in panel.marks if isinstance(one, Curve)]
-    (marks,) = [one for one in panel.marks if isinstance(one, Points)]
-    near = np.abs(np.asarray(curve.x) - 23.0) < 0.2
-    assert (np.max(np.asarray(curve.y)[near]) < 0.8 * np.max(marks.y)) == (wander > 0.0)
-    assert ("Marks" in str(shown.caption)) == (wander > 0.0)
-
-
 # --- figures -------------------------------------------------------------------------------------
 
 

@@ -31,16 +31,13 @@ _WORTH = 5.0
 @dataclass(frozen=True, kw_only=True)
 class Row:
     """What is kept of one record: its lines' ``readings`` with half widths and their ``places``,
-    ``unit``, how it was sampled, how many ``signals`` vibrate, why readings are ``withheld``, what
+    ``unit``, why readings are ``withheld``, what
     damage was ``found``; or why it was ``refused``."""
 
     file: Path
     unit: str = ""
     readings: dict[tuple[str, str], tuple[float, float]] = field(default_factory=dict)
     places: dict[tuple[str, str], Place] = field(default_factory=dict, compare=False)
-    rate: float | None = None
-    samples: int = 0
-    signals: int = 0
     refused: str = ""
     withheld: str = ""
     found: tuple[Notice, ...] = ()
@@ -66,9 +63,6 @@ def row_of(read: Read, file: Path) -> Row:
             if np.isfinite(one.reading)
         },
         places=places_of(found),
-        rate=found.record.rate,
-        samples=found.record.samples,
-        signals=len(found.record.vibrating()),
         withheld="; ".join(f"channel {name!r}: {said}" for name, said in why.items() if said),
         found=found.findings,
         warned=tuple(str(one.message) for one in caught),

@@ -89,7 +89,24 @@ def _nothing(channel: Channel) -> Notice | None:
     told = health(channel).told(channel.name)
     if told is None and counts(channel):
         return Notice.of("channel_counts", channel=channel.name)
+    if told is None and is_digital(channel):
+        return Notice.of("channel_digital", channel=channel.name)
     return told
+
+
+def is_digital(channel: Channel) -> bool:
+    """Whether a channel holds two values alone, as pulses or a switch do.
+
+    >>> bits = np.arange(1000.0) % 2.0
+    >>> is_digital(Channel("a", bits)), is_digital(Channel("a", np.append(bits, 0.5)))
+    (True, False)
+    """
+    levels: set[float] = set()
+    for block in channel.blocks():
+        levels.update(np.unique(block[np.isfinite(block)]).tolist())
+        if len(levels) > 2:
+            return False
+    return True
 
 
 def counts(channel: Channel) -> bool:

@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.measured.record import Channel, Notice, Record
-from thermogear.signals.events import short_event
 from thermogear.signals.filters import without_trend
 from thermogear.signals.quality import Damage, damages, filled
 
@@ -24,17 +23,12 @@ FILLED = 0.05
 """Largest share of a channel's samples that is filled in; above it the longest whole stretch is
 used, or amplitudes are withheld."""
 
-COARSE = 0.25
-"""Largest share of the strongest line that coarse levels may falsify; above it amplitudes are
-withheld."""
-
 LEAST_RATE = 200.0
 """Samples a second below which no mesh line is sampled: the rate is taken for a shaft's."""
 
 _SHORTEST = 256  # samples of a stretch
 _LEAST_STRETCH = 0.1  # of the record
 _PROPORTION = 20.0  # of a mean or trend to what vibrates
-_COPY = 1e-9  # 1 - |correlation| of a copy
 _UNSURE = 0.2  # of a filled share: how far its own line may differ from that of the rest
 
 
@@ -108,11 +102,11 @@ def passed(channels: Sequence[Channel], longest: int) -> Passed:
 
     Up to FILLED of a channel's samples (missing, sentinels, zeros, held, spikes, clipped)
     are filled in by the channel's own strong lines. More missing: the longest whole stretch of all
-    channels. More clipped or held: amplitudes are withheld. Copies are left out.
+    channels. More clipped: amplitudes are withheld.
     """
     count = len(channels[0])
     table = np.stack([c.values(0, stop=min(count, longest)) for c in channels])
-    through = _without_copies(Passed(channels=list(channels), table=table))
+    through = Passed(channels=list(channels), table=table)
     # spikes that are many are no spikes
     found = [
         [one for one in damages(x) if one.kind != "spikes" or one.count <= FILLED * x.size]
@@ -138,14 +132,7 @@ def passed(channels: Sequence[Channel], longest: int) -> Passed:
 def _lost(own: Sequence[Damage], size: int) -> NDArray[np.bool_]:
     """Samples of which nothing is known."""
     kinds = [one.samples for one in own if one.kind in _GONE]
-    held = [one.samples for one in own if one.kind == "held" and _in_blocks(one)]
-    return np.asarray(np.any([np.zeros(size, dtype=bool), *kinds, *held], axis=0))
-
-
-def _in_blocks(one: Damage) -> bool:
-    """Whether held samples are in long runs rather than alone throughout."""
-    runs = int(np.count_nonzero(np.diff(one.samples.astype(np.int8)) == 1)) + 1
-    return one.count > 4 * runs
+    return np.asarray(np.any([np.zeros(size, dtype=bool), *kinds], axis=0))
 
 
 def _longest(gone: NDArray[np.bool_]) -> tuple[int, int]:
@@ -168,11 +155,7 @@ class _Channel:
         values = self.through.table[self.place]
         inside = slice(*stretch) if stretch else slice(0, values.size)
         size = inside.stop - inside.start
-        counted = [(one, int(np.count_nonzero(one.samples[inside]))) for one in self.own]
-        for one, count in counted:
-            if one.kind == "coarse" and count:
-                self.coarse(one)
-        kept = [(one, count) for one, count in counted if one.kind != "coarse"]
+        kept = [(one, int(np.count_nonzero(one.samples[inside]))) for one in self.own]
         total = sum(count for _, count in kept) / size
         # what alone is too much, or all that are too much together
         most = max((count for _, count in kept), default=0) / size
@@ -191,8 +174,7 @@ class _Channel:
                     )
                 )
                 continue
-            known = one.kind == "clipping" or (one.kind == "held" and not _in_blocks(one))
-            if total <= FILLED or not known:  # a number must stand there
+            if total <= FILLED or one.kind != "clipping":  # a number must stand there
                 missing |= one.samples
             if total <= FILLED or most > FILLED >= share:
                 continue
@@ -220,17 +202,6 @@ class _Channel:
         if withhold:
             self.through.withheld[self.channel.name] = withhold
             self.add(self.through.extra, total)
-
-    def coarse(self, one: Damage) -> None:
-        """Coarse levels widen intervals, up to COARSE; above, amplitudes are withheld."""
-        own = one.value or 0.0
-        self.add(self.through.clipped, own)
-        self.add(self.through.extra, own)
-        if own > COARSE:
-            self.through.withheld.setdefault(self.channel.name, "coarse levels")
-            self.through.findings.append(Notice.of("levels_too_coarse", **self.where(one)))
-        else:
-            self.through.findings.append(Notice.of("levels_coarse", adds=own, **self.where(one)))
 
     def add(self, shares: dict[str, float], own: float) -> None:
         """Add to the relative half width of the channel's amplitudes (``extra``), or to the part of
@@ -274,36 +245,7 @@ class _Channel:
         }
 
 
-_GONE = ("missing", "sentinel", "zeros", "quiet")
-
-
-def _without_copies(through: Passed) -> Passed:
-    """Channels that are another's copy, or it times a number, left out."""
-    kept: list[int] = []
-    units: list[Floats] = []
-    for place, values in enumerate(through.table):
-        good = np.where(np.isfinite(values), values, 0.0)
-        centred = good - good.mean()
-        length = float(np.sqrt(np.dot(centred, centred)))
-        own = centred / length if length > 0.0 else centred
-        twin = next(
-            (k for k, one in zip(kept, units, strict=True) if abs(np.dot(one, own)) > 1.0 - _COPY),
-            None,
-        )
-        if twin is None:
-            kept.append(place)
-            units.append(own)
-            continue
-        through.findings.append(
-            Notice.of(
-                "copy_left_out",
-                channel=through.channels[place].name,
-                original=through.channels[twin].name,
-            )
-        )
-    through.channels = [through.channels[k] for k in kept]
-    through.table = through.table[kept]
-    return through
+_GONE = ("missing", "sentinel", "zeros", "held")
 
 
 def _proportions(through: Passed) -> None:
@@ -323,24 +265,3 @@ def _proportions(through: Passed) -> None:
             if size > _PROPORTION * moving > 0.0
         ]
         through.table[place] = straight if span > moving else values - mean
-
-
-def events_of(through: Passed) -> list[Notice]:
-    """Short events of a record at one speed; they are kept. A run passes resonances as short."""
-    findings = []
-    for channel, values in zip(through.channels, through.table, strict=True):
-        event = None if channel.name in through.withheld else short_event(values)
-        if event is not None:
-            count = event.last - event.first + 1
-            findings.append(
-                Notice.of(
-                    "short_event",
-                    channel=channel.name,
-                    ratio=event.times,
-                    samples=count,
-                    share=count / through.table.shape[-1],
-                    first=through.start + event.first,
-                    last=through.start + event.last,
-                )
-            )
-    return findings

@@ -23,7 +23,6 @@ from thermogear.measured.choosing import chosen_channels
 from thermogear.measured.contradictions import of_speed
 from thermogear.measured.gate import (
     Passed,
-    events_of,
     passed,
     require_samples,
     require_sampling_rate,
@@ -209,7 +208,8 @@ def measure(
     notices = list(record.notices)
     chosen = chosen_channels(record, channels, notices)
     through = passed(chosen, LONGEST)
-    notices = _of_the_read(notices, through, len(chosen[0]))
+    if len(chosen[0]) > LONGEST:
+        notices.append(Notice.of("record_cut", used=LONGEST, samples=len(chosen[0])))
     given = teeth, speed
     expected = expected_mesh(record, teeth, speed)
     changing, said = read_in_angle(
@@ -232,7 +232,6 @@ def measure(
         gearing = stated_gearing(through.table, notices, expected=expected, teeth=teeth)
     if changing is not None and changing.slices is not None:
         return _of_slices(record, through, chain, changing, notices, given)
-    through.findings += events_of(through)
     chosen, start, table = through.channels, through.start, through.table
     doubt, undecided = record.rate_doubt, None
     if gearing is not None and turns is None:
@@ -324,14 +323,6 @@ def _swelling(
         shaft = speed / (2.0 * np.pi) / record.rate
     rate = None if record.rate_doubt else record.rate
     return swelling_of([one.name for one in chosen], table, rate, shaft)
-
-
-def _of_the_read(notices: Sequence[Notice], through: Passed, samples: int) -> list[Notice]:
-    """``notices`` of a record without names of twins left out as copies, and that it is cut."""
-    copies = {one.data["channel"] for one in through.findings if one.code == "copy_left_out"}
-    kept = [one for one in notices if one.data.get("renamed") not in copies]
-    cut = Notice.of("record_cut", used=LONGEST, samples=samples)
-    return [*kept, cut] if samples > LONGEST else kept
 
 
 def _require(

@@ -15,7 +15,7 @@ from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, nearest
 from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import label
-from thermogear.measured.at_once import Row, rows_of
+from thermogear.measured.at_once import rows_of
 from thermogear.measured.joined import require_once, shown_names
 from thermogear.measured.reduction import Measurement
 from thermogear.measured.same_line import ALIKE, Turns, compare
@@ -31,10 +31,10 @@ class Several:
     """Lines of records: ``reading`` (record, line) with ``half_width`` of its 95 % interval, nan
     where a record has no such line; ``keys`` (channel, name) of the lines; ``refused`` why a file
     gave none; ``withheld`` why readings of a record are, and what damage was ``found`` in it, where
-    there is any; ``baseline`` the record that others are compared with; ``hint`` what else the
-    files may be. ``same`` (record, line): whether it is the baseline's line, which its name alone
-    does not say; ``apart`` why it is not, by record; ``turns`` what is known of a record's speed,
-    ``ratio`` how many times as fast as the baseline it turns (nan: not known)."""
+    there is any; ``baseline`` the record that others are compared with.
+    ``same`` (record, line): whether it is the baseline's line, which its name alone does not say;
+    ``apart`` why it is not, by record; ``turns`` what is known of a record's speed, ``ratio`` how
+    many times as fast as the baseline it turns (nan: not known)."""
 
     names: tuple[str, ...]
     keys: tuple[tuple[str, str], ...]
@@ -43,7 +43,6 @@ class Several:
     baseline: int
     refused: tuple[tuple[str, str], ...]
     unit: str
-    hint: Notice | None = None
     withheld: tuple[tuple[str, str], ...] = ()
     found: tuple[tuple[str, tuple[Notice, ...]], ...] = ()
     same: NDArray[np.bool_]
@@ -172,7 +171,7 @@ def several(
     both = np.isfinite(table[kept.index(good[place]), :, 0]) & np.isfinite(table[..., 0])
     if int(np.sum(both.any(axis=1))) < 2:
         lost = [*refused, *((name, f"readings are withheld: {why}") for name, why in withheld)]
-        raise _nothing_compared(names[good[place].file], lost, len(files), _hint(good))
+        raise _nothing_compared(names[good[place].file], lost, len(files))
     first = kept.index(good[place])
     compared = [compare(row.places, kept[first].places, keys) for row in kept]
     return Several(
@@ -191,15 +190,12 @@ def several(
         ratio=np.array([one.ratio for one in compared]),
         refused=tuple(refused),
         unit=unit,
-        hint=_hint(good),
         withheld=withheld,
         found=tuple((names[row.file], row.found) for row in kept if row.found),
     )
 
 
-def _nothing_compared(
-    baseline: str, refused: Sequence[tuple[str, str]], files: int, hint: Notice | None
-) -> InputError:
+def _nothing_compared(baseline: str, refused: Sequence[tuple[str, str]], files: int) -> InputError:
     """No other record has a line of the baseline: why."""
     why = "; ".join(f"{name} is left out: {reason}" for name, reason in refused[:_REASONS])
     why += f"; and {len(refused) - _REASONS} more" if len(refused) > _REASONS else ""
@@ -208,9 +204,8 @@ def _nothing_compared(
         f"{files} file{'s' if files != 1 else ''}",
         allowed="two records or more with a line of the same channel and name",
         why=f"nothing can be compared with {baseline}" + (f": {why}" if why else ""),
-        fix="name records of one unit whose channels are named alike, or one file alone"
-        if hint is None
-        else hint.text,
+        fix="name records of one unit whose channels are named alike, or one file alone; channels "
+        "of one run are read by --join channels",
     )
 
 
@@ -221,14 +216,6 @@ def _place(baseline: str, files: Sequence[Path], shown: Sequence[str]) -> int | 
     name = Path(baseline).name
     found = [k for k, file in enumerate(files) if name == file.name or baseline == shown[k]]
     return found[0] if len(found) == 1 else None
-
-
-def _hint(rows: Sequence[Row]) -> Notice | None:
-    """What to say where records may be channels of one run."""
-    alike = {(row.rate, row.samples, row.signals) for row in rows}
-    if len(rows) < 2 or len(alike) != 1 or rows[0].signals != 1:
-        return None
-    return Notice.of("perhaps_one_run", files=len(rows))
 
 
 def result_of_several(found: Several) -> Result:
@@ -292,7 +279,6 @@ def result_of_several(found: Several) -> Result:
                 ratios=[found.ratio[k] for k in off],
             )
         )
-    notices += [found.hint] if found.hint is not None else []
     return Result.of(
         "records",
         f"{len(found.names)} records against {found.names[found.baseline]}",

@@ -12,8 +12,6 @@ from thermogear.base.errors import InputError
 from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.traps import is_tacho_name
 from thermogear.measured.units import counts_turns, kind_of
-from thermogear.signals.following import band_power
-from thermogear.signals.lines import line_spectrum
 from thermogear.signals.orders import resample_by_angle, rising_edges
 from thermogear.signals.tacho import Pulses, numbered, pulse_turns, speed_turns
 from thermogear.signals.tracking import (
@@ -29,12 +27,12 @@ from thermogear.signals.tracking import (
 VARIES = 1.03
 """Highest over lowest speed from which a record is read slice by slice."""
 
+_AS_SHARP = 0.8  # of the sharpness before: then a line's own phase is as good an angle
+_MOST_NOISE = 0.05  # cycles: of a phase with more no line is followed, but noise
 _LEAST_PART = 0.2  # of the record, that an angle must cover to be used
 _SHARPER = 1.3  # times more power in the strongest lines: then an angle is believed
 _LEAST_SHARP = 0.05
-_POWER = 1e-3  # of the highest order's: less is no line to follow
 _NARROW = 0.25  # of the whole range, between the percentiles: less is beside the pulses
-_AS_SHARP = 0.8  # of the sharpness before: then a line's own phase is as good an angle
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,8 +41,7 @@ class Shaft:
 
     ``line``: the turns are cycles of a line that was tracked and no shaft's; ``origin`` says by
     what, ``channel`` by which, where one says it (``by_speed``: as a speed); ``sure``: pulses per
-    turn are known, ``pulses`` those given. ``width`` of the filter that followed the line, over its
-    frequency. ``told`` what should be known of it.
+    turn are known, ``pulses`` those given. ``told`` what should be known of it.
     """
 
     turns: Floats
@@ -56,7 +53,6 @@ class Shaft:
     line: bool = False
     sure: bool = True
     pulses: float | None = None
-    width: float = 0.0
     told: tuple[Notice, ...] = ()
 
     @property
@@ -238,78 +234,43 @@ def _by_speed(channel: Channel, own: float, rate: float, samples: int, at: float
 
 
 def locked(shaft: Shaft, table: Floats, teeth: int | None) -> Shaft:
-    """The shaft of a speed channel, its angle corrected by the phase of the clearest line.
+    """The shaft of a speed channel, its angle corrected by the phase of the mesh line of the
+    ``teeth`` given.
 
-    A speed is read with errors that add up over the turns. Where a line of a whole order (``teeth``
-    or, where that shows nothing, what is highest) can be followed by its own phase, that phase is
-    the angle, and how far the speed channel reads off is told. A line within 2 % of a whole order
-    is taken for that order.
+    A speed is read with errors that add up over the turns. Where the line at that order can be
+    followed by its own phase, that phase is the angle, and how far the speed channel reads off is
+    told; not where noise is followed, or lines become less sharp.
     """
     inside = table[:, shaft.first : shaft.first + shaft.turns.size]
     rough = shaft.turns
     before = _sharp_by(inside[0], rough)
-    best = _sharpest(inside, rough, _broad_orders(inside, rough, teeth))
-    if best is None or best[1].sharp < _AS_SHARP * before:
+    cycles = rough * teeth if teeth else rough[:0]
+    tracked = [track(channel, cycles=cycles) for channel in inside[:2]] if teeth else []
+    best = max(filter(None, tracked), key=lambda line: line.sharp, default=None)
+    clear = best is not None and best.noise < _MOST_NOISE and best.sharp >= _AS_SHARP * before
+    if teeth is None or best is None or not clear:
         rough_angle = Notice.of("angle_as_sharp_as_speed", channel=shaft.channel)
         return replace(shaft, told=(*shaft.told, rough_angle))
-    order, found = best
-    cycles = found.cycles
-    # cycles per turn: whole teeth, else so that the mean speed is the channel's
-    if teeth and order == teeth:
-        ratio = order
-    else:
-        ratio = float(cycles[-1] / (rough[-1] - rough[0]))
-        if abs(ratio - round(ratio)) < 0.02 * ratio:
-            ratio = float(round(ratio))
     corrected = Notice.of(
         "speed_corrected",
         channel=shaft.channel,
-        off=(rough[-1] - rough[0]) * ratio / cycles[-1] - 1.0,
-        order=ratio,
+        off=(rough[-1] - rough[0]) * teeth / best.cycles[-1] - 1.0,
+        order=float(teeth),
         lines=LINES,
-        share=found.sharp,
+        share=best.sharp,
         share_before=before,
     )
     return replace(
         shaft,
-        turns=cycles / ratio,
-        noise=found.noise / ratio,
-        width=found.width,
+        turns=best.cycles / teeth,
+        noise=best.noise / teeth,
         told=(*shaft.told, corrected),
     )
-
-
-def _sharpest(inside: Floats, rough: Floats, orders: list[float]) -> tuple[float, Tracked] | None:
-    """Of lines at these orders of a rough angle the one whose phase is the sharpest angle."""
-    best: tuple[float, Tracked] | None = None
-    for order in orders:
-        for channel in inside[:2]:
-            found = track(channel, cycles=order * rough)
-            if found is not None and (best is None or found.sharp > best[1].sharp):
-                best = order, found
-    return best
 
 
 def _sharp_by(values: Floats, turns: Floats) -> float:
     per_turn = samples_per_turn(turns)
     return sharpness(resample_by_angle(values, turns, samples_per_turn=per_turn))
-
-
-def _broad_orders(table: Floats, turns: Floats, teeth: int | None) -> list[float]:
-    """The order of ``teeth`` where power is around it; else those around which it is highest, a
-    per cent wide: three at most."""
-    per_turn = samples_per_turn(turns)
-    spectrum = line_spectrum(
-        resample_by_angle(table[0], turns, samples_per_turn=per_turn), float(per_turn)
-    )
-    top = min(0.4 * per_turn, 400.0)
-    orders = np.arange(4.0, top, 1.0)
-    powers = np.array([band_power(spectrum, o, max(0.015 * o, 0.1)) for o in orders])
-    if teeth:
-        own = band_power(spectrum, float(teeth), max(0.015 * teeth, 0.1))
-        if own > _POWER * float(powers.max()):
-            return [float(teeth)]
-    return [float(o) for o in orders[np.argsort(-powers)[:3]]]
 
 
 def tracked_shaft(table: Floats) -> Shaft | None:
@@ -350,6 +311,5 @@ def tracked_shaft(table: Floats) -> Shaft | None:
         noise=best.noise,
         origin="the tracked line",
         line=True,
-        width=best.width,
     )
     return replace(shaft, told=(told, *_missing(shaft, table.shape[-1])))

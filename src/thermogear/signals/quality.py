@@ -9,66 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.arrays import Floats
-from thermogear.signals.events import quiet
 from thermogear.signals.lines import line_spectrum
 from thermogear.signals.strong import Strong, strong_lines
-
-_EVERYWHERE = 0.7  # of the levels between the extremes occur
-_MANY = 10.0  # levels in a standard deviation: fine
-_FOLDED = 0.53  # 2 zeta(3/2)/pi^2: see coarse
-_OWN = 1.0 / 12.0  # of a squared level: the rounding's own noise
-_WHOLE = 0.75  # of the samples count
-
-
-def smallest_step(kept: NDArray[np.float64]) -> float:
-    """The smallest step between values that occur, 0 of a single one; of numbers with all their
-    digits next to 0.
-
-    >>> smallest_step(np.array([2.0, 0.5, 1.0, 2.0]))
-    0.5
-    """
-    levels = np.unique(kept)
-    return float(np.min(np.diff(levels))) if levels.size > 1 else 0.0
-
-
-def coarse(x: NDArray[np.float64], free: NDArray[np.bool_]) -> float:
-    """How far levels may falsify a line, as a share of the strongest line's amplitude.
-
-    Rounding to levels of step q adds sum_m (-1)^m q/(pi m) sin(2 pi m x/q). Of a line of amplitude
-    A and noise of rms s, that has lines of 2 q/(pi m) J(2 pi m A/q) exp(-2 (pi m s/q)^2), together
-    0.53 q sqrt(q/A) exp(-2 (pi s/q)^2) at most: with noise of a level, none. s^2 is by the median
-    of the spectrum's powers, less the rounding's own q^2/12. 0 where a standard deviation holds ten
-    levels, of which a line alone is false by 1 %, where most levels between the extremes are
-    empty, or no line is clear of noise. ``free``: samples that count.
-
-    >>> x = np.cos(0.37 * np.arange(4000.0))
-    >>> round(coarse(np.round(x), x < 9.0), 2), coarse(np.round(x * 400.0), x < 9.0)
-    (0.46, 0.0)
-    """
-    kept = x[free]
-    spread = float(np.std(kept))
-    if (
-        kept.size < _WHOLE * x.size
-        or _MANY * smallest_step(kept[:: 1 + kept.size // 4096]) < spread
-    ):
-        return 0.0
-    levels = np.unique(kept)
-    step = smallest_step(levels)
-    codes = np.ptp(levels) / step + 1.0 if step > 0.0 else np.inf
-    if levels.size < _EVERYWHERE * codes:
-        return 0.0
-    place = np.arange(x.size)
-    values = x if free.all() else np.interp(place, place[free], kept)
-    spectrum = line_spectrum(values, 1.0)
-    lines = strong_lines(spectrum, 1)
-    if not lines or not _MANY * step >= spread > 0.0:
-        return 0.0
-    # a Hann window shows noise of rms s by powers of mean 6 s^2/N, and of 0.69 times that median
-    floor = float(np.median(np.abs(spectrum.in_hann()) ** 2)) / (6.0 * float(np.log(2.0)))
-    noise = max(0.0, floor * x.size / step**2 - _OWN)
-    height = abs(lines[0].amplitude) / step
-    return _FOLDED * float(height**-1.5 * np.exp(-2.0 * np.pi**2 * noise))
-
 
 Mask = NDArray[np.bool_]
 
@@ -78,21 +20,13 @@ SENTINELS = (-9999.0, 9999.0, -999.0, 999.0, -99999.0, 99999.0, -999.25, -32768.
 _CHANCE = 1e-4  # of a run that long in an undamaged record
 _SHORTEST = 8  # samples of a run of one value
 _PILE = 8.0  # times as many samples at a limit as at the levels beside
-_VISITS = 10  # to a limit
-_BANDS, _DOUBLED = 10_000, 8  # of the range; how often they are made twice as wide
-_BANDS_HELD = 0.7  # of the widest bands hold samples
-_SATURATED, _HIGHER = 30, 10.0  # samples at a limit, and times those of another band
 _FAR = 12.0  # robust standard deviations of a spike's second difference
 _OUTSIDE = 8.0  # spans of all other samples
-_FALSIFIED = 0.01  # of the strongest line: what levels may do untold
 
 
 @dataclass(frozen=True, kw_only=True)
 class Damage:
-    """``kind`` of damage, ``samples`` where it is, the ``value`` there where it is one.
-
-    Of coarse levels the value is how far they may falsify a line, as a share of the strongest.
-    """
+    """``kind`` of damage, ``samples`` where it is, the ``value`` there where it is one."""
 
     kind: str
     samples: Mask
@@ -130,15 +64,10 @@ def damages(x: ArrayLike) -> list[Damage]:
     values = np.asarray(x, dtype=float)
     free = np.isfinite(values)
     found = [Damage(kind="missing", samples=~free)] if not free.all() else []
-    for one in (_sentinels, _clipped, _held, _quiet, _spikes):
+    for one in (_sentinels, _clipped, _held, _spikes):
         for damage in one(values, free):
             found.append(damage)
             free = free & ~damage.samples
-    if np.count_nonzero(free) < 64:
-        return found
-    share = coarse(values, free)
-    if share > _FALSIFIED:
-        found.append(Damage(kind="coarse", samples=free, value=share))
     return found
 
 
@@ -168,12 +97,6 @@ def _sentinels(x: Floats, free: Mask) -> list[Damage]:
     return found
 
 
-def _quiet(x: Floats, free: Mask) -> list[Damage]:
-    """Stretches in which nothing vibrates."""
-    still = quiet(x, free) & free
-    return [Damage(kind="quiet", samples=still)] if still.any() else []
-
-
 def _clipped(x: Floats, free: Mask) -> list[Damage]:
     """Samples piled up at a limit: the highest or the lowest value.
 
@@ -194,47 +117,11 @@ def _clipped(x: Floats, free: Mask) -> list[Damage]:
         beside = float(np.mean(sizes[:5])) if levels.size >= 5 else 0.0
         if levels.size >= 5 and count > _PILE * beside:
             found.append(Damage(kind="clipping", samples=at, value=limit))
-    return found or _saturated(x, free)
-
-
-def _saturated(x: Floats, free: Mask) -> list[Damage]:
-    """Samples piled up in a narrow band at an extreme, where noise is added behind the limit.
-
-    In bands of 1e-4 to 1/78 of the range: the one at the extreme holds ten times as many samples
-    as any other. Of a sine it holds 2.4 times as many, of a peak as flat as x^4 5.3 times; a
-    line in step with the rate has few values, and most bands are empty.
-    """
-    kept = x[free]
-    low, high = float(kept.min()), float(kept.max())
-    if not 0.0 < high - low < np.inf:
-        return []
-    place = ((kept - low) / (high - low) * _BANDS).astype(np.int64)
-    fine = np.bincount(np.minimum(place, _BANDS - 1), minlength=_BANDS)
-    coarse = np.add.reduceat(fine, np.arange(0, _BANDS, 2 ** (_DOUBLED - 1)))
-    if np.mean(coarse > 0) < _BANDS_HELD:
-        return []
-    found = []
-    for order in (-1, 1):
-        best = 0.0, 0
-        for doubled in range(_DOUBLED):
-            width = 2**doubled
-            counts = np.add.reduceat(fine[::order], np.arange(0, _BANDS, width))
-            if counts[0] >= _SATURATED:
-                # the last may be the other limit, and is no whole band
-                best = max(best, (counts[0] / max(1, int(counts[1:-2].max())), width))
-        if best[0] < _HIGHER:
-            continue
-        reach = best[1] * (high - low) / _BANDS
-        limit = high - reach if order < 0 else low + reach
-        at = free & ((x > limit) if order < 0 else (x < limit))
-        visits = np.count_nonzero(np.diff(at.astype(np.int8)) == 1)
-        if visits >= _VISITS:
-            found.append(Damage(kind="clipping", samples=at, value=limit))
     return found
 
 
 def _held(x: Floats, free: Mask) -> list[Damage]:
-    """Runs of one value longer than chance makes them, and values repeated throughout."""
+    """Runs of one value longer than chance makes them."""
     same = np.zeros(x.size, dtype=bool)
     same[1:] = (x[1:] == x[:-1]) & free[1:] & free[:-1]
     repeated = int(np.count_nonzero(same))
@@ -246,33 +133,15 @@ def _held(x: Floats, free: Mask) -> list[Damage]:
     typical = lengths[lengths < _SHORTEST]
     chance = max(float(np.sum(typical - 1)) / x.size, 1e-6)
     least = max(_SHORTEST, int(np.ceil(np.log(_CHANCE / x.size) / np.log(min(chance, 0.9)))))
-    found: list[Damage] = []
     zeros, held = np.zeros(x.size, dtype=bool), np.zeros(x.size, dtype=bool)
     for start, stop in zip(starts[lengths >= least], stops[lengths >= least], strict=True):
         (zeros if x[start] == 0.0 else held)[start:stop] = True
     held[starts[lengths >= least]] = False  # the first of a held run is a true sample
-    short = same & ~zeros & ~held
-    # a coarse converter repeats values by chance: neighbours are equal as often as at random
-    if np.count_nonzero(short) > 1e-3 * x.size and _not_by_chance(x, free, short):
-        held |= short
-    return found + [
+    return [
         Damage(kind=kind, samples=where)
         for kind, where in (("zeros", zeros), ("held", held))
         if where.any()
     ]
-
-
-def _not_by_chance(x: Floats, free: Mask, short: Mask) -> bool:
-    """Whether neighbours are equal 16 times as often as they are one level apart, up or down, of
-    many levels."""
-    kept = x[free]
-    levels = np.unique(kept)
-    if levels.size <= 512:
-        return False
-    step = float(np.min(np.diff(levels)))
-    moves = np.abs(np.diff(kept))
-    beside = int(np.count_nonzero((moves > 0.0) & (moves < 4.5 * step)))
-    return int(np.count_nonzero(short)) > 2.0 * max(beside, 1)  # 16 of 8 levels
 
 
 def _spikes(x: Floats, free: Mask) -> list[Damage]:

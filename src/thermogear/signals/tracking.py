@@ -62,15 +62,13 @@ class Path:
 class Tracked:
     """``cycles`` of a line at each sample, 0 at the first; ``noise``: rms of what is wrong with
     them [cycles]; ``sharp`` and ``blunt``: share of the power that the ``LINES`` strongest lines
-    hold in angle and in time; ``span``: highest over lowest frequency; ``width``: half width of the
-    filter that followed the line, relative to it: sidebands nearer than that were followed too."""
+    hold in angle and in time; ``span``: highest over lowest frequency."""
 
     cycles: Floats
     noise: float
     sharp: float
     blunt: float
     span: float
-    width: float = 0.0
 
 
 LINES = 30
@@ -251,7 +249,6 @@ def _judged(values: Floats, cycles: Floats, last: float) -> Tracked:
         sharp=sharpness(better),
         blunt=sharpness(values),
         span=float(np.percentile(steps, 97.0) / np.percentile(steps, 3.0)),
-        width=last,
     )
 
 

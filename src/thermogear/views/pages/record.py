@@ -19,8 +19,6 @@ from thermogear.views.plots.sweeps import edges
 from thermogear.views.style import COLD, HOT, INK, OKABE_ITO, WIDE, scale
 
 _SHOWN = 60  # lines of the table: the most prominent
-_BINS = 3.0  # to each side of a line, in which its curve is looked at
-_SCALLOP = 1.25  # of a line between two bins, by the window 1.18 at most
 
 
 KINDS = ("measured", "comparison")
@@ -114,16 +112,13 @@ def _spectrum(results: Result) -> Section | None:
     mesh, teeth = results.text("mesh_position"), results.text("teeth")
     scale = int(teeth) / float(mesh) if mesh and teeth else 1.0
     words = "order of the first shaft [–]" if scale != 1.0 else "frequency [cycles/sample]"
-    caption = "Hann window over the whole record; of each run of bins the highest is drawn."
+    caption = (
+        "Hann window over the whole record; of each run of bins the highest is drawn. A mark is "
+        "above the curve where a line lies over several bins, as the speed or the load wanders."
+    )
     marked = None
     if lines is not None:
         marked = lines.where(lines["kind"] != "sideband", drop=True)
-        if _above(data, marked):
-            caption += (
-                " Marks are above the curve where a line lies over several bins, as the speed or "
-                "the load wanders: its amplitude holds them all."
-            )
-            words = words.replace("shaft [", "shaft at its mean speed [")
     pictures = Pictures()
     make = partial(_drawn_spectrum, data, marked, scale, words, _unit(results))
     needs = ["spectrum_reading"]
@@ -166,24 +161,6 @@ def _drawn_spectrum(
         readings, text = marked["line_reading"].values, "lines of the table"
         panel.points(places, readings, size=4, open=True, colour=INK, label=text)
     return Picture([[panel]], size=(WIDE, 3.6), legend=5)
-
-
-def _above(data: Dataset, marked: Dataset) -> bool:
-    """Whether a channel's strongest line is above its curve by more than the window takes."""
-    x = data["spectrum_position"].values
-    if x.size < 2:
-        return False
-    for channel in data["channel"].values:
-        own = marked.where(marked["channel"] == channel, drop=True)
-        readings = own["line_reading"].values
-        if not np.isfinite(readings).any():
-            continue
-        best = int(np.nanargmax(readings))
-        near = np.abs(x - own["line_position"].values[best]) <= _BINS * (x[1] - x[0])
-        curve = data["spectrum_reading"].sel(channel=channel).values[near]
-        if curve.size and readings[best] > _SCALLOP * curve.max():
-            return True
-    return False
 
 
 def _unit(results: Result) -> str:
