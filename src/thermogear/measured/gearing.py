@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy import stats
 
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
@@ -32,7 +33,11 @@ _AS_CLEAR = 0.6  # of the mean log prominence of the clearest line's harmonics
 _LOW_RANK = 3  # a gear has more teeth: a line at a half or a third of another is no shaft's
 _LOW_ORDER = 4  # of a shaft: unbalance, and what is off its axis
 _AROUND = 3  # harmonics about which sidebands are looked for
-_CONFIRMED = 0.8  # of the first sidebands about the harmonics that stand out
+_ANYWHERE, _TRIED = (
+    (1.0 / 250.0, 1.0 / 12.0),
+    200,
+)  # distances [mesh lines] of sidebands of any gear
+_CHANCE = 1e-3  # of lines at any distance to be where sidebands are looked for
 _FAMILIES, _RANKS = 4, 6  # distances that are told, and ranks of a line in one of them
 _APART = 3.0  # bins between a harmonic and a line beside it
 _AT = 0.6  # bins between a line and its place
@@ -166,7 +171,6 @@ def _of_line(table: Floats, raw: Prominence, line: _Line, teeth: int | None) -> 
         sharp = prominence(straight, float(per_cycle))
     top = max(1, min(_AROUND, int(0.45 / mesh)))
     ranks = [rank for rank in range(1, top + 1) if sharp.at(rank) > _STANDS]
-    sides = [] if teeth is None else _clear(sharp, ranks, 1.0 / teeth)
     return Gearing(
         mesh_frequency=mesh,
         harmonics=tuple(float(np.exp(height)) for height in line.heights),
@@ -174,7 +178,7 @@ def _of_line(table: Floats, raw: Prominence, line: _Line, teeth: int | None) -> 
             Family(distance=distance * mesh, lines=lines)
             for distance, lines in _families(sharp, ranks)
         ),
-        confirmed=bool(sides) and sum(sides) >= _CONFIRMED * len(sides),
+        confirmed=teeth is not None and _is_confirmed(sharp, ranks, 1.0 / teeth),
     )
 
 
@@ -188,6 +192,20 @@ def _clear(sharp: Prominence, ranks: Sequence[int], distance: float) -> list[boo
         height > _STANDS and abs(at - place) * sharp.per_unit < _AT
         for place, (at, height) in zip(places, peaks, strict=True)
     ]
+
+
+def _is_confirmed(sharp: Prominence, ranks: Sequence[int], distance: float) -> bool:
+    """Whether first sidebands at the ``distance`` [mesh lines] show where lines at any distance
+    would hardly show by chance: about the harmonic that stands out most, or about all."""
+    top = max(ranks, key=sharp.at, default=1)
+    anywhere = np.linspace(*_ANYWHERE, _TRIED)
+    share = np.mean([clear for away in anywhere for clear in _clear(sharp, [top], away)] or [True])
+    chances = [
+        stats.binom.sf(sum(sides) - 1, len(sides), max(float(share), 1.0 / _TRIED))
+        for about in ([top], ranks)
+        if (sides := _clear(sharp, about, distance))
+    ]
+    return bool(min(chances, default=1.0) < _CHANCE)
 
 
 def _families(sharp: Prominence, ranks: Sequence[int]) -> list[tuple[float, int]]:
