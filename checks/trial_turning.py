@@ -165,13 +165,12 @@ def judged(run: Run, found: Measurement) -> Floats:
 @dataclass(frozen=True, kw_only=True)
 class Row:
     """What came of one kind: ``off`` (order, off over half width), largest error of the speed,
-    (frequency - natural)/half width of resonances, runs not read in angle."""
+    runs not read in angle."""
 
     kind: str
     draws: int
     off: Floats
     speeds: list[float]
-    natural: list[float]
     unread: int
     seconds: float
 
@@ -187,7 +186,6 @@ def run(number: int, draws: int, seed: int) -> Row:
     kind, begun, unread = KINDS[number], time.process_time(), 0
     every: list[Floats] = [np.empty((0, 2))]
     speeds: list[float] = []
-    natural: list[float] = []
     for draw in range(draws):
         random = np.random.default_rng([seed, number, draw])
         one = drawn(random, kind=kind)
@@ -205,10 +203,6 @@ def run(number: int, draws: int, seed: int) -> Row:
         true = 2.0 * np.pi * np.interp(found.slices.time, one.time, one.speed)
         off = np.abs(found.slices.speed - true) / np.maximum(true, 1e-3)
         speeds.append(float(np.max(off)))
-        near = [r for r in found.slices.resonances if r.kind == "resonance"]
-        best = min(near, key=lambda r: abs(r.frequency - one.natural), default=None)
-        if best is not None:
-            natural.append((best.frequency - one.natural) / best.half_width)
         worst = float(np.max(np.abs(rows[:, 1]), initial=0.0))
         if worst > 3.0:
             print(f"{kind}, draw {draw}: worst {worst:.2f} half widths", flush=True)
@@ -217,7 +211,6 @@ def run(number: int, draws: int, seed: int) -> Row:
         draws=draws,
         off=np.concatenate(every),
         speeds=speeds,
-        natural=natural,
         unread=unread,
         seconds=time.process_time() - begun,
     )
@@ -241,9 +234,8 @@ def told(row: Row) -> list[str]:
 
 def runs_told(row: Row) -> str:
     """The row of the page's table of runs."""
-    inside = f"{sum(abs(n) <= 1.0 for n in row.natural)} of {len(row.natural)}"
     speed = f"{100.0 * max(row.speeds, default=float('nan')):.2g}"
-    return f"| {row.kind} | {row.draws} | {row.unread} | {speed} | {inside} |"
+    return f"| {row.kind} | {row.draws} | {row.unread} | {speed} |"
 
 
 HEAD = f"""# Orders of runs whose speed changes: do the stated intervals hold?
@@ -270,8 +262,8 @@ def page(rows: list[Row], draws: int, seed: int) -> str:
         "|---|---:|---:|---:|---:|---:|",
         *(line for row in rows for line in told(row)),
         "",
-        "| run | draws | not read in angle | speed off, at most [%] | resonance in its interval |",
-        "|---|---:|---:|---:|---:|",
+        "| run | draws | not read in angle | speed off, at most [%] |",
+        "|---|---:|---:|---:|",
         *(runs_told(row) for row in rows),
         "",
         f"{draws} draws of each, seed {seed}. Processor time "

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,7 +15,6 @@ from thermogear.front.measure_commands import measure
 from thermogear.measured.joined import join_records, named, only
 from thermogear.measured.readers import read_record
 from thermogear.measured.record import Channel, Notice, Record
-from thermogear.measured.resonances import resonances_of
 
 Floats = NDArray[np.float64]
 
@@ -237,12 +235,3 @@ def test_of_several_records_channels_are_named_and_files_without_them_told(tmp_p
     assert done["records"] == ["r2.csv", "r10.csv", "r11.csv"]
     assert "no file is r3.csv" in refusal(asked(tmp_path, "--channel", "r3.csv::acc"))
     assert "did you mean 'r2.csv'" in refusal(asked(tmp_path, "--baseline", "r2.cvs"))
-
-
-def test_a_stretch_of_one_step_has_no_resonances() -> None:
-    one = np.ones(1)
-    slices = SimpleNamespace(
-        channels=("a",), names=("order 1",), time=one, speed=one, frequency=one[None],
-        reading=one[None, None], half_width=one[None, None],
-    )  # fmt: skip
-    assert resonances_of(slices) == ()

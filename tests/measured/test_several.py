@@ -105,14 +105,13 @@ def test_processes_give_the_same_rows_and_one_that_ends_is_told(
     read = partial(measured_among, options=options)
     told: list[tuple[int, int]] = []
     serial = rows_of(read, files, cores=1, progress=lambda _, done, total: None)
-    monkeypatch.setattr(at_once, "_WORTH", 0.0)
+    monkeypatch.setattr(at_once, "_FEW", 0)
     both = rows_of(read, files, cores=2, progress=lambda _, done, total: told.append((done, total)))
     assert both == serial
     assert told == [(1, 3), (2, 3), (3, 3)]
     assert [bool(row.refused) for row in both] == [False, True, False]
-    ended = rows_of(ends, files, cores=2, progress=lambda _, done, total: None)
-    assert "the process that read it ended" in ended[1].refused
-    assert ended[2].refused == "file: got r2.csv; refused"
+    with pytest.raises(InputError, match=r"^file: got r\d\.csv; a process ended: "):
+        rows_of(ends, files, cores=2, progress=lambda _, done, total: None)
 
 
 def ends(path: Path) -> Measurement:

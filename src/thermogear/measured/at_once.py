@@ -5,13 +5,13 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
-import time
 import warnings
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from contextlib import ExitStack
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -24,8 +24,7 @@ from thermogear.measured.same_line import Place, places_of
 
 Read = Callable[[Path], Measurement]
 
-_WORTH = 5.0
-"""Seconds of work left from which processes are started: each takes about one to begin."""
+_FEW = 8  # files, for which no processes are started: each takes about a second to begin
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,70 +69,33 @@ def row_of(read: Read, file: Path) -> Row:
 
 
 def rows_of(read: Read, files: Sequence[Path], *, cores: int, progress: Progress) -> list[Row]:
-    """The rows of ``files`` in their order, in up to ``cores`` processes.
+    """The rows of ``files`` in their order; of many files in ``cores`` processes, which ``read``
+    must be one that can be sent to.
 
-    Files are measured here, one after another, until it is clear that what is left is worth other
-    processes; for those ``read`` must be one that can be sent there. A file whose process ends by
-    itself is refused.
+    Raises InputError where a process ends by itself.
     """
-    found: dict[Path, Row] = {}
-    began = time.perf_counter()
-    left = list(files)
-    while left:
-        if cores > 1 and found and len(left) > 1:
-            spent = time.perf_counter() - began
-            if spent / len(found) * len(left) > _WORTH:
-                break
-        found[left[0]] = row_of(read, left[0])
-        left.pop(0)
-        progress("records", len(found), len(files))
-    if left:
-        for row in _elsewhere(read, left, min(cores, len(left))):
-            found[row.file] = row
-            progress("records", len(found), len(files))
-    for file in files:
-        for text in found[file].warned:
+    rows: list[Row] = []
+    with ExitStack() as stack:
+        made: Iterable[Row] = (row_of(read, file) for file in files)
+        if cores > 1 and len(files) > _FEW:
+            pool = ProcessPoolExecutor(
+                min(cores, len(files)),
+                mp_context=multiprocessing.get_context("spawn"),  # so that no lock is inherited
+                initializer=signal.signal,  # Ctrl+C is the parent's
+                initargs=(signal.SIGINT, signal.SIG_IGN),
+            )
+            made = stack.enter_context(pool).map(partial(row_of, read), files)
+        try:
+            for row in made:
+                rows.append(row)
+                progress("records", len(rows), len(files))
+        except BrokenProcessPool as error:
+            why = "a process ended: a file near it is damaged, or too large for the memory"
+            raise InputError("file", files[len(rows)].name, why=why, fix="leave it out") from error
+    for row in rows:
+        for text in row.warned:
             warnings.warn(text, ValidityWarning, stacklevel=2)
-    return [found[file] for file in files]
-
-
-def _elsewhere(read: Read, files: Sequence[Path], cores: int) -> Iterator[Row]:
-    """Rows as they come; files that were lost with another's process are tried again alone."""
-    lost: list[Path] = []
-    with _pool(cores) as pool:
-        work: dict[Future[Row], Path] = {pool.submit(row_of, read, one): one for one in files}
-        for done in as_completed(work):
-            try:
-                yield done.result()
-            except BrokenProcessPool:
-                lost.append(work[done])
-    for file in sorted(lost, key=files.index):
-        with _pool(1) as pool:
-            try:
-                yield pool.submit(row_of, read, file).result()
-            except BrokenProcessPool:
-                why = "the process that read it ended: it is damaged, or too large for the memory"
-                yield Row(file=file, refused=why)
-
-
-@contextmanager
-def _pool(cores: int) -> Iterator[ProcessPoolExecutor]:
-    """Processes that start anew, so that no lock is inherited; on an error or Ctrl+C they end."""
-    before = set(multiprocessing.active_children())
-    pool = ProcessPoolExecutor(
-        cores,
-        mp_context=multiprocessing.get_context("spawn"),
-        initializer=signal.signal,  # Ctrl+C is the parent's: it ends its children
-        initargs=(signal.SIGINT, signal.SIG_IGN),
-    )
-    try:
-        yield pool
-    except BaseException:
-        for child in set(multiprocessing.active_children()) - before:
-            child.terminate()
-        raise
-    finally:
-        pool.shutdown(cancel_futures=True)
+    return rows
 
 
 def cores_here() -> int:

@@ -15,9 +15,9 @@ from thermogear.measured.gate import Passed
 from thermogear.measured.gearing import Gearing
 from thermogear.measured.lines import MeasuredLine, Wanted, jittered, wanted_lines
 from thermogear.measured.order_angle import MESHES, OrderAngle, order_angle
+from thermogear.measured.over_speed import OrderMap, OrderSlices
 from thermogear.measured.quantities import quantities
 from thermogear.measured.record import Notice, Record
-from thermogear.measured.resonances import OrderMap, OrderSlices, resonances_of
 from thermogear.measured.shaft import VARIES, Shaft, given_shaft, locked, tracked_shaft
 from thermogear.measured.turns import MeshTurns
 from thermogear.measured.units import kind_of
@@ -272,8 +272,6 @@ def _sliced(
             highest=float(np.max(places)),
         ),
     )
-    if record.rate is not None:
-        slices = replace(slices, resonances=resonances_of(slices, record.rate_share))
     low, high = float(shafts_speed.min()), float(shafts_speed.max())
     notices.append(
         Notice.of(

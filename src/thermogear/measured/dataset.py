@@ -8,15 +8,15 @@ from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.vocabulary import label
 from thermogear.measured.figures import evidence, figures
 from thermogear.measured.lines import MeasuredLine
+from thermogear.measured.over_speed import OrderSlices
 from thermogear.measured.quantities import quantities
 from thermogear.measured.reduction import Measurement
-from thermogear.measured.resonances import OrderSlices
 from thermogear.results.result import Result, now
 from thermogear.signals.spectra import amplitude_spectrum
 
 
 def slice_groups(found: OrderSlices) -> dict[str, Dataset]:
-    """Groups ``slices`` (channel, slice, step), ``map`` (row, map_column) and ``resonances``.
+    """Groups ``slices`` (channel, slice, step) and ``map`` (row, map_column).
 
     A fit of a model to a run-up takes ``slice_speed`` [rad/s], ``slice_speed_rate``, the name of
     the order, and ``slice_acceleration`` [m/s^2] or ``slice_displacement`` [m] with the relative
@@ -46,7 +46,7 @@ def slice_groups(found: OrderSlices) -> dict[str, Dataset]:
     ).assign_coords(channel=list(found.channels), name=("slice", list(found.names)))
     slices.attrs["of_mesh"] = int(found.of_mesh)
     shown = found.map
-    groups = {
+    return {
         "slices": slices,
         "map": label(
             {
@@ -57,20 +57,6 @@ def slice_groups(found: OrderSlices) -> dict[str, Dataset]:
             }
         ),
     }
-    if found.resonances:
-        groups["resonances"] = label(
-            {
-                f"resonance_{name}": (
-                    ("resonance",),
-                    np.array([getattr(one, name) for one in found.resonances], dtype=float),
-                )
-                for name in ("frequency", "half_width", "damping", "speed")
-            }
-        ).assign_coords(
-            kind=("resonance", [one.kind for one in found.resonances]),
-            seen=("resonance", [", ".join(one.seen) for one in found.resonances]),
-        )
-    return groups
 
 
 _DRAWN = 4096  # points of a curve kept for pictures

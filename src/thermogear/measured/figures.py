@@ -10,14 +10,14 @@ import math
 from typing import Any
 
 from thermogear.measured.lines import MeasuredLine
+from thermogear.measured.over_speed import OrderSlices
 from thermogear.measured.record import Record
 from thermogear.measured.reduction import Measurement
-from thermogear.measured.resonances import OrderSlices
 from thermogear.signals.slices import greatest
 
 _PLAIN = (
     "teeth order lines powers chance share "
-    "relative_half_width relative_standard_uncertainty bin_offset prominence steps damping turns"
+    "relative_half_width relative_standard_uncertainty bin_offset prominence steps turns"
 )
 UNITS: dict[str, str] = {
     **dict.fromkeys(_PLAIN.split(), "1"),
@@ -142,7 +142,7 @@ def _line(line: MeasuredLine, record: Record) -> dict[str, Any]:
 
 
 def _slices(run: OrderSlices, record: Record) -> dict[str, Any]:
-    """Of a run over speed: range of speed, the greatest amplitude of every order, resonances."""
+    """Of a run over speed: range of speed, the greatest amplitude of every order."""
     told = []
     for c, channel in enumerate(run.channels):
         for k, name in enumerate(run.names):
@@ -169,15 +169,4 @@ def _slices(run: OrderSlices, record: Record) -> dict[str, Any]:
         "steps": int(run.time.size),
         "speed_range": _range(run),
         "greatest": told,
-        "resonances": [
-            {
-                "kind": one.kind,
-                "frequency": _known(one.frequency),
-                "frequency_half_width": _known(one.half_width),
-                "damping": _known(one.damping),
-                "speed": _known(one.speed),
-                "seen": list(one.seen),
-            }
-            for one in run.resonances
-        ],
     }

@@ -35,11 +35,11 @@ from thermogear.measured.lines import (
     channel_lines,
     wanted_lines,
 )
+from thermogear.measured.over_speed import OrderSlices
 from thermogear.measured.quantities import of_velocity
 from thermogear.measured.rate_check import check_rate
 from thermogear.measured.readers import read_record
 from thermogear.measured.record import Channel, Notice, Record
-from thermogear.measured.resonances import OrderSlices
 from thermogear.measured.stated import expected_mesh, speed_undecided, stated_gearing
 from thermogear.measured.traps import unknown_unit
 from thermogear.measured.turns import MeshTurns, mesh_turns

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from thermogear.base.arrays import Dataset, Floats
-from thermogear.base.display import HERTZ, SPEED, number
+from thermogear.base.display import SPEED, number
 from thermogear.results.result import Result
 from thermogear.views.columns import Column, by_name, key, pairs
 from thermogear.views.page import Block, Page, Pictures, Section, Text
@@ -223,7 +223,7 @@ def measured(result: Result) -> list[Block]:
 
 
 def slices(found: Mapping[str, Any] | None) -> list[str]:
-    """Greatest amplitude of every order of a run over speed, and resonances."""
+    """Greatest amplitude of every order of a run over speed."""
     if found is None:
         return []
     what = "the mesh line" if found["of_mesh"] else "the first shaft"
@@ -232,8 +232,7 @@ def slices(found: Mapping[str, Any] | None) -> list[str]:
         "95 % interval of the greatest true amplitude of all its steps (one step alone is known "
         "better, but the highest of many is high by noise too):"
     ]
-    told += [_greatest(one) for one in found["greatest"]]
-    return told + [resonance(one) for one in found["resonances"]]
+    return told + [_greatest(one) for one in found["greatest"]]
 
 
 def _greatest(one: Mapping[str, Any]) -> str:
@@ -257,20 +256,6 @@ def _shaft(found: Mapping[str, Any]) -> str:
         return f"mean shaft speed over the record: {speed:.6g} rpm (from {low:.5g} to {high:.5g})"
     around = f" +- {SPEED(half):.3g} rpm (95 %)" if half is not None else ""
     return f"shaft speed: {speed:.8g} rpm{around}"
-
-
-def resonance(one: Mapping[str, Any]) -> str:
-    """A peak of orders in a sentence."""
-    seen = ", ".join(one["seen"])
-    half = one.get("frequency_half_width", one.get("half_width"))
-    place = f"{one['frequency']:.5g} +- {half:.2g} Hz"
-    damping = "" if one["damping"] is None else f", damping ratio {one['damping']:.3g}"
-    if one["kind"] == "resonance":
-        return f"resonance at {place}{damping}: {seen} peak there at different speeds"
-    if one["kind"] == "speed":
-        rpm = SPEED(one["speed"])
-        return f"at {rpm:.5g} rpm {seen} peak together: the speed's doing, no resonance in hertz"
-    return f"{seen} alone peaks, at {place}: one order cannot tell a resonance from a speed"
 
 
 def given_and_found(figures: Mapping[str, Any]) -> list[str]:
@@ -334,22 +319,21 @@ def numbers(results: Result) -> dict[str, Any]:
 
 
 def _orders(results: Result) -> Section | None:
-    """Order map, slices with their intervals, resonances in words; None for a steady speed."""
+    """Order map, slices with their intervals; None for a steady speed."""
     data, shown = results.group("slices"), results.group("map")
     if data is None or shown is None:
         return None
     unit = results.text("unit") or "the file's numbers"
     count = "the mesh line" if int(data.attrs.get("of_mesh", 0)) else "the first shaft"
-    resonances = results.group("resonances")
     pictures = Pictures()
     pictures.add(
         "order-map",
         "Order map",
         "Amplitude by order over speed, Hann window, the first channel. Orders lie level; what "
-        "has a fixed frequency falls from left to right (dotted: resonances found).",
+        "has a fixed frequency falls from left to right.",
         shown,
         ["map_reading"],
-        partial(order_map, shown, resonances, unit, count),
+        partial(order_map, shown, unit, count),
         wide=True,
     )
     for place, channel in enumerate(data["channel"].values[:4]):
@@ -362,9 +346,7 @@ def _orders(results: Result) -> Section | None:
             partial(over_speed, data, place, unit),
             wide=True,
         )
-    told = results.table("figures").get("slices") or {}
-    words = [Text(resonance(one)) for one in told.get("resonances", [])]
-    return Section("orders", "Orders over speed", [*pictures.take(), *words], folded=False)
+    return Section("orders", "Orders over speed", pictures.take(), folded=False)
 
 
 # --- pictures -----------------------------------------------------------------------------------
@@ -376,8 +358,8 @@ MOST = 6
 """Orders drawn as slices."""
 
 
-def order_map(data: Dataset, resonances: Dataset | None, unit: str, count: str) -> Picture:
-    """Amplitude over order and speed; dotted where a resonance in hertz would be."""
+def order_map(data: Dataset, unit: str, count: str) -> Picture:
+    """Amplitude over order and speed."""
     rpm, order = SPEED(data["map_speed"].values), data["map_order"].values
     rising = np.argsort(rpm, kind="stable")
     rpm, values = rpm[rising], data["map_reading"].values[rising]
@@ -389,16 +371,6 @@ def order_map(data: Dataset, resonances: Dataset | None, unit: str, count: str) 
         edges(rpm), edges(order), np.clip(values, LEAST * top, None).T, low=LEAST * top, high=top,
         log=True, colours=scale("magma"), words=f"amplitude (peak) [{unit}]",
     )  # fmt: skip
-    if resonances is not None:
-        for one in range(resonances.sizes["resonance"]):
-            if str(resonances["kind"].values[one]) != "resonance":
-                continue
-            along = float(resonances["resonance_frequency"].values[one]) / HERTZ(SPEED.stored(rpm))
-            inside = (along >= order[0]) & (along <= order[-1])
-            panel.curve(
-                rpm[inside], along[inside], colour="white", width=0.8, dash=(1.0, 2.5),
-                label=f"{float(resonances['resonance_frequency'].values[one]):.5g} Hz",
-            )  # fmt: skip
     return Picture([[panel]], size=(WIDE, 4.4), legend=4)
 
 
