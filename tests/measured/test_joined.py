@@ -190,7 +190,7 @@ def test_short_last_blocks_and_late_starts_are_cut(tmp_path: Path) -> None:
 
 def test_what_several_files_tell_alike_is_told_once_with_their_names() -> None:
     silent = Notice.of("channel_constant", channel="b")
-    lost = [Notice.of("samples_missing", channel="a", samples=n, longest=1) for n in (2, 3, 2)]
+    lost = [Notice.of("samples_missing", channel="a", samples=n) for n in (2, 3, 2)]
     records = [
         Record((Channel(name, signal(k), "g"),), f"{name}.csv", RATE, notices=(lost[k], *more))
         for k, (name, more) in enumerate((("a", ()), ("b", (silent,)), ("c", (silent, silent))))

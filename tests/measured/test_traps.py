@@ -145,7 +145,7 @@ def test_gaps_are_counted_and_not_filled(tmp_path: Path) -> None:
     text = rows()
     text[5], text[6], text[20] = "0.004,", "0.005,NaN", "0.019,n/a"
     record = read(tmp_path, lines(text))
-    assert told(record) == [("samples_missing", {"channel": "a", "samples": 3, "longest": 2})]
+    assert told(record) == [("samples_missing", {"channel": "a", "samples": 3})]
     assert np.isnan(record.channels[0].values()[[4, 5, 19]]).all()
 
 

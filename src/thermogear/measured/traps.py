@@ -278,10 +278,9 @@ def _dropped(jumps: NDArray[np.intp], ahead: Floats, steps: Floats) -> tuple[tup
 
 @dataclass(frozen=True, kw_only=True)
 class Health:
-    """Facts about one channel found in a single pass: gaps, zeros, constancy, clipping."""
+    """Facts about one channel found in a single pass: samples missing, zeros, constancy, size."""
 
     missing: int
-    longest_gap: int
     zeros: bool
     constant: bool
     peak: float
@@ -303,30 +302,15 @@ class Health:
 
 def health(channel: Channel) -> Health:
     """One pass over a channel, block by block."""
-    missing = gap = longest = 0
+    missing = 0
     low, high = np.inf, -np.inf
     for block in channel.blocks():
-        good = np.isfinite(block)
-        values = block
-        if not good.all():
-            bad = np.flatnonzero(~good)
-            missing += bad.size
-            values = block[good]
-            edges = np.flatnonzero(np.diff(bad) > 1)
-            firsts = bad[np.concatenate([[0], edges + 1])]
-            lasts = bad[np.concatenate([edges, [bad.size - 1]])]
-            runs = lasts - firsts + 1
-            if firsts[0] == 0:
-                runs[0] += gap
-            longest = max(longest, int(runs.max()))
-            gap = int(runs[-1]) if lasts[-1] == block.size - 1 else 0
-        else:
-            gap = 0
+        values = block[np.isfinite(block)]
+        missing += block.size - values.size
         if values.size:
             low, high = min(low, float(values.min())), max(high, float(values.max()))
     return Health(
         missing=missing,
-        longest_gap=longest,
         zeros=low == high == 0.0,
         constant=low == high,
         peak=float(max(abs(low), abs(high))) if low <= high else 0.0,
@@ -343,7 +327,6 @@ def examined(record: Record) -> Record:
                     "samples_missing",
                     channel=channel.name,
                     samples=found.missing,
-                    longest=found.longest_gap,
                 )
             )
         if (told := found.told(channel.name)) is not None:

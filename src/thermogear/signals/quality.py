@@ -15,13 +15,12 @@ from thermogear.signals.strong import Strong, strong_lines
 Mask = NDArray[np.bool_]
 
 SENTINELS = (-9999.0, 9999.0, -999.0, 999.0, -99999.0, 99999.0, -999.25, -32768.0, 32767.0)
-"""Numbers that loggers write for "no value"; any number that repeats far outside counts as well."""
+"""Numbers that loggers write for "no value"."""
 
 _CHANCE = 1e-4  # of a run that long in an undamaged record
 _SHORTEST = 8  # samples of a run of one value
 _PILE = 8.0  # times as many samples at a limit as at the levels beside
 _FAR = 12.0  # robust standard deviations of a spike's second difference
-_OUTSIDE = 8.0  # spans of all other samples
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,29 +71,17 @@ def damages(x: ArrayLike) -> list[Damage]:
 
 
 def _sentinels(x: Floats, free: Mask) -> list[Damage]:
-    """Numbers far outside all others: known ones, or any that repeats exactly."""
-    found = []
-    left = free.copy()
-    for _ in range(4):
-        kept = x[left]
-        if kept.size < 16:
-            break
-        for value in (float(kept.min()), float(kept.max())):
-            others = kept[kept != value]
-            count = kept.size - others.size
-            known = value in SENTINELS
-            if others.size < 16 or (count < 3 and not known):
-                continue
-            low, high = float(others.min()), float(others.max())
-            away = max(low - value, value - high)
-            if away > (1.0 if known else _OUTSIDE) * (high - low) > 0.0:
-                where = left & (x == value)
-                found.append(Damage(kind="sentinel", samples=where, value=value))
-                left = left & ~where
-                break
-        else:
-            break
-    return found
+    """Numbers of loggers for "no value", where they are far outside all others."""
+    known = free & np.isin(x, SENTINELS)
+    others = x[free & ~known]
+    if not known.any() or others.size < 16:
+        return []
+    low, high = float(others.min()), float(others.max())
+    outside = known & ((x < 2.0 * low - high) | (x > 2.0 * high - low)) & (high > low)
+    return [
+        Damage(kind="sentinel", samples=outside & (x == value), value=float(value))
+        for value in np.unique(x[outside])
+    ]
 
 
 def _clipped(x: Floats, free: Mask) -> list[Damage]:

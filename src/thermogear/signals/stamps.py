@@ -25,10 +25,8 @@ _ROUNDS = 60  # of Newton's method; a few are needed
 _BLOCKS = 16  # least number of blocks whose means are compared
 _TILT = 1.5  # errors within +-A tilt the line of least squares of N samples by 3 A/N at most
 _OUTLIES = 4.5  # standard deviations
-_FEW = 0.05  # of the steps
 _ALIKE = 0.9  # of the steps, from which stamps are even
 _RULE = 3  # jumps that rounding can make: that many lost samples would not lie so
-_SIDES = 8.0  # times the square of samples in a tick: samples whose mean is sure to 1/16
 _AWAY = 0.25  # of a step
 _NO_LOSS = 0.8  # of a step: rounding that no lost sample looks like
 _FINE = 0.01  # of a step: rounding or jitter that a single stamp may be read with
@@ -200,12 +198,12 @@ def _power(left: Floats) -> float:
 
 def jumps_of(stamps: Floats, *, grain: Floats) -> tuple[NDArray[np.intp], Floats]:
     """Where stamps (sample,) rounded to ``grain`` (sample,) jump: number of the sample after it,
-    and how many steps more than one they jump by (less than 0: they stand).
+    and how many steps more than one they jump by (less than 0: they stand), no whole number where
+    rounding hides it.
 
     A jump is a step that differs from the others by more than half of one, beside rounding where
     that shows, and by more than 4.5 of their standard deviations. Three
-    jumps and more that rounding alone can make are none. How far the stamps go on ahead is told by
-    the means of samples on both sides, unless the others are even.
+    jumps and more that rounding alone can make are none.
 
     >>> t = np.delete(np.arange(100.0), [50, 51])
     >>> [found.tolist() for found in jumps_of(t, grain=np.full(98, 1e-9))]
@@ -230,26 +228,9 @@ def jumps_of(stamps: Floats, *, grain: Floats) -> tuple[NDArray[np.intp], Floats
         rows = rows[:0]
     others = np.delete(steps, rows - 1)
     step = float(others.mean()) if others.size else step
-    if even or step <= 0.0 or not 0 < rows.size <= _FEW * steps.size:
-        return rows, steps[rows - 1] / max(step, 1e-300) - 1.0
-    ratio = coarse / step
-    ends = np.concatenate([[0], rows, [t.size]])
-    around = 64 + int(min(_SIDES * ratio**2, t.size))
-    first, last = np.maximum(ends[:-2], rows - around), np.minimum(ends[2:], rows + around)
-    ahead = steps[rows - 1] / step - 1.0
-    for _ in range(2):
-        place = np.ones(t.size)
-        place[rows] += np.rint(ahead)
-        step, left = _line(t, np.cumsum(place))
-        sums = np.concatenate([[0.0], np.cumsum(left)])
-        before = (sums[rows] - sums[first]) / (rows - first)
-        behind = (sums[last] - sums[rows]) / (last - rows)
-        ahead = np.rint(ahead) + (behind - before) / step
-    # a mean over ticks of ratio samples each is off by half a tick over their number
-    unsure = 0.5 * ratio**2 / np.minimum(rows - first, last - rows) > _AWAY
-    ahead = np.where(unsure & (ratio > 1.0), np.floor(ahead) + 0.5, ahead)
-    real = np.abs(ahead) > _AWAY  # else one stamp alone is off
-    return rows[real], ahead[real]
+    ahead = steps[rows - 1] / max(step, 1e-300) - 1.0
+    # rounding to more than a quarter of a step hides how many samples were lost
+    return rows, ahead if even or coarse <= _AWAY * step else np.floor(ahead) + 0.5
 
 
 def usual_rate(low: float, *, high: float) -> float | None:
