@@ -17,7 +17,6 @@ from thermogear.signals.tacho import Pulses, numbered, pulse_turns, speed_turns
 from thermogear.signals.tracking import (
     LINES,
     Tracked,
-    held_part,
     paths,
     samples_per_turn,
     sharpness,
@@ -294,10 +293,7 @@ def tracked_shaft(table: Floats) -> Shaft | None:
             if found.sharp >= max(_SHARPER * found.blunt, _LEAST_SHARP) and (
                 best is None or found.sharp > best.sharp
             ):
-                held = held_part(channel, cycles=found.cycles)
-                kept = max(int(path.at[1]), held[0]), min(int(path.at[-2]) + 1, held[1])
-                if kept[1] - kept[0] >= _LEAST_PART * table.shape[-1]:
-                    ends, best = kept, found
+                ends, best = (int(path.at[1]), int(path.at[-2]) + 1), found
         if best is not None:
             break
     if best is None:

@@ -18,7 +18,6 @@ from thermogear.signals.spectra import finite_record
 HARMONICS = (1.0, 0.5, 1.0 / 3.0)
 """Weights of a line and its harmonics in a path's height."""
 
-_NEAR_CYCLES, _WIDE_CYCLES = 133, 33  # Hann kernels: 1.5 % and 6 % of a line on each side
 _STEP = 0.005  # of the grid in ln(frequency)
 _JUMP = 10  # grid steps from frame to frame
 _STRAIGHT = 0.02  # what a step costs beside one unit of ln(amplitude/floor)
@@ -250,43 +249,6 @@ def _judged(values: Floats, cycles: Floats, last: float) -> Tracked:
         blunt=sharpness(values),
         span=float(np.percentile(steps, 97.0) / np.percentile(steps, 3.0)),
     )
-
-
-def held_part(x: ArrayLike, *, cycles: Floats) -> tuple[int, int]:
-    """First and last + 1 of the samples around the middle over which ``cycles`` hold the line.
-
-    In that angle the line is at one cycle. Of the power within 6 % beside it, over 133 cycles
-    each, a line that is lost leaves little within 1.5 %: less than half of the median share.
-
-    >>> n = np.arange(8000)
-    >>> lost = 0.1 * n + np.where(n > 6000, 0.004 * (n - 6000), 0.0)
-    >>> first, stop = held_part(np.cos(0.2 * np.pi * n), cycles=lost)
-    >>> first == 0 and 5500 < stop < 6500
-    True
-    """
-    values = finite_record(x)
-    per_cycle = max(8, samples_per_turn(cycles))
-    straight = resample_by_angle(values, cycles, samples_per_turn=per_cycle)
-    base = (straight - straight.mean()) * np.exp(-2j * np.pi * np.arange(straight.size) / per_cycle)
-    near = np.abs(_mean_over(base, _NEAR_CYCLES * per_cycle)) ** 2
-    wide = np.abs(_mean_over(base, _WIDE_CYCLES * per_cycle)) ** 2
-    share = near / np.maximum(_mean_over(wide, _NEAR_CYCLES * per_cycle), 1e-300)
-    lost = np.flatnonzero(share < 0.5 * np.median(share))
-    middle = share.size // 2
-    before, after = lost[lost < middle], lost[lost >= middle]
-    start = int(before[-1]) + 1 if before.size else 0
-    stop = int(after[0]) if after.size else share.size
-    angle = np.ceil(cycles[0]) + np.array([start, stop]) / per_cycle
-    places = np.interp(angle, cycles, np.arange(cycles.size))
-    first = int(np.ceil(places[0])) if start else 0
-    return first, int(places[1]) if stop < share.size else cycles.size
-
-
-def _mean_over(values: NDArray[np.generic], samples: int) -> NDArray[np.generic]:
-    """Hann-weighted running mean, the kernel cut at the ends."""
-    kernel = np.hanning(2 * (min(samples, values.size) // 2) + 3)[1:-1]
-    weight = signal.oaconvolve(np.ones(values.size), kernel, mode="same")
-    return np.asarray(signal.oaconvolve(values, kernel, mode="same") / weight)
 
 
 def _line_near_one(amplitudes: Floats, width: float) -> float:
