@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.arrays import Floats
-from thermogear.gears.candidates import mesh_points
 from thermogear.gears.contact import curvature_radii, hertz_half_width, reduced_radius
 from thermogear.gears.contact import reduced_modulus as _reduced_modulus
 from thermogear.gears.corner import FREE, contact_point
@@ -25,7 +24,6 @@ from thermogear.gears.sharing import equal_share, stiffness_share
 from thermogear.gears.stiffness import Moduli, mesh_stiffness, pair_compliances, weber_approach
 from thermogear.gears.tooth import ToothCompliances, flank_point, tooth_compliances
 from thermogear.gears.tooth_table import tooth_table
-from thermogear.gears.touch import first_touch
 from thermogear.gears.turn import turn_period
 from thermogear.mesh.thermal import HotPair, ThermalDeviation
 
@@ -39,8 +37,8 @@ TURN_POSITIONS = 96
 """Positions of every mesh period of a turn. The greatest dynamic force over a turn at a natural
 over a mesh frequency of .15 moves by .3 % (median of 64 drawings of four pairs, at most 4 %) from
 there to 192, by 1 % at most above; 64 positions move it by 3 %."""
-BLOCK = 200_000
-"""Positions of all operating points over a turn that are solved at once: about 100 MB."""
+BLOCK = 40_000
+"""Positions of all operating points over a turn that are solved at once: about 30 MB."""
 
 
 def turn_phases(mesh_periods: int, phase: Floats) -> Floats:
@@ -91,20 +89,6 @@ class ElasticPair(ABC):
         """L, after which everything comes again: 1 where the teeth of each gear are alike."""
         return turn_period(self.pair, self.deviations).mesh_periods
 
-    def blocks(self, positions: int) -> Iterator[ElasticPair]:
-        """The same pair at some of its operating points after others, :data:`BLOCK` of
-        ``positions`` at a time; at all of them where one mesh period is all.
-        """
-        step, count = max(BLOCK // positions, 1), self.hot.count
-        whole = self.mesh_periods == 1 or step >= count
-        # a deviation may differ between the points itself
-        if whole or first_touch(mesh_points(self.pair, [0.0]), self.deviations).gap.ndim > 2:
-            yield self
-            return
-        for first in range(0, count, step):
-            some = self.hot.operating.part(slice(first, first + step))
-            yield replace(self, hot=replace(self.hot, operating=some))
-
     @property
     def start(self) -> str:
         """Section at which the teeth's beams begin."""
@@ -137,7 +121,7 @@ class ElasticPair(ABC):
 
     def pair_stiffness(self, s: Floats) -> Floats:
         """Stiffness of one tooth pair at ``s`` [m], [N/m]: its :meth:`parts` in series."""
-        return np.asarray(1.0 / sum(1.0 / k for k in self.parts(s).values()))
+        return in_series(self.parts(s))
 
     def share(self, s: Floats) -> PathShare:
         """Share of the load on the pair at ``s`` [m], by the model's rule.
@@ -154,8 +138,11 @@ class ElasticPair(ABC):
         return PathShare(shares, np.zeros(shares.shape, np.int8))
 
     @abstractmethod
-    def parts(self, s: Floats) -> dict[str, Floats]:
-        """Every spring of one tooth pair at ``s`` [m], [N/m], by its stored name."""
+    def parts(self, s: Floats, shares: PathShare | None = None) -> dict[str, Floats]:
+        """Every spring of one tooth pair at ``s`` [m], [N/m], by its stored name.
+
+        ``shares`` of the load at ``s`` where they are known already; else :meth:`share` says.
+        """
 
     @abstractmethod
     def over(self, phase: Floats) -> MeshCurves:
@@ -180,7 +167,7 @@ def _named(gear: str, tooth: ToothCompliances, body: Floats) -> dict[str, Floats
 class TextbookPair(ElasticPair):
     """Uncoupled springs of the teeth in contact, in parallel; deviations are not felt."""
 
-    def parts(self, s: Floats) -> dict[str, Floats]:
+    def parts(self, s: Floats, shares: PathShare | None = None) -> dict[str, Floats]:
         found = pair_compliances(self.pair, s, self.start, *self.moduli)
         parts = {"hertz_stiffness": found.contact}
         for name, gear in (("pinion", found.pinion), ("wheel", found.wheel)):
@@ -224,10 +211,26 @@ class LoadedPair(ElasticPair):
         )
         return solved if self.hot.operating.varied.face_width is None else solved.wider(wider)
 
-    def parts(self, s: Floats) -> dict[str, Floats]:
+    def solved(self, phase: Floats, *names: str) -> list[NDArray[Any]]:
+        """Arrays of :meth:`solve` by their ``names``, (count, positions, ...).
+
+        Over a turn :data:`BLOCK` positions at a time: only what is asked for is kept of each.
+        """
+        if self.mesh_periods == 1:
+            mesh = self.solve(phase)
+            return [getattr(mesh, name) for name in names]
+        first, parts = phase.size // self.mesh_periods, []
+        step = max(BLOCK // self.hot.count, 8 * first)
+        for start in range(0, phase.size, step):
+            # the first mesh period again: its places are those of all
+            mesh = self.solve(np.concatenate([phase[:first], phase[start : start + step]]))
+            parts.append([getattr(mesh, name)[:, first:] for name in names])
+        return [np.concatenate(values, axis=1) for values in zip(*parts, strict=True)]
+
+    def parts(self, s: Floats, shares: PathShare | None = None) -> dict[str, Floats]:
         compliances: dict[str, Floats] = {}
         pair, width = self.pair, self.hot.face_width
-        carried = self.share(s).share * self.force[:, None]
+        carried = (self.share(s) if shares is None else shares).share * self.force[:, None]
         load = np.maximum(carried, LEAST_LINE_LOAD * width)
         half_width = hertz_half_width(load / width, reduced_radius(pair, s), self.contact_modulus)
         near = contact_point(pair, s)
@@ -273,25 +276,19 @@ class LoadedPair(ElasticPair):
         )
 
     def over(self, phase: Floats) -> MeshCurves:
-        every = turn_phases(self.mesh_periods, phase)
-        parts = [loaded_pair(part)._curves(every) for part in self.blocks(every.size)]
-        if len(parts) == 1:
-            return parts[0]
-        return MeshCurves(*(np.concatenate(curve) for curve in zip(*parts, strict=True)))
-
-    def _curves(self, phase: Floats) -> MeshCurves:
-        solved = self.solve(phase)
-        if self.hot.model.spring == "secant":
-            k, error = solved.secant, solved.unloaded
-        else:
-            k = solved.tangent
-            error = solved.deflection - self.force[:, None] / k
+        secant = self.hot.model.spring == "secant"
+        k, deflection, unloaded, edge, settled = self.solved(
+            turn_phases(self.mesh_periods, phase),
+            *("secant" if secant else "tangent", "deflection", "unloaded", "edge", "settled"),
+        )
+        error = unloaded if secant else deflection - self.force[:, None] / k
+        carried = (edge > 0).any(axis=-1).mean(axis=-1)
         # what is the same all along belongs to the backlash, not to the error
         return MeshCurves(
             k,
             error - error.mean(axis=-1, keepdims=True),
-            solved.deflection - solved.unloaded.mean(axis=-1, keepdims=True),
-            np.where(solved.settled.all(axis=-1), solved.edge_share, np.nan),
+            deflection - unloaded.mean(axis=-1, keepdims=True),
+            np.where(settled.all(axis=-1), carried, np.nan),
         )
 
 
@@ -327,22 +324,23 @@ def tooth_pair_shares(elastic: ElasticPair, s: Floats) -> PathShare:
     # a tooth pair is at its place so many mesh periods after it entered
     period = (np.arange(periods)[:, None] + rank) % periods
     place = np.arange(s.size)
-    parts = []
-    for part in elastic.blocks(phase.size):
-        solved = loaded_pair(part).solve(phase)
-        whole = (part.hot.count, periods, s.size, -1)
-        # the candidates begin one pair before the one that entered last
-        parts.append(
-            [
-                values.reshape(whole)[:, period, place, rank + 1]
-                for values in (solved.share, solved.edge)
-            ]
-        )
-    # in the order of their axes: sums along the path go by it
+    solved = loaded_pair(elastic).solved(phase, "share", "edge")
+    whole = (elastic.hot.count, periods, s.size, -1)
+    # the candidates begin one pair before the one that entered last; in the order of their axes:
+    # sums along the path go by it
     share, edge = (
-        np.ascontiguousarray(np.concatenate(values)) for values in zip(*parts, strict=True)
+        np.ascontiguousarray(values.reshape(whole)[:, period, place, rank + 1]) for values in solved
     )
     return PathShare(share, edge)
+
+
+def in_series(parts: Mapping[str, Floats]) -> Floats:
+    """Stiffness [N/m] of springs one after the other.
+
+    >>> in_series({"tooth": np.array([2e8]), "body": np.array([2e8])})
+    array([1.e+08])
+    """
+    return np.asarray(1.0 / sum(1.0 / k for k in parts.values()))
 
 
 def elastic_pair(hot: HotPair, deviations: Sequence[Deviation] = ()) -> ElasticPair:
