@@ -219,13 +219,21 @@ class LoadedPair(ElasticPair):
         if self.mesh_periods == 1:
             mesh = self.solve(phase)
             return [getattr(mesh, name) for name in names]
-        first, parts = phase.size // self.mesh_periods, []
+        first = phase.size // self.mesh_periods
         step = max(BLOCK // self.hot.count, 8 * first)
+        whole: list[NDArray[Any]] = []
         for start in range(0, phase.size, step):
             # the first mesh period again: its places are those of all
             mesh = self.solve(np.concatenate([phase[:first], phase[start : start + step]]))
-            parts.append([getattr(mesh, name)[:, first:] for name in names])
-        return [np.concatenate(values, axis=1) for values in zip(*parts, strict=True)]
+            parts = [getattr(mesh, name)[:, first:] for name in names]
+            if not whole:
+                shapes = [(len(part), phase.size, *part.shape[2:]) for part in parts]
+                whole = [
+                    np.empty(shape, part.dtype) for shape, part in zip(shapes, parts, strict=True)
+                ]
+            for values, part in zip(whole, parts, strict=True):
+                values[:, start : start + step] = part
+        return whole
 
     def parts(self, s: Floats, shares: PathShare | None = None) -> dict[str, Floats]:
         compliances: dict[str, Floats] = {}
