@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.arrays import Floats
+from thermogear.gears.candidates import mesh_points
 from thermogear.gears.contact import curvature_radii, hertz_half_width, reduced_radius
 from thermogear.gears.contact import reduced_modulus as _reduced_modulus
 from thermogear.gears.corner import FREE, contact_point
@@ -24,6 +25,7 @@ from thermogear.gears.sharing import equal_share, stiffness_share
 from thermogear.gears.stiffness import Moduli, mesh_stiffness, pair_compliances, weber_approach
 from thermogear.gears.tooth import ToothCompliances, flank_point, tooth_compliances
 from thermogear.gears.tooth_table import tooth_table
+from thermogear.gears.touch import first_touch
 from thermogear.gears.turn import turn_period
 from thermogear.mesh.thermal import HotPair, ThermalDeviation
 
@@ -39,6 +41,8 @@ over a mesh frequency of .15 moves by .3 % (median of 64 drawings of four pairs,
 there to 192, by 1 % at most above; 64 positions move it by 3 %."""
 BLOCK = 40_000
 """Positions of all operating points over a turn that are solved at once: about 30 MB."""
+KEPT = 200_000
+"""Positions of all operating points over a turn whose shares are kept at once: about 30 MB."""
 
 
 def turn_phases(mesh_periods: int, phase: Floats) -> Floats:
@@ -88,6 +92,20 @@ class ElasticPair(ABC):
     def mesh_periods(self) -> int:
         """L, after which everything comes again: 1 where the teeth of each gear are alike."""
         return turn_period(self.pair, self.deviations).mesh_periods
+
+    def blocks(self, positions: int) -> Iterator[ElasticPair]:
+        """The same pair at some of its operating points after others, :data:`KEPT` of
+        ``positions`` at a time; at all of them where one mesh period is all.
+        """
+        step, count = max(KEPT // positions, 1), self.hot.count
+        whole = self.mesh_periods == 1 or step >= count
+        # a deviation may differ between the points itself
+        if whole or first_touch(mesh_points(self.pair, [0.0]), self.deviations).gap.ndim > 2:
+            yield self
+            return
+        for first in range(0, count, step):
+            some = self.hot.operating.part(slice(first, first + step))
+            yield replace(self, hot=replace(self.hot, operating=some))
 
     @property
     def start(self) -> str:
@@ -332,12 +350,19 @@ def tooth_pair_shares(elastic: ElasticPair, s: Floats) -> PathShare:
     # a tooth pair is at its place so many mesh periods after it entered
     period = (np.arange(periods)[:, None] + rank) % periods
     place = np.arange(s.size)
-    solved = loaded_pair(elastic).solved(phase, "share", "edge")
-    whole = (elastic.hot.count, periods, s.size, -1)
-    # the candidates begin one pair before the one that entered last; in the order of their axes:
-    # sums along the path go by it
+    parts = []
+    for part in elastic.blocks(phase.size):
+        whole = (part.hot.count, periods, s.size, -1)
+        # the candidates begin one pair before the one that entered last
+        parts.append(
+            [
+                values.reshape(whole)[:, period, place, rank + 1]
+                for values in loaded_pair(part).solved(phase, "share", "edge")
+            ]
+        )
+    # in the order of their axes: sums along the path go by it
     share, edge = (
-        np.ascontiguousarray(values.reshape(whole)[:, period, place, rank + 1]) for values in solved
+        np.ascontiguousarray(np.concatenate(values)) for values in zip(*parts, strict=True)
     )
     return PathShare(share, edge)
 

@@ -103,9 +103,12 @@ def _around(
     margin = 1e-3 * pair.base_pitch
     inside = (s > margin) & (s < pair.line_of_action - margin)
     if share is None:
-        (solved,) = loaded_pair(elastic).solved(turn_phases(periods, phase), "share")
-        by_pair = solved.reshape(elastic.hot.count, periods, -1)[..., inside]
-        share = by_pair[:, 0] if periods == 1 else _of_few_loads(by_pair)
+        every, parts = turn_phases(periods, phase), []
+        for part in elastic.blocks(every.size):
+            (solved,) = loaded_pair(part).solved(every, "share")
+            by_pair = solved.reshape(part.hot.count, periods, -1)[..., inside]
+            parts.append(by_pair[:, 0] if periods == 1 else _of_few_loads(by_pair))
+        share = np.concatenate(parts)
     return np.tile(s[inside], 1 if periods == 1 else LOADS), pair.base_pitch / phases, share
 
 
