@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -52,6 +52,35 @@ def turn_phases(mesh_periods: int, phase: Floats) -> Floats:
     array([0. , 0.5, 1. , 1.5])
     """
     return np.asarray((np.arange(mesh_periods)[:, None] + phase).ravel())
+
+
+def over_turn(
+    law: Callable[[Floats], Sequence[NDArray[Any]]],
+    phase: Floats,
+    mesh_periods: int,
+    *,
+    count: int = 1,
+) -> list[NDArray[Any]]:
+    """The arrays that ``law`` makes of phases, (..., positions, ...) with that axis second.
+
+    :data:`BLOCK` positions of ``count`` operating points of a turn at a time; those of the first
+    mesh period are asked for with all others, since their places are those of all.
+
+    >>> over_turn(lambda here: [np.floor(here)[None]], np.array([0.0, 0.5, 1.0, 1.5]), 2)[0]
+    array([[0., 0., 1., 1.]])
+    """
+    if mesh_periods == 1:
+        return list(law(phase))
+    first = phase.size // mesh_periods
+    step = max(BLOCK // count, 8 * first)
+    whole: list[NDArray[Any]] = []
+    for start in range(0, phase.size, step):
+        some = law(np.concatenate([phase[:first], phase[start : start + step]]))
+        if not whole:
+            whole = [np.empty((len(v), phase.size, *v.shape[2:]), v.dtype) for v in some]
+        for values, part in zip(whole, some, strict=True):
+            values[:, start : start + step] = part[:, first:]
+    return whole
 
 
 class MeshCurves(NamedTuple):
@@ -232,26 +261,14 @@ class LoadedPair(ElasticPair):
     def solved(self, phase: Floats, *names: str) -> list[NDArray[Any]]:
         """Arrays of :meth:`solve` by their ``names``, (count, positions, ...).
 
-        Over a turn :data:`BLOCK` positions at a time: only what is asked for is kept of each.
+        Over a turn only what is asked for is kept, see :func:`over_turn`.
         """
-        if self.mesh_periods == 1:
-            mesh = self.solve(phase)
+
+        def some(here: Floats) -> list[NDArray[Any]]:
+            mesh = self.solve(here)
             return [getattr(mesh, name) for name in names]
-        first = phase.size // self.mesh_periods
-        step = max(BLOCK // self.hot.count, 8 * first)
-        whole: list[NDArray[Any]] = []
-        for start in range(0, phase.size, step):
-            # the first mesh period again: its places are those of all
-            mesh = self.solve(np.concatenate([phase[:first], phase[start : start + step]]))
-            parts = [getattr(mesh, name)[:, first:] for name in names]
-            if not whole:
-                shapes = [(len(part), phase.size, *part.shape[2:]) for part in parts]
-                whole = [
-                    np.empty(shape, part.dtype) for shape, part in zip(shapes, parts, strict=True)
-                ]
-            for values, part in zip(whole, parts, strict=True):
-                values[:, start : start + step] = part
-        return whole
+
+        return over_turn(some, phase, self.mesh_periods, count=self.hot.count)
 
     def parts(self, s: Floats, shares: PathShare | None = None) -> dict[str, Floats]:
         compliances: dict[str, Floats] = {}
