@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base import fourier
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Floats, rows_at
 from thermogear.base.errors import InputError
 from thermogear.base.period import Period
 from thermogear.base.pieces import Pieces
@@ -241,7 +241,12 @@ class Excitations:
         if rubbed is not None:
             rubbed = tuple(rubbed[i] for i in np.arange(len(self))[chosen])
         arrays = [field.name for field in fields(self) if field.name not in _OF_ALL]
-        return replace(self, **{n: getattr(self, n)[chosen] for n in arrays}, friction=rubbed)
+        taken = {name: getattr(self, name)[chosen] for name in arrays if name not in _WIDE}
+        # of a turn these are large, and along a row of speeds they are all the same
+        place = np.arange(len(self))[chosen]
+        for name in _WIDE:
+            taken[name] = rows_at(getattr(self, name), place)
+        return replace(self, **taken, friction=rubbed)
 
     @classmethod
     def of(cls, rows: Sequence[Excitation]) -> Excitations:
@@ -312,6 +317,7 @@ class Excitations:
         )
 
 
+_WIDE = ("stiffness", "error")
 _OF_ALL = ("friction", "mesh_periods")
 """Fields of :class:`Excitations` that are no arrays over the points."""
 

@@ -28,8 +28,8 @@ BLOCK = 128
 _COUNTS = tuple(base * 2**k for k in range(11) for base in (32, 48))
 _OF_TURN = np.array([base * 2**k for k in range(14) for base in (32, 40, 48, 56)])
 MOST_OF_TURN = 400_000
-"""Sub-steps of a turn at most: a lane's maps then take some 600 MB."""
-ROOM = 2**19
+"""Sub-steps of a turn at most: a lane's maps then take some 350 MB."""
+ROOM = 2**18
 """Sub-steps of all lanes of a block at most: what their maps take bounds the memory."""
 
 
@@ -268,7 +268,9 @@ def prepare_maps(lanes: LaneTables, borders: Floats, marks: Bytes, order: int = 
     size, rate = _bounds(lanes, "force")
     reach = (rate / lanes.period + lanes.damping * size) * half.max(axis=0) ** 3
     width, room = order + 1, -(-(5 * (order + 1) + BEHIND) // 8) * 8
-    (steps,) = _aligned((centres.size, -(-len(lanes) // 8), 11, 8))
+    # a group of eight lanes for one is as large as its curves, which have the same numbers
+    slim = lanes.by_fft and len(lanes) == 1
+    (steps,) = _aligned((0 if slim else centres.size, -(-len(lanes) // 8), 11, 8))
     (curves,) = _aligned((centres.size, len(lanes), room))
     work, tables, ends, table, turned = _aligned(
         (40 * width,), (16 * width,), (80,), (8 * room,), (64,)
@@ -462,7 +464,7 @@ def advance(
     flat: list[NDArray[Any]] = [array.reshape(-1) for array in owned]
     x, y, region, tangent, counts, spent = flat
     advance_exact(
-        maps.steps.ravel(),
+        maps.steps.ravel() if maps.steps.size else np.zeros(11 * 8),
         maps.curves.ravel(),
         width,
         maps.reach,
