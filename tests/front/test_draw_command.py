@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import re
 from pathlib import Path
 
 import pytest
 
+from coded import coded
 from own_pair import OWN_PAIR
 from thermogear.front.cli import main
 
@@ -37,6 +39,20 @@ def test_a_dxf_holds_the_states_asked_for(case: Path) -> None:
     assert text.count("AcDbPolyline") == 2
 
 
+def test_what_of_the_flanks_is_drawn_is_told_in_words(
+    case: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    tooth = "gears.pinion.teeth_differ=[{tooth=3, index='5 um'}]"
+    words = ["draw", str(case), "-o", str(case.parent / "a.svg"), "--json", "--set", tooth]
+    assert main(words) == 0
+    notices = coded(json.loads(capsys.readouterr().out)["notices"])
+    assert notices["nominal_flanks_drawn"] == [{"deviations": ["pitch error"]}]
+    assert main([*words, "--part", "case"]) == 0
+    notices = coded(json.loads(capsys.readouterr().out)["notices"])
+    assert notices["mean_tooth_taken"] == [{"mesh_periods": 19}]
+    assert notices["deviations_not_drawn"] == [{"deviations": "pitch error"}]
+
+
 @pytest.mark.parametrize(
     ("words", "line"),
     [
@@ -48,6 +64,12 @@ def test_a_dxf_holds_the_states_asked_for(case: Path) -> None:
         (["--phase", "2"], "phase: got 2; allowed 0..1"),
         (["--operating", "9"], "operating: got 9; allowed 1..1"),
         (["--state", "warm"], "--state: got 'warm'; allowed "),
+        (["--turn"], "--turn: got a drawing; its teeth are all alike; leave it out"),
+        (["--turn", "--mean-tooth"], "--turn: got gears.period twice; allowed once; leave one of"),
+        (
+            ["--part", "case", "--set", "gears.part=nominal"],
+            "--part case: got gears.part twice; allowed once; leave one of",
+        ),
         (["--bundle", "x"], "bundle: got 'x'; allowed consistent"),
     ],
 )

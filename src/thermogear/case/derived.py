@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from thermogear.base.display import kind_in_words
 from thermogear.base.materials import LUBRICANT_KINDS, Lubricant
 from thermogear.base.parameters import NUMBERS
 from thermogear.base.units import RPM, ZERO_CELSIUS
@@ -15,11 +16,11 @@ from thermogear.case.case import DimensionlessCase, GearCase
 from thermogear.case.charts import Chart
 from thermogear.case.units import shown
 from thermogear.gears.accuracy import flank_class
-from thermogear.gears.deviations import Deviation
+from thermogear.gears.deviations import Deviation, PitchError, Relief
 from thermogear.gears.geometry import Gear
 from thermogear.gears.graded_flanks import WavyProfile
 from thermogear.gears.population import measured
-from thermogear.gears.turn import Eccentricity
+from thermogear.gears.turn import Eccentricity, turn_period
 from thermogear.heat.lubrication import kinematic_viscosity
 from thermogear.shafts.train import SHAFTS
 
@@ -157,7 +158,9 @@ def _operating(case: GearCase) -> list[Fact]:
 
 def _held(case: GearCase) -> list[Fact]:
     """What is known beforehand of temperatures that are computed, and of the flanks."""
-    found = [_deviation(place, one) for place, one in enumerate(case.deviations, 1)]
+    found = [_deviation(one) for one in case.deviations]
+    if left := len(case.all_deviations) - len(case.deviations):
+        found.append(Fact(FLANKS, "left out of the nominal flanks", left))
     single = case.file.flanks is not None and case.file.flanks.teeth == "measured"
     found += [*_turn(case), *(fact for one in case.charts for fact in _measured(one, single))]
     if not case.computed:
@@ -177,22 +180,32 @@ def _held(case: GearCase) -> list[Fact]:
     return found or [Fact(group, "held nodes", "none")]
 
 
-def _deviation(place: int, one: Deviation) -> Fact:
-    """What is known of a deviation without a mesh: sizes of an eccentricity, of a drawn flank."""
-    group = "deviations of the flanks"
-    if isinstance(one, Eccentricity):
-        return Fact(group, f"{one.gear}, eccentricity", 1e6 * one.amount, "um")
-    if not isinstance(one, WavyProfile):
-        return Fact(group, str(place), type(one).__name__)
-    text = f"f_Halpha {1e6 * one.slope:+.2f}, f_falpha {1e6 * one.form:.2f} um, drawn"
-    return Fact(group, f"{one.gear}, {one.flank} flank", text)
+FLANKS = "deviations of the flanks"
+
+
+def _deviation(deviation: Deviation) -> Fact:
+    """What is known of a deviation without a mesh: its kind, and its size where it has one."""
+    gear, kind = getattr(deviation, "gear", "pair"), kind_in_words(deviation)
+    if isinstance(deviation, WavyProfile):
+        sizes = f"f_Halpha {1e6 * deviation.slope:+.2f}, f_falpha {1e6 * deviation.form:.2f} um"
+        return Fact(FLANKS, f"{gear}, {deviation.flank} flank", f"{sizes}, drawn")
+    if isinstance(deviation, Relief):
+        kind = f"{deviation.end} relief"
+    if isinstance(deviation, Eccentricity | Relief):
+        return Fact(FLANKS, f"{gear}, {kind}", 1e6 * deviation.amount, "um")
+    if isinstance(deviation, PitchError):
+        most = 1e6 * float(np.ptp(deviation.errors))
+        return Fact(FLANKS, f"{gear}, {kind}s from least to greatest", most, "um")
+    return Fact(FLANKS, f"{gear}, {kind}", "as stated")
 
 
 def _turn(case: GearCase) -> list[Fact]:
     """Period, orders and classes of gears whose teeth differ; nothing of those alike."""
     period, pair = case.period, case.pair
     if period.mesh_periods == 1:
-        return []
+        whole = turn_period(pair, case.all_deviations).mesh_periods
+        left = Fact("period of all deviations", "mesh periods of a turn that is not taken", whole)
+        return [left] if whole > 1 else []
     turns = pair.wheel.teeth // math.gcd(pair.pinion.teeth, pair.wheel.teeth)
     counts = {"mesh periods": period.mesh_periods}
     counts |= {f"order of the {k.replace('_', ' ')}": v for k, v in period.orders.items()}

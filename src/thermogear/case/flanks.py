@@ -8,6 +8,8 @@ from functools import partial
 
 import numpy as np
 
+from thermogear.base.arrays import Floats
+from thermogear.base.display import in_words
 from thermogear.base.errors import InputError
 from thermogear.case.charts import Chart
 from thermogear.case.flank_schema import ToothProfilesTable, ToothTable
@@ -26,7 +28,13 @@ from thermogear.gears.deviations import (
 from thermogear.gears.graded_flanks import WavyProfile, graded_flanks
 from thermogear.gears.pair import GearPair
 from thermogear.gears.population import drawn_pair
-from thermogear.gears.turn import Eccentricity, ToothShapes, mean_tooth, numbered_from
+from thermogear.gears.turn import (
+    Eccentricity,
+    ToothShapes,
+    mean_tooth,
+    numbered_from,
+    turn_period,
+)
 
 OF_METAL, OF_PLASTICS = 6, 9
 """Accuracy classes of ISO 1328-1 taken where none is given: ground steel 4 to 6, plastic cut 8 to
@@ -42,15 +50,27 @@ CLOSED = 0.5e-6
 def deviations(
     file: GearFile, pair: GearPair, measured: Sequence[Chart] = ()
 ) -> tuple[Deviation, ...]:
+    """The deviations that the file takes, of those in :func:`all_deviations`.
+
+    With ``gears.period`` "mesh" those of the mean tooth, with ``gears.part`` "nominal" reliefs.
+    """
+    taken = all_deviations(file, pair, measured)
+    if file.gears.part == "nominal":
+        taken = tuple(deviation for deviation in taken if isinstance(deviation, Relief))
+    return mean_tooth(pair, taken) if file.gears.period == "mesh" else taken
+
+
+def all_deviations(
+    file: GearFile, pair: GearPair, measured: Sequence[Chart] = ()
+) -> tuple[Deviation, ...]:
     """Every deviation that the file gives, pinion's first, ``measured`` flanks among them.
 
     Teeth are numbered as they mesh, from the one that is marked. What
     does not fit the gears (a relief longer than the active profile, pitch errors that are not one
-    for each tooth) is refused under its field of the file. With ``gears.period`` "mesh" the
-    deviations of the mean tooth, with ``gears.part`` "nominal" reliefs alone.
+    for each tooth) is refused under its field of the file.
     """
     contacts = mesh_points(pair, [0.0]).contacts
-    found: list[Deviation] = []
+    given: list[Deviation] = []
     for gear in GEARS:
         for field, make in _given(gear, file, pair):
             try:
@@ -66,19 +86,80 @@ def deviations(
                     why=error.why,
                     fix=error.fix,
                 ) from error
-            found.append(deviation)
+            given.append(deviation)
     if file.flanks is not None and file.flanks.teeth == "measured" and not measured:
         raise InputError(
             "flanks.teeth", "'measured'", why="no chart of every tooth is given",
             fix="name the charts in flanks.pinion and flanks.wheel",
         )  # fmt: skip
-    found += [one for chart in measured for one in _charted(file, pair, chart)]
-    found += _graded(file, pair)
+    given += [deviation for chart in measured for deviation in _charted(file, pair, chart)]
+    given += _graded(file, pair)
     first = {gear: first_tooth(file, gear) for gear in GEARS}
-    found = [numbered_from(pair, deviation, **first) for deviation in found]
-    if file.gears.part == "nominal":
-        found = [deviation for deviation in found if isinstance(deviation, Relief)]
-    return tuple(mean_tooth(pair, found) if file.gears.period == "mesh" else found)
+    return tuple(numbered_from(pair, deviation, **first) for deviation in given)
+
+
+def without_effect(
+    file: GearFile, pair: GearPair, every: Sequence[Deviation]
+) -> Iterator[tuple[str, str]]:
+    """(field and value, why) of what the file states of flanks and ``every`` deviation ignores."""
+    tables = [getattr(file.gears, gear) for gear in GEARS]
+    graded = bool(unmeasured(file))
+    drawn = graded and file.flanks is not None and file.flanks.teeth == "drawn"
+    alike = turn_period(pair, every).mesh_periods == 1
+    for idle, fields, why in (
+        (all(table.pitch_errors is None for table in tables),
+         ("gears.pitch_errors_are", "gears.pitch_errors_along"), "no pitch_errors are given"),
+        (alike, ("gears.marks", "gears.period"), "the teeth of each gear are alike"),
+        (all(isinstance(deviation, Relief) for deviation in every), ("gears.part",),
+         "no flank deviates but by reliefs"),
+        (not graded, ("flanks.accuracy", "flanks.edition", "flanks.seed"),
+         "both gears have flanks of their own"),
+        (not drawn, ("flanks.drawing",), 'it is one of teeth = "drawn"'),
+    ):  # fmt: skip
+        for field in fields if idle else ():
+            name, _, key = field.partition(".")
+            table = getattr(file, name)
+            if table is not None and key in table.model_fields_set:
+                yield f"{field}: {in_words(getattr(table, key))}", why
+
+
+MOST_MESHED = 4000
+"""Mesh periods over which teeth out of their places are held against the backlash."""
+
+
+def require_meshing(
+    file: GearFile, pair: GearPair, acting: Sequence[Deviation], backlash: float
+) -> None:
+    """Refuse stated pitch errors and eccentricities by which the cold pair jams.
+
+    At a mesh phase the least gap of the drive flanks and that of the back flanks add up to what is
+    left of the normal ``backlash`` [m]; over the turn it must stay above 0.
+    """
+    moved = [d for d in acting if isinstance(d, PitchError | Eccentricity)]
+    reach = {
+        d: float(np.ptp(d.errors) if isinstance(d, PitchError) else 2.0 * d.amount) for d in moved
+    }
+    # a drive flank early and a back flank late, each by the whole reach
+    if not moved or 2.0 * sum(reach.values()) <= backlash:
+        return
+    periods = min(turn_period(pair, moved).mesh_periods, MOST_MESHED)
+    left: Floats = np.full(8 * periods, backlash)
+    for flank in ("drive", "back"):
+        points = mesh_points(pair, np.arange(8 * periods) / 8, flank)
+        gap = sum((d.gap(points.contacts) for d in moved), points.point.gap)
+        left = left + np.nanmin(np.where(np.isfinite(gap), gap, np.inf), axis=-1)
+    worst = max(reach, key=lambda d: reach[d])
+    table: GearTable = getattr(file.gears, worst.gear)
+    listed = "pitch_errors" if table.pitch_errors is not None else "teeth_differ"
+    field = "eccentricity" if isinstance(worst, Eccentricity) else listed
+    if left.min() <= 0.0 and getattr(table, field):
+        raise InputError(
+            f"gears.{worst.gear}.{field}",
+            f"teeth that take {1e6 * (backlash - left.min()):.4g} um of the backlash",
+            allowed=f"< {1e6 * backlash:.4g} um, the whole of it along the line of action",
+            why="the cold pair would jam",
+            fix="correct the unit, or open [backlash]",
+        )
 
 
 def first_tooth(file: GearFile, gear: str) -> int:
@@ -189,7 +270,7 @@ def accuracy(file: GearFile, pair: GearPair) -> int | None:
     Left out it is 6 for metal, 9 for plastics, and none where the tables of ISO 1328-1 end.
     """
     table = file.flanks
-    if table is None or not unmeasured(file) or file.gears.part == "nominal":
+    if table is None or not unmeasured(file):
         return None
     if table.accuracy is not None:
         return table.accuracy

@@ -87,6 +87,8 @@ def draw(
         raise InputError("output", output, why=why, fix="name a file")
     if enlarge is not None and not 1.0 <= enlarge <= 1000.0:
         raise InputError("--enlarge", f"{enlarge:g}", allowed="1..1000")
+    if delivery.OF_PART["--turn"] in overrides:
+        raise InputError("--turn", "a drawing", why="its teeth are all alike", fix="leave it out")
     read = delivery.load_gears(case, overrides).unless_stated("part", "nominal")
 
     from thermogear.case.thermal_state import ThermalState

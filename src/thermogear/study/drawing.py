@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from thermogear.base.arrays import DataArray, Dataset
+from thermogear.base.display import kind_in_words
 from thermogear.base.errors import InputError
 from thermogear.base.vocabulary import UNDEFORMED, is_known
 from thermogear.case.case import GearCase, gear_case
@@ -17,6 +18,7 @@ from thermogear.case.thermal_state import UNDEFORMED as COLD
 from thermogear.mesh.drawing import PHASES, drawn_gears
 from thermogear.mesh.model import MeshModel
 from thermogear.results.result import Notice, Result
+from thermogear.study.declared import mean_tooth_notices
 
 KIND = "drawing"
 MOST = 6
@@ -54,7 +56,7 @@ def drawing(
         KIND,
         f"The gears in mesh: {case.title}",
         {"drawing": data},
-        _notices(data),
+        [*_flank_notices(case), *_notices(data)],
         **case.provenance,
         state=hot.words,
     )
@@ -93,6 +95,15 @@ def _drawn(
         phases=phases,
         fineness=fineness,
     )
+
+
+def _flank_notices(case: GearCase) -> Iterator[Notice]:
+    """Which of the case's deviations and teeth are drawn."""
+    yield from mean_tooth_notices(case, case.mean_tooth())
+    if case.file.gears.part == "nominal":
+        others = {kind_in_words(d) for d in case.all_deviations if d not in case.deviations}
+        if others:
+            yield Notice.of("nominal_flanks_drawn", deviations=sorted(others))
 
 
 def _notices(data: Dataset) -> Iterator[Notice]:
