@@ -10,7 +10,9 @@ import pytest
 
 from coded import coded
 from own_pair import OWN_PAIR
+from thermogear.base.display import kind_in_words
 from thermogear.front.cli import main
+from thermogear.gears.deviations import PitchError
 
 
 @pytest.fixture
@@ -46,11 +48,13 @@ def test_what_of_the_flanks_is_drawn_is_told_in_words(
     words = ["draw", str(case), "-o", str(case.parent / "a.svg"), "--json", "--set", tooth]
     assert main(words) == 0
     notices = coded(json.loads(capsys.readouterr().out)["notices"])
-    assert notices["nominal_flanks_drawn"] == [{"deviations": ["pitch error"]}]
+    kind = kind_in_words(PitchError("pinion", (0.0,)))
+    assert kind.split() == ["pitch", "error"]
+    assert notices["nominal_flanks_drawn"] == [{"deviations": [kind]}]
     assert main([*words, "--part", "case"]) == 0
     notices = coded(json.loads(capsys.readouterr().out)["notices"])
     assert notices["mean_tooth_taken"] == [{"mesh_periods": 19}]
-    assert notices["deviations_not_drawn"] == [{"deviations": "pitch error"}]
+    assert notices["deviations_not_drawn"] == [{"deviations": kind}]
 
 
 @pytest.mark.parametrize(
