@@ -15,7 +15,7 @@ from thermogear.base.enclosed import with_files
 from thermogear.base.errors import InputError, short
 from thermogear.base.files import decoded, require_regular
 from thermogear.base.units import ROUNDED
-from thermogear.case.flank_file import LARGEST, FlankFile, read_flanks
+from thermogear.case.flank_file import LARGEST, SIDES, FlankFile, read_flanks
 from thermogear.case.schema import GearFile
 from thermogear.gears.deviations import FlankTable
 from thermogear.gears.geometry import Gear
@@ -24,6 +24,9 @@ from thermogear.gears.pair import GearPair
 from thermogear.gears.turn import ToothShapes
 
 GEARS = ("pinion", "wheel")
+PITCHES = ("cumulative pitch", "single pitch")
+"""Pitch deviations that act, each along the arc of the reference circle, in the order of the teeth;
+what adds up over many teeth is known best from the first."""
 _CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f]")
 
 
@@ -43,6 +46,13 @@ class Chart:
         """A trace's name: tooth and side as the file has them, and what the side does."""
         side, acts = self.read.side[trace], self.traces.flank[trace]
         return f"tooth {self.read.tooth[trace]} {side}" + (f" ({acts})" if acts != side else "")
+
+    @property
+    def acting_pitch(self) -> str | None:
+        """The column of pitch deviations that acts, the drive flank's first; None without one."""
+        hands = (self.read.drive, "drive", "", *SIDES)
+        names = (f"{kind} {hand}".strip() for kind in PITCHES for hand in hands)
+        return next((name for name in names if name in self.read.pitch), None)
 
     def every_tooth(self, pair: GearPair) -> tuple[ToothShapes, ...]:
         """Each side that was measured, every tooth by itself.

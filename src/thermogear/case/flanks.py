@@ -92,7 +92,12 @@ def all_deviations(
             "flanks.teeth", "'measured'", why="no chart of every tooth is given",
             fix="name the charts in flanks.pinion and flanks.wheel",
         )  # fmt: skip
-    given += [deviation for chart in measured for deviation in _charted(file, pair, chart)]
+    for chart in measured:
+        try:
+            given += _charted(file, pair, chart)
+        except InputError as error:
+            of_case = error.field.startswith(("gears.", "flanks."))
+            raise error.named(error.field if of_case else f"flanks.{chart.gear}") from error
     given += _graded(file, pair)
     first = {gear: first_tooth(file, gear) for gear in GEARS}
     return tuple(numbered_from(pair, deviation, **first) for deviation in given)
@@ -150,11 +155,14 @@ def require_meshing(
         left = left + np.nanmin(np.where(np.isfinite(gap), gap, np.inf), axis=-1)
     worst = max(reach, key=lambda d: reach[d])
     table: GearTable = getattr(file.gears, worst.gear)
-    listed = "pitch_errors" if table.pitch_errors is not None else "teeth_differ"
-    field = "eccentricity" if isinstance(worst, Eccentricity) else listed
-    if left.min() <= 0.0 and getattr(table, field):
+    listed = ("pitch_errors", "teeth_differ")
+    names = ("eccentricity",) if isinstance(worst, Eccentricity) else listed
+    stated = [f"gears.{worst.gear}.{name}" for name in names if getattr(table, name)]
+    if getattr(file.flanks, worst.gear, None):
+        stated.append(f"flanks.{worst.gear}")
+    if left.min() <= 0.0 and stated:  # what is drawn from a class may jam: the study says so
         raise InputError(
-            f"gears.{worst.gear}.{field}",
+            stated[0],
             f"teeth that take {1e6 * (backlash - left.min()):.4g} um of the backlash",
             allowed=f"< {1e6 * backlash:.4g} um, the whole of it along the line of action",
             why="the cold pair would jam",
@@ -210,23 +218,31 @@ def _index(gear: str, file: GearFile, pair: GearPair) -> PitchError:
     given.require_fits(pair)
     errors = np.array(given.errors)
     if file.gears.pitch_errors_are == "single pitch":
-        left, most = float(errors.sum()), CLOSED * table.teeth
-        if abs(left) > most:
-            raise InputError(
-                "",
-                f"single pitch deviations that add up to {1e6 * left:.4g} um",
-                allowed=f"{-1e6 * most:.4g}..{1e6 * most:.4g} um",
-                why="after a whole turn the pitches close",
-                fix='are they positions of the teeth? then gears.pitch_errors_are = "index"',
-            )
-        # a tooth farther from the one before lies farther back in the sense of turning
-        index = np.cumsum(errors - errors.mean()) * (-1.0 if gear == "pinion" else 1.0)
-        errors = index - index.mean()
+        errors = _from_pitches(gear, errors, 'gears.pitch_errors_are = "index"')
     if file.gears.pitch_errors_along == "arc":
         errors = errors * math.cos(file.gears.pressure_angle)
     for one in table.teeth_differ:
         errors[_place(one, table.teeth)] += one.index
     return PitchError(gear, tuple(errors.tolist()))
+
+
+def _from_pitches(gear: str, pitches: Floats, instead: str) -> Floats:
+    """Index [m] of every tooth from its single pitch; ``instead`` is to write for positions."""
+    left, most = float(pitches.sum()), CLOSED * pitches.size
+    if abs(left) > most:
+        raise InputError(
+            "",
+            f"single pitch deviations that add up to {1e6 * left:.4g} um",
+            allowed=f"{-1e6 * most:.4g}..{1e6 * most:.4g} um",
+            why="after a whole turn the pitches close",
+            fix=f"are they positions of the teeth? then {instead}",
+        )
+    return _from_places(gear, np.cumsum(pitches - pitches.mean()))
+
+
+def _from_places(gear: str, behind: Floats) -> Floats:
+    """Index [m] of teeth that lie so far behind their places, in the sense of turning."""
+    return (behind - behind.mean()) * (-1.0 if gear == "pinion" else 1.0)
 
 
 def _place(one: ToothTable, teeth: int) -> int:
@@ -258,10 +274,25 @@ def _single_teeth(gear: str, given: Sequence[ToothTable], teeth: int) -> ToothSh
 
 
 def _charted(file: GearFile, pair: GearPair, chart: Chart) -> tuple[Deviation, ...]:
-    """What a chart's flanks are: the mean of the teeth, or each tooth by itself."""
-    if file.flanks is None or file.flanks.teeth != "measured":
-        return chart.deviations
-    return chart.every_tooth(pair)
+    """What a chart's flanks are, the mean of the teeth or each tooth by itself, and its pitch."""
+    single = file.flanks is not None and file.flanks.teeth == "measured"
+    flanks = chart.every_tooth(pair) if single else chart.deviations
+    if (name := chart.acting_pitch) is None:
+        return flanks
+    if getattr(file.gears, chart.gear).pitch_errors is not None:
+        raise InputError(
+            f"gears.{chart.gear}.pitch_errors",
+            f"given beside {', '.join(chart.names)}",
+            why=f"the chart's column '{name}' says where the teeth are",
+            fix="leave one out",
+        )
+    index = chart.read.pitch[name]
+    if name.startswith("single"):
+        index = _from_pitches(chart.gear, index, f"name the column 'cumulative{name[6:]}'")
+    else:
+        index = _from_places(chart.gear, index)
+    arc = math.cos(file.gears.pressure_angle)
+    return (*flanks, PitchError(chart.gear, tuple((arc * index).tolist())))
 
 
 def accuracy(file: GearFile, pair: GearPair) -> int | None:

@@ -78,7 +78,8 @@ def _group(chart: Chart, pair: GearPair) -> Dataset:
         values = np.array([figure[place] for figure, _ in rows_])
         entries[name] = (("trace",), values, "m", text)
     for place, (name, values) in enumerate(chart.read.pitch.items(), 1):
-        entries[f"pitch_{place}"] = (("tooth",), values, "m", f"{name}, kept and not used")
+        use = "acts" if name == chart.acting_pitch else "kept and not used"
+        entries[f"pitch_{place}"] = (("tooth",), values, "m", f"{name}, {use}")
     coordinates: dict[str, Any] = {
         "roll_path": (("flank_point",), rho, "m", "roll path from the base circle"),
         "diameter": (("flank_point",), 2.0 * np.hypot(gear.base_radius, rho), "m", "diameter"),
@@ -130,8 +131,10 @@ def measured_notices(case: GearCase) -> Iterator[Notice]:
             yield Notice.of("flank_not_measured", about=name, flank=flank)
         if any(isinstance(one, Relief) and one.gear == chart.gear for one in case.deviations):
             yield Notice.of("relief_on_traces", about=name)
-        if chart.read.pitch:
-            yield Notice.of("pitch_not_used", about=name, deviations=list(chart.read.pitch))
+        if chart.acting_pitch is not None:
+            yield Notice.of("pitch_as_measured", about=name, deviations=chart.acting_pitch)
+        if others := [column for column in chart.read.pitch if column != chart.acting_pitch]:
+            yield Notice.of("pitch_not_used", about=name, deviations=others)
 
 
 def _gear(pair: GearPair, name: str) -> Gear:
