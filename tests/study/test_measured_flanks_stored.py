@@ -78,9 +78,8 @@ def test_the_notices_tell_what_was_decided(tmp_path: Path) -> None:
         ("back", 3),
     ]
     assert told["flanks_evaluated"][0]["files"] == ["pinion.csv"]
-    assert told["pitch_as_measured"] == [
-        {"about": "pinion flanks", "deviations": "single pitch left"}
-    ]
+    (pitch,) = told["pitch_as_measured"]
+    assert pitch["deviations"].split() == ["single", "pitch", "left"]
     assert "sign_not_stated" in told
     assert "pitch_not_used" not in told
     assert told["flanks_evaluated"][0]["stated"] is None
