@@ -11,6 +11,12 @@ from thermogear.base.toml import line, table
 from thermogear.case.case import GearCase, gear_case, load_case
 from thermogear.shafts.bearings.catalogue import CATALOGUE
 
+
+def _each(text: str) -> list[str] | None:
+    """What commas part; None of nothing."""
+    return [part.strip() for part in text.split(",")] if text.strip() else None
+
+
 SHEAR = 20e6
 """Torsional stress [Pa] that a new shaft is sized for; usual of gearboxes (ours)."""
 BESIDE = 15e-3
@@ -41,6 +47,7 @@ class NewCase:
     accuracy: int | None = None
     drawn_teeth: bool = False
     run_out: tuple[str, str] | None = None
+    pitch_errors: tuple[str, str] | None = None
     pinion_flanks: str | None = None
     wheel_flanks: str | None = None
     allow_undercut: bool = False
@@ -85,6 +92,7 @@ class NewCase:
                 line("tip_chamfer", self.tip_chamfer, "height that it takes off the tip"),
                 line("material", material and material[place]),
                 line("eccentricity", self.run_out and {"run_out": self.run_out[place]}),
+                line("pitch_errors", self.pitch_errors and _each(self.pitch_errors[place])),
                 line("allow_undercut", self.allow_undercut or None, "may shorten the contact"),
             )
         oil = line("name", self.oil or "ISO VG 100")

@@ -60,6 +60,12 @@ NEEDED = {
 @click.option(
     "--run-out", nargs=2, metavar="LENGTH LENGTH", help="Radial run-out of pinion and wheel; none."
 )
+@click.option(
+    "--pitch-errors",
+    nargs=2,
+    metavar="LIST LIST",
+    help='Index errors of the teeth of pinion and wheel, "1 um, -2 um, ..."; "" for none.',
+)
 @click.option("--pinion-flanks", metavar="CSV", help="Inspection chart of the pinion's flanks.")
 @click.option("--wheel-flanks", metavar="CSV", help="The wheel's; each replaces the class.")
 @click.option(

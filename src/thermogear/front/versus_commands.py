@@ -18,13 +18,16 @@ if TYPE_CHECKING:
 @click.command()
 @click.argument("results", nargs=-1, metavar="RESULTS RESULTS [...]")
 @delivery.output("Directory of the page; made if new.")
+@delivery.overrides
 @delivery.as_json
-def versus(results: tuple[str, ...], output: str, as_json: bool) -> None:
+def versus(
+    results: tuple[str, ...], output: str, overrides: tuple[str, ...], as_json: bool
+) -> None:
     """Set two to six cases side by side: what differs, key figures, curves over each other.
 
     Each of RESULTS is a directory of `thermogear run`, or a case (its file, or the name of a
-    ready-made one), which is run first into a directory of its own below DIR. Writes versus.html,
-    versus.nc and CSV tables.
+    ready-made one), which is run first, as the options say, into a directory of its own below
+    DIR. Writes versus.html, versus.nc and CSV tables.
     """
     from thermogear.results import versus as study
 
@@ -32,7 +35,7 @@ def versus(results: tuple[str, ...], output: str, as_json: bool) -> None:
     directory = Path(output)
     paths = [_existing(Path(given)) for given in results]
 
-    from thermogear.case.case import load_case
+    from thermogear.base.errors import InputError
     from thermogear.case.size import require_room
     from thermogear.front.progress import Stopped
     from thermogear.results.result import read_results
@@ -47,8 +50,11 @@ def versus(results: tuple[str, ...], output: str, as_json: bool) -> None:
         if path.is_dir():
             found[place] = read_results(path)
         else:
-            cases[place] = load_case(path)
+            cases[place] = delivery.load(str(path), overrides)
             require_room(cases[place])
+    if overrides and not cases:
+        why = "directories of results stay as they are"
+        raise InputError("overrides", ", ".join(overrides), why=why, fix="name a case, or none")
     study.require_one_kind({
         str(path): found[place].kind if place in found else cases[place].kind
         for place, path in enumerate(paths)
