@@ -181,33 +181,37 @@ def _of_teeth(
     """(field, maker) of what may differ from tooth to tooth of one gear."""
     table: GearTable = getattr(file.gears, gear)
     _require_differing(gear, table.teeth_differ)
-    if table.pitch_errors is not None or any(one.index for one in table.teeth_differ):
+    if table.pitch_errors is not None or any(tooth.index for tooth in table.teeth_differ):
         field = "pitch_errors" if table.pitch_errors is not None else "teeth_differ"
         yield field, partial(_index, gear, file, pair)
-    if (one := table.eccentricity) is not None:
-        amount = one.amount if one.amount is not None else 0.5 * (one.run_out or 0.0)
-        yield "eccentricity", partial(Eccentricity, gear, amount=amount, angle=one.angle)
+    if (eccentricity := table.eccentricity) is not None:
+        amount = (
+            eccentricity.amount
+            if eccentricity.amount is not None
+            else 0.5 * (eccentricity.run_out or 0.0)
+        )
+        yield "eccentricity", partial(Eccentricity, gear, amount=amount, angle=eccentricity.angle)
     for place, profiles in enumerate(table.tooth_profiles):
         yield f"tooth_profiles[{place}]", partial(_every_tooth, gear, profiles, table.teeth)
     for flank in FLANKS:
-        single = [one for one in table.teeth_differ if one.flank == flank]
-        if any(one.slope or one.form for one in single):
+        single = [tooth for tooth in table.teeth_differ if tooth.flank == flank]
+        if any(tooth.slope or tooth.form for tooth in single):
             yield "teeth_differ", partial(_single_teeth, gear, single, table.teeth)
 
 
 def _require_differing(gear: str, given: Sequence[ToothTable]) -> None:
     """Refuse a tooth of a side named twice, or with nothing that differs."""
-    named = [(one.tooth, one.flank) for one in given]
-    for place, one in enumerate(given):
+    named = [(tooth.tooth, tooth.flank) for tooth in given]
+    for place, tooth in enumerate(given):
         field = f"gears.{gear}.teeth_differ[{place}]"
         if named.count(named[place]) > 1:
             raise InputError(
-                field, f"tooth {one.tooth} twice", allowed="each tooth of a side once",
+                field, f"tooth {tooth.tooth} twice", allowed="each tooth of a side once",
                 fix="put what differs into one entry",
             )  # fmt: skip
-        if not (one.index or one.slope or one.form):
+        if not (tooth.index or tooth.slope or tooth.form):
             raise InputError(
-                field, f"tooth {one.tooth} without a difference", fix="give index, slope or form"
+                field, f"tooth {tooth.tooth} without a difference", fix="give index, slope or form"
             )
 
 
@@ -221,8 +225,8 @@ def _index(gear: str, file: GearFile, pair: GearPair) -> PitchError:
         errors = _from_pitches(gear, errors, 'gears.pitch_errors_are = "index"')
     if file.gears.pitch_errors_along == "arc":
         errors = errors * math.cos(file.gears.pressure_angle)
-    for one in table.teeth_differ:
-        errors[_place(one, table.teeth)] += one.index
+    for tooth in table.teeth_differ:
+        errors[_place(tooth, table.teeth)] += tooth.index
     return PitchError(gear, tuple(errors.tolist()))
 
 
@@ -242,7 +246,7 @@ def _from_pitches(gear: str, pitches: Floats, instead: str) -> Floats:
 
 def _from_places(gear: str, behind: Floats) -> Floats:
     """Index [m] of teeth that lie so far behind their places, in the sense of turning."""
-    return (behind - behind.mean()) * (-1.0 if gear == "pinion" else 1.0)
+    return np.asarray((behind - behind.mean()) * (-1.0 if gear == "pinion" else 1.0))
 
 
 def _place(one: ToothTable, teeth: int) -> int:
@@ -260,7 +264,7 @@ def _every_tooth(gear: str, table: ToothProfilesTable, teeth: int) -> ToothShape
             raise InputError(
                 name, f"{len(values)} values", allowed=f"{each}one", fix="list them tooth by tooth"
             )
-    rows = zip(*(np.broadcast_to(one, teeth).tolist() for one in columns.values()), strict=True)
+    rows = np.transpose([np.broadcast_to(values, teeth) for values in columns.values()]).tolist()
     made = partial(WavyProfile, gear, waves=table.waves, flank=table.flank)
     return ToothShapes(gear, tuple(made(**dict(zip(columns, row, strict=True))) for row in rows))
 
@@ -268,8 +272,8 @@ def _every_tooth(gear: str, table: ToothProfilesTable, teeth: int) -> ToothShape
 def _single_teeth(gear: str, given: Sequence[ToothTable], teeth: int) -> ToothShapes:
     """Slope and form of the teeth that differ on one side, none of the others."""
     shapes: list[FlankShape] = [WavyProfile(gear, slope=0.0, flank=given[0].flank)] * teeth
-    for one in given:
-        (shapes[_place(one, teeth)],) = _every_tooth(gear, one, 1).shapes
+    for tooth in given:
+        (shapes[_place(tooth, teeth)],) = _every_tooth(gear, tooth, 1).shapes
     return ToothShapes(gear, tuple(shapes))
 
 
@@ -347,7 +351,8 @@ def _graded(file: GearFile, pair: GearPair) -> tuple[Deviation, ...]:
             why=error.why,
             fix="give [transmission_error] harmonics, or measured profiles, instead",
         ) from error
-    return tuple(one for one in profiles if getattr(one, "gear", None) in unmeasured(file))
+    graded = unmeasured(file)
+    return tuple(profile for profile in profiles if getattr(profile, "gear", None) in graded)
 
 
 def unmeasured(file: GearFile) -> list[str]:

@@ -79,7 +79,7 @@ def draw(
         raise InputError(
             "output",
             repr(output),
-            allowed=" | ".join(f".{one}" for one in ENDINGS),
+            allowed=" | ".join(f".{ending}" for ending in ENDINGS),
             fix="end its name with .svg",
         )
     if path.is_dir() or not path.parent.is_dir():
@@ -105,17 +105,17 @@ def draw(
         phase=phase,
         fineness=FINE if kind == "dxf" else 1,
     )
-    found = gear_drawing(result.data, factor=enlarge)
+    drawn = gear_drawing(result.data, factor=enlarge)
     if kind == "dxf":
         from thermogear.views.cad import put_dxf
 
-        put_dxf(found, path, place=0, shown=SHOWN[show])
+        put_dxf(drawn, path, place=0, shown=SHOWN[show])
     else:
         from thermogear.views.plots.gears import in_mesh
         from thermogear.views.svg import put_picture
 
         name = {"both": "both", "cold": "undeformed", "hot": "hot"}[show]
-        put_picture(in_mesh(found, phase, name), path, resolution=RESOLUTION)
+        put_picture(in_mesh(drawn, phase, name), path, resolution=RESOLUTION)
     delivery.tell(page_of(result), path, as_json=as_json)
 
 

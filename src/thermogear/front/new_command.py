@@ -124,11 +124,11 @@ def _quoted(name: str) -> str:
 
 def _asked() -> dict[str, Any]:
     """The answers of a person at a terminal."""
-    found: dict[str, Any] = {}
+    answers: dict[str, Any] = {}
     for name, (question, example) in NEEDED.items():
         text = click.prompt(question, default=example)
-        found[name] = _teeth(text) if name == "teeth" else text
-    return found
+        answers[name] = _teeth(text) if name == "teeth" else text
+    return answers
 
 
 def _teeth(text: str) -> tuple[int, int]:

@@ -44,11 +44,11 @@ def versus(
     from thermogear.views.write import save_results
 
     # everything is read and checked before the first case runs
-    found: dict[int, Result] = {}
+    results_by_place: dict[int, Result] = {}
     cases: dict[int, GearCase | DimensionlessCase] = {}
     for place, path in enumerate(paths):
         if path.is_dir():
-            found[place] = read_results(path)
+            results_by_place[place] = read_results(path)
         else:
             cases[place] = delivery.load(str(path), overrides)
             require_room(cases[place])
@@ -56,7 +56,7 @@ def versus(
         why = "directories of results stay as they are"
         raise InputError("overrides", ", ".join(overrides), why=why, fix="name a case, or none")
     study.require_one_kind({
-        str(path): found[place].kind if place in found else cases[place].kind
+        str(path): results_by_place[place].kind if place in results_by_place else cases[place].kind
         for place, path in enumerate(paths)
     })  # fmt: skip
     homes = _homes(directory, paths)
@@ -65,10 +65,10 @@ def versus(
     def make(report: Progress) -> Result:
         nonlocal done
         for place, case in cases.items():
-            found[place] = with_errata(run(case, progress=report), case)
-            save_results(found[place], homes[place])
+            results_by_place[place] = with_errata(run(case, progress=report), case)
+            save_results(results_by_place[place], homes[place])
             done += 1
-        stored = [study.stored(found[p], homes[p].name) for p in range(len(paths))]
+        stored = [study.stored(results_by_place[p], homes[p].name) for p in range(len(paths))]
         return study.versus(stored)
 
     try:

@@ -46,7 +46,7 @@ def drawing(
     case, hot = gear_case(case), ThermalState.of(state)
     if phase is not None and not 0.0 <= phase <= 1.0:
         raise InputError("phase", f"{phase:g}", allowed="0..1", fix="a part of one mesh period")
-    names = [one.name for one in case.models]
+    names = [model.name for model in case.models]
     model = dict(zip(names, case.models, strict=True))[named("bundle", bundle, names)]
     most = len(case.speeds) * len(case.torques)
     here = counted("operating", 1 if operating is None else operating, most=most)
@@ -72,7 +72,7 @@ def drawn_points(case: GearCase, status: DataArray) -> Dataset | None:
         return None
     places = known[np.unique(np.linspace(0, known.size - 1, min(MOST, known.size)).round())
                    .astype(int)]  # fmt: skip
-    return _drawn(case, case.models[0], HOT, [int(one) for one in places], PHASES, 1)
+    return _drawn(case, case.models[0], HOT, [int(place) for place in places], PHASES, 1)
 
 
 def _drawn(
@@ -84,8 +84,8 @@ def _drawn(
     fineness: int,
 ) -> Dataset:
     states = {
-        name: replace(one.operating(case, model), housing=case.housing).part(np.array(places))
-        for name, one in ((UNDEFORMED, COLD), ("hot", hot))
+        name: replace(state.operating(case, model), housing=case.housing).part(np.array(places))
+        for name, state in ((UNDEFORMED, COLD), ("hot", hot))
     }
     return drawn_gears(
         case.pair,

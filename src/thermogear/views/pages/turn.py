@@ -80,7 +80,7 @@ def numbers(groups: Mapping[str, Dataset]) -> dict[str, Any]:
     if "turn" not in groups:
         return {}
     turn = groups["turn"]
-    found: dict[str, Any] = {
+    figures: dict[str, Any] = {
         "mesh_periods": int(turn.attrs["mesh_periods"]),
         "pinion_torque_Nm": float(turn.attrs["torque"]),
         **{f"{name}_peak_to_peak_m": float(np.ptp(turn[name].values)) for name in SWINGS},
@@ -88,7 +88,7 @@ def numbers(groups: Mapping[str, Dataset]) -> dict[str, Any]:
         "teeth": [in_full(TEETH, row) for row in rows_along(groups["teeth"], "tooth")],
         "assemblies": [in_full(ASSEMBLIES, row) for row in _assemblies(groups)],
     }
-    return {"turn": found}
+    return {"turn": figures}
 
 
 def _assemblies(groups: Mapping[str, Dataset]) -> list[dict[str, Any]]:
