@@ -477,7 +477,8 @@ def case_of(
         return DimensionlessCase(points=points_of(read), base=base, assumptions=found, **common)
     try:
         case = _gear_case(read, common | {"data": data})
-        if told:
+        if told:  # where backlash or errors are varied a jam is a result
+            require_meshing(read, case.pair, case.deviations, 2.0 * case.cold_backlash.half)
             _warn_of(case)
     except InputError as error:
         others = [one for one in parts.faults(read) if str(one) != str(error)]
@@ -576,8 +577,6 @@ def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
     if train is not None:
         box = heated(file, pair, box, train, housing)
     measured = charts(file, pair)
-    flanks = deviations(file, pair, measured)
-    require_meshing(file, pair, flanks, 2.0 * backlash.half)
     return GearCase(
         pair=pair,
         stated=Operating(
@@ -604,7 +603,7 @@ def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
         path_positions=file.grid.path_positions,
         pictures=file.draw.pictures,
         base_sets=file.draw.base_sets,
-        deviations=flanks,
+        deviations=deviations(file, pair, measured),
         accuracy=None if file.gears.part == "nominal" else accuracy(file, pair),
         charts=measured,
         gearbox=box,
