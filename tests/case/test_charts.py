@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 import own_chart
 from own_chart import BASE, END, START, chart, diameter
 from thermogear.base.errors import InputError
+from thermogear.base.period import Period
 from thermogear.case.case import GearCase, load_case
 from thermogear.case.family import family
-from thermogear.gears.deviations import FlankTable
+from thermogear.gears.deviations import GEARS, FlankTable, PitchError
 from thermogear.gears.graded_flanks import WavyProfile, profile_figures
 
 Floats = NDArray[np.float64]
@@ -286,9 +287,55 @@ def test_another_flank_file_is_another_case(tmp_path: Path) -> None:
     assert third.text == first.text
 
 
+@pytest.mark.parametrize("gear", ["pinion", "wheel"])
+def test_pitch_deviations_act_as_those_of_a_case_along_the_arc(tmp_path: Path, gear: str) -> None:
+    """Single pitches, or their sums from any tooth on, are the case's single pitches."""
+    teeth = {"pinion": 20, "wheel": 40}[gear]
+    single = np.random.default_rng(1).normal(0.0, 3.0, teeth)
+    single -= single.mean()
+    stated = str([f"{value!r} um" for value in single.tolist()])
+    kinds = ["gears.pitch_errors_are=single pitch", "gears.pitch_errors_along=arc"]
+    expected = load_case(own_chart.CASE, [f"gears.{gear}.pitch_errors={stated}", *kinds])
+    assert isinstance(expected, GearCase)
+    wanted = next(one for one in expected.deviations if isinstance(one, PitchError))
+    traces = chart({LEFT: TRACE}, diameter(RHO)), _wheel()
+    for name, values in {
+        "single pitch left": single,
+        "cumulative pitch drive": np.cumsum(single) + 7.0,
+        "cumulative pitch": np.cumsum(single),
+    }.items():
+        rows = "\n".join(f"{k + 1},{value!r}" for k, value in enumerate(values.tolist()))
+        block = f"\ntooth,{name} [um]\n{rows}\n"
+        texts = [text + block * (each == gear) for each, text in zip(GEARS, traces, strict=True)]
+        case = own_chart.case(tmp_path, *texts)
+        (error,) = (one for one in case.deviations if isinstance(one, PitchError))
+        assert error.gear == gear
+        np.testing.assert_allclose(error.errors, wanted.errors, atol=1e-15)
+        assert case.period == Period(teeth, (20, 40))
+    with pytest.raises(InputError) as caught:
+        load_case(tmp_path / "mine.toml", [f"gears.{gear}.pitch_errors={stated}"])
+    assert str(caught.value) == (
+        f"gears.{gear}.pitch_errors: got given beside {gear}.csv; the chart's column 'cumulative "
+        "pitch' says where the teeth are; leave one out"
+    )
+
+
+def test_single_pitches_of_a_chart_that_do_not_close_are_refused(tmp_path: Path) -> None:
+    rows = "".join(f"{k + 1},1\n" for k in range(20))
+    text = chart({LEFT: TRACE}, diameter(RHO)) + f"\ntooth,single pitch left [um]\n{rows}"
+    with pytest.raises(InputError) as caught:
+        own_chart.case(tmp_path, text)
+    assert str(caught.value) == (
+        "flanks.pinion: got single pitch deviations that add up to 20 um; allowed -10..10 um; "
+        "after a whole turn the pitches close; are they positions of the teeth? then name the "
+        "column 'cumulative pitch left'"
+    )
+
+
 def test_pitch_deviations_are_kept(tmp_path: Path) -> None:
     rng = np.random.default_rng(1)
     pitch = rng.normal(0.0, 3.0, 20)
+    pitch -= pitch.mean()
     rows = "\n".join(f"{k + 1},{value:.3f}" for k, value in enumerate(pitch))
     block = f"\ntooth,single pitch left [um]\n{rows}\n"
     text = chart({LEFT: TRACE}, diameter(RHO))

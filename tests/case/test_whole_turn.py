@@ -12,7 +12,7 @@ import pytest
 import own_chart
 from own_chart import END, START, chart, diameter
 from said import numbers
-from thermogear.base.errors import InputError
+from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.base.period import Period
 from thermogear.case.case import GearCase, gear_case, load_case
 from thermogear.case.derived import facts
@@ -145,6 +145,12 @@ REFUSED = {
         'instance "line of action"',
     "gears.pinion.teeth_differ=[{tooth=2, slope=['1 um', '2 um']}]":
         "gears.pinion.teeth_differ.slope: got 2 values; allowed one; list them tooth by tooth",
+    "gears.pinion.tooth_profiles=[{flank='drive'}]":
+        "gears.pinion.tooth_profiles[0].form: got nothing; allowed slope or form; for none write "
+        'form = "0 um"',
+    "gears.pinion.tooth_profiles=[{slope='1 um', waves=3}]":
+        "gears.pinion.tooth_profiles[0].form: got nothing; allowed form beside phase or waves; for "
+        'none write form = "0 um"',
     "gears.marks=[21, 1]": "gears.marks[0]: got 21; allowed 1..20",
     "gears.marks=[1]":
         "gears.marks: got a list of 1; allowed 2 entries; write for instance [1, 1]",
@@ -167,6 +173,49 @@ def test_pitches_that_do_not_close_are_no_pitches() -> None:
         "-10..10 um; after a whole turn the pitches close; are they positions of the teeth? then "
         'gears.pitch_errors_are = "index"'
     )
+
+
+def test_teeth_that_take_the_whole_backlash_are_refused() -> None:
+    """A tooth early by x takes x of it, an eccentricity e of one gear 2 e sin(alpha_w)."""
+    whole = 2e6 * case().cold_backlash.half
+    tooth = 'gears.wheel.teeth_differ=[{{tooth=3, index="{:.6f} um"}}]'
+    run_out = "gears.pinion.eccentricity.run_out={:.6f} um"
+    sine = math.sin(math.radians(20.0))
+    for field, change, most in (
+        ("gears.wheel.teeth_differ", tooth, whole),
+        ("gears.pinion.eccentricity", run_out, whole / sine),
+    ):
+        meshing = case(change.format(0.999 * most))
+        assert meshing.period.mesh_periods > 1
+        narrow = meshing.with_values({"cold_half_backlash": 1e-6}, told=False)
+        assert narrow.deviations == meshing.deviations  # a jam is what a sweep looks for
+        with pytest.raises(InputError) as caught:
+            case(change.format(1.01 * most))
+        assert str(caught.value) == (
+            f"{field}: got teeth that take {1.01 * whole:.4g} um of the backlash; allowed < "
+            f"{whole:.4g} um, the whole of it along the line of action; the cold pair would jam; "
+            "correct the unit, or open [backlash]"
+        )
+
+
+def test_what_changes_nothing_is_said() -> None:
+    errors = f"gears.pinion.pitch_errors={um([1.0, -1.0] * (Z1 // 2))}"
+    chosen = {
+        "gears.marks=[3, 5]": "gears.marks: 3, 5 has no effect: the teeth of each gear are alike",
+        "gears.period=mesh": "gears.period: mesh has no effect: the teeth of each gear are alike",
+        "gears.pitch_errors_along=arc":
+            "gears.pitch_errors_along: arc has no effect: no pitch_errors are given",
+        "gears.part=nominal": "gears.part: nominal has no effect: no flank deviates but by reliefs",
+    }  # fmt: skip
+    for change, line in chosen.items():
+        with pytest.warns(ValidityWarning) as caught:
+            case(change)
+        assert [str(one.message) for one in caught] == [f"{line}; leave it out"]
+        case(errors, change)  # where a warning would be an error
+    for change in ("drawing=3", "drawing=0"):
+        with pytest.warns(ValidityWarning, match=r"^flanks\.drawing: \d has no effect: it is one"):
+            graded(f"flanks.{change}")
+        graded("flanks.teeth=drawn", f"flanks.{change}")
 
 
 # --- marks and assemblies -----------------------------------------------------------------
@@ -228,7 +277,7 @@ def test_teeth_alike_have_one_mesh_period_and_say_nothing_of_a_turn() -> None:
     assert found.period == Period(1, (Z1, Z2))
     assert found.mean_tooth() is found
     assert period_facts(found) == []
-    assert found.deviations == graded("gears.period=mesh").deviations
+    assert period_facts(case(*BOTH, "gears.period=mesh")) == [40]
 
 
 def test_the_mean_tooth_stays_in_what_is_read_anew() -> None:

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import json
 import re
 from pathlib import Path
 
 import pytest
 
+from coded import coded
 from own_pair import OWN_PAIR
+from thermogear.base.display import kind_in_words
 from thermogear.front.cli import main
+from thermogear.gears.deviations import PitchError
 
 
 @pytest.fixture
@@ -37,6 +41,22 @@ def test_a_dxf_holds_the_states_asked_for(case: Path) -> None:
     assert text.count("AcDbPolyline") == 2
 
 
+def test_what_of_the_flanks_is_drawn_is_told_in_words(
+    case: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    tooth = "gears.pinion.teeth_differ=[{tooth=3, index='5 um'}]"
+    words = ["draw", str(case), "-o", str(case.parent / "a.svg"), "--json", "--set", tooth]
+    assert main(words) == 0
+    notices = coded(json.loads(capsys.readouterr().out)["notices"])
+    kind = kind_in_words(PitchError("pinion", (0.0,)))
+    assert kind.split() == ["pitch", "error"]
+    assert notices["nominal_flanks_drawn"] == [{"deviations": [kind]}]
+    assert main([*words, "--part", "case"]) == 0
+    notices = coded(json.loads(capsys.readouterr().out)["notices"])
+    assert notices["mean_tooth_taken"] == [{"mesh_periods": 19}]
+    assert notices["deviations_not_drawn"] == [{"deviations": kind}]
+
+
 @pytest.mark.parametrize(
     ("words", "line"),
     [
@@ -48,6 +68,12 @@ def test_a_dxf_holds_the_states_asked_for(case: Path) -> None:
         (["--phase", "2"], "phase: got 2; allowed 0..1"),
         (["--operating", "9"], "operating: got 9; allowed 1..1"),
         (["--state", "warm"], "--state: got 'warm'; allowed "),
+        (["--turn"], "--turn: got a drawing; its teeth are all alike; leave it out"),
+        (["--turn", "--mean-tooth"], "--turn: got gears.period twice; allowed once; leave one of"),
+        (
+            ["--part", "case", "--set", "gears.part=nominal"],
+            "--part case: got gears.part twice; allowed once; leave one of",
+        ),
         (["--bundle", "x"], "bundle: got 'x'; allowed consistent"),
     ],
 )

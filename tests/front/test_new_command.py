@@ -12,6 +12,7 @@ import pytest
 
 from thermogear.case.case import GearCase, load_case
 from thermogear.front.cli import main
+from thermogear.gears.deviations import PitchError
 from thermogear.gears.population import drawn_pair
 from thermogear.gears.turn import Eccentricity
 
@@ -82,6 +83,24 @@ def test_run_outs_and_drawn_teeth_arrive_at_the_gears(tmp_path: Path) -> None:
     assert amounts == pytest.approx([10e-6, 15e-6], rel=1e-14)
     _, drawn = written(tmp_path / "drawn.toml", NEEDED | {"--drawn-teeth": []})
     assert drawn.deviations == drawn_pair(drawn.pair, 6, seed=1)
+
+
+def test_pitch_errors_arrive_at_their_teeth(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    errors = [0.5 * n - 4.0 for n in range(20)]
+    listed = ", ".join(f"{error} um" for error in errors)
+    _, case = written(tmp_path / "mine.toml", NEEDED | {"--pitch-errors": [listed, ""]})
+    (index,) = [one for one in case.deviations if isinstance(one, PitchError)]
+    assert index.gear == "pinion"
+    assert index.errors == pytest.approx([1e-6 * error for error in errors], rel=1e-14)
+    assert case.period.mesh_periods == 20
+    given = NEEDED | {"--pitch-errors": ["", listed]}
+    capsys.readouterr()
+    assert main(["new", *options(given), "-o", str(tmp_path / "no.toml")]) == 2
+    assert capsys.readouterr().err == (
+        "error: gears.wheel.pitch_errors: got 20 values; allowed one for each of the 40 teeth\n"
+    )
 
 
 def test_an_edge_that_no_tip_has_room_for_is_one_line(

@@ -9,9 +9,13 @@ import pytest
 
 from own_rexs import one_stage, put, replaced, xml
 from said import numbers
-from thermogear.case.case import load_case
+from thermogear.base.display import kind_in_words
+from thermogear.case.case import gear_case, load_case
 from thermogear.case.duty import read_duty
+from thermogear.case.rexs.exporting import kept_alone
 from thermogear.front.cli import main
+from thermogear.gears.deviations import PitchError
+from thermogear.gears.turn import Eccentricity
 
 Capture = pytest.CaptureFixture[str]
 
@@ -125,6 +129,21 @@ def test_there_and_back(tmp_path: Path, capsys: Capture) -> None:
     assert main(["import", str(file), "-o", str(second)]) == 0
     one, two = (load_case(each) for each in (first, second))
     assert one.data == two.data  # type: ignore[union-attr]
+
+
+def test_an_export_says_what_other_programs_do_not_see(tmp_path: Path, capsys: Capture) -> None:
+    tooth = "gears.pinion.teeth_differ=[{tooth=3, index='5 um'}]"
+    given = ["--set", tooth, "--set", "gears.pinion.eccentricity.amount=4 um"]
+    given += ["--set", "gears.marks=[2, 1]"]
+    plain, whole = tmp_path / "a.rexs", tmp_path / "b.rexs"
+    assert main(["export", "fzg-c", "-o", str(plain)]) == 0
+    assert capsys.readouterr().out.splitlines() == [str(plain)]
+    assert main(["export", "fzg-c", "-o", str(whole), *given]) == 0
+    line, path = capsys.readouterr().out.splitlines()
+    kinds = [Eccentricity("pinion", amount=0.0, angle=0.0), PitchError("pinion", (0.0,))]
+    assert line.rpartition(": ")[2].split(", ") == [*map(kind_in_words, kinds), "marks"]
+    assert path == str(whole)
+    assert kept_alone(gear_case(load_case("motor-train")))[:2] == ["shafts", "bearings"]
 
 
 def test_an_export_with_overrides(tmp_path: Path, capsys: Capture) -> None:

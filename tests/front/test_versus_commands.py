@@ -46,6 +46,21 @@ def test_a_directory_against_a_case_file(
     assert {"versus.html", "versus.nc", "versus_figures.csv"} <= {p.name for p in out.iterdir()}
 
 
+def test_cases_are_run_as_the_options_say(
+    rows: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out, few = tmp_path / "out", [word for change in FEW for word in ("--set", change)]
+    assert main(["versus", str(rows), "section-4.1", *few, "-o", str(out), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["differences"] == []
+    line = refused(capsys, rows, rows, "--mean-tooth", "-o", out)
+    assert line == (
+        "error: overrides: got gears.period=mesh; directories of results stay as they are; name a "
+        "case, or none"
+    )
+    line = refused(capsys, rows, "section-4.1", "--turn", "-o", out)
+    assert "--turn, --mean-tooth or --part: got a case without gears; leave it out" in line
+
+
 def test_slips_are_told_in_one_line(
     rows: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -35,7 +35,9 @@ def charted(folder: Path, *lines: str) -> GearCase:
         for side in ("left", "right")
     }
     lines = lines or ("drive: right",)
-    pitch = "tooth,single pitch left [um]\n" + "".join(f"{k + 1},1.5\n" for k in range(20))
+    pitch = "tooth,single pitch left [um]\n" + "".join(
+        f"{k + 1},{1.5 * (-1) ** k}\n" for k in range(20)
+    )
     return own_chart.case(folder, chart(columns, diameter(RHO), "diameter [mm]", *lines) + pitch)
 
 
@@ -76,7 +78,10 @@ def test_the_notices_tell_what_was_decided(tmp_path: Path) -> None:
         ("back", 3),
     ]
     assert told["flanks_evaluated"][0]["files"] == ["pinion.csv"]
-    assert {"sign_not_stated", "pitch_not_used"} <= set(told)
+    (pitch,) = told["pitch_as_measured"]
+    assert pitch["deviations"].split() == ["single", "pitch", "left"]
+    assert "sign_not_stated" in told
+    assert "pitch_not_used" not in told
     assert told["flanks_evaluated"][0]["stated"] is None
     lines = ("drive: right", "sign: material outside is positive", "evaluate: 58..65 mm")
     told = coded(measured_notices(charted(tmp_path, *lines)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -19,7 +20,7 @@ from thermogear.study.notices import turn_notices
 from thermogear.study.orbit import orbit_results
 from thermogear.study.run import MOST_KEPT, _bounded, _cycles
 from thermogear.views.pages.turn import error_of_turn, orders_of_turn, teeth_of_turn
-from thermogear.views.picture import Band, Curve, Panel
+from thermogear.views.picture import Band, Curve, Panel, Text
 from thermogear.views.plots.curves import MOST_POINTS, draw_phase
 from thermogear.views.plots.one_motion import orbit_picture
 from thermogear.views.write import page_of
@@ -161,6 +162,12 @@ def test_json_and_page_hold_what_is_stored(small: Result) -> None:
     assert told["transmission_error_peak_to_peak_m"] == np.ptp(turn["transmission_error"].values)
     assert len(told["teeth"]) == 18 + 24
     assert told["lines"][0]["amplitude_m"] == turn["line_amplitude"].values.max()
+    swings = small.groups["assemblies"]["peak_to_peak_error"].values
+    rows = told["assemblies"]
+    assert [(row["pinion_tooth"], row["wheel_tooth"]) for row in rows] == [
+        (1, n) for n in range(1, 7)
+    ]
+    assert [row["transmission_error_peak_to_peak_m"] for row in rows] == swings.tolist()
 
 
 @pytest.mark.parametrize("teeth", [(28, 28), (27, 35)])
@@ -177,6 +184,12 @@ def test_pictures_of_short_and_long_turns_are_small_and_numbered(teeth: tuple[in
     for one in (picture, orders_of_turn(turn), teeth_of_turn(found.groups["teeth"])):
         curves = [m for row in one.panels for p in row for m in p.marks if isinstance(m, Curve)]
         assert all(np.size(curve.x) <= MOST_POINTS for curve in curves)
+    for panel in orders_of_turn(turn).panels[0]:
+        names = [m for m in panel.marks if isinstance(m, Text)]
+        ends = sorted((n.x, 0.5 * 0.014 * len(n.words) * float(panel.x.high or 1.0)) for n in names)
+        level = {n.x: math.log10(n.y) for n in names}
+        for (x, half), (other, room) in pairwise(ends):
+            assert other - x > half + room or abs(level[x] - level[other]) > 0.25
     # nothing of the error is lost in the picture
     drawn = [np.asarray(m.y) for p in picture.panels[0] for m in p.marks if isinstance(m, Curve)]
     error = 1e6 * turn["transmission_error"].values
@@ -244,6 +257,7 @@ def test_a_curve_of_many_mesh_periods_is_drawn_as_its_extremes() -> None:
     assert isinstance(high, Curve)
     assert np.size(low.x) <= MOST_POINTS / 2
     assert (np.min(low.y), np.max(high.y)) == (values.min(), values.max())
+    assert (np.asarray(low.x)[0], np.asarray(low.x)[-1]) == pytest.approx((0.0, 1890.0), abs=1e-9)
 
 
 def test_a_pair_whose_teeth_are_alike_has_no_turn() -> None:

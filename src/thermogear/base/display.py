@@ -207,6 +207,11 @@ def stretches(values: ArrayLike, flags: NDArray[np.bool_], most: int = 3) -> str
     return ", ".join(words[a] if b - a == 1 else f"{words[a]} to {words[b - 1]}" for a, b in edges)
 
 
+def kind_in_words(thing: object) -> str:
+    """The class of ``thing`` in words: a PitchError is a "pitch error"."""
+    return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(thing).__name__).lower()
+
+
 def in_words(value: object) -> str:
     """A value of a case file as a reader would write it on one line, without quotes."""
     if isinstance(value, dict):

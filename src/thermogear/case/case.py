@@ -7,6 +7,7 @@ nothing of TOML, texts or units any more.
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -18,7 +19,7 @@ from numpy.typing import ArrayLike
 from pydantic import ValidationError
 
 from thermogear.base.arrays import Dataset
-from thermogear.base.errors import InputError
+from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.base.excitation import Periodic
 from thermogear.base.materials import MATERIALS, Material
 from thermogear.base.parameters import NUMBERS
@@ -35,7 +36,15 @@ from thermogear.case.charts import Chart, charts, enclosed
 from thermogear.case.dimensionless import Point, points_of
 from thermogear.case.dimensionless_schema import DimensionlessFile
 from thermogear.case.examples import example_text
-from thermogear.case.flanks import accuracy, deviations, first_tooth, unmeasured
+from thermogear.case.flanks import (
+    accuracy,
+    all_deviations,
+    deviations,
+    first_tooth,
+    require_meshing,
+    unmeasured,
+    without_effect,
+)
 from thermogear.case.gearbox import Reading, gearbox, heated
 from thermogear.case.ranges import in_proportion, warn_of_temperatures, warn_of_torque
 from thermogear.case.refusals import complaints, together
@@ -183,6 +192,12 @@ class GearCase(Case):
     def period(self) -> Period:
         """After how many mesh periods the deviations come again."""
         return turn_period(self.pair, self.deviations)
+
+    @cached_property
+    def all_deviations(self) -> tuple[Deviation, ...]:
+        """Those of the whole turn and of all flanks, whatever period and part are taken."""
+        whole = (self.file.gears.period, self.file.gears.part) == ("turn", "case")
+        return self.deviations if whole else all_deviations(self.file, self.pair, self.charts)
 
     def tooth_number(self, gear: str, place: int) -> int:
         """The number, from 1, in the file of the ``place``-th tooth, from 0, that meshes."""
@@ -462,7 +477,8 @@ def case_of(
         return DimensionlessCase(points=points_of(read), base=base, assumptions=found, **common)
     try:
         case = _gear_case(read, common | {"data": data})
-        if told:
+        if told:  # where backlash or errors are varied a jam is a result
+            require_meshing(read, case.pair, case.deviations, 2.0 * case.cold_backlash.half)
             _warn_of(case)
     except InputError as error:
         others = [one for one in parts.faults(read) if str(one) != str(error)]
@@ -588,7 +604,7 @@ def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
         pictures=file.draw.pictures,
         base_sets=file.draw.base_sets,
         deviations=deviations(file, pair, measured),
-        accuracy=accuracy(file, pair),
+        accuracy=None if file.gears.part == "nominal" else accuracy(file, pair),
         charts=measured,
         gearbox=box,
         readings=readings,
@@ -603,7 +619,9 @@ def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
 
 
 def _warn_of(case: GearCase) -> None:
-    """Warn where the case leaves the range of its data."""
+    """Warn where the case leaves the range of its data, and of fields without effect."""
+    for stated, why in without_effect(case.file, case.pair, case.all_deviations):
+        warnings.warn(f"{stated} has no effect: {why}; leave it out", ValidityWarning, stacklevel=4)
     warn_of_torque(case.pair, case.torques)
     if not case.computed:
         warn_of_temperatures(case.pair, {"temperatures": case.stated} | _row_of(case))

@@ -15,7 +15,7 @@ from thermogear.base.enclosed import with_files
 from thermogear.base.errors import InputError, short
 from thermogear.base.files import decoded, require_regular
 from thermogear.base.units import ROUNDED
-from thermogear.case.flank_file import LARGEST, FlankFile, read_flanks
+from thermogear.case.flank_file import LARGEST, SIDES, FlankFile, read_flanks
 from thermogear.case.schema import GearFile
 from thermogear.gears.deviations import FlankTable
 from thermogear.gears.geometry import Gear
@@ -24,6 +24,9 @@ from thermogear.gears.pair import GearPair
 from thermogear.gears.turn import ToothShapes
 
 GEARS = ("pinion", "wheel")
+PITCHES = ("cumulative pitch", "single pitch")
+"""Pitch deviations that act, each along the arc of the reference circle, in the order of the teeth;
+what adds up over many teeth is known best from the first."""
 _CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f]")
 
 
@@ -44,6 +47,13 @@ class Chart:
         side, acts = self.read.side[trace], self.traces.flank[trace]
         return f"tooth {self.read.tooth[trace]} {side}" + (f" ({acts})" if acts != side else "")
 
+    @property
+    def acting_pitch(self) -> str | None:
+        """The column of pitch deviations that acts, the drive flank's first; None without one."""
+        hands = (self.read.drive, "drive", "", *SIDES)
+        names = (f"{kind} {hand}".strip() for kind in PITCHES for hand in hands)
+        return next((name for name in names if name in self.read.pitch), None)
+
     def every_tooth(self, pair: GearPair) -> tuple[ToothShapes, ...]:
         """Each side that was measured, every tooth by itself.
 
@@ -51,7 +61,7 @@ class Chart:
         tooth is missing.
         """
         body, traces = pair.pinion if self.gear == "pinion" else pair.wheel, self.traces
-        found = []
+        sides = []
         for side in sorted(set(traces.flank), reverse=True):  # drive first
             rows = {n: k for k, n in enumerate(traces.tooth) if traces.flank[k] == side}
             if len(rows) < body.teeth:
@@ -65,9 +75,9 @@ class Chart:
                 replace(traces, added=traces.added[[rows[n]]], flank=(side,), tooth=(n,))
                 for n in sorted(rows)
             )
-            shapes = (one.flanks(pair)[0].table(self.gear, body.base_radius) for one in each)
-            found.append(ToothShapes(self.gear, tuple(shapes)))
-        return tuple(found)
+            shapes = (trace.flanks(pair)[0].table(self.gear, body.base_radius) for trace in each)
+            sides.append(ToothShapes(self.gear, tuple(shapes)))
+        return tuple(sides)
 
 
 def enclosed(text: str, data: dict[str, Any], folder: Path) -> str:
@@ -76,7 +86,7 @@ def enclosed(text: str, data: dict[str, Any], folder: Path) -> str:
     A result keeps the text, so that neither a page nor a run from it needs the files. What
     ``[files]`` holds already is not read again; ``folder`` is where names count from.
     """
-    found: dict[str, str] = {}
+    contents: dict[str, str] = {}
     table = data.get("flanks")
     files = data.get("files", {})
     if not isinstance(table, dict) or not isinstance(files, dict):
@@ -89,8 +99,8 @@ def enclosed(text: str, data: dict[str, Any], folder: Path) -> str:
                 continue
             content = _content(name, folder, f"flanks.{gear}")
             files = data["files"] = {**files, name: {"text": content}}
-            found[name] = content
-    return with_files(text, found)
+            contents[name] = content
+    return with_files(text, contents)
 
 
 def _content(name: str, folder: Path, field: str) -> str:
@@ -132,7 +142,7 @@ def _content(name: str, folder: Path, field: str) -> str:
 
 def charts(file: GearFile, pair: GearPair) -> tuple[Chart, ...]:
     """The measured flanks of both gears; what does not fit them is refused under its field."""
-    found = []
+    read = []
     for gear in GEARS:
         names = None if file.flanks is None else getattr(file.flanks, gear)
         if names is None:
@@ -146,10 +156,10 @@ def charts(file: GearFile, pair: GearPair) -> tuple[Chart, ...]:
                     fix="leave one out",
                 )
             texts = tuple((name, file.files[name].text) for name in names)
-            found.append(_chart(gear, names, _read(texts), pair))
+            read.append(_chart(gear, names, _read(texts), pair))
         except InputError as error:
             raise error.named(f"flanks.{gear}") from error
-    return tuple(found)
+    return tuple(read)
 
 
 @lru_cache(maxsize=8)

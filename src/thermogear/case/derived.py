@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from thermogear.base.display import kind_in_words
 from thermogear.base.materials import LUBRICANT_KINDS, Lubricant
 from thermogear.base.parameters import NUMBERS
 from thermogear.base.units import RPM, ZERO_CELSIUS
@@ -15,11 +16,11 @@ from thermogear.case.case import DimensionlessCase, GearCase
 from thermogear.case.charts import Chart
 from thermogear.case.units import shown
 from thermogear.gears.accuracy import flank_class
-from thermogear.gears.deviations import Deviation
+from thermogear.gears.deviations import Deviation, PitchError, Relief
 from thermogear.gears.geometry import Gear
 from thermogear.gears.graded_flanks import WavyProfile
 from thermogear.gears.population import measured
-from thermogear.gears.turn import Eccentricity
+from thermogear.gears.turn import Eccentricity, turn_period
 from thermogear.heat.lubrication import kinematic_viscosity
 from thermogear.shafts.train import SHAFTS
 
@@ -53,7 +54,7 @@ def facts(case: Case) -> tuple[Fact, ...]:
 def _pair(case: GearCase) -> list[Fact]:
     pair, path = case.pair, case.pair.path
     group = "pair"
-    found = [
+    listed = [
         Fact(group, "ratio", pair.ratio),
         Fact(group, "centre distance", 1e3 * pair.centre_distance, "mm"),
         Fact(group, "operating pressure angle", math.degrees(pair.operating_pressure_angle), "deg"),
@@ -64,8 +65,8 @@ def _pair(case: GearCase) -> list[Fact]:
     given = case.file.gears.centre_distance
     if given is not None and given < pair.centre_distance:
         words = f"{shown(given, 'length')}, rounded: the mesh without backlash is taken"
-        found.append(Fact(group, "centre distance given", words))
-    found += [
+        listed.append(Fact(group, "centre distance given", words))
+    listed += [
         Fact("path of contact from the pinion's tangent point", name, 1e3 * value, "mm")
         for name, value in zip("ABCDE", path, strict=True)
     ]
@@ -73,8 +74,8 @@ def _pair(case: GearCase) -> list[Fact]:
     sizes = {"cold half backlash": cold.half}
     if cold.least != cold.most:
         sizes |= {"least cold half backlash": cold.least, "most cold half backlash": cold.most}
-    found += [Fact(group, name, 1e6 * size, "um") for name, size in sizes.items()]
-    return [*found, Fact(group, "from", cold.origin)]
+    listed += [Fact(group, name, 1e6 * size, "um") for name, size in sizes.items()]
+    return [*listed, Fact(group, "from", cold.origin)]
 
 
 def _gear(name: str, gear: Gear, start: float) -> list[Fact]:
@@ -115,7 +116,7 @@ def _train(case: GearCase) -> list[Fact]:
     if plan is None:
         return []
     group = "shafts and bearings"
-    found = [
+    listed = [
         Fact(
             group,
             f"{name}'s shaft",
@@ -125,13 +126,17 @@ def _train(case: GearCase) -> list[Fact]:
     ]
     even = np.full((len(plan.bearings), 4), plan.reference)
     plays = 2.0 * plan.half_plays(even, reference=plan.reference)
-    for one, play in zip(plan.bearings, plays, strict=True):
-        kind = "of its own law" if one.rolling is None else one.rolling.designation or "own inside"
-        text = f"{kind} at {1e3 * one.position:.6g} mm"
+    for bearing, play in zip(plan.bearings, plays, strict=True):
+        kind = (
+            "of its own law"
+            if bearing.rolling is None
+            else bearing.rolling.designation or "own inside"
+        )
+        text = f"{kind} at {1e3 * bearing.position:.6g} mm"
         if np.isfinite(play):
             text += f", radial internal clearance {1e6 * play:.3g} um mounted and cold"
-        found.append(Fact(group, one.name, text))
-    return found + [Fact(group, "unusual", notice.text) for notice in plan.misfits()]
+        listed.append(Fact(group, bearing.name, text))
+    return listed + [Fact(group, "unusual", notice.text) for notice in plan.misfits()]
 
 
 def _oil(oil: Lubricant) -> list[Fact]:
@@ -145,11 +150,11 @@ def _oil(oil: Lubricant) -> list[Fact]:
 
 def _operating(case: GearCase) -> list[Fact]:
     z, radius = case.pair.pinion.teeth, case.pair.pinion.base_radius
-    found = [
+    listed = [
         Fact("mesh frequency", f"at {speed / RPM:.6g} rpm", z * speed / (2.0 * math.pi), "Hz")
         for speed in case.speeds
     ]
-    return found + [
+    return listed + [
         Fact("normal force", f"at {torque:.6g} N m", torque / radius, "N")
         for torque in case.torques
     ]
@@ -157,42 +162,56 @@ def _operating(case: GearCase) -> list[Fact]:
 
 def _held(case: GearCase) -> list[Fact]:
     """What is known beforehand of temperatures that are computed, and of the flanks."""
-    found = [_deviation(place, one) for place, one in enumerate(case.deviations, 1)]
+    listed = [_deviation(deviation) for deviation in case.deviations]
+    if left := len(case.all_deviations) - len(case.deviations):
+        listed.append(Fact(FLANKS, "left out of the nominal flanks", left))
     single = case.file.flanks is not None and case.file.flanks.teeth == "measured"
-    found += [*_turn(case), *(fact for one in case.charts for fact in _measured(one, single))]
+    listed += [*_turn(case), *(fact for chart in case.charts for fact in _measured(chart, single))]
     if not case.computed:
-        return found
+        return listed
     group = "temperatures computed from the heat balance"
     held = {name: float(np.ravel(t)[0]) for name, t in case.gearbox.measured.items()}
-    found += [
+    listed += [
         Fact(group, f"{name} is held at", kelvin - ZERO_CELSIUS, "degC")
         for name, kelvin in held.items()
     ]
-    for one in case.readings:
-        found += [
-            Fact(group, f"{one.node}, {one.kind} reading", one.indicated, "K"),
-            Fact(group, f"{one.node}, correction", one.temperature - one.indicated, "K"),
-            Fact(group, f"{one.node}, standard uncertainty", one.uncertainty, "K"),
+    for reading in case.readings:
+        listed += [
+            Fact(group, f"{reading.node}, {reading.kind} reading", reading.indicated, "K"),
+            Fact(
+                group, f"{reading.node}, correction", reading.temperature - reading.indicated, "K"
+            ),
+            Fact(group, f"{reading.node}, standard uncertainty", reading.uncertainty, "K"),
         ]
-    return found or [Fact(group, "held nodes", "none")]
+    return listed or [Fact(group, "held nodes", "none")]
 
 
-def _deviation(place: int, one: Deviation) -> Fact:
-    """What is known of a deviation without a mesh: sizes of an eccentricity, of a drawn flank."""
-    group = "deviations of the flanks"
-    if isinstance(one, Eccentricity):
-        return Fact(group, f"{one.gear}, eccentricity", 1e6 * one.amount, "um")
-    if not isinstance(one, WavyProfile):
-        return Fact(group, str(place), type(one).__name__)
-    text = f"f_Halpha {1e6 * one.slope:+.2f}, f_falpha {1e6 * one.form:.2f} um, drawn"
-    return Fact(group, f"{one.gear}, {one.flank} flank", text)
+FLANKS = "deviations of the flanks"
+
+
+def _deviation(deviation: Deviation) -> Fact:
+    """What is known of a deviation without a mesh: its kind, and its size where it has one."""
+    gear, kind = getattr(deviation, "gear", "pair"), kind_in_words(deviation)
+    if isinstance(deviation, WavyProfile):
+        sizes = f"f_Halpha {1e6 * deviation.slope:+.2f}, f_falpha {1e6 * deviation.form:.2f} um"
+        return Fact(FLANKS, f"{gear}, {deviation.flank} flank", f"{sizes}, drawn")
+    if isinstance(deviation, Relief):
+        kind = f"{deviation.end} relief"
+    if isinstance(deviation, Eccentricity | Relief):
+        return Fact(FLANKS, f"{gear}, {kind}", 1e6 * deviation.amount, "um")
+    if isinstance(deviation, PitchError):
+        most = 1e6 * float(np.ptp(deviation.errors))
+        return Fact(FLANKS, f"{gear}, {kind}s from least to greatest", most, "um")
+    return Fact(FLANKS, f"{gear}, {kind}", "as stated")
 
 
 def _turn(case: GearCase) -> list[Fact]:
     """Period, orders and classes of gears whose teeth differ; nothing of those alike."""
     period, pair = case.period, case.pair
     if period.mesh_periods == 1:
-        return []
+        whole = turn_period(pair, case.all_deviations).mesh_periods
+        left = Fact("period of all deviations", "mesh periods of a turn that is not taken", whole)
+        return [left] if whole > 1 else []
     turns = pair.wheel.teeth // math.gcd(pair.pinion.teeth, pair.wheel.teeth)
     counts = {"mesh periods": period.mesh_periods}
     counts |= {f"order of the {k.replace('_', ' ')}": v for k, v in period.orders.items()}
@@ -213,38 +232,38 @@ def _turn(case: GearCase) -> list[Fact]:
 def _measured(chart: Chart, single: bool) -> list[Fact]:
     """Each trace's figures and class, then what of them acts, ``single`` teeth or their mean."""
     group = f"measured flanks of the {chart.gear}, class of ISO 1328-1:2013"
-    found = []
+    listed = []
     for flank in chart.flanks:
         places = [k for k, side in enumerate(chart.traces.flank) if side == flank.flank]
         for place, figures, grade in zip(places, flank.figures, flank.grades, strict=True):
             slope, form, total = (1e6 * value for value in figures)
             text = f"f_Halpha {slope:+.2f}, f_falpha {form:.2f}, F_alpha {total:.2f} um: "
             text += "no class" if grade is None else f"class {grade}"
-            found.append(Fact(group, chart.hand(place), text))
+            listed.append(Fact(group, chart.hand(place), text))
     if single:
-        return found
+        return listed
     group = f"measured flanks of the {chart.gear}, what acts"
     for flank in chart.flanks:
         count = chart.traces.flank.count(flank.flank)
         mean = f"mean of {count} teeth" if count > 1 else "one tooth"
         text = f"{mean}, low-pass {1e3 * flank.cutoff:.3g} mm of roll path"
-        found.append(Fact(group, flank.flank, text))
-        found.append(Fact(group, f"{flank.flank}, peak to peak", 1e6 * np.ptp(flank.acting), "um"))
-        found.append(Fact(group, f"{flank.flank}, noise of one trace", 1e6 * flank.noise, "um"))
+        listed.append(Fact(group, flank.flank, text))
+        listed.append(Fact(group, f"{flank.flank}, peak to peak", 1e6 * np.ptp(flank.acting), "um"))
+        listed.append(Fact(group, f"{flank.flank}, noise of one trace", 1e6 * flank.noise, "um"))
         if count > 1:
-            found.append(
+            listed.append(
                 Fact(group, f"{flank.flank}, scatter between teeth", 1e6 * flank.scatter, "um")
             )
-    return found
+    return listed
 
 
 def _rows(case: DimensionlessCase) -> tuple[Fact, ...]:
-    found = []
+    listed = []
     for point in case.points:
         value = point.value - ZERO_CELSIUS if point.unit == "K" else point.value
         unit = "degC" if point.unit == "K" else ""
         numbers = ", ".join(f"{name} {getattr(point, name):.7g}" for name in NUMBERS)
-        found.append(
+        listed.append(
             Fact(f"row {point.row}", f"{point.parameter} {value:.7g} {unit}".strip(), numbers)
         )
-    return tuple(found)
+    return tuple(listed)

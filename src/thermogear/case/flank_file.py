@@ -73,8 +73,8 @@ def read_flanks(texts: Mapping[str, str]) -> FlankFile:
 
     Raises InputError in one line, its field empty, for whatever is missing, doubtful or no chart.
     """
-    said: dict[str, tuple[str, str]] = {}
-    blocks = [block for name, text in texts.items() for block in _blocks(name, text, said)]
+    facts: dict[str, tuple[str, str]] = {}
+    blocks = [block for name, text in texts.items() for block in _blocks(name, text, facts)]
     traces = [block for block in blocks if not block.of_pitch]
     if len(traces) != 1:
         name = traces[1].where if traces else ", ".join(texts)
@@ -84,7 +84,7 @@ def read_flanks(texts: Mapping[str, str]) -> FlankFile:
             allowed="one table over one row of points",
             fix=f"put all teeth side by side: {_EXAMPLE}",
         )
-    sign = _sign(said)
+    sign = _sign(facts)
     table = traces[0]
     over, scale = _position(table)
     columns = [_trace(table, place) for place in range(1, len(table.head))]
@@ -92,12 +92,12 @@ def read_flanks(texts: Mapping[str, str]) -> FlankFile:
         raise table.refused("one column", allowed=f"a position and 1..{MOST_TRACES} traces")
     if len(columns) > MOST_TRACES:
         raise table.refused(f"{len(columns)} traces", allowed=f"1..{MOST_TRACES}")
-    named = [one[:2] for one in columns]
+    named = [column[:2] for column in columns]
     if len(set(named)) < len(named):
-        twice = next(one for place, one in enumerate(named) if one in named[:place])
+        twice = next(trace for place, trace in enumerate(named) if trace in named[:place])
         raise table.refused(f"tooth {twice[1]} {twice[0]} twice", fix="number the teeth")
     values = table.values()
-    added = sign * np.stack([values[:, i + 1] * one[2] for i, one in enumerate(columns)])
+    added = sign * np.stack([values[:, i + 1] * column[2] for i, column in enumerate(columns)])
     for row, column in zip(added, table.head[1:], strict=True):
         try:
             bounds.ADDED.require("", row)
@@ -107,19 +107,19 @@ def read_flanks(texts: Mapping[str, str]) -> FlankFile:
                 allowed=error.allowed,
                 fix="correct the unit in the header",
             ) from error
-    sides = tuple(one[0] for one in columns)
+    sides = tuple(column[0] for column in columns)
     return FlankFile(
         over=over,
         position=values[:, 0] * scale,
         added=added,
         side=sides,
-        tooth=tuple(one[1] for one in columns),
+        tooth=tuple(column[1] for column in columns),
         places=tuple(table.places),
         rounding=scale * min(map(half_digit, table.positions())),
-        evaluate=_range(said, over),
-        drive=_drive(said, sides, table),
-        teeth=_teeth(said),
-        signed="sign" in said,
+        evaluate=_range(facts, over),
+        drive=_drive(facts, sides, table),
+        teeth=_teeth(facts),
+        signed="sign" in facts,
         pitch=_pitch([block for block in blocks if block.of_pitch]),
     )
 
@@ -174,7 +174,7 @@ class _Block:
                 f"{len(self.rows) or 'no'} row{'s' * (len(self.rows) != 1)} of numbers",
                 allowed="a row for each point of the trace",
             )
-        found = []
+        rows = []
         for line, text in self.rows:
             cells = cells_of(text.replace(",", ".") if self.comma else text, self.separator)
             if len(cells) != len(self.head):
@@ -194,8 +194,8 @@ class _Block:
                         allowed="a number",
                         fix="leave the row, or the tooth, out" if gap else None,
                     )
-            found.append([float(cell) for cell in cells])
-        values = np.array(found)
+            rows.append([float(cell) for cell in cells])
+        values = np.array(rows)
         if not np.all(np.isfinite(values)):
             place = int(np.argmin(np.isfinite(values).all(axis=1)))
             raise InputError("", f"{self.places[place]}: a number beyond reason", allowed="finite")
@@ -212,7 +212,7 @@ def _blocks(name: str, text: str, said: dict[str, tuple[str, str]]) -> list[_Blo
             why="a chart has some hundred points for each tooth",
             fix="leave points or teeth out",
         )
-    found: list[_Block] = []
+    blocks: list[_Block] = []
     for number, line in enumerate(text.splitlines(), 1):
         bare = line.strip().strip('"').strip()
         if not bare.strip(",;\t "):
@@ -220,12 +220,12 @@ def _blocks(name: str, text: str, said: dict[str, tuple[str, str]]) -> list[_Blo
         if bare.startswith("#"):
             _fact(name, number, bare, said)
         elif _is_header(bare):
-            separator = next((one for one in ";\t" if one in line), ",")
+            separator = next((sign for sign in ";\t" if sign in line), ",")
             head = cells_of(line.strip(), separator)
-            found.append(_Block(name, number, head, separator))
-            _position_name(found[-1])
-        elif found:
-            found[-1].rows.append((number, line.strip()))
+            blocks.append(_Block(name, number, head, separator))
+            _position_name(blocks[-1])
+        elif blocks:
+            blocks[-1].rows.append((number, line.strip()))
         else:
             raise InputError(
                 "",
@@ -234,16 +234,16 @@ def _blocks(name: str, text: str, said: dict[str, tuple[str, str]]) -> list[_Blo
                 why="which column is what, in which unit?",
                 fix=f"write {_EXAMPLE}",
             )
-    if not found:
+    if not blocks:
         raise InputError("", f"{name}: no table", allowed=f"a chart: {_EXAMPLE}, rows below")
-    for block in found:
+    for block in blocks:
         body = [row for _, row in block.rows]
         commas = any(re.search(r"\d,\d", row) for row in body)
         points = any(re.search(r"\d\.\d", row) for row in body)
         if block.separator != "," and commas and points:
             raise block.refused("both 1,2 and 1.2 below it", allowed="one decimal sign")
         block.comma = block.separator != "," and commas
-    return found
+    return blocks
 
 
 def _is_header(line: str) -> bool:
@@ -346,7 +346,7 @@ def _trace(block: _Block, place: int) -> tuple[str, int, float]:
 
 def _pitch(blocks: Iterable[_Block]) -> dict[str, Floats]:
     """Pitch deviations [m] over the teeth, signs as in the file, by the name of their column."""
-    found: dict[str, Floats] = {}
+    deviations: dict[str, Floats] = {}
     for block in blocks:
         values = block.values()
         teeth = values[:, 0]
@@ -355,8 +355,8 @@ def _pitch(blocks: Iterable[_Block]) -> dict[str, Floats]:
         for place in range(1, len(block.head)):
             words, _ = _column(block, place)
             scale = _scale(block, place, "length", f"write '{words} [um]' if that is meant")
-            found[words] = scale * values[:, place]
-    return found
+            deviations[words] = scale * values[:, place]
+    return deviations
 
 
 # --- what the lines say -------------------------------------------------------------------
@@ -414,8 +414,8 @@ def _range(said: Mapping[str, tuple[str, str]], over: str) -> tuple[str, float, 
     low, high = match["low"].replace(",", "."), match["high"].replace(",", ".")
     try:
         ends = [
-            read_quantity(f"{number} {one}", POSITIONS[axis])
-            for number, one in zip((low, high), units, strict=True)
+            read_quantity(f"{number} {end_unit}", POSITIONS[axis])
+            for number, end_unit in zip((low, high), units, strict=True)
         ]
     except InputError as error:
         raise InputError("", where, allowed=allowed, why=error.why) from error

@@ -91,6 +91,15 @@ class ToothProfilesTable(Table):
     waves: Waves = Field(default=2.5, title="waves of the form over the active profile; 2.5")
     flank: Flank = Field(default="both", description="drive and back flanks alike")
 
+    @model_validator(mode="after")
+    def _formed(self) -> ToothProfilesTable:
+        waved = self.model_fields_set & {"phase", "waves"}
+        empty = self.slope is None and type(self) is ToothProfilesTable
+        if self.form is None and (waved or empty):
+            needed = "form beside phase or waves" if waved else "slope or form"
+            raise InputError("form", "nothing", allowed=needed, fix='for none write form = "0 um"')
+        return self
+
 
 class ToothTable(ToothProfilesTable):
     """One tooth that differs: what it has besides all that the gear's other fields say."""

@@ -8,6 +8,8 @@ from functools import partial
 
 import numpy as np
 
+from thermogear.base.arrays import Floats
+from thermogear.base.display import in_words
 from thermogear.base.errors import InputError
 from thermogear.case.charts import Chart
 from thermogear.case.flank_schema import ToothProfilesTable, ToothTable
@@ -26,7 +28,13 @@ from thermogear.gears.deviations import (
 from thermogear.gears.graded_flanks import WavyProfile, graded_flanks
 from thermogear.gears.pair import GearPair
 from thermogear.gears.population import drawn_pair
-from thermogear.gears.turn import Eccentricity, ToothShapes, mean_tooth, numbered_from
+from thermogear.gears.turn import (
+    Eccentricity,
+    ToothShapes,
+    mean_tooth,
+    numbered_from,
+    turn_period,
+)
 
 OF_METAL, OF_PLASTICS = 6, 9
 """Accuracy classes of ISO 1328-1 taken where none is given: ground steel 4 to 6, plastic cut 8 to
@@ -42,15 +50,27 @@ CLOSED = 0.5e-6
 def deviations(
     file: GearFile, pair: GearPair, measured: Sequence[Chart] = ()
 ) -> tuple[Deviation, ...]:
+    """The deviations that the file takes, of those in :func:`all_deviations`.
+
+    With ``gears.period`` "mesh" those of the mean tooth, with ``gears.part`` "nominal" reliefs.
+    """
+    taken = all_deviations(file, pair, measured)
+    if file.gears.part == "nominal":
+        taken = tuple(deviation for deviation in taken if isinstance(deviation, Relief))
+    return mean_tooth(pair, taken) if file.gears.period == "mesh" else taken
+
+
+def all_deviations(
+    file: GearFile, pair: GearPair, measured: Sequence[Chart] = ()
+) -> tuple[Deviation, ...]:
     """Every deviation that the file gives, pinion's first, ``measured`` flanks among them.
 
     Teeth are numbered as they mesh, from the one that is marked. What
     does not fit the gears (a relief longer than the active profile, pitch errors that are not one
-    for each tooth) is refused under its field of the file. With ``gears.period`` "mesh" the
-    deviations of the mean tooth, with ``gears.part`` "nominal" reliefs alone.
+    for each tooth) is refused under its field of the file.
     """
     contacts = mesh_points(pair, [0.0]).contacts
-    found: list[Deviation] = []
+    given: list[Deviation] = []
     for gear in GEARS:
         for field, make in _given(gear, file, pair):
             try:
@@ -66,19 +86,88 @@ def deviations(
                     why=error.why,
                     fix=error.fix,
                 ) from error
-            found.append(deviation)
+            given.append(deviation)
     if file.flanks is not None and file.flanks.teeth == "measured" and not measured:
         raise InputError(
             "flanks.teeth", "'measured'", why="no chart of every tooth is given",
             fix="name the charts in flanks.pinion and flanks.wheel",
         )  # fmt: skip
-    found += [one for chart in measured for one in _charted(file, pair, chart)]
-    found += _graded(file, pair)
+    for chart in measured:
+        try:
+            given += _charted(file, pair, chart)
+        except InputError as error:
+            of_case = error.field.startswith(("gears.", "flanks."))
+            raise error.named(error.field if of_case else f"flanks.{chart.gear}") from error
+    given += _graded(file, pair)
     first = {gear: first_tooth(file, gear) for gear in GEARS}
-    found = [numbered_from(pair, deviation, **first) for deviation in found]
-    if file.gears.part == "nominal":
-        found = [deviation for deviation in found if isinstance(deviation, Relief)]
-    return tuple(mean_tooth(pair, found) if file.gears.period == "mesh" else found)
+    return tuple(numbered_from(pair, deviation, **first) for deviation in given)
+
+
+def without_effect(
+    file: GearFile, pair: GearPair, every: Sequence[Deviation]
+) -> Iterator[tuple[str, str]]:
+    """(field and value, why) of what the file states of flanks and ``every`` deviation ignores."""
+    tables = [getattr(file.gears, gear) for gear in GEARS]
+    graded = bool(unmeasured(file))
+    drawn = graded and file.flanks is not None and file.flanks.teeth == "drawn"
+    alike = turn_period(pair, every).mesh_periods == 1
+    for idle, fields, why in (
+        (all(table.pitch_errors is None for table in tables),
+         ("gears.pitch_errors_are", "gears.pitch_errors_along"), "no pitch_errors are given"),
+        (alike, ("gears.marks", "gears.period"), "the teeth of each gear are alike"),
+        (all(isinstance(deviation, Relief) for deviation in every), ("gears.part",),
+         "no flank deviates but by reliefs"),
+        (not graded, ("flanks.accuracy", "flanks.edition", "flanks.seed"),
+         "both gears have flanks of their own"),
+        (not drawn, ("flanks.drawing",), 'it is one of teeth = "drawn"'),
+    ):  # fmt: skip
+        for field in fields if idle else ():
+            name, _, key = field.partition(".")
+            table = getattr(file, name)
+            if table is not None and key in table.model_fields_set:
+                yield f"{field}: {in_words(getattr(table, key))}", why
+
+
+MOST_MESHED = 4000
+"""Mesh periods over which teeth out of their places are held against the backlash."""
+
+
+def require_meshing(
+    file: GearFile, pair: GearPair, acting: Sequence[Deviation], backlash: float
+) -> None:
+    """Refuse stated pitch errors and eccentricities by which the cold pair jams.
+
+    At a mesh phase the least gap of the drive flanks and that of the back flanks add up to what is
+    left of the normal ``backlash`` [m]; over the turn it must stay above 0.
+    """
+    moved = [d for d in acting if isinstance(d, PitchError | Eccentricity)]
+    reach = {
+        d: float(np.ptp(d.errors) if isinstance(d, PitchError) else 2.0 * d.amount) for d in moved
+    }
+    # a drive flank early and a back flank late, each by the whole reach
+    if not moved or 2.0 * sum(reach.values()) <= backlash:
+        return
+    periods = min(turn_period(pair, moved).mesh_periods, MOST_MESHED)
+    left: Floats = np.full(8 * periods, backlash)
+    for flank in ("drive", "back"):
+        points = mesh_points(pair, np.arange(8 * periods) / 8, flank)
+        gap = sum((d.gap(points.contacts) for d in moved), points.point.gap)
+        left = left + np.nanmin(np.where(np.isfinite(gap), gap, np.inf), axis=-1)
+    worst = max(reach, key=lambda d: reach[d])
+    table: GearTable = getattr(file.gears, worst.gear)
+    listed = ("pitch_errors", "teeth_differ")
+    names = ("eccentricity",) if isinstance(worst, Eccentricity) else listed
+    stated = [f"gears.{worst.gear}.{name}" for name in names if getattr(table, name)]
+    if getattr(file.flanks, worst.gear, None):
+        stated.append(f"flanks.{worst.gear}")
+    if left.min() <= 0.0 and stated:  # what is drawn from a class may jam: the study says so
+        raise InputError(
+            stated[0],
+            f"teeth that take {1e6 * (backlash - left.min()):.4g} um of the backlash",
+            allowed=f"< {1e6 * backlash:.4g} um, the whole of it along the line of action",
+            why="the cold pair would jam",
+            fix="correct the unit, or open [backlash]",
+        )
 
 
 def first_tooth(file: GearFile, gear: str) -> int:
@@ -92,33 +181,37 @@ def _of_teeth(
     """(field, maker) of what may differ from tooth to tooth of one gear."""
     table: GearTable = getattr(file.gears, gear)
     _require_differing(gear, table.teeth_differ)
-    if table.pitch_errors is not None or any(one.index for one in table.teeth_differ):
+    if table.pitch_errors is not None or any(tooth.index for tooth in table.teeth_differ):
         field = "pitch_errors" if table.pitch_errors is not None else "teeth_differ"
         yield field, partial(_index, gear, file, pair)
-    if (one := table.eccentricity) is not None:
-        amount = one.amount if one.amount is not None else 0.5 * (one.run_out or 0.0)
-        yield "eccentricity", partial(Eccentricity, gear, amount=amount, angle=one.angle)
+    if (eccentricity := table.eccentricity) is not None:
+        amount = (
+            eccentricity.amount
+            if eccentricity.amount is not None
+            else 0.5 * (eccentricity.run_out or 0.0)
+        )
+        yield "eccentricity", partial(Eccentricity, gear, amount=amount, angle=eccentricity.angle)
     for place, profiles in enumerate(table.tooth_profiles):
         yield f"tooth_profiles[{place}]", partial(_every_tooth, gear, profiles, table.teeth)
     for flank in FLANKS:
-        single = [one for one in table.teeth_differ if one.flank == flank]
-        if any(one.slope or one.form for one in single):
+        single = [tooth for tooth in table.teeth_differ if tooth.flank == flank]
+        if any(tooth.slope or tooth.form for tooth in single):
             yield "teeth_differ", partial(_single_teeth, gear, single, table.teeth)
 
 
 def _require_differing(gear: str, given: Sequence[ToothTable]) -> None:
     """Refuse a tooth of a side named twice, or with nothing that differs."""
-    named = [(one.tooth, one.flank) for one in given]
-    for place, one in enumerate(given):
+    named = [(tooth.tooth, tooth.flank) for tooth in given]
+    for place, tooth in enumerate(given):
         field = f"gears.{gear}.teeth_differ[{place}]"
         if named.count(named[place]) > 1:
             raise InputError(
-                field, f"tooth {one.tooth} twice", allowed="each tooth of a side once",
+                field, f"tooth {tooth.tooth} twice", allowed="each tooth of a side once",
                 fix="put what differs into one entry",
             )  # fmt: skip
-        if not (one.index or one.slope or one.form):
+        if not (tooth.index or tooth.slope or tooth.form):
             raise InputError(
-                field, f"tooth {one.tooth} without a difference", fix="give index, slope or form"
+                field, f"tooth {tooth.tooth} without a difference", fix="give index, slope or form"
             )
 
 
@@ -129,23 +222,31 @@ def _index(gear: str, file: GearFile, pair: GearPair) -> PitchError:
     given.require_fits(pair)
     errors = np.array(given.errors)
     if file.gears.pitch_errors_are == "single pitch":
-        left, most = float(errors.sum()), CLOSED * table.teeth
-        if abs(left) > most:
-            raise InputError(
-                "",
-                f"single pitch deviations that add up to {1e6 * left:.4g} um",
-                allowed=f"{-1e6 * most:.4g}..{1e6 * most:.4g} um",
-                why="after a whole turn the pitches close",
-                fix='are they positions of the teeth? then gears.pitch_errors_are = "index"',
-            )
-        # a tooth farther from the one before lies farther back in the sense of turning
-        index = np.cumsum(errors - errors.mean()) * (-1.0 if gear == "pinion" else 1.0)
-        errors = index - index.mean()
+        errors = _from_pitches(gear, errors, 'gears.pitch_errors_are = "index"')
     if file.gears.pitch_errors_along == "arc":
         errors = errors * math.cos(file.gears.pressure_angle)
-    for one in table.teeth_differ:
-        errors[_place(one, table.teeth)] += one.index
+    for tooth in table.teeth_differ:
+        errors[_place(tooth, table.teeth)] += tooth.index
     return PitchError(gear, tuple(errors.tolist()))
+
+
+def _from_pitches(gear: str, pitches: Floats, instead: str) -> Floats:
+    """Index [m] of every tooth from its single pitch; ``instead`` is to write for positions."""
+    left, most = float(pitches.sum()), CLOSED * pitches.size
+    if abs(left) > most:
+        raise InputError(
+            "",
+            f"single pitch deviations that add up to {1e6 * left:.4g} um",
+            allowed=f"{-1e6 * most:.4g}..{1e6 * most:.4g} um",
+            why="after a whole turn the pitches close",
+            fix=f"are they positions of the teeth? then {instead}",
+        )
+    return _from_places(gear, np.cumsum(pitches - pitches.mean()))
+
+
+def _from_places(gear: str, behind: Floats) -> Floats:
+    """Index [m] of teeth that lie so far behind their places, in the sense of turning."""
+    return np.asarray((behind - behind.mean()) * (-1.0 if gear == "pinion" else 1.0))
 
 
 def _place(one: ToothTable, teeth: int) -> int:
@@ -163,7 +264,7 @@ def _every_tooth(gear: str, table: ToothProfilesTable, teeth: int) -> ToothShape
             raise InputError(
                 name, f"{len(values)} values", allowed=f"{each}one", fix="list them tooth by tooth"
             )
-    rows = zip(*(np.broadcast_to(one, teeth).tolist() for one in columns.values()), strict=True)
+    rows = np.transpose([np.broadcast_to(values, teeth) for values in columns.values()]).tolist()
     made = partial(WavyProfile, gear, waves=table.waves, flank=table.flank)
     return ToothShapes(gear, tuple(made(**dict(zip(columns, row, strict=True))) for row in rows))
 
@@ -171,16 +272,31 @@ def _every_tooth(gear: str, table: ToothProfilesTable, teeth: int) -> ToothShape
 def _single_teeth(gear: str, given: Sequence[ToothTable], teeth: int) -> ToothShapes:
     """Slope and form of the teeth that differ on one side, none of the others."""
     shapes: list[FlankShape] = [WavyProfile(gear, slope=0.0, flank=given[0].flank)] * teeth
-    for one in given:
-        (shapes[_place(one, teeth)],) = _every_tooth(gear, one, 1).shapes
+    for tooth in given:
+        (shapes[_place(tooth, teeth)],) = _every_tooth(gear, tooth, 1).shapes
     return ToothShapes(gear, tuple(shapes))
 
 
 def _charted(file: GearFile, pair: GearPair, chart: Chart) -> tuple[Deviation, ...]:
-    """What a chart's flanks are: the mean of the teeth, or each tooth by itself."""
-    if file.flanks is None or file.flanks.teeth != "measured":
-        return chart.deviations
-    return chart.every_tooth(pair)
+    """What a chart's flanks are, the mean of the teeth or each tooth by itself, and its pitch."""
+    single = file.flanks is not None and file.flanks.teeth == "measured"
+    flanks = chart.every_tooth(pair) if single else chart.deviations
+    if (name := chart.acting_pitch) is None:
+        return flanks
+    if getattr(file.gears, chart.gear).pitch_errors is not None:
+        raise InputError(
+            f"gears.{chart.gear}.pitch_errors",
+            f"given beside {', '.join(chart.names)}",
+            why=f"the chart's column '{name}' says where the teeth are",
+            fix="leave one out",
+        )
+    index = chart.read.pitch[name]
+    if name.startswith("single"):
+        index = _from_pitches(chart.gear, index, f"name the column 'cumulative{name[6:]}'")
+    else:
+        index = _from_places(chart.gear, index)
+    arc = math.cos(file.gears.pressure_angle)
+    return (*flanks, PitchError(chart.gear, tuple((arc * index).tolist())))
 
 
 def accuracy(file: GearFile, pair: GearPair) -> int | None:
@@ -189,7 +305,7 @@ def accuracy(file: GearFile, pair: GearPair) -> int | None:
     Left out it is 6 for metal, 9 for plastics, and none where the tables of ISO 1328-1 end.
     """
     table = file.flanks
-    if table is None or not unmeasured(file) or file.gears.part == "nominal":
+    if table is None or not unmeasured(file):
         return None
     if table.accuracy is not None:
         return table.accuracy
@@ -235,7 +351,8 @@ def _graded(file: GearFile, pair: GearPair) -> tuple[Deviation, ...]:
             why=error.why,
             fix="give [transmission_error] harmonics, or measured profiles, instead",
         ) from error
-    return tuple(one for one in profiles if getattr(one, "gear", None) in unmeasured(file))
+    graded = unmeasured(file)
+    return tuple(profile for profile in profiles if getattr(profile, "gear", None) in graded)
 
 
 def unmeasured(file: GearFile) -> list[str]:

@@ -11,6 +11,12 @@ from thermogear.base.toml import line, table
 from thermogear.case.case import GearCase, gear_case, load_case
 from thermogear.shafts.bearings.catalogue import CATALOGUE
 
+
+def _each(text: str) -> list[str] | None:
+    """What commas part; None of nothing."""
+    return [part.strip() for part in text.split(",")] if text.strip() else None
+
+
 SHEAR = 20e6
 """Torsional stress [Pa] that a new shaft is sized for; usual of gearboxes (ours)."""
 BESIDE = 15e-3
@@ -41,6 +47,7 @@ class NewCase:
     accuracy: int | None = None
     drawn_teeth: bool = False
     run_out: tuple[str, str] | None = None
+    pitch_errors: tuple[str, str] | None = None
     pinion_flanks: str | None = None
     wheel_flanks: str | None = None
     allow_undercut: bool = False
@@ -58,8 +65,8 @@ class NewCase:
                 text += "\n".join(self._shafts(gear_case(case))) + "\n"
                 load_case(text, folder=folder)
         except InputError as error:
-            for one in getattr(error, "errors", (error,)):
-                one.line = None
+            for each in getattr(error, "errors", (error,)):
+                each.line = None
             raise
         return text
 
@@ -69,15 +76,15 @@ class NewCase:
             line("face_width", self.face_width),
             line("centre_distance", self.centre_distance, "left out: the mesh without backlash"),
         )
-        found = [
+        lines = [
             '# A spur gear pair. A number with a unit is a text: "3 mm"; a pure number is bare.',
             "# What is left out has a default: `thermogear check FILE` lists each with its reason.",
         ]
-        found += table("", line("title", self.title))
-        found += table("gears", *gears)
+        lines += table("", line("title", self.title))
+        lines += table("gears", *gears)
         for place, name in enumerate(("pinion", "wheel")):
             shift, material = self.profile_shift, self.material
-            found += table(
+            lines += table(
                 f"gears.{name}",
                 line("teeth", self.teeth[place]),
                 line("profile_shift", shift and shift[place], "in modules"),
@@ -85,23 +92,24 @@ class NewCase:
                 line("tip_chamfer", self.tip_chamfer, "height that it takes off the tip"),
                 line("material", material and material[place]),
                 line("eccentricity", self.run_out and {"run_out": self.run_out[place]}),
+                line("pitch_errors", self.pitch_errors and _each(self.pitch_errors[place])),
                 line("allow_undercut", self.allow_undercut or None, "may shorten the contact"),
             )
         oil = line("name", self.oil or "ISO VG 100")
         known = self.oil_temperature
         temperature = line("temperature", known)
-        found += table("oil", oil, temperature if known else "# temperature: from the losses")
+        lines += table("oil", oil, temperature if known else "# temperature: from the losses")
         if self.backlash is not None:
             value = line("value", self.backlash, "of the whole gap, along the line of action")
-            found += table("backlash", value, 'direction = "normal"', 'extent = "total"')
-        found += table(
+            lines += table("backlash", value, 'direction = "normal"', 'extent = "total"')
+        lines += table(
             "flanks",
             line("accuracy", self.accuracy, "class of ISO 1328-1"),
             line("teeth", "drawn" if self.drawn_teeth else None, "each tooth its own"),
             line("pinion", self.pinion_flanks, "inspection chart, beside this file"),
             line("wheel", self.wheel_flanks),
         )
-        return found + table(
+        return lines + table(
             "operating",
             line("speed", self.speed, "of the pinion, which drives"),
             line("torque", self.torque, "at the pinion"),
@@ -110,12 +118,12 @@ class NewCase:
     def _shafts(self, case: GearCase) -> list[str]:
         """Two plain shafts sized by their torque, each between two bearings of the catalogue."""
         pair, torque = case.pair, max(case.torques)
-        found = []
+        lines = []
         for gear, body in (("pinion", pair.pinion), ("wheel", pair.wheel)):
             moment = torque * body.teeth / pair.pinion.teeth
             least = (16.0 * moment / (math.pi * SHEAR)) ** (1.0 / 3.0)
-            series = [one for name, one in CATALOGUE.items() if name.startswith("62")]
-            bores = sorted(one.bore for one in series)
+            series = [bearing for name, bearing in CATALOGUE.items() if name.startswith("62")]
+            bores = sorted(bearing.bore for bearing in series)
             bore = next((size for size in bores if size >= least), least)
             for most, what in (
                 (2.0 * body.root_radius, f"root circle of the {gear}"),
@@ -128,9 +136,9 @@ class NewCase:
                         allowed=f"up to {1e3 * most:.4g} mm, the {what}",
                         fix="leave --shafts out and describe [[shafts]] and [[bearings]] yourself",
                     )
-            one = next(one for one in series if one.bore == bore)
+            one = next(bearing for bearing in series if bearing.bore == bore)
             length = 5.0 * math.ceil(1e3 * (body.face_width + 2.0 * (one.width + BESIDE)) / 5.0)
-            found += [
+            lines += [
                 "",
                 "[[shafts]]",
                 f'gear = "{gear}"',
@@ -138,4 +146,4 @@ class NewCase:
                 f'diameter = "{1e3 * one.bore:.0f} mm"',
                 f'bearings = "{one.designation}" # one at each end',
             ]
-        return found
+        return lines

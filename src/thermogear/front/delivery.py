@@ -22,17 +22,28 @@ CSV, HIDDEN = "thermogear.csv", "thermogear.hidden"
 _Command = TypeVar("_Command", bound=Callable[..., Any])
 
 
-OF_PART = ("gears.period=", "gears.part=")
+OF_PART = {
+    "--turn": "gears.period=turn",
+    "--mean-tooth": "gears.period=mesh",
+    "--part case": "gears.part=case",
+    "--part nominal": "gears.part=nominal",
+}
 """What ``--turn``, ``--mean-tooth`` and ``--part`` stand for."""
 
 
 def _with_part(
     context: click.Context, _: click.Parameter, given: tuple[str, ...]
 ) -> tuple[str, ...]:
-    """``--set`` and what ``--part`` and ``--turn`` stand for."""
-    turn, part = context.params.pop("turn"), context.params.pop("part")
-    period = () if turn is None else (f"gears.period={'turn' if turn else 'mesh'}",)
-    return (*given, *period, *(() if part is None else (f"gears.part={part}",)))
+    """``--set`` and what ``--part``, ``--turn`` and ``--mean-tooth`` stand for; each once."""
+    turn, mean, part = (context.params.pop(name) for name in ("turn", "mean_tooth", "part"))
+    options = {"--turn": turn, "--mean-tooth": mean, f"--part {part}": part}
+    taken = {option: OF_PART[option] for option, wanted in options.items() if wanted}
+    fields = [change.partition("=")[0].strip() for change in (*given, *taken.values())]
+    for option, change in taken.items():
+        if fields.count(field := change.partition("=")[0]) > 1:
+            fix = "leave one of --turn, --mean-tooth, --part and --set out"
+            raise InputError(option, f"{field} twice", allowed="once", fix=fix)
+    return (*given, *taken.values())
 
 
 def together(*options: Callable[[_Command], _Command]) -> Callable[[_Command], _Command]:
@@ -63,11 +74,10 @@ overrides: Callable[[Any], Any] = together(
         help="Flanks as CASE has them, or as designed, with reliefs alone.",
     ),
     click.option(
-        "--turn/--mean-tooth",
-        default=None,
-        is_eager=True,
-        help="The whole turn of gears whose teeth differ, or their mean tooth over one mesh "
-        "period.",
+        "--turn", is_flag=True, is_eager=True, help="The whole turn of gears whose teeth differ."
+    ),
+    click.option(
+        "--mean-tooth", is_flag=True, is_eager=True, help="Their mean tooth over one mesh period."
     ),
 )
 """``--set``, and the options that choose the part and its period."""
@@ -165,7 +175,7 @@ def load(path: str, changes: tuple[str, ...]) -> GearCase | DimensionlessCase:
     try:
         return load_case(Path(path), changes)
     except InputError as error:
-        if error.field == "gears" and any(change.startswith(OF_PART) for change in changes):
+        if error.field == "gears" and set(changes) & set(OF_PART.values()):
             raise InputError(
                 "--turn, --mean-tooth or --part", "a case without gears", fix="leave it out"
             ) from error

@@ -79,7 +79,7 @@ def draw(
         raise InputError(
             "output",
             repr(output),
-            allowed=" | ".join(f".{one}" for one in ENDINGS),
+            allowed=" | ".join(f".{ending}" for ending in ENDINGS),
             fix="end its name with .svg",
         )
     if path.is_dir() or not path.parent.is_dir():
@@ -87,6 +87,8 @@ def draw(
         raise InputError("output", output, why=why, fix="name a file")
     if enlarge is not None and not 1.0 <= enlarge <= 1000.0:
         raise InputError("--enlarge", f"{enlarge:g}", allowed="1..1000")
+    if delivery.OF_PART["--turn"] in overrides:
+        raise InputError("--turn", "a drawing", why="its teeth are all alike", fix="leave it out")
     read = delivery.load_gears(case, overrides).unless_stated("part", "nominal")
 
     from thermogear.case.thermal_state import ThermalState
@@ -103,17 +105,17 @@ def draw(
         phase=phase,
         fineness=FINE if kind == "dxf" else 1,
     )
-    found = gear_drawing(result.data, factor=enlarge)
+    drawn = gear_drawing(result.data, factor=enlarge)
     if kind == "dxf":
         from thermogear.views.cad import put_dxf
 
-        put_dxf(found, path, place=0, shown=SHOWN[show])
+        put_dxf(drawn, path, place=0, shown=SHOWN[show])
     else:
         from thermogear.views.plots.gears import in_mesh
         from thermogear.views.svg import put_picture
 
         name = {"both": "both", "cold": "undeformed", "hot": "hot"}[show]
-        put_picture(in_mesh(found, phase, name), path, resolution=RESOLUTION)
+        put_picture(in_mesh(drawn, phase, name), path, resolution=RESOLUTION)
     delivery.tell(page_of(result), path, as_json=as_json)
 
 

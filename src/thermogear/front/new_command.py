@@ -60,6 +60,12 @@ NEEDED = {
 @click.option(
     "--run-out", nargs=2, metavar="LENGTH LENGTH", help="Radial run-out of pinion and wheel; none."
 )
+@click.option(
+    "--pitch-errors",
+    nargs=2,
+    metavar="LIST LIST",
+    help='Index errors of the teeth of pinion and wheel, "1 um, -2 um, ..."; "" for none.',
+)
 @click.option("--pinion-flanks", metavar="CSV", help="Inspection chart of the pinion's flanks.")
 @click.option("--wheel-flanks", metavar="CSV", help="The wheel's; each replaces the class.")
 @click.option(
@@ -118,11 +124,11 @@ def _quoted(name: str) -> str:
 
 def _asked() -> dict[str, Any]:
     """The answers of a person at a terminal."""
-    found: dict[str, Any] = {}
+    answers: dict[str, Any] = {}
     for name, (question, example) in NEEDED.items():
         text = click.prompt(question, default=example)
-        found[name] = _teeth(text) if name == "teeth" else text
-    return found
+        answers[name] = _teeth(text) if name == "teeth" else text
+    return answers
 
 
 def _teeth(text: str) -> tuple[int, int]:

@@ -152,10 +152,14 @@ def export(case: str, output: str, overrides: tuple[str, ...], version: str) -> 
     The ending of FILE says the container: .rexs XML, .rexsj JSON, .rexsz zip. `thermogear import`
     gives the same case back, bit for bit.
     """
+    from thermogear.case.rexs.exporting import kept_alone
     from thermogear.case.rexs.writing import write_rexs
 
     read = delivery.load_gears(case, overrides)
-    show_path(write_rexs(read, output, version=version))
+    path = write_rexs(read, output, version=version)
+    if alone := ", ".join(kept_alone(read)):
+        click.echo(f"  REXS has no name for, so in custom_thermogear_case alone: {alone}")
+    show_path(path)
 
 
 COMMANDS: tuple[click.Command, ...] = (import_, export)

@@ -18,13 +18,16 @@ if TYPE_CHECKING:
 @click.command()
 @click.argument("results", nargs=-1, metavar="RESULTS RESULTS [...]")
 @delivery.output("Directory of the page; made if new.")
+@delivery.overrides
 @delivery.as_json
-def versus(results: tuple[str, ...], output: str, as_json: bool) -> None:
+def versus(
+    results: tuple[str, ...], output: str, overrides: tuple[str, ...], as_json: bool
+) -> None:
     """Set two to six cases side by side: what differs, key figures, curves over each other.
 
     Each of RESULTS is a directory of `thermogear run`, or a case (its file, or the name of a
-    ready-made one), which is run first into a directory of its own below DIR. Writes versus.html,
-    versus.nc and CSV tables.
+    ready-made one), which is run first, as the options say, into a directory of its own below
+    DIR. Writes versus.html, versus.nc and CSV tables.
     """
     from thermogear.results import versus as study
 
@@ -32,7 +35,7 @@ def versus(results: tuple[str, ...], output: str, as_json: bool) -> None:
     directory = Path(output)
     paths = [_existing(Path(given)) for given in results]
 
-    from thermogear.case.case import load_case
+    from thermogear.base.errors import InputError
     from thermogear.case.size import require_room
     from thermogear.front.progress import Stopped
     from thermogear.results.result import read_results
@@ -41,16 +44,19 @@ def versus(results: tuple[str, ...], output: str, as_json: bool) -> None:
     from thermogear.views.write import save_results
 
     # everything is read and checked before the first case runs
-    found: dict[int, Result] = {}
+    results_by_place: dict[int, Result] = {}
     cases: dict[int, GearCase | DimensionlessCase] = {}
     for place, path in enumerate(paths):
         if path.is_dir():
-            found[place] = read_results(path)
+            results_by_place[place] = read_results(path)
         else:
-            cases[place] = load_case(path)
+            cases[place] = delivery.load(str(path), overrides)
             require_room(cases[place])
+    if overrides and not cases:
+        why = "directories of results stay as they are"
+        raise InputError("overrides", ", ".join(overrides), why=why, fix="name a case, or none")
     study.require_one_kind({
-        str(path): found[place].kind if place in found else cases[place].kind
+        str(path): results_by_place[place].kind if place in results_by_place else cases[place].kind
         for place, path in enumerate(paths)
     })  # fmt: skip
     homes = _homes(directory, paths)
@@ -59,10 +65,10 @@ def versus(results: tuple[str, ...], output: str, as_json: bool) -> None:
     def make(report: Progress) -> Result:
         nonlocal done
         for place, case in cases.items():
-            found[place] = with_errata(run(case, progress=report), case)
-            save_results(found[place], homes[place])
+            results_by_place[place] = with_errata(run(case, progress=report), case)
+            save_results(results_by_place[place], homes[place])
             done += 1
-        stored = [study.stored(found[p], homes[p].name) for p in range(len(paths))]
+        stored = [study.stored(results_by_place[p], homes[p].name) for p in range(len(paths))]
         return study.versus(stored)
 
     try:

@@ -25,6 +25,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.arrays import Dataset, Floats
+from thermogear.base.display import kind_in_words
 from thermogear.base.vocabulary import label
 from thermogear.gears.candidates import mesh_points
 from thermogear.gears.deviations import Deviation, FlankShape
@@ -117,7 +118,11 @@ def drawn_gears(
     ]
     circles = ("base", "pitch", "tip", "root", "form", "bore")
     angle = pair.operating_pressure_angle
-    skipped = sorted({type(d).__name__ for d in given if not isinstance(d, FlankShape)})
+    skipped = sorted({
+        kind_in_words(whole)
+        for whole, mean in zip(given, deviations, strict=True)
+        if not isinstance(mean, FlankShape)
+    })  # fmt: skip
     return label(
         {
             "tight_radius": (curve, np.stack([one.radius for one in tight]), "m",

@@ -47,12 +47,12 @@ def spread_of_turn(elastic: ElasticPair, s: Floats, every: PathShare) -> dict[st
         path = FrictionPath(elastic, np.resize(s, share.shape[1]), PathShare(share, edge))
         along = [sign * np.broadcast_to(of(path), share.shape) for of, sign in WORST.values()]
         parts.append(np.reshape(along, (len(along), count, -1, places)).max(axis=-1))
-    found: dict[str, Floats] = {}
+    spread: dict[str, Floats] = {}
     for (name, (_, sign)), rising in zip(WORST.items(), np.concatenate(parts, -1), strict=True):
         # values that occur: between two infinite films there is none
         of_pairs = sign * np.quantile(rising, [0.5, DECILE, 1.0], axis=1, method="inverted_cdf")
         pair = np.argmax(rising, axis=1)
         teeth = [1.0 + pair % gear.teeth for gear in (elastic.pair.pinion, elastic.pair.wheel)]
-        found |= dict(zip(_names(name, sign), (*of_pairs, *teeth), strict=True))
+        spread |= dict(zip(_names(name, sign), (*of_pairs, *teeth), strict=True))
     settled = np.isfinite(every.share).all(axis=(1, 2))
-    return {name: np.where(settled, values, np.nan) for name, values in found.items()}
+    return {name: np.where(settled, values, np.nan) for name, values in spread.items()}

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from thermogear.base.arrays import DataArray, Dataset
+from thermogear.base.display import kind_in_words
 from thermogear.base.errors import InputError
 from thermogear.base.vocabulary import UNDEFORMED, is_known
 from thermogear.case.case import GearCase, gear_case
@@ -17,6 +18,7 @@ from thermogear.case.thermal_state import UNDEFORMED as COLD
 from thermogear.mesh.drawing import PHASES, drawn_gears
 from thermogear.mesh.model import MeshModel
 from thermogear.results.result import Notice, Result
+from thermogear.study.declared import mean_tooth_notices
 
 KIND = "drawing"
 MOST = 6
@@ -44,7 +46,7 @@ def drawing(
     case, hot = gear_case(case), ThermalState.of(state)
     if phase is not None and not 0.0 <= phase <= 1.0:
         raise InputError("phase", f"{phase:g}", allowed="0..1", fix="a part of one mesh period")
-    names = [one.name for one in case.models]
+    names = [model.name for model in case.models]
     model = dict(zip(names, case.models, strict=True))[named("bundle", bundle, names)]
     most = len(case.speeds) * len(case.torques)
     here = counted("operating", 1 if operating is None else operating, most=most)
@@ -54,7 +56,7 @@ def drawing(
         KIND,
         f"The gears in mesh: {case.title}",
         {"drawing": data},
-        _notices(data),
+        [*_flank_notices(case), *_notices(data)],
         **case.provenance,
         state=hot.words,
     )
@@ -70,7 +72,7 @@ def drawn_points(case: GearCase, status: DataArray) -> Dataset | None:
         return None
     places = known[np.unique(np.linspace(0, known.size - 1, min(MOST, known.size)).round())
                    .astype(int)]  # fmt: skip
-    return _drawn(case, case.models[0], HOT, [int(one) for one in places], PHASES, 1)
+    return _drawn(case, case.models[0], HOT, [int(place) for place in places], PHASES, 1)
 
 
 def _drawn(
@@ -82,8 +84,8 @@ def _drawn(
     fineness: int,
 ) -> Dataset:
     states = {
-        name: replace(one.operating(case, model), housing=case.housing).part(np.array(places))
-        for name, one in ((UNDEFORMED, COLD), ("hot", hot))
+        name: replace(state.operating(case, model), housing=case.housing).part(np.array(places))
+        for name, state in ((UNDEFORMED, COLD), ("hot", hot))
     }
     return drawn_gears(
         case.pair,
@@ -93,6 +95,15 @@ def _drawn(
         phases=phases,
         fineness=fineness,
     )
+
+
+def _flank_notices(case: GearCase) -> Iterator[Notice]:
+    """Which of the case's deviations and teeth are drawn."""
+    yield from mean_tooth_notices(case, case.mean_tooth())
+    if case.file.gears.part == "nominal":
+        others = {kind_in_words(d) for d in case.all_deviations if d not in case.deviations}
+        if others:
+            yield Notice.of("nominal_flanks_drawn", deviations=sorted(others))
 
 
 def _notices(data: Dataset) -> Iterator[Notice]:

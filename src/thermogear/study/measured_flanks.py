@@ -29,10 +29,10 @@ def _group(chart: Chart, pair: GearPair) -> Dataset:
     start, pitch, tip = active_profile(pair, chart.gear)
     low, high = chart.range
     entries: dict[str, Any] = {}
-    for one in flanks:
-        rows = [k for k, side in enumerate(traces.flank) if side == one.flank]
-        inside = (rho >= one.rho[0]) & (rho <= one.rho[-1])
-        acts = np.interp(rho, one.rho, one.acting)
+    for measured in flanks:
+        rows = [k for k, side in enumerate(traces.flank) if side == measured.flank]
+        inside = (rho >= measured.rho[0]) & (rho <= measured.rho[-1])
+        acts = np.interp(rho, measured.rho, measured.acting)
         # the fit stands where the mean trace does, as the chart has it
         level = float(np.mean(traces.added[rows].mean(axis=0)[inside] - acts[inside]))
         on_flank = (rho >= start) & (rho <= tip)
@@ -41,15 +41,20 @@ def _group(chart: Chart, pair: GearPair) -> Dataset:
             "acting": (np.where(on_flank, acts, np.nan), "what acts, zero at the pitch circle"),
         }
         figures_ = {
-            "cutoff": (one.cutoff, "cut-off of the low-pass along the roll path"),
-            "noise": (one.noise, "noise of one trace"),
-            "scatter": (one.scatter, "scatter between the teeth"),
+            "cutoff": (measured.cutoff, "cut-off of the low-pass along the roll path"),
+            "noise": (measured.noise, "noise of one trace"),
+            "scatter": (measured.scatter, "scatter between the teeth"),
         }
         for name, (values, text) in curves.items():
-            told = f"{one.flank} flank, {text}"
-            entries[f"{one.flank}_{name}"] = (("flank_point",), values, "m", told)
+            meaning = f"{measured.flank} flank, {text}"
+            entries[f"{measured.flank}_{name}"] = (("flank_point",), values, "m", meaning)
         for name, (value, text) in figures_.items():
-            entries[f"{one.flank}_{name}"] = ((), np.array(value), "m", f"{one.flank}, {text}")
+            entries[f"{measured.flank}_{name}"] = (
+                (),
+                np.array(value),
+                "m",
+                f"{measured.flank}, {text}",
+            )
     figures = {side.flank: iter(zip(side.figures, side.grades, strict=True)) for side in flanks}
     rows_ = [next(figures[side]) for side in traces.flank]
     words = {
@@ -78,7 +83,8 @@ def _group(chart: Chart, pair: GearPair) -> Dataset:
         values = np.array([figure[place] for figure, _ in rows_])
         entries[name] = (("trace",), values, "m", text)
     for place, (name, values) in enumerate(chart.read.pitch.items(), 1):
-        entries[f"pitch_{place}"] = (("tooth",), values, "m", f"{name}, kept and not used")
+        use = "acts" if name == chart.acting_pitch else "kept and not used"
+        entries[f"pitch_{place}"] = (("tooth",), values, "m", f"{name}, {use}")
     coordinates: dict[str, Any] = {
         "roll_path": (("flank_point",), rho, "m", "roll path from the base circle"),
         "diameter": (("flank_point",), 2.0 * np.hypot(gear.base_radius, rho), "m", "diameter"),
@@ -100,15 +106,15 @@ def measured_notices(case: GearCase) -> Iterator[Notice]:
     """What of a chart acts, what was decided for it, and what is left out."""
     for chart in case.charts:
         gear, name = _gear(case.pair, chart.gear), f"{chart.gear} flanks"
-        for one in chart.flanks:
+        for measured in chart.flanks:
             yield Notice.of(
                 "flank_as_measured",
                 about=name,
-                flank=one.flank,
-                traces=chart.traces.flank.count(one.flank),
-                cutoff=one.cutoff,
-                part=(one.rho[-1] - one.rho[0]) / one.cutoff,
-                noise=one.noise,
+                flank=measured.flank,
+                traces=chart.traces.flank.count(measured.flank),
+                cutoff=measured.cutoff,
+                part=(measured.rho[-1] - measured.rho[0]) / measured.cutoff,
+                noise=measured.noise,
             )
         ends, stated = (
             None if range_ is None else [2.0 * np.hypot(gear.base_radius, range_)]
@@ -123,15 +129,20 @@ def measured_notices(case: GearCase) -> Iterator[Notice]:
         )
         if not chart.read.signed:
             yield Notice.of("sign_not_stated", about=name)
-        limited = [one.flank for one in chart.flanks if one.limited]
+        limited = [measured.flank for measured in chart.flanks if measured.limited]
         if limited:
             yield Notice.of("traces_noisy", about=name, flanks=limited)
-        for flank in {"drive", "back"} - {one.flank for one in chart.flanks}:
+        for flank in {"drive", "back"} - {measured.flank for measured in chart.flanks}:
             yield Notice.of("flank_not_measured", about=name, flank=flank)
-        if any(isinstance(one, Relief) and one.gear == chart.gear for one in case.deviations):
+        if any(
+            isinstance(deviation, Relief) and deviation.gear == chart.gear
+            for deviation in case.deviations
+        ):
             yield Notice.of("relief_on_traces", about=name)
-        if chart.read.pitch:
-            yield Notice.of("pitch_not_used", about=name, deviations=list(chart.read.pitch))
+        if chart.acting_pitch is not None:
+            yield Notice.of("pitch_as_measured", about=name, deviations=chart.acting_pitch)
+        if others := [column for column in chart.read.pitch if column != chart.acting_pitch]:
+            yield Notice.of("pitch_not_used", about=name, deviations=others)
 
 
 def _gear(pair: GearPair, name: str) -> Gear:

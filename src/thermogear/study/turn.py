@@ -32,13 +32,13 @@ def turn_contact(case: GearCase, hot: HotPair) -> dict[str, Dataset]:
     """
     phase = turn_phases(case.period.mesh_periods, np.arange(TURN_POSITIONS) / TURN_POSITIONS)
     mesh = LoadedPair(hot, case.deviations).solve(phase)
-    found = {
+    groups = {
         "turn": _errors(case, hot, phase, mesh),
         "teeth": _teeth(case, mesh),
     }
     if case.assembly_count > 1 and case.file.gears.marks is None:
-        found["assemblies"] = _assemblies(case, hot, phase)
-    return found
+        groups["assemblies"] = _assemblies(case, hot, phase)
+    return groups
 
 
 def _errors(case: GearCase, hot: HotPair, phase: Floats, mesh: LoadedMesh) -> Dataset:
@@ -90,7 +90,7 @@ def _teeth(case: GearCase, mesh: LoadedMesh) -> Dataset:
     contacts, share, pair = mesh.points.contacts, mesh.share[0], case.pair
     pressure = np.where(np.isfinite(mesh.pressure[0]), mesh.pressure[0], 0.0).ravel()
     at_pitch = (pair.path.c - pair.path.a) / pair.base_pitch
-    found = []
+    gears = []
     for gear, other in zip(GEARS, GEARS[::-1], strict=True):
         count, tooth = pair.gear(gear).teeth, contacts.tooth(gear)
         # each tooth where its pressure is greatest, in the order of the teeth
@@ -130,8 +130,8 @@ def _teeth(case: GearCase, mesh: LoadedMesh) -> Dataset:
             ),
         }
         rows = label({name: (("tooth",), *entry) for name, entry in columns.items()})
-        found.append(rows.sortby("number"))
-    return xr.concat(found, "tooth")
+        gears.append(rows.sortby("number"))
+    return xr.concat(gears, "tooth")
 
 
 def _assemblies(case: GearCase, hot: HotPair, phase: Floats) -> Dataset:

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from thermogear import __version__
+from thermogear.base.display import kind_in_words
 from thermogear.base.errors import InputError, ThermogearError, ValidityWarning
 from thermogear.base.materials import Material
 from thermogear.base.units import ZERO_CELSIUS
@@ -33,6 +34,7 @@ from thermogear.case.rexs.values import values
 from thermogear.case.thermal_state import HOT
 from thermogear.gears.deviations import Relief, active_profile
 from thermogear.gears.geometry import Gear
+from thermogear.gears.graded_flanks import WavyProfile
 from thermogear.heat.lubrication import kinematic_viscosity
 
 WRITTEN = ("1.4", "1.5", "1.6", "1.7", "2.0.0")
@@ -61,6 +63,25 @@ def model_of_case(case: GearCase, version: str = "1.7", *, results: bool = True)
         )
     maker = _Maker(case, version)
     return maker.made(maker.computed() if results else None)
+
+
+NAMELESS = (
+    "shafts", "bearings", "discs", "inertia", "dynamics", "transmission_error", "gearbox",
+    "housing", "sensors", "model",
+)  # fmt: skip
+"""Tables of a case that REXS has no names for."""
+
+
+def kept_alone(case: GearCase) -> list[str]:
+    """What of a case its REXS model has in ``custom_thermogear_case`` alone.
+
+    Other programs do not see it: flanks that differ, but for reliefs and a class, and how the teeth
+    meet; tables of :data:`NAMELESS` that it states.
+    """
+    known: tuple[type, ...] = (Relief,) if case.accuracy is None else (Relief, WavyProfile)
+    kinds = {kind_in_words(d) for d in case.all_deviations if not isinstance(d, known)}
+    marks = ["marks"] * (case.file.gears.marks is not None)
+    return [*sorted(kinds), *marks, *(name for name in NAMELESS if name in case.data)]
 
 
 class _Maker:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any
 
 import numpy as np
 
-from thermogear.base.arrays import Dataset
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.display import MEGAPASCAL, MICROMETRE, MILLIMETRE, PERCENT, number
 from thermogear.base.period import Period
 from thermogear.results.tables import rows_along
@@ -22,8 +22,12 @@ from thermogear.views.style import COLD, HOT, INK, OKABE_ITO, QUIET, WIDE
 MOST_LINES = 16
 """Lines of a table, the greatest; all are stored."""
 TICKS = 14
+SLANTED = 0.75
+"""Room [in] below slanted names of ticks."""
 NAMED = 6
-"""Lines named in a panel: the greatest in as many stretches."""
+"""Lines named in a panel, at most."""
+LETTER, HIGH = 0.0145, 0.3
+"""A letter of a name, of the width of a panel; the height of a name in decades of amplitude."""
 COLOURS = {"mesh": INK, "pinion": HOT, "wheel": COLD, "other": OKABE_ITO[2]}
 """Kinds of lines of a turn and their colours; others lie beside the mesh, or are of both shafts or
 of the hunting tooth."""
@@ -51,6 +55,14 @@ TEETH = (
     key("position_m", "position"),
     key("mate", lambda row: int(row["mate"]) or None),
 )
+ASSEMBLIES = (
+    Column("pinion tooth", "pinion_tooth", key="pinion_tooth"),
+    Column("meets wheel tooth", "wheel_tooth", key="wheel_tooth"),
+    Column("under load", "peak_to_peak_error", 4, MICROMETRE),
+    Column("without load", "unloaded_swing", 4, MICROMETRE),
+    key("transmission_error_peak_to_peak_m", "peak_to_peak_error"),
+    key("unloaded_error_peak_to_peak_m", "unloaded_swing"),
+)
 SWINGS = ("transmission_error", "unloaded_error", "mesh_synchronous_error")
 
 
@@ -68,14 +80,23 @@ def numbers(groups: Mapping[str, Dataset]) -> dict[str, Any]:
     if "turn" not in groups:
         return {}
     turn = groups["turn"]
-    found: dict[str, Any] = {
+    figures: dict[str, Any] = {
         "mesh_periods": int(turn.attrs["mesh_periods"]),
         "pinion_torque_Nm": float(turn.attrs["torque"]),
         **{f"{name}_peak_to_peak_m": float(np.ptp(turn[name].values)) for name in SWINGS},
         "lines": [in_full(LINES, row) for row in lines(turn)[:MOST_LINES]],
         "teeth": [in_full(TEETH, row) for row in rows_along(groups["teeth"], "tooth")],
+        "assemblies": [in_full(ASSEMBLIES, row) for row in _assemblies(groups)],
     }
-    return {"turn": found}
+    return {"turn": figures}
+
+
+def _assemblies(groups: Mapping[str, Dataset]) -> list[dict[str, Any]]:
+    """The assemblies whose swings were computed, none where the case says which it is."""
+    if "assemblies" not in groups:
+        return []
+    first = {"pinion_tooth": int(groups["assemblies"].attrs["pinion_tooth"])}
+    return [first | row for row in rows_along(groups["assemblies"], "wheel_tooth")]
 
 
 def _swings(turn: Dataset) -> str:
@@ -136,6 +157,11 @@ def tables(groups: Mapping[str, Dataset]) -> list[Table]:
             rows_along(groups["teeth"], "tooth"),
             names=2,
         ),
+        *(
+            declared("Peak-to-peak transmission error of assemblies.", ASSEMBLIES, assemblies)
+            for assemblies in [_assemblies(groups)]
+            if assemblies
+        ),
     ]
 
 
@@ -167,13 +193,15 @@ def error_of_turn(data: Dataset) -> Picture:
         y = MICROMETRE(data[name].values[here])
         draw_phase(near, phase[here], values=y, colour=colour, label=label, width=1.2)
     if shown == of:
-        return Picture([[near]], size=(WIDE, 3.4), legend=2)
+        return Picture([[near]], size=(WIDE, 3.4), legend=2, bottom=SLANTED)
     near.title = "Turn of the pinion in which it swings most"
     top = Top("mesh periods [–]", 1.0)
     whole = Panel(tooth_axis(data, low=0, high=of), Axis(words), "Whole turn, under load", top=top)
     whole.span(x=(start, start + shown), colour=QUIET, opacity=0.15)
     draw_phase(whole, phase, values=MICROMETRE(data[SWINGS[0]].values), colour=HOT, width=1.2)
-    return Picture([[whole], [near]], size=(WIDE, 6.2), legend=2, top=0.75, above=1.0)
+    return Picture(
+        [[whole], [near]], size=(WIDE, 6.2), legend=2, top=0.75, above=1.0, bottom=SLANTED
+    )
 
 
 def orders_of_turn(data: Dataset) -> Picture:
@@ -195,13 +223,29 @@ def orders_of_turn(data: Dataset) -> Picture:
         for kind, colour in COLOURS.items():
             (some,) = np.nonzero((kinds == kind) & (x < high))
             some = some[np.argsort(x[some])]
-            draw_lines(panel, order=x[some], amplitude=amplitude[some], colour=colour, label=kind)
-        # the greatest come first
-        _, greatest = np.unique((x / high * NAMED).astype(int), return_index=True)
-        for n in greatest[:NAMED]:
+            if some.size:
+                draw_lines(
+                    panel, order=x[some], amplitude=amplitude[some], colour=colour, label=kind
+                )
+        for n in _named([row["name"] for row in rows], x=x / high, amplitude=amplitude):
             panel.text(x[n], amplitude[n], rows[n]["name"], offset=(0, 5), up="bottom", size=7.5)
         panels.append(panel)
     return Picture([panels], size=(WIDE, 3.8), legend=4)
+
+
+def _named(names: Sequence[str], *, x: Floats, amplitude: Floats) -> list[int]:
+    """Lines, the greatest first, whose names have room: no greater line and no other name in it.
+
+    ``x`` is the place in the width of the panel; of names beyond it there are none.
+    """
+    half = 0.5 * LETTER * np.array([len(name) for name in names])
+    chosen: list[int] = []
+    for n in np.flatnonzero((x < 1.0) & (amplitude > 0.0)):
+        apart = np.abs(x - x[n])
+        other = [m for m in chosen if abs(np.log10(amplitude[m] / amplitude[n])) < HIGH]
+        if not (apart[:n] < half[n]).any() and (apart[other] > half[other] + half[n]).all():
+            chosen.append(int(n))
+    return chosen[:NAMED]
 
 
 def teeth_of_turn(data: Dataset) -> Picture:

@@ -51,12 +51,15 @@ def draw_phase(panel: Panel, x: Floats, *, values: Floats, **look: Any) -> None:
     if x.size >= FEWEST * of * step:
         panel.curve(x[::step], values[::step], **look)
         return
-    cuts = np.arange(0, x.size, x.size // of * -(-of // (MOST_POINTS // 2)))
-    low, high = np.minimum.reduceat(values, cuts), np.maximum.reduceat(values, cuts)
+    cuts = np.arange(0, x.size, x.size // of * -(-of // (MOST_POINTS // 2 - 2)))
+    ends = np.append(x[cuts], 2.0 * x[-1] - x[-2])
+    # in the middle of each stretch, and out to both ends of the whole
+    places = np.concatenate([ends[:1], 0.5 * (ends[1:] + ends[:-1]), ends[-1:]])
+    low, high = (np.pad(f.reduceat(values, cuts), 1, "edge") for f in (np.minimum, np.maximum))
     colour, label = look["colour"], look.get("label", "")
-    panel.band(x[cuts], low=low, high=high, opacity=0.4, colour=colour, label=label)
+    panel.band(places, low=low, high=high, opacity=0.4, colour=colour, label=label)
     for edge in (low, high):
-        panel.curve(x[cuts], edge, colour=colour, width=0.4)
+        panel.curve(places, edge, colour=colour, width=0.4)
 
 
 def along_path(data: Dataset, y: Axis, *, letters: bool = True) -> Panel:
