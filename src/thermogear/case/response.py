@@ -59,6 +59,21 @@ class Recording:
             self, periods=-(-count // whole) * whole, samples=self.samples * mesh_periods
         )
 
+    def in_orders_of(self, mesh_periods: int) -> Recording:
+        """The same record with every line of a turn of ``mesh_periods``, as high as it has room.
+
+        That is with steps of 1/L, the orders of both shafts, their side lines at the mesh and the
+        hunting tooth among them, up to order :data:`LEAST_HIGHEST` of the mesh at least.
+        """
+        if mesh_periods == 1:
+            return self
+        highest = max(LEAST_HIGHEST, MOST_LINES // mesh_periods)
+        return replace(
+            self,
+            order_step=1.0 / mesh_periods,
+            highest_order=min(self.highest_order, float(highest)),
+        )
+
     @property
     def orders(self) -> Floats:
         """Orders of the mesh frequency, from the first step on."""
@@ -75,6 +90,8 @@ RECORD = Recording()
 RULE = Rule(first=128, cap=8192, settled=1e-6, chaos_periods=1000)
 """How long the motion of gears is followed in run-ups and sweeps."""
 ROUNDING = 1e-12
+MOST_LINES, LEAST_HIGHEST = 4000, 3
+"""Lines of a turn that are kept, and the order of the mesh up to which they are at least."""
 
 
 def response_variables(dims: tuple[str, ...], *, lines: bool) -> dict[str, Variable]:
@@ -127,7 +144,7 @@ def respond(
         maps = exact.prepare_maps(lanes, borders, marks)
         run = exact.State.start(x=state[index, 0], y=state[index, 1], backlash=lanes.half_backlash)
         _, _, samples = exact.advance(maps, run, record.periods, sampled=True)
-        each = _figures(
+        each = figures_of_record(
             points.take(index), np.ascontiguousarray(samples[:, 0].T), phase, record, lines
         )
         for name, values in each.items():
@@ -141,10 +158,13 @@ def respond(
     return found
 
 
-def _figures(
+def figures_of_record(
     points: Points, x: Floats, phase: Floats, record: Recording, lines: bool
 ) -> dict[str, Floats]:
-    """The figures of motions ``x`` (point, sample)."""
+    """The figures of motions ``x`` (point, sample), recorded from ``phase`` 0 of the tables on.
+
+    ``phase`` (sample of a period,) in periods of the tables; with ``lines`` those of ``record``.
+    """
     length, b = points.length[:, None], points.flat.half_backlash[:, None]
     periods = 1, record.periods
     dte = length * x + np.tile(points.kinematic(phase), periods)
