@@ -78,7 +78,7 @@ class Recording:
     def orders(self) -> Floats:
         """Orders of the mesh frequency, from the first step on."""
         count = round(self.highest_order / self.order_step)
-        return np.asarray(self.order_step * np.arange(1, count + 1, dtype=float))
+        return np.arange(1, count + 1) / round(1.0 / self.order_step)
 
     @property
     def coordinate(self) -> tuple[tuple[str, ...], Floats, dict[str, Any]]:

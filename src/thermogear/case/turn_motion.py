@@ -9,14 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from thermogear.analysis.outcome import outcome_arrays, settle_with_status, started
 from thermogear.analysis.settle import PERIODIC, UNDECIDED, Rule, Settled
-from thermogear.base.arrays import Floats, Whole
+from thermogear.base.arrays import Dataset, Floats, Whole
 from thermogear.base.plan import Alive, Arrays, keep_going
+from thermogear.base.vocabulary import FIXED_STEPS
 from thermogear.case.case import GearCase
 from thermogear.case.points import Points
 from thermogear.case.response import Recording, figures_of_record, respond
@@ -33,12 +33,24 @@ SAMPLES = STEPS // 2
 """Of a mesh period of a recorded turn; extremes are those of all steps."""
 
 
-def turn_attributes(case: GearCase) -> dict[str, Any]:
-    """What a result says of the turn of ``case``; nothing where one mesh period is all."""
-    if case.period.mesh_periods == 1:
-        return {}
-    teeth = [case.pair.pinion.teeth, case.pair.wheel.teeth]
-    return {"mesh_periods": case.period.mesh_periods, "teeth": teeth}
+def over_turn(data: Dataset, case: GearCase) -> Dataset:
+    """Stored motions with what they are of the turn of ``case``: its size, the names of its lines.
+
+    As they are where the case repeats itself after one mesh period.
+    """
+    turn, teeth = case.period, [case.pair.pinion.teeth, case.pair.wheel.teeth]
+    of = turn.mesh_periods
+    if of == 1:
+        return data
+    closed = f"turns of {of} mesh periods after which the motion repeats itself, 0: none seen"
+    data = data.assign(
+        period=data["period"].assign_attrs(long_name=closed),
+        label=data["label"].assign_attrs(comment=FIXED_STEPS),
+    )
+    if "order" in data.coords:
+        names = [turn.line(round(order * of)) for order in data["order"].values]
+        data = data.assign(line=("order", names, {"long_name": "name of the line"}))
+    return data.assign_attrs(mesh_periods=of, teeth=teeth)
 
 
 def turn_tables(points: Points) -> Iterator[tuple[Whole, TurnTables]]:

@@ -39,7 +39,7 @@ from thermogear.case.family import GearFamily, Tabulated
 from thermogear.case.points import Points
 from thermogear.case.response import RECORD, RULE, Recording, respond, response_variables
 from thermogear.case.thermal_state import HOT, UNDEFORMED, StateLike, ThermalState
-from thermogear.case.turn_motion import settled_response, turn_attributes
+from thermogear.case.turn_motion import over_turn, settled_response
 from thermogear.dynamics.return_map import ReturnMap
 from thermogear.results.result import Result
 from thermogear.results.work import Report, carry_out
@@ -285,11 +285,11 @@ class RunUpPlan:
     def finish(self, data: xr.Dataset) -> xr.Dataset:
         if self.branch_period > 0 and self.turn == 1:
             data = _with_folds(self, data)
+        data = over_turn(data, self.case)
         data.attrs |= {
             "bundle": self.bundle,
             "pinion_torque": self.torque,
             "pinion_teeth": self.case.pair.pinion.teeth,
-            **turn_attributes(self.case),
             "total_periods": int(data["used_periods"].sum()),
         }
         data = _with_jumps(self, data)

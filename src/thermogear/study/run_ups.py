@@ -38,7 +38,7 @@ from thermogear.case.points import points_of
 from thermogear.case.response import RECORD, RULE, Recording, response_variables
 from thermogear.case.samples import fields_of
 from thermogear.case.thermal_state import HOT, StateLike, ThermalState
-from thermogear.case.turn_motion import settled_response, turn_attributes
+from thermogear.case.turn_motion import over_turn, settled_response
 from thermogear.results.work import Report, carry_out
 
 LANES = 64
@@ -145,10 +145,9 @@ class RunUpsPlan:
         return self._kept[chunk]
 
     def finish(self, data: xr.Dataset) -> xr.Dataset:
-        return data.assign_attrs(
+        return over_turn(data, self.family.case).assign_attrs(
             bundle=self.family.bundle,
             state=self.family.state.stored,
-            **turn_attributes(self.family.case),
             total_periods=int(data["used_periods"].sum()),
         )
 

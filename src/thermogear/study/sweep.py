@@ -33,7 +33,7 @@ from thermogear.case.case import GearCase, gear_case
 from thermogear.case.family import GearFamily
 from thermogear.case.response import RECORD, RULE, Recording, response_variables
 from thermogear.case.thermal_state import HOT, StateLike, ThermalState
-from thermogear.case.turn_motion import settled_response, turn_attributes
+from thermogear.case.turn_motion import over_turn, settled_response
 from thermogear.results.result import Result
 from thermogear.results.work import Report, carry_out
 from thermogear.study.answers.points import answer_numbers, answer_variables
@@ -119,10 +119,9 @@ class SweepPlan:
         return {name: a.reshape(*shape, *a.shape[1:]) for name, a in flat.items()}
 
     def finish(self, data: Dataset) -> Dataset:
-        return data.assign_attrs(
+        return over_turn(data, self.family.case).assign_attrs(
             bundle=self.family.bundle,
             state=self.family.state.stored,
-            **turn_attributes(self.family.case),
             notices=stored_notices(range_notices(self.family.case, data)),
         )
 
