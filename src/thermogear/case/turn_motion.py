@@ -29,6 +29,9 @@ from thermogear.dynamics.turns import (
     record_turns,
 )
 
+DIGITS = 7
+"""Decimals of what a motion over a turn is computed with, in units of the equation: other numbers
+of the same teeth differ by rounding alone, which a motion that never settles would amplify."""
 SAMPLES = STEPS // 2
 """Of a mesh period of a recorded turn; extremes are those of all steps."""
 
@@ -63,23 +66,25 @@ def turn_tables(points: Points) -> Iterator[tuple[Whole, TurnTables]]:
     ]
     for key in dict.fromkeys(keys):
         index = np.array([place for place, other in enumerate(keys) if other == key])
-        yield (
-            index,
-            TurnTables(
-                stiffness=points.flat.stiffness[index[0]],
-                error=points.error[index[0]] / points.length[index[0]],
-                mesh_periods=points.mesh_periods,
-            ).from_greatest(),
-        )
+        tables = TurnTables(
+            stiffness=points.flat.stiffness[index[0]],
+            error=points.error[index[0]] / points.length[index[0]],
+            mesh_periods=points.mesh_periods,
+        ).from_greatest()
+        # what it weighs in e'' grows with the order squared
+        orders = 1.0 + (np.arange(tables.error.size) / points.mesh_periods) ** 2
+        error = np.round(tables.error * orders, DIGITS) / orders
+        yield index, replace(tables, stiffness=np.round(tables.stiffness, DIGITS), error=error)
 
 
 def turn_lanes(points: Points) -> TurnLanes:
     """The numbers of ``points`` that their tables do not hold."""
+    flat = points.flat
     return TurnLanes(
-        mean=points.flat.force[:, 0].real,
-        damping=points.flat.damping,
-        backlash=points.flat.half_backlash,
-        period=points.flat.period,
+        mean=np.round(flat.force[:, 0].real, DIGITS),
+        damping=np.round(flat.damping, DIGITS),
+        backlash=np.round(flat.half_backlash, DIGITS),
+        period=np.round(flat.period, DIGITS),
     )
 
 
