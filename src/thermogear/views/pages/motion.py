@@ -251,7 +251,7 @@ def _orbit_tables(summary: Summary) -> list[Block]:
             words: (number(float(length(summary[name])), 6), length.unit)
             for words, name in (
                 ("least displacement", "least"), ("greatest displacement", "greatest"),
-                ("half backlash", "half_backlash"),
+                (f"half backlash{', mean of the turn' * (of > 1)}", "half_backlash"),
             )
         },
     }  # fmt: skip
