@@ -216,7 +216,7 @@ def _advance(
 
 
 def record_turns(
-    tables: TurnTables, lane: TurnLanes, state: Floats, turns: int, samples: int
+    tables: TurnTables, lane: TurnLanes, state: Floats, *, turns: int, samples: int
 ) -> tuple[Floats, Floats, Floats]:
     """One motion over so many turns from mesh period 0 of the gears on, which it meets first.
 

@@ -39,7 +39,7 @@ from thermogear.case.family import GearFamily, Tabulated
 from thermogear.case.points import Points
 from thermogear.case.response import RECORD, RULE, Recording, respond, response_variables
 from thermogear.case.thermal_state import HOT, UNDEFORMED, StateLike, ThermalState
-from thermogear.case.turn_motion import over_turn, settled_response
+from thermogear.case.turn_response import over_turn, settled_response
 from thermogear.dynamics.return_map import ReturnMap
 from thermogear.results.result import Result
 from thermogear.results.work import Report, carry_out
@@ -425,7 +425,7 @@ class _Run:
     def _size(self, speed: float, state: Floats) -> float:
         """Peak to peak transmission error of the motion at ``state``."""
         point = self._single(speed)
-        record = replace(self.plan.record, periods=LISTED_PERIOD * max(4, point.mesh_periods))
+        record = replace(self.plan.record, periods=LISTED_PERIOD * 4)
         found = respond(point, state[None], record, lines=False)
         return float(found["dte_peak_to_peak"][0])
 

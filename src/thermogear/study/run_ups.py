@@ -38,7 +38,7 @@ from thermogear.case.points import points_of
 from thermogear.case.response import RECORD, RULE, Recording, response_variables
 from thermogear.case.samples import fields_of
 from thermogear.case.thermal_state import HOT, StateLike, ThermalState
-from thermogear.case.turn_motion import over_turn, settled_response
+from thermogear.case.turn_response import over_turn, settled_response
 from thermogear.results.work import Report, carry_out
 
 LANES = 64

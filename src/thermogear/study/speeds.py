@@ -19,12 +19,11 @@ from thermogear.analysis.settle import CHAOTIC, PERIODIC, UNDECIDED, WATCHED
 from thermogear.analysis.side_by_side import APART, Motions, motions_along
 from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.excitation import Excitations
-from thermogear.base.period import turns
 from thermogear.base.units import RPM
 from thermogear.base.vocabulary import NO_COUNT, label
 from thermogear.case.points import Points, points_of
 from thermogear.case.response import Recording, respond
-from thermogear.case.turn_motion import DIGITS, turn_lanes, turn_tables
+from thermogear.case.turn_response import DIGITS, turn_lanes, turn_tables
 from thermogear.dynamics.turns import follow_turns
 
 LOWEST, HIGHEST, STEP = 0.05, 1.8, 0.025
@@ -271,10 +270,9 @@ def figures_of(points: Points, motions: Motions) -> dict[str, Floats]:
     """
     lanes = points.take(motions.lane)
     found = respond(lanes, motions.state, RECORD, lines=False)
-    of = points.mesh_periods
-    long = (motions.label == CHAOTIC) | (motions.period > turns(RECORD.periods, of=of))
+    long = (motions.label == CHAOTIC) | (motions.period > RECORD.periods)
     if long.any():
-        record = replace(LONG, periods=max(LONG.periods, of * int(motions.period[long].max())))
+        record = replace(LONG, periods=max(LONG.periods, int(motions.period[long].max())))
         more = respond(lanes.take(np.flatnonzero(long)), motions.state[long], record, lines=False)
         for name, values in more.items():
             found[name][long] = values

@@ -33,7 +33,7 @@ from thermogear.case.case import GearCase, gear_case
 from thermogear.case.family import GearFamily
 from thermogear.case.response import RECORD, RULE, Recording, response_variables
 from thermogear.case.thermal_state import HOT, StateLike, ThermalState
-from thermogear.case.turn_motion import over_turn, settled_response
+from thermogear.case.turn_response import over_turn, settled_response
 from thermogear.results.result import Result
 from thermogear.results.work import Report, carry_out
 from thermogear.study.answers.points import answer_numbers, answer_variables

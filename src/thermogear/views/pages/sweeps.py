@@ -219,7 +219,7 @@ def _turn_lines(data: Dataset) -> list[dict[str, Any]]:
     known = np.where(np.isfinite(lines), lines, -1.0)
     place = np.unravel_index(known.argmax(axis=0), data["dte_line"].shape[:-1])
     at = dict(zip(map(str, data["dte_line"].dims), place, strict=False))
-    rows = [
+    rows: list[dict[str, Any]] = [
         {"line": str(name), "order": float(order), "amplitude": float(known[:, n].max()),
          "speed": float(data["pinion_speed"].values[at["pinion_speed"][n]]),
          "gears": float(data["gear_temperature"].values[at["state"][n]])}
@@ -227,7 +227,7 @@ def _turn_lines(data: Dataset) -> list[dict[str, Any]]:
                                               strict=True))
         if known[:, n].max() > 0.0
     ]  # fmt: skip
-    return sorted(rows, key=lambda row: -row["amplitude"])[:MOST_LINES]
+    return sorted(rows, key=lambda row: -float(row["amplitude"]))[:MOST_LINES]
 
 
 def _points(data: Dataset, result: Result) -> Section:

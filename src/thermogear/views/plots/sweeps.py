@@ -14,7 +14,17 @@ from thermogear.base.vocabulary import ASSUMED, STATUS, UNDEFORMED, of_turn
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.parameters import axis_words, parameter_of, shown
 from thermogear.views.plots.spectrum import MESH_ORDERS, SHAFT_ORDERS, shaft_orders
-from thermogear.views.style import COLD, FAINT, HOT, INK, MIXED, OKABE_ITO, QUIET, WIDE, scale
+from thermogear.views.style import (
+    COLD,
+    FAINT,
+    HOT,
+    INK,
+    MIXED,
+    OKABE_ITO,
+    QUIET,
+    WIDE,
+    scale,
+)
 
 Rows = Sequence[Mapping[str, Any]]
 DIVERGED = STATUS.index("diverged")
@@ -309,8 +319,7 @@ def waterfall_picture(data: Dataset) -> Picture:
             row.append(panel)
         row[0].y.words = words
         rows.append(row)
-    between = {} if len(rows) == 1 else {"above": 0.85}
-    return Picture(rows, size=(WIDE, 4.2 * len(rows)), share_y="row", **between)
+    return Picture(rows, size=(WIDE, 4.2 * len(rows)), share_y="row")
 
 
 ROWS = 400

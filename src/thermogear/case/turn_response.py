@@ -124,8 +124,9 @@ def settled_response(
             taken = replace(record, periods=turns, samples=SAMPLES * points.mesh_periods)
             point = points.take(np.array([lane]))
             met, x, felt = record_turns(
-                tables, lanes.take(np.array([place])), motions.state[place], turns, SAMPLES
-            )
+                tables, lanes.take(np.array([place])), motions.state[place],
+                turns=turns, samples=SAMPLES,
+            )  # fmt: skip
             for name, values in _figures(point, x, felt, taken, lines).items():
                 found[name][lane] = values
             settled.point[lane] = met
@@ -142,8 +143,7 @@ def settled_response(
 
 def _figures(point: Points, x: Floats, felt: Floats, record: Recording, lines: bool) -> Arrays:
     """Figures of one recorded motion; extremes and shares as they were ``felt`` at every step."""
-    phase = np.arange(record.samples) / record.samples
-    found: Arrays = dict(figures_of_record(point, x[None], phase, record, lines))
+    found: Arrays = dict(figures_of_record(point, x[None], record, lines=lines))
     force = point.stiffness * point.length * felt[:2]
     found["mesh_force_max"], found["mesh_force_min"] = force[:1], force[1:]
     if point.force[0] > 0.0:

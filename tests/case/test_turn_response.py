@@ -2,19 +2,27 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from thermogear.analysis.orbits import periodic_orbit
+from thermogear.base.period import Period
+from thermogear.base.vocabulary import label_words
 from thermogear.case.case import GearCase, gear_case, load_case, load_example
 from thermogear.case.family import family
+from thermogear.case.one_point import of_case
 from thermogear.case.response import RECORD, respond
 from thermogear.case.thermal_state import UNDEFORMED
 from thermogear.results.result import Result
+from thermogear.study.branches import branch_results
+from thermogear.study.orbit import orbit_results
 from thermogear.study.run_up import run_up
 from thermogear.study.run_ups import run_ups
 from thermogear.study.sweep import sweep
 from thermogear.views.pages import sweeps as page
+from thermogear.views.plots import one_motion
 from thermogear.views.plots.sweeps import waterfall_picture
 
 RPM = np.pi / 30.0
@@ -53,7 +61,9 @@ def test_a_slow_eccentric_pinion_has_its_run_out_as_first_order(eccentric: Resul
     data = eccentric.data
     assert data["order"].values[:3].tolist() == [1 / 25, 2 / 25, 3 / 25]
     names = data["line"].values.astype(str)
-    assert [names[0], names[24], names[25]] == ["pinion", "mesh", "mesh + pinion"]
+    assert [names[n - 1] for n in (1, 25, 26)] == [
+        Period.of((25, 75), pinion=True).line(n) for n in (1, 25, 26)
+    ]
     slow = data["dte_line"].values[0, 0, 0]
     assert slow[0] == pytest.approx(10e-6, rel=1e-3)
     # nothing else turns with the shaft alone
@@ -71,7 +81,8 @@ def test_lines_of_a_turn_are_those_of_the_exact_orbit() -> None:
     ])  # fmt: skip
     assert (data["period"].values == 1).all()
     assert data["contact_loss_share"].values.max() > 0.01
-    exact = respond(points, states, RECORD.in_orders_of(25), lines=True)
+    record = replace(RECORD.in_orders_of(25), periods=1, samples=128 * 25)
+    exact = respond(points, states, record, lines=True)
     apart = np.abs(data["dte_line"].values - exact["dte_line"]).max()
     assert apart < 1e-3 * exact["dte_line"].max()
     for name, least in (("dte_mean", 1e-5), ("dte_rms", 1e-3), ("mesh_force_rms", 1e-3)):
@@ -94,4 +105,17 @@ def test_the_waterfall_shows_orders_of_the_shaft(eccentric: Result) -> None:
     first = page.numbers(eccentric)["lines"][0]
     assert first["line"] == "pinion"
     assert first["amplitude_m"] == data["dte_line"].values[..., 0].max()
-    assert page.numbers(eccentric)["labels"] == {"period-1 of the turn": 6}
+    assert list(page.numbers(eccentric)["labels"].values()) == [6]
+
+
+def test_orbits_and_branches_count_turns_and_show_orders_of_the_shaft() -> None:
+    point = of_case(rig("gears.pinion.eccentricity={amount='10 um'}", "operating.speed=300 rpm"))
+    branch = branch_results(point, "pinion_speed", 303.0 * RPM)
+    ((panel,),) = one_motion.branch_picture(list(branch.groups.values())).panels
+    turns = label_words("period-1", followed=0, starts=1, mesh_periods=25)
+    assert {mark.label for mark in panel.marks} == {turns}
+    _, _, (mesh, shaft) = one_motion.orbit_picture(orbit_results(point).data).panels
+    assert "mesh" in mesh.x.words
+    assert "pinion" in shaft.x.words
+    (lines,) = shaft.marks
+    np.testing.assert_allclose(lines.x, [1.0])
