@@ -309,9 +309,9 @@ class Asked:
         """Figures (point, motion) of the motions at the operating points answered, else nan.
 
         From rest first, then from the other starts of the look over speeds and from the motions
-        that it found within a step of the point's own. Nan too where a motion does not settle,
-        which is 1 in ``undecided``, and where the pair turns so slowly that none is followed: the
-        load is static.
+        that it found within a step of the point's own. Where a motion does not settle ``undecided``
+        is 1, its figures nan or, over a turn, of the later half of what was followed. Nan too where
+        the pair turns so slowly that none is followed: the load is static.
         """
         points = points_of(excitations(self.case, self._part(self.points)))
         slow = np.array([self.slow(point) for point in self.points])
