@@ -12,11 +12,15 @@ from thermogear.base.errors import InputError
 
 
 def test_the_ranks_are_those_of_the_binomial_distribution() -> None:
-    assert [interval_ranks(64, share) for share in (0.1, 0.5, 0.9)] == [(2, 12), (24, 40), (53, 63)]
+    assert [interval_ranks(64, share=share) for share in (0.1, 0.5, 0.9)] == [
+        (2, 12),
+        (24, 40),
+        (53, 63),
+    ]
     # nothing narrower holds the quantile so often
     for count in (3, 16, 64, 101):
         for share in (0.05, 0.5, 0.9):
-            low, high = interval_ranks(count, share)
+            low, high = interval_ranks(count, share=share)
             drawn = stats.binom(count, share)
 
             def held(a: int, b: int) -> float:
@@ -33,36 +37,36 @@ def test_the_ranks_are_those_of_the_binomial_distribution() -> None:
 def test_the_greatest_of_64_bounds_the_95_percent_quantile() -> None:
     # all 64 lie below it with .95**64
     assert pytest.approx(0.9625, abs=5e-5) == 1.0 - 0.95**64
-    assert interval_ranks(64, 0.95)[1] == 64
-    assert interval_ranks(58, 0.95, 1.0 - 0.95**58)[1] == 58
-    assert quantile(np.arange(16.0), 0.95).high == math.inf
+    assert interval_ranks(64, share=0.95)[1] == 64
+    assert interval_ranks(58, share=0.95, confidence=1.0 - 0.95**58)[1] == 58
+    assert quantile(np.arange(16.0), share=0.95).high == math.inf
 
 
 def test_points_are_those_of_harrell_and_davis() -> None:
     values = np.random.default_rng(5).gumbel(size=37)
     for share in (0.05, 0.5, 0.9):
         there = hdquantiles(values, [share])[0]
-        assert quantile(values, share).value == pytest.approx(there, rel=1e-12)
-    moved = quantile(3.0 + 2.0 * values, 0.9)
-    np.testing.assert_allclose(moved, 3.0 + 2.0 * np.array(quantile(values, 0.9)), rtol=1e-12)
+        assert quantile(values, share=share).value == pytest.approx(there, rel=1e-12)
+    moved = quantile(3.0 + 2.0 * values, share=0.9)
+    np.testing.assert_allclose(moved, 3.0 + 2.0 * np.array(quantile(values, share=0.9)), rtol=1e-12)
 
 
 def test_never_is_a_value() -> None:
     onset = np.append(np.arange(1.0, 41.0), np.full(24, np.inf))
-    assert quantile(onset, 0.5) == (32.0, 24.0, 40.0)
-    assert quantile(onset, 0.9) == (math.inf, math.inf, math.inf)
-    assert quantile(np.full(16, np.inf), 0.5).value == math.inf
+    assert quantile(onset, share=0.5) == (32.0, 24.0, 40.0)
+    assert quantile(onset, share=0.9) == (math.inf, math.inf, math.inf)
+    assert quantile(np.full(16, np.inf), share=0.5).value == math.inf
     with pytest.raises(InputError, match="no nan"):
-        quantile([1.0, math.nan], 0.5)
+        quantile([1.0, math.nan], share=0.5)
 
 
 def test_shares_are_those_of_clopper_and_pearson() -> None:
     for hits in (1, 31, 63):
         there = stats.binomtest(hits, 64).proportion_ci(method="exact")
-        low, high = proportion(hits, 64)[1:]
+        low, high = proportion(hits, of=64)[1:]
         assert (low, high) == pytest.approx((there.low, there.high), rel=1e-10)
-    assert proportion(0, 64)[1:] == pytest.approx((0.0, 1.0 - 0.05 ** (1 / 64)))
-    assert proportion(64, 64)[1:] == pytest.approx((0.05 ** (1 / 64), 1.0))
+    assert proportion(0, of=64)[1:] == pytest.approx((0.0, 1.0 - 0.05 ** (1 / 64)))
+    assert proportion(64, of=64)[1:] == pytest.approx((0.05 ** (1 / 64), 1.0))
 
 
 @pytest.mark.parametrize("name", ["normal", "exponential", "two far groups"])
@@ -83,6 +87,6 @@ def test_stated_intervals_hold_so_often(name: str) -> None:
             else stats.norm.ppf(share / 0.7)
         )
         true = law.ppf(share) if law is not None else true
-        found = [quantile(sample, share) for sample in draws]
+        found = [quantile(sample, share=share) for sample in draws]
         held = np.mean([one.low <= true <= one.high for one in found])
         assert held > 0.95 - 4.0 * math.sqrt(0.95 * 0.05 / 1000)

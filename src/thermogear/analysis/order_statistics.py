@@ -33,15 +33,15 @@ class Estimate(NamedTuple):
 
 
 @lru_cache(maxsize=256)
-def interval_ranks(count: int, share: float, confidence: float = CONFIDENCE) -> tuple[int, int]:
+def interval_ranks(count: int, *, share: float, confidence: float = CONFIDENCE) -> tuple[int, int]:
     """Ranks (l, u), from 1, of ``count`` ordered values that hold the quantile of ``share``.
 
     The two nearest to each other with P(l <= B < u) >= ``confidence``, B binomial of ``count`` and
-    ``share``; of several those with the greater. Where no ranks do, 0 stands for minus infinity or
-    ``count`` + 1 for infinity: few values do not bound a far quantile.
+    ``share``; of several those with the greater. Where no ranks do, one is 0, minus infinity, or
+    ``count`` + 1, infinity: few values do not bound a far quantile.
 
-    >>> interval_ranks(64, 0.5), interval_ranks(64, 0.9), interval_ranks(16, 0.9)
-    ((24, 40), (53, 63), (12, 17))
+    >>> interval_ranks(64, share=0.5), interval_ranks(64, share=0.9)
+    ((24, 40), (53, 63))
     """
     if count < 1 or not 0.0 < share < 1.0:
         raise InputError("sample", f"{count} values, share {share:g}", allowed="1.., 0..1 between")
@@ -54,7 +54,7 @@ def interval_ranks(count: int, share: float, confidence: float = CONFIDENCE) -> 
     return best, int(high[best])
 
 
-def quantile(values: ArrayLike, share: float, confidence: float = CONFIDENCE) -> Estimate:
+def quantile(values: ArrayLike, *, share: float, confidence: float = CONFIDENCE) -> Estimate:
     """The quantile of ``share`` of the population that ``values`` are drawn from.
 
     Its point after Harrell and Davis, Biometrika 69 (1982) 635: the mean of the ordered values
@@ -62,14 +62,14 @@ def quantile(values: ArrayLike, share: float, confidence: float = CONFIDENCE) ->
     value of rank ceil(n share) where some are infinite, which no mean bears. Its interval by
     :func:`interval_ranks`, whatever the distribution. Raises InputError for nan or no values.
 
-    >>> quantile([1.0, 2.0, 3.0, 4.0, np.inf, np.inf, np.inf], 0.5)
+    >>> quantile([1.0, 2.0, 3.0, 4.0, np.inf, np.inf, np.inf], share=0.5)
     Estimate(value=4.0, low=1.0, high=inf)
     """
     ordered = np.sort(np.ravel(np.asarray(values, dtype=float)))
     if not ordered.size or np.isnan(ordered).any():
         raise InputError("sample", f"{ordered.size} values", allowed="one value or more, no nan")
     count = ordered.size
-    low, high = interval_ranks(count, share, confidence)
+    low, high = interval_ranks(count, share=share, confidence=confidence)
     ends = np.concatenate([[-np.inf], ordered, [np.inf]])
     if np.isfinite(ordered).all():
         value = float(_weights(count, share) @ ordered)
@@ -85,20 +85,20 @@ def _weights(count: int, share: float) -> Floats:
     return np.diff(betainc((count + 1) * share, (count + 1) * (1.0 - share), steps))
 
 
-def proportion(hits: int, count: int, confidence: float = CONFIDENCE) -> Estimate:
-    """The share of a population of which ``hits`` of ``count`` drawn ones are.
+def proportion(hits: int, *, of: int, confidence: float = CONFIDENCE) -> Estimate:
+    """The share of a population of which ``hits`` of so many drawn ones are.
 
     Its interval after Clopper and Pearson, Biometrika 26 (1934) 404: the shares under which so
     many hits or more, so many or fewer, have half of 1 - ``confidence``; where none or all are hit
     the interval has one side, with the whole of it.
 
-    >>> none = proportion(0, 64)
+    >>> none = proportion(0, of=64)
     >>> f"{none.value:.0%}, less than {none.high:.1%}"
     '0%, less than 4.6%'
     """
-    if not 0 <= hits <= count or count < 1:
-        raise InputError("sample", f"{hits} of {count}", allowed="0 <= hits <= count, from 1 on")
-    tail = (1.0 - confidence) * (1.0 if hits in (0, count) else 0.5)
-    low = float(betaincinv(hits, count - hits + 1, tail)) if hits else 0.0
-    high = float(betaincinv(hits + 1, count - hits, 1.0 - tail)) if hits < count else 1.0
-    return Estimate(hits / count, low, high)
+    if not 0 <= hits <= of or of < 1:
+        raise InputError("sample", f"{hits} of {of}", allowed="0 <= hits <= of, from 1 on")
+    tail = (1.0 - confidence) * (1.0 if hits in (0, of) else 0.5)
+    low = float(betaincinv(hits, of - hits + 1, tail)) if hits else 0.0
+    high = float(betaincinv(hits + 1, of - hits, 1.0 - tail)) if hits < of else 1.0
+    return Estimate(hits / of, low, high)
