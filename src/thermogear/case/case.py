@@ -199,6 +199,11 @@ class GearCase(Case):
         return population(self.file)
 
     @property
+    def seed(self) -> int:
+        """The seed of flanks that are drawn."""
+        return 1 if self.file.flanks is None else self.file.flanks.seed
+
+    @property
     def dampings(self) -> tuple[float, ...]:
         """Damping ratios [-] of a series: the case's own first, then two others or none."""
         return self.file.dynamics.dampings
