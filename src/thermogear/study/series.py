@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
-from thermogear.base.excitation import Excitations, fourier_rows
+from thermogear.base.excitation import Excitations
 from thermogear.case.case import GearCase
 from thermogear.case.flanks import deviations
-from thermogear.dynamics.turns import TurnLanes, TurnTables, follow_turns
+from thermogear.dynamics.turns import PartTables, follow_parts
 from thermogear.gears.deviations import Deviation
 from thermogear.mesh.series import SeriesMesh
 
@@ -66,37 +66,37 @@ def series_motion(
 ) -> SeriesMotion:
     """Motions of every part of ``mesh`` at each ``speed`` [rad/s] of the pinion.
 
-    ``point``: excitation of one operating point, of any part at any speed: inertias, base radii,
-    mean force and cold half backlash are taken from it; stiffness, error and half backlash are the
+    ``point``: excitation of one operating point, of any part at any speed: inertias, base radii
+    and mean force are taken from it; stiffness, error and half backlash are the
     parts' own in ``mesh``.
     """
     mass, load = float(point.equivalent_mass[0]), float(point.mean_force[0])
-    length = float(point.reference_half_backlash[0])
-    shape = (damping_ratio.size, len(mesh.stiffness), speed.size)
+    count = len(mesh.stiffness)
+    shape = (damping_ratio.size, count, speed.size)
     factor, lost, least = np.full((3, *shape), np.nan)
     repeats = np.zeros(shape, bool)
-    orders = HARMONICS * mesh.mesh_periods
-    for part in range(shape[1]):
-        stiffness = fourier_rows(mesh.stiffness[[part]], orders)[0]
-        error = fourier_rows(mesh.spring_error[[part]], orders)[0]
-        mean = float(stiffness[0].real)
-        tables = TurnTables(
-            stiffness=stiffness / mean, error=error / length, mesh_periods=mesh.mesh_periods
-        )
-        rate = np.sqrt(mean / mass)
-        period = 2.0 * np.pi * rate * mesh.mesh_periods / (mesh.pair.pinion.teeth * speed)
-        backlash = float(mesh.half_backlash[part].mean()) / length
-        for number, zeta in enumerate(damping_ratio[: None if part < AT_BOUNDS else 1]):
-            full = np.ones(speed.size)
-            force = full * load / (mean * length)
-            lanes = TurnLanes(
-                mean=force, damping=2.0 * zeta * full, backlash=backlash * full, period=period
-            )
-            start = np.stack([backlash + force, 0.0 * full], axis=1)
-            motions = follow_turns(tables, lanes, start)
-            at = number, part
-            newton = mean * length * motions.force
-            factor[at] = np.abs(newton).max(axis=1) / load
-            lost[at], least[at] = motions.lost, newton[:, 1]
-            repeats[at] = motions.period > 0
+    mean = mesh.stiffness.mean(axis=1)
+    natural = np.sqrt(mean / mass)
+    tables = PartTables.of(
+        mesh.stiffness / mean[:, None], mesh.spring_error, mesh_periods=mesh.mesh_periods,
+        harmonics=HARMONICS,
+    )  # fmt: skip
+    rate = 2.0 * np.pi * natural[:, None] / (mesh.pair.pinion.teeth * speed)
+    backlash, deep = mesh.half_backlash.mean(axis=1), load / mean
+    first, few = np.arange(count), np.arange(min(count, AT_BOUNDS))
+    bounds = np.arange(1, damping_ratio.size)
+    for number, part in (
+        (np.zeros(count, int), first),
+        (np.repeat(bounds, few.size), np.tile(few, bounds.size)),
+    ):
+        if not part.size:
+            continue
+        motions = follow_parts(
+            tables.take(part), rate=rate[part], damping_ratio=damping_ratio[number],
+            backlash=backlash[part], load=deep[part],
+        )  # fmt: skip
+        at, newton = (number, part), mean[part, None]
+        most = newton * np.maximum(motions.greatest, -motions.least)
+        factor[at], least[at] = most / load, newton * motions.least
+        lost[at], repeats[at] = motions.lost, motions.repeats
     return SeriesMotion(speed, damping_ratio, factor, lost, least, repeats)
