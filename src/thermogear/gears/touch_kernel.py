@@ -408,6 +408,8 @@ def touch_teeth(
     count = nodes.shape[2]
     node = np.empty((1, nodes.shape[3]))
     own, mate = np.empty((count, first.shape[2])), np.empty((count, second.shape[2]))
+    most = np.max(np.diff(begin))
+    least, (own_row, mate_row, best) = np.empty(most), np.empty((3, most), np.int64)
     advance = nodes[..., 2] / (1.0 - np.expand_dims(part, 2) * nodes[..., 3])
     # one place alone where the flanks are not near
     several = np.where(nodes[..., 0, 0] == nodes[..., count - 1, 0], 1, count)
@@ -417,23 +419,31 @@ def touch_teeth(
             these, share, known = nodes[q, r], part[q, r], several[q, r]
             _at_nodes(one, these, known, share, 0, own)
             _at_nodes(two, these, known, share, 1, mate)
-            for place in range(begin[q], begin[q + 1]):
-                p = order[place]
+            size = begin[q + 1] - begin[q]
+            for n in range(size):
+                p = order[begin[q] + n]
                 i, j = pinion[p, r], wheel[p, r]
-                least, best = advance[q, r, 0] + own[0, i] + mate[0, j], NOUGHT
-                for k in range(2, known):
-                    value = advance[q, r, k] + own[k, i] + mate[k, j]
-                    # the nodes next to the ends are those of the ends again
-                    if value < least and k != count - 2:
-                        least, best = value, k
-                edge[c, p, r] = 0 if 1 < best < count - 2 else edges[q, r, min(best, 1)]
-                if 1 < best < count - 2:
-                    low = advance[q, r, best - 1] + own[best - 1, i] + mate[best - 1, j]
-                    high = advance[q, r, best + 1] + own[best + 1, i] + mate[best + 1, j]
-                    least = _least_near(
-                        these, best, low - 2.0 * least + high, 0.5 * (high - low), share,
-                        one, i, two, j, least, node,
+                own_row[n], mate_row[n] = i, j
+                least[n], best[n] = advance[q, r, 0] + own[0, i] + mate[0, j], 0
+            for k in range(2, known):
+                if k == count - 2:  # the nodes next to the ends are those of the ends again
+                    continue
+                plain = advance[q, r, k]
+                for n in range(size):
+                    value = plain + own[k, own_row[n]] + mate[k, mate_row[n]]
+                    nearer = value < least[n]
+                    least[n] = value if nearer else least[n]
+                    best[n] = k if nearer else best[n]
+            for n in range(size):
+                p, k, i, j, near = order[begin[q] + n], best[n], own_row[n], mate_row[n], least[n]
+                edge[c, p, r] = 0 if 1 < k < count - 2 else edges[q, r, min(k, 1)]
+                if 1 < k < count - 2:
+                    low = advance[q, r, k - 1] + own[k - 1, i] + mate[k - 1, j]
+                    high = advance[q, r, k + 1] + own[k + 1, i] + mate[k + 1, j]
+                    near = _least_near(
+                        these, k, low - 2.0 * near + high, 0.5 * (high - low), share,
+                        one, i, two, j, near, node,
                     )  # fmt: skip
-                elif least < math.inf:
-                    least = _gap_at(these, best, share, one, i, two, j, least)
-                gap[c, p, r] = least + gained[q, r] - lost[q, r] * (edge[c, p, r] > 0)
+                elif near < math.inf:
+                    near = _gap_at(these, k, share, one, i, two, j, near)
+                gap[c, p, r] = near + gained[q, r] - lost[q, r] * (edge[c, p, r] > 0)
