@@ -10,7 +10,7 @@ a gear of the class and not of a better one.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import KW_ONLY, dataclass, replace
 from functools import lru_cache
 
@@ -118,6 +118,27 @@ class ToothProfile(FlankShape):
         added = self.slope * (x - 0.5) - self.barrel * (2.0 * x - 1.0) ** 2
         added += self.wave * np.sin(2.0 * math.pi * self.waves * x + self.phase)
         return np.asarray(added[-1] - added[:-1].reshape(np.shape(rho)))
+
+    @classmethod
+    def each(
+        cls, shapes: Sequence[FlankShape], pair: GearPair, rho: Floats, weights: Floats
+    ) -> Floats:
+        """The means of :meth:`FlankShape.each`: of what one tool made from one set of waves."""
+        rows = [s for s in shapes if isinstance(s, ToothProfile)]
+        if len({row.waves for row in rows}) != 1 or len(rows) < len(shapes):
+            return super().each(shapes, pair, rho, weights)
+        start, pitch, tip = active_profile(pair, rows[0].gear)
+        slope, barrel, wave, phase = np.array(
+            [(row.slope, row.barrel, row.wave, row.phase) for row in rows]
+        ).T
+        forms = []
+        for at, mean in ((rho, weights), (np.array([[pitch]]), np.ones(1))):
+            x = np.clip((at - start) / (tip - start), 0.0, 1.0)
+            angle = 2.0 * math.pi * rows[0].waves * x
+            parts = (x - 0.5, -((2.0 * x - 1.0) ** 2), np.sin(angle), np.cos(angle))
+            forms.append(np.stack([form @ mean for form in parts]))
+        sizes = np.stack([slope, barrel, wave * np.cos(phase), wave * np.sin(phase)], axis=1)
+        return np.asarray(sizes @ forms[1] - sizes @ forms[0])
 
     def scaled(self, by: float) -> ToothProfile:
         """The same shape, ``by`` times as large."""
