@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 
 from thermogear.base.arrays import Floats
 from thermogear.base.kernel_cache import compiled
-from thermogear.gears.sharing_kernel import NOUGHT
 
 _MOST_TURNS = 60
 _PLACE = 1e-12
