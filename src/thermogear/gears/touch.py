@@ -274,7 +274,10 @@ def _touched(points: MeshPoints, first: Floats, second: Floats, extended: bool) 
     from thermogear.gears.touch_kernel import touch_teeth
 
     contacts, (shared, place) = points.contacts, points.fractions
-    span = np.ptp(first, axis=1).max(axis=1) + np.ptp(second, axis=1).max(axis=1)
+    step = (first.shape[1] - 1) // min(_STEPS)
+    span = sum(
+        np.ptp(np.ascontiguousarray(t[:, ::step]), axis=1).max(axis=1) for t in (first, second)
+    )
     span = np.where(span > _ROUNDING, 2.0 ** np.ceil(np.log2(np.maximum(span, _ROUNDING))), 0.0)
     teeth = (contacts.pinion_tooth % first.shape[2], contacts.wheel_tooth % second.shape[2])
     order = np.argsort(place, kind="stable")

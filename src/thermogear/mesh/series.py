@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import reduce
 
 import numpy as np
 
@@ -104,8 +105,9 @@ def _curves(
     spread = float(np.sqrt(pressed_spread(pair, load))) ** 2
     pressed, free = touch_of_parts(drive, warm, spread, 0.0)
     (behind,) = touch_of_parts(back, warm, 0.0)
-    unloaded = free.gap.min(axis=-1)
-    backlash = hot.half_backlash[0] + 0.5 * (unloaded + behind.gap.min(axis=-1))
+    # pair by pair, which is faster than along an axis so short
+    unloaded, back_gap = (reduce(np.minimum, np.moveaxis(t.gap, -1, 0)) for t in (free, behind))
+    backlash = hot.half_backlash[0] + 0.5 * (unloaded + back_gap)
     system = MeshSystem.of(
         pair,
         shape=(len(parts),),
