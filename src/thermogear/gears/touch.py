@@ -123,6 +123,50 @@ def first_touch(
     return Touch(whole, np.broadcast_to(edge, whole.shape))
 
 
+def touch_of_parts(
+    points: MeshPoints, parts: Sequence[Sequence[Deviation]], *spreads: float
+) -> list[Touch]:
+    """:func:`first_touch` of many parts, arrays (part, position, pair), for each of ``spreads``.
+
+    Each part with its own deviations, those of one operating point; what several parts have in
+    common, the same object, is looked at once. A part hangs on no other.
+    """
+    contacts = points.contacts
+    pair, size = contacts.pair, contacts.s.shape
+    whole = len(parts), *size
+    found = [Touch(np.zeros(whole), np.zeros(whole, np.int8)) for _ in spreads]
+    known: dict[int, Floats] = {}
+    drawn, acting = [], []
+    for n, part in enumerate(parts):
+        shapes = [d for d in part if isinstance(d, FlankShape | ToothShapes)]
+        if not any(d.differs for d in shapes if isinstance(d, ToothShapes)):
+            for touch, spread in zip(found, spreads, strict=True):
+                touch.gap[n], touch.edge[n] = (
+                    values.reshape(size) for values in first_touch(points, part, spread)
+                )
+            continue
+        drawn.append(n)
+        acting.append(tuple(d for d in shapes if d.acts_on(contacts.flank)))
+        for place, d in enumerate(part):
+            if not isinstance(d, FlankShape | ToothShapes):
+                if id(d) not in known:
+                    known[id(d)] = _checked(place, d, d.gap(contacts)).reshape(size)
+                for touch in found:
+                    touch.gap[n] += known[id(d)]
+    extended = bool(np.any((_corner_of(pair, contacts.s) > 0) & np.isfinite(points.point.gap)))
+    teeth = pair.pinion.teeth, pair.wheel.teeth
+    for touch, spread in zip(found, spreads, strict=True):
+        rows = [_tables.__wrapped__(pair, shapes, spread)[0] for shapes in acting]
+        tables = [
+            np.concatenate([np.broadcast_to(t, (*t.shape[:2], count)) for t in of_gear])
+            for count, of_gear in zip(teeth, zip(*rows, strict=True), strict=bool(rows))
+        ]
+        if rows:
+            gap, touch.edge[drawn] = _touched(points, *tables, extended)
+            touch.gap[drawn] += gap
+    return found
+
+
 def _corner_of(pair: GearPair, s: Floats) -> NDArray[np.int8]:
     """Whose tip corner touches where plain involutes would meet at ``s`` [m]."""
     early, late = off_path(pair, s)
@@ -230,7 +274,10 @@ def _touched(points: MeshPoints, first: Floats, second: Floats, extended: bool) 
     from thermogear.gears.touch_kernel import touch_teeth
 
     contacts, (shared, place) = points.contacts, points.fractions
-    span = np.ptp(first, axis=1).max(axis=1) + np.ptp(second, axis=1).max(axis=1)
+    step = (first.shape[1] - 1) // min(_STEPS)
+    span = sum(
+        np.ptp(np.ascontiguousarray(t[:, ::step]), axis=1).max(axis=1) for t in (first, second)
+    )
     span = np.where(span > _ROUNDING, 2.0 ** np.ceil(np.log2(np.maximum(span, _ROUNDING))), 0.0)
     teeth = (contacts.pinion_tooth % first.shape[2], contacts.wheel_tooth % second.shape[2])
     order = np.argsort(place, kind="stable")
@@ -289,19 +336,24 @@ def _tables(
 
     [case, step, tooth] over the flank in even steps of the string; one tooth where all are alike.
     """
-    parts = [shape for d in shapes for shape in (d.shapes if isinstance(d, ToothShapes) else (d,))]
-    lead = np.broadcast_shapes(*{d.taken_off(pair, np.ones(1)).shape[:-1] for d in parts})
-    out = []
+    tables: list[Floats] = []
     steps = _STEPS[spread == 0.0] + 1
     for name, ends in zip(GEARS, flank_ends(pair), strict=True):
         inside, weights = _averaged(pair, name, np.linspace(*ends, steps), spread)
-        table = np.zeros((1, *lead, steps))
+        table = np.zeros((steps, 1))
         for shape in shapes:
             if shape.gear == name:
                 each = shape.shapes if isinstance(shape, ToothShapes) else (shape,)
-                table = table + type(each[0]).each(each, pair, inside, weights)
-        out.append(np.ascontiguousarray(np.moveaxis(table.reshape(len(table), -1, steps), 0, -1)))
-    return out, lead
+                taken = type(each[0]).each(each, pair, inside, weights)
+                table = table + np.moveaxis(taken, 0, -1)
+        tables.append(table)
+    lead = np.broadcast_shapes(*(table.shape[:-2] for table in tables))
+    return [
+        np.ascontiguousarray(
+            np.broadcast_to(table, (*lead, *table.shape[-2:])).reshape(-1, *table.shape[-2:])
+        )
+        for table in tables
+    ], lead
 
 
 def _averaged(pair: GearPair, name: str, at: Floats, spread: float) -> tuple[Floats, Floats]:

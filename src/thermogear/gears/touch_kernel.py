@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 
 from thermogear.base.arrays import Floats
 from thermogear.base.kernel_cache import compiled
-from thermogear.gears.sharing_kernel import NOUGHT
 
 _MOST_TURNS = 60
 _PLACE = 1e-12
@@ -409,7 +408,9 @@ def touch_teeth(
     node = np.empty((1, nodes.shape[3]))
     own, mate = np.empty((count, first.shape[2])), np.empty((count, second.shape[2]))
     most = np.max(np.diff(begin))
-    least, (own_row, mate_row, best) = np.empty(most), np.empty((3, most), np.int64)
+    least, best = np.empty(most), np.empty(most, np.int64)
+    # without a sign: an index from the end would be looked for at every one
+    own_row, mate_row = np.empty((2, most), np.uint64)
     advance = nodes[..., 2] / (1.0 - np.expand_dims(part, 2) * nodes[..., 3])
     # one place alone where the flanks are not near
     several = np.where(nodes[..., 0, 0] == nodes[..., count - 1, 0], 1, count)

@@ -79,7 +79,7 @@ def series_motion(
     natural = np.sqrt(mean / mass)
     tables = PartTables.of(
         mesh.stiffness / mean[:, None], mesh.spring_error, mesh_periods=mesh.mesh_periods,
-        harmonics=HARMONICS,
+        harmonics=HARMONICS, ahead=mesh.ahead, periodic=mesh.whole,
     )  # fmt: skip
     rate = 2.0 * np.pi * natural[:, None] / (mesh.pair.pinion.teeth * speed)
     backlash, deep = mesh.half_backlash.mean(axis=1), load / mean
