@@ -10,13 +10,14 @@ form of a pair that never parts.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.arrays import Complexes, Floats
-from thermogear.dynamics.kernels.turns import advance_turn
+from thermogear.dynamics.kernels.turns import advance_parts, advance_turn
 
 STEPS = 192
 """Least steps in a mesh period: eight in a period of its 24th harmonic; an edge of the backlash is
@@ -251,3 +252,222 @@ def _keep(out: TurnMotions, rows: NDArray[np.intp], felt: Floats, turn: int) -> 
     out.force[rows] = np.stack([felt[:, 0].max(axis=0), felt[:, 1].min(axis=0)], axis=1)
     out.travel[rows] = np.stack([felt[:, 2].max(axis=0), felt[:, 3].min(axis=0)], axis=1)
     out.lost[rows] = felt[:, 4].mean(axis=0) / turn
+
+
+PART_STEPS = 96
+"""Steps in a mesh period of a part of a series: four in a period of its 24th harmonic."""
+PART_DIED_OUT = 1e-4
+"""Part of a vibration that is left when figures of parts begin."""
+REPEATED = 1e-3
+"""Static deflections between the ends of turns of a part that repeat each other: so much of the
+dynamic factor."""
+MOST_PART_PERIODS = 192
+"""Mesh periods of a part that does not repeat itself, up to :data:`LONGEST_CYCLE` turns and two at
+least."""
+FAR_THROW = 3.0
+"""Static deflections from which the second run of a part begins, the first from one."""
+_WIDTH = 32  # parts are filled up to a multiple of it: the same code, and digits, for each
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class PartTables:
+    """What each part of a series makes of the mesh, one part beside another.
+
+    ``table`` [half step, 3, part]: k over its mean, e and its slope a mesh period, in any length,
+    of ``ahead`` and then ``mesh_periods`` mesh periods, their last end included; ``periodic``:
+    whether those are a turn, which comes again (with none ahead).
+    """
+
+    table: Floats
+    mesh_periods: int
+    ahead: int = 0
+    periodic: bool = True
+
+    @classmethod
+    def of(
+        cls, stiffness: Floats, error: Floats, *, mesh_periods: int, harmonics: int, ahead: int = 0,
+        periodic: bool = True,
+    ) -> PartTables:  # fmt: skip
+        """Of uniform samples (part, phase) over all mesh periods, so many ``harmonics`` of each.
+
+        Where they are no turn the error is straightened by a line through the ends of its
+        periods, so that its series has no step there.
+        """
+        every = mesh_periods + ahead
+        size, steps = stiffness.shape[1] // every, 2 * PART_STEPS * every
+        rise = np.zeros((len(error), 1)) if periodic else error[:, -size:].mean(axis=1)[:, None]
+        if not periodic:
+            rise = (rise - error[:, :size].mean(axis=1)[:, None]) / max(every - 1, 1)
+        straight = error - rise * np.arange(error.shape[1]) / size
+        orders = np.arange(1 + min(harmonics * every, (stiffness.shape[1] - 1) // 2))
+        rows = []
+        for samples, slope in ((stiffness, 0), (straight, 0), (straight, 1)):
+            kept = np.fft.rfft(samples, axis=1)[:, : orders.size] / samples.shape[1]
+            kept *= (2j * np.pi * orders / every) ** slope
+            rows.append(np.fft.irfft(kept, steps, axis=1) * steps)
+        rows[1] += rise * np.arange(steps) / (2 * PART_STEPS)
+        rows[2] += rise
+        table = np.empty((steps + 1, 3, len(error)))
+        table[:-1], table[-1] = np.transpose(rows, (2, 0, 1)), np.array(rows)[:, :, 0]
+        if not periodic:
+            table[-1] = table[-2]
+        return cls(table=table, mesh_periods=mesh_periods, ahead=ahead, periodic=periodic)
+
+    def take(self, index: slice | NDArray[np.intp]) -> PartTables:
+        """Some of the parts."""
+        return replace(self, table=np.ascontiguousarray(self.table[:, :, index]))
+
+
+@dataclass(frozen=True, eq=False)
+class PartMotions:
+    """(part, speed) each: greatest and least force k f over the mean stiffness [length], share of
+    time out of drive-side contact, and whether the motion repeats itself.
+
+    The worse of what two starts lead to: static contact, and :data:`FAR_THROW` times as deep.
+    """
+
+    greatest: Floats
+    least: Floats
+    lost: Floats
+    repeats: NDArray[np.bool_]
+
+
+def follow_parts(
+    tables: PartTables, *, rate: Floats, damping_ratio: Floats, backlash: Floats, load: Floats
+) -> PartMotions:
+    """Motions of each part, by fixed steps, at several speeds.
+
+    x'' + 2 g x' + s k f(x; b) = s ``load`` - e'', in mesh periods: s = ``rate``^2, g =
+    ``damping_ratio`` ``rate``; ``rate`` (part, speed) 2 pi times the natural over the mesh
+    frequency; ``damping_ratio``, ``backlash`` b and ``load``
+    (part,) [length]. Each run begins so far ahead that
+    :data:`PART_DIED_OUT` of a vibration is left. A turn is followed until its end is that of one
+    of up to :data:`LONGEST_CYCLE` turns before; figures are of that cycle, or of the later half of
+    all turns. Of mesh periods that are no turn figures are of what is left behind the time ahead,
+    and a motion repeats itself where both starts end alike.
+    """
+    parts = len(rate)
+    fill = np.resize(np.arange(parts), -(-parts // _WIDTH) * _WIDTH)
+    tables = tables.take(fill)
+    each = np.tile(rate.T[:, fill], (2, 1))
+    damping = damping_ratio[fill] * each
+    ahead = np.ceil(math.log(1.0 / PART_DIED_OUT) / damping.min(axis=1)).astype(int)
+    order = np.argsort(-ahead, kind="stable")
+    throw = np.repeat([1.0, FAR_THROW], len(each) // 2)
+    s, g = each**2, damping
+    grown = np.exp(0.5 * g / PART_STEPS)
+    edge, deep = (np.broadcast_to(values[fill], s.shape) for values in (backlash, load))
+    lanes = np.stack([s, 2.0 * g, g * g, grown, 1.0 / grown, edge, deep], axis=1)
+    run = _PartRun(tables, lanes[order], throw[order], ahead[order])
+    felt, repeats = run.settled()
+    back = np.argsort(order)
+    if not tables.periodic:
+        alike = _apart(*np.split(run.state[back], 2), lanes[: len(lanes) // 2]) < REPEATED
+        repeats = np.tile(alike, (2, 1))[order]
+    (one, other), (first, second) = (
+        np.split(values[back][..., :parts], 2) for values in (felt, repeats)
+    )
+    worst, least = np.maximum(one, other), np.minimum(one, other)[:, 1]
+    return PartMotions(worst[:, 0].T, least.T, worst[:, 2].T, (first & second).T)
+
+
+def _apart(one: Floats, other: Floats, lanes: Floats) -> Floats:
+    """How far two states are apart, in static deflections, (row, part)."""
+    gap = np.abs(one - other)
+    gap = np.maximum(gap[:, 0], gap[:, 1] / np.sqrt(lanes[:, 0]))
+    return np.asarray(gap / lanes[:, 6])
+
+
+def _together(felt: Sequence[Floats]) -> Floats:
+    """The greatest, the least and the mean share of several turns."""
+    every = np.stack(felt)
+    return np.stack(
+        [every[:, :, 0].max(axis=0), every[:, :, 1].min(axis=0), every[:, :, 2].mean(axis=0)],
+        axis=1,
+    )
+
+
+class _PartRun:
+    """The rows of :func:`follow_parts`, a start and a speed each, the longest ahead first."""
+
+    def __init__(
+        self, tables: PartTables, lanes: Floats, throw: Floats, ahead: NDArray[np.int64]
+    ) -> None:
+        self.tables, self.lanes = tables, lanes
+        mesh = tables.mesh_periods
+        most = MOST_MESH_PERIODS if tables.periodic else tables.ahead + mesh // 2
+        ahead = np.clip(ahead, 1, most)
+        begin = -ahead if tables.periodic else np.maximum(-ahead, -tables.ahead)
+        seen_from = begin + ahead
+        self.state = np.zeros((len(lanes), 3, lanes.shape[2]))
+        felt = self._nothing()
+        self.ends = []
+        for number in range(begin[0], mesh):
+            new = np.flatnonzero(begin == number)
+            self._place(number, new, throw[new])
+            if number == 0:
+                self.ends.append(self.state.copy())
+            active = int(np.count_nonzero(begin <= number))
+            quiet = int(np.count_nonzero(seen_from[:active] > number))
+            self._over(number, np.arange(quiet), None)
+            self._over(number, np.arange(quiet, active), felt)
+        self.ends.append(self.state.copy())
+        self.felt = [self._shares(felt, mesh - seen_from)]
+
+    def settled(self) -> tuple[Floats, NDArray[np.bool_]]:
+        """What each row feels, (row, 3, part), and whether it repeats itself, (row, part)."""
+        mesh = self.tables.mesh_periods
+        most = min(max(2, MOST_PART_PERIODS // mesh), LONGEST_CYCLE) if self.tables.periodic else 1
+        repeats = np.zeros(self.state[:, 0].shape, bool)
+        known = self.felt[0]
+        while True:
+            for length in range(1, len(self.ends)):
+                apart = _apart(self.ends[-1], self.ends[-1 - length], self.lanes)
+                new = ~repeats & (apart < REPEATED)
+                known = np.where(new[:, None], _together(self.felt[-length:]), known)
+                repeats |= new
+            rows = np.flatnonzero(~repeats.all(axis=1))
+            if len(self.felt) >= most or not rows.size:
+                later = _together(self.felt[len(self.felt) // 2 :])
+                return np.where(repeats[:, None], known, later), repeats
+            felt = self._nothing()
+            for number in range(mesh):
+                self._over(number, rows, felt)
+            self.ends.append(self.state.copy())
+            self.felt.append(self._shares(felt, mesh))
+
+    def _nothing(self) -> Floats:
+        """Greatest and least force and loss (row, 3, part) before anything is felt."""
+        felt = np.zeros_like(self.state)
+        felt[:, 0], felt[:, 1] = -np.inf, np.inf
+        return felt
+
+    def _shares(self, felt: Floats, periods: ArrayLike) -> Floats:
+        """``felt`` with a share of the time of so many mesh periods."""
+        felt[:, 2] /= 2.0 * PART_STEPS * np.reshape(periods, (-1, 1))
+        return felt
+
+    def _table(self, number: int) -> Floats:
+        """Of the mesh period of that ``number``, both ends included."""
+        place = number % self.tables.mesh_periods if self.tables.periodic else number
+        first = 2 * PART_STEPS * (place + self.tables.ahead)
+        return self.tables.table[first : first + 2 * PART_STEPS + 1]
+
+    def _place(self, number: int, rows: NDArray[np.intp], throw: Floats) -> None:
+        """``rows`` in contact, ``throw`` static deflections deep, at rest against the flanks."""
+        stiffness, error, slope = self._table(number)[0]
+        scale, double, _, _, _, edge, load = np.moveaxis(self.lanes[rows], 1, 0)
+        deep = throw[:, None] * load
+        x = error + edge + deep
+        force = scale * (load - stiffness * deep)
+        self.state[rows] = np.stack([x, slope + 0.5 * double * x, force + double * slope], axis=1)
+
+    def _over(self, number: int, rows: NDArray[np.intp], felt: Floats | None) -> None:
+        """``rows`` through the mesh period of that ``number``, what they feel into ``felt``."""
+        if rows.size:
+            state = self.state[rows]
+            kept = np.empty_like(state) if felt is None else felt[rows]
+            advance_parts(self._table(number), self.lanes[rows], state, kept, felt is not None)
+            self.state[rows] = state
+            if felt is not None:
+                felt[rows] = kept

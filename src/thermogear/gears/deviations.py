@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass
 from typing import ClassVar, NamedTuple, Protocol
 
@@ -124,6 +125,17 @@ class FlankShape(ABC):
     @abstractmethod
     def taken_off(self, pair: GearPair, rho: Floats) -> Floats:
         """e [m] at the string lengths ``rho`` [m] of the gear, any shape: (..., *rho.shape)."""
+
+    @classmethod
+    def each(
+        cls, shapes: Sequence[FlankShape], pair: GearPair, rho: Floats, weights: Floats
+    ) -> Floats:
+        """Weighted means over the last axis of ``rho`` [m] of what each shape takes off [m].
+
+        The shapes first, then their operating points, then the other axes of ``rho``.
+        """
+        means = [shape.taken_off(pair, rho) @ weights for shape in shapes]
+        return np.stack(np.broadcast_arrays(*means))
 
     def borders(self, pair: GearPair) -> Floats:
         """String lengths [m], shape (n,), between which a polynomial of fifth degree will do.

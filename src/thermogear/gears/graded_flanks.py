@@ -27,6 +27,7 @@ USED = (0.8, 1.0)
 _MANY_TEETH = 20
 _WAVES = (2.5, 3.5)  # of fewer teeth, of more
 _SAMPLES = 4097
+EPSILON = float(np.finfo(float).eps)
 
 
 class ProfileFigures(NamedTuple):
@@ -58,10 +59,20 @@ def profile_figures(position: ArrayLike, *, added: ArrayLike) -> ProfileFigures:
         raise InputError(
             "profile", f"{x.size} positions", allowed="three or more, strictly rising, one trace"
         )
-    share = (x - x[0]) / (x[-1] - x[0])
-    slope, level = np.polyfit(share, trace, 1)
-    rest = trace - slope * share - level
-    return ProfileFigures(float(slope), float(np.ptp(rest)), float(np.ptp(trace)))
+    (figures,) = trace_figures((x - x[0]) / (x[-1] - x[0]), trace[None])
+    return ProfileFigures(*figures.tolist())
+
+
+def trace_figures(share: Floats, traces: Floats) -> Floats:
+    """:func:`profile_figures` of ``traces`` (trace, n) at one ``share``, (trace, figure)."""
+    line = np.stack([share, np.ones_like(share)], axis=1)
+    size = np.sqrt((line * line).sum(axis=0))
+    found = []
+    for trace in traces:  # each by itself, so that none hangs on the others in the last digit
+        slope, level = np.linalg.lstsq(line / size, trace, share.size * EPSILON)[0] / size
+        rest = trace - slope * share - level
+        found.append((slope, np.ptp(rest), np.ptp(trace)))
+    return np.array(found)
 
 
 @dataclass(frozen=True)

@@ -210,10 +210,12 @@ class MeshSystem:
         flank: str,
         load: ArrayLike = 0.0,
         damage: Damage | None = None,
+        touch: Touch | None = None,
     ) -> MeshSystem:
         """Geometry, unit compliances and gaps; see :func:`loaded_contact` for the arguments.
 
-        load [N]: its Hertzian half width averages the flanks' shapes.
+        load [N]: its Hertzian half width averages the flanks' shapes; touch: of all deviations,
+        where it is known.
         """
         points = mesh_points(pair, phase, flank, model.extended)
         once, place = points.fractions
@@ -222,7 +224,7 @@ class MeshSystem:
             once, place = points, np.arange(len(points.s))
         drawn = as_drawn(pair, once.contacts.phase.tobytes(), flank, model, damage)
         positions, count = points.s.shape
-        gap, edge = _pressed_touch(points, deviations, load)
+        gap, edge = touch or _pressed_touch(points, deviations, load)
         lead = np.broadcast_shapes(
             shape, gap.shape[:-2], *(np.shape(e) for m in moduli for e in (m.tooth, m.body))
         )
@@ -301,8 +303,7 @@ def _pressed_touch(points: MeshPoints, deviations: Sequence[Deviation], load: Ar
     if not any(isinstance(d, FlankShape | ToothShapes) for d in deviations):
         return first_touch(points, deviations)
     pair = points.contacts.pair
-    softness = 4.0 / (np.pi * pair.face_width * pair_reduced_modulus(pair))
-    roots = np.sqrt(softness * np.asarray(load, dtype=float))
+    roots = np.sqrt(pressed_spread(pair, load))
     nodes = np.unique(roots)
     if nodes.size > _MOST_WIDTHS:
         nodes = np.linspace(nodes[0], nodes[-1], _MOST_WIDTHS)
@@ -315,6 +316,12 @@ def _pressed_touch(points: MeshPoints, deviations: Sequence[Deviation], load: Ar
         gap = np.where(part == 0.0, gap, np.where(part == 1.0, touch.gap, between))
         edge = np.where(part < 0.5, edge, touch.edge)
     return Touch(gap, edge)
+
+
+def pressed_spread(pair: GearPair, load: ArrayLike) -> Floats:
+    """4 F/(pi b E*) [m] of each ``load`` [N] on the pair as drawn, cold: see ``first_touch``."""
+    softness = 4.0 / (np.pi * pair.face_width * pair_reduced_modulus(pair))
+    return np.asarray(softness * np.asarray(load, dtype=float))
 
 
 def flat(values: ArrayLike, *, lead: tuple[int, ...]) -> Floats:

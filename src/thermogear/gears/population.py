@@ -10,11 +10,12 @@ a gear of the class and not of a better one.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import KW_ONLY, dataclass, replace
 from functools import lru_cache
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from thermogear.base import bounds
 from thermogear.base.arrays import Floats
@@ -30,7 +31,7 @@ from thermogear.gears.deviations import (
     PitchError,
     active_profile,
 )
-from thermogear.gears.graded_flanks import profile_figures
+from thermogear.gears.graded_flanks import trace_figures
 from thermogear.gears.pair import GearPair
 from thermogear.gears.turn import Eccentricity, ToothShapes
 
@@ -113,21 +114,46 @@ class ToothProfile(FlankShape):
 
     def taken_off(self, pair: GearPair, rho: Floats) -> Floats:
         """e = -S."""
-        start, pitch, tip = active_profile(pair, self.gear)
-        x = np.clip((np.append(np.ravel(rho), pitch) - start) / (tip - start), 0.0, 1.0)
-        added = self.slope * (x - 0.5) - self.barrel * (2.0 * x - 1.0) ** 2
-        added += self.wave * np.sin(2.0 * math.pi * self.waves * x + self.phase)
-        return np.asarray(added[-1] - added[:-1].reshape(np.shape(rho)))
+        row = {name: getattr(self, name) for name in ("slope", "barrel", "wave", "waves", "phase")}
+        return _taken_off(pair, self.gear, np.ravel(rho), **row).reshape(np.shape(rho))
 
-    def scaled(self, by: float) -> ToothProfile:
-        """The same shape, ``by`` times as large."""
-        sizes = {name: by * getattr(self, name) for name in ("slope", "barrel", "wave")}
-        return replace(self, **sizes)
+    @classmethod
+    def each(
+        cls, shapes: Sequence[FlankShape], pair: GearPair, rho: Floats, weights: Floats
+    ) -> Floats:
+        """The means of :meth:`FlankShape.each`: of what one tool made from one set of waves."""
+        rows = [s for s in shapes if isinstance(s, ToothProfile)]
+        if len({row.waves for row in rows}) != 1 or len(rows) < len(shapes):
+            return super().each(shapes, pair, rho, weights)
+        start, pitch, tip = active_profile(pair, rows[0].gear)
+        slope, barrel, wave, phase = np.array(
+            [(row.slope, row.barrel, row.wave, row.phase) for row in rows]
+        ).T
+        forms = []
+        for at, mean in ((rho, weights), (np.array([[pitch]]), np.ones(1))):
+            x = np.clip((at - start) / (tip - start), 0.0, 1.0)
+            angle = 2.0 * math.pi * rows[0].waves * x
+            parts = (x - 0.5, -((2.0 * x - 1.0) ** 2), np.sin(angle), np.cos(angle))
+            forms.append(np.stack([form @ mean for form in parts]))
+        sizes = np.stack([slope, barrel, wave * np.cos(phase), wave * np.sin(phase)], axis=1)
+        return np.asarray(sizes @ forms[1] - sizes @ forms[0])
 
     def borders(self, pair: GearPair) -> Floats:
         """Ends of the active profile and every tenth of a wave in between."""
         start, _, tip = active_profile(pair, self.gear)
         return np.linspace(start, tip, math.ceil(10.0 * self.waves) + 1)
+
+
+def _taken_off(
+    pair: GearPair, name: str, rho: Floats, *, slope: ArrayLike, barrel: ArrayLike, wave: ArrayLike,
+    waves: float, phase: ArrayLike,
+) -> Floats:  # fmt: skip
+    """e [m] at ``rho`` (n,) [m] of the named gear; sizes are numbers or columns (tooth, 1)."""
+    start, pitch, tip = active_profile(pair, name)
+    x = np.clip((np.append(rho, pitch) - start) / (tip - start), 0.0, 1.0)
+    added = slope * (x - 0.5) - barrel * (2.0 * x - 1.0) ** 2
+    added += wave * np.sin(2.0 * math.pi * waves * x + phase)
+    return np.asarray(added[..., -1:] - added[..., :-1])
 
 
 class GearFigures(FlankTolerances):
@@ -169,9 +195,8 @@ def _figures(pair: GearPair, name: str, added: Floats) -> GearFigures:
     gear = pair.pinion if name == "pinion" else pair.wheel
     arc = added[: gear.teeth] / math.cos(gear.pressure_angle)
     traces = added[gear.teeth :].reshape(MEASURED_TEETH, _POINTS)
-    slope, form, total = np.abs(
-        [profile_figures(position=np.arange(_POINTS), added=trace) for trace in traces]
-    ).max(axis=0)
+    share = np.arange(_POINTS) / (_POINTS - 1.0)
+    slope, form, total = np.abs(trace_figures(share, traces)).max(axis=0)
     steps = np.abs(np.diff(np.append(arc, arc[0])))
     return GearFigures(float(steps.max()), float(np.ptp(arc)), *map(float, (slope, form, total)))
 
@@ -230,15 +255,18 @@ def drawn_gear(
     for q in p.orders:
         index += _rayleigh(rng, p.order) / q * np.sin(q * around + rng.uniform(0.0, 2.0 * math.pi))
     pitch = PitchError(name, tuple(cosine * limits.single_pitch * (index - index.mean())))
-    sides = {flank: _side(rng, p, limits, gear.teeth, name, flank) for flank in ("drive", "back")}
+    drawn = {flank: _side(rng, p, limits, gear.teeth) for flank in FLANKS[:2]}
+    sides = {flank: columns for flank, (columns, _) in drawn.items()}
+    waves = {flank: count for flank, (_, count) in drawn.items()}
     share = rng.uniform(p.least, 1.0)
 
     def shares(flank: str, profiles: float) -> Floats:
         at = _probe(pair, name, flank)
         added = -centre.gap(at)[:, 0] - pitch.gap(at)[:, 0]
         rho = at.string(name)[gear.teeth : gear.teeth + _POINTS, 0]
-        some = at.tooth(name)[gear.teeth :: _POINTS, 0]
-        read = [sides[flank][tooth].taken_off(pair, rho) for tooth in some]
+        some = at.tooth(name)[gear.teeth :: _POINTS]
+        sizes = {size: np.asarray(column)[some] for size, column in sides[flank].items()}
+        read = _taken_off(pair, name, rho, waves=waves[flank], **sizes)
         added[gear.teeth :] -= profiles * np.ravel(read)
         return _figures(pair, name, added).shares(limits)
 
@@ -251,8 +279,10 @@ def drawn_gear(
     return (
         replace(centre, amount=scale * centre.amount),
         replace(pitch, errors=tuple(scale * np.asarray(pitch.errors))),
-        ToothShapes(name, tuple(one.scaled(scale) for one in sides["drive"])),
-        ToothShapes(name, tuple(one.scaled(scale * back) for one in sides["back"])),
+        *(
+            _shapes(name, flank, sides[flank], waves=waves[flank], size=size)
+            for flank, size in (("drive", scale), ("back", scale * back))
+        ),
     )
 
 
@@ -293,21 +323,30 @@ def _rayleigh(rng: np.random.Generator, mean: float) -> float:
 
 
 def _side(
-    rng: np.random.Generator, p: Population, limits: FlankTolerances, teeth: int, *of: str
-) -> tuple[ToothProfile, ...]:
-    """Profiles of one side ``of`` (gear, flank): what the tool makes, and the scatter of teeth."""
+    rng: np.random.Generator, p: Population, limits: FlankTolerances, teeth: int
+) -> tuple[dict[str, Floats], float]:
+    """Profiles of one side, tooth by tooth: what the tool makes, and the scatter; its waves."""
     slope = p.slope * rng.standard_normal() + p.slope_scatter * rng.standard_normal(teeth)
     barrel, wave = rng.normal(*p.barrel), _rayleigh(rng, p.wave)
     waves, phase = rng.uniform(*p.waves), rng.uniform(0.0, 2.0 * math.pi)
     heights = 1.0 + p.form_scatter * rng.standard_normal((2, teeth))
-    columns = {
+    return {
         "slope": slope * limits.profile_slope,
         "barrel": barrel * limits.profile_form * heights[0],
         "wave": wave * limits.profile_form * heights[1],
         "phase": phase + p.phase_scatter * rng.standard_normal(teeth),
-    }
-    rows = zip(*(column.tolist() for column in columns.values()), strict=True)
-    return tuple(
-        ToothProfile(of[0], waves=waves, flank=of[1], **dict(zip(columns, row, strict=True)))
-        for row in rows
+    }, waves
+
+
+def _shapes(
+    name: str, flank: str, columns: dict[str, Floats], *, waves: float, size: float
+) -> ToothShapes:
+    """Profiles of every tooth, ``size`` times as large as their ``columns``."""
+    factors = {"phase": 1.0}
+    rows = zip(
+        *((factors.get(of, size) * column).tolist() for of, column in columns.items()), strict=True
+    )
+    made = (dict(zip(columns, row, strict=True)) for row in rows)
+    return ToothShapes(
+        name, tuple(ToothProfile(name, waves=waves, flank=flank, **row) for row in made)
     )

@@ -123,6 +123,50 @@ def first_touch(
     return Touch(whole, np.broadcast_to(edge, whole.shape))
 
 
+def touch_of_parts(
+    points: MeshPoints, parts: Sequence[Sequence[Deviation]], *spreads: float
+) -> list[Touch]:
+    """:func:`first_touch` of many parts, arrays (part, position, pair), for each of ``spreads``.
+
+    Each part with its own deviations, those of one operating point; what several parts have in
+    common, the same object, is looked at once. A part hangs on no other.
+    """
+    contacts = points.contacts
+    pair, size = contacts.pair, contacts.s.shape
+    whole = len(parts), *size
+    found = [Touch(np.zeros(whole), np.zeros(whole, np.int8)) for _ in spreads]
+    known: dict[int, Floats] = {}
+    drawn, acting = [], []
+    for n, part in enumerate(parts):
+        shapes = [d for d in part if isinstance(d, FlankShape | ToothShapes)]
+        if not any(d.differs for d in shapes if isinstance(d, ToothShapes)):
+            for touch, spread in zip(found, spreads, strict=True):
+                touch.gap[n], touch.edge[n] = (
+                    values.reshape(size) for values in first_touch(points, part, spread)
+                )
+            continue
+        drawn.append(n)
+        acting.append(tuple(d for d in shapes if d.acts_on(contacts.flank)))
+        for place, d in enumerate(part):
+            if not isinstance(d, FlankShape | ToothShapes):
+                if id(d) not in known:
+                    known[id(d)] = _checked(place, d, d.gap(contacts)).reshape(size)
+                for touch in found:
+                    touch.gap[n] += known[id(d)]
+    extended = bool(np.any((_corner_of(pair, contacts.s) > 0) & np.isfinite(points.point.gap)))
+    teeth = pair.pinion.teeth, pair.wheel.teeth
+    for touch, spread in zip(found, spreads, strict=True):
+        rows = [_tables.__wrapped__(pair, shapes, spread)[0] for shapes in acting]
+        tables = [
+            np.concatenate([np.broadcast_to(t, (*t.shape[:2], count)) for t in of_gear])
+            for count, of_gear in zip(teeth, zip(*rows, strict=True), strict=bool(rows))
+        ]
+        if rows:
+            gap, touch.edge[drawn] = _touched(points, *tables, extended)
+            touch.gap[drawn] += gap
+    return found
+
+
 def _corner_of(pair: GearPair, s: Floats) -> NDArray[np.int8]:
     """Whose tip corner touches where plain involutes would meet at ``s`` [m]."""
     early, late = off_path(pair, s)
@@ -212,15 +256,63 @@ def _of_teeth(
     The advance of plain involutes at :data:`_POINTS` of the flank once for all teeth, and what each
     tooth takes off there. Where a pair may carry within 4e-5 modules of :func:`_shaped`.
     """
-    from thermogear.gears.touch_kernel import advance_many, touch_teeth
+    pair = points.contacts.pair
+    solve = _tables if all(isinstance(d, Hashable) for d in shapes) else _tables.__wrapped__
+    tables, lead = solve(pair, shapes, spread)
+    gap, edge = _touched(points, *tables, extended)
+    gap.setflags(write=False)
+    edge.setflags(write=False)
+    return Touch(gap.reshape(*lead, *gap.shape[1:]), edge.reshape(*lead, *gap.shape[1:]))
+
+
+def _touched(points: MeshPoints, first: Floats, second: Floats, extended: bool) -> Touch:
+    """Gap and edge [case, position, pair] of teeth that take off ``first`` and ``second`` [m].
+
+    Each [case, step, tooth]. A case looks at its flanks as far as its own shapes may let them
+    touch, in powers of 2, so that what it finds hangs on no other case.
+    """
+    from thermogear.gears.touch_kernel import touch_teeth
 
     contacts, (shared, place) = points.contacts, points.fractions
-    pair, once = contacts.pair, shared.s
-    solve = _tables if all(isinstance(d, Hashable) for d in shapes) else _tables.__wrapped__
-    (first, second), lead = solve(pair, shapes, spread)
+    step = (first.shape[1] - 1) // min(_STEPS)
+    span = sum(
+        np.ptp(np.ascontiguousarray(t[:, ::step]), axis=1).max(axis=1) for t in (first, second)
+    )
+    span = np.where(span > _ROUNDING, 2.0 ** np.ceil(np.log2(np.maximum(span, _ROUNDING))), 0.0)
+    teeth = (contacts.pinion_tooth % first.shape[2], contacts.wheel_tooth % second.shape[2])
+    order = np.argsort(place, kind="stable")
+    begin = np.searchsorted(place[order], np.arange(len(shared.s) + 1))
+    whole = (len(first), *contacts.s.shape)
+    gap, edge = np.empty(whole), np.empty(whole, np.int8)
+    for size in np.unique(span):
+        cases = np.flatnonzero(span == size)
+        nodes, edges, part, *more = _nodes(
+            contacts.pair, shared.s.shape, shared.s.tobytes(), extended, float(size),
+            first.shape[1] - 1,
+        )  # fmt: skip
+        here = np.empty((cases.size, *whole[1:])), np.empty((cases.size, *whole[1:]), np.int8)
+        touch_teeth(
+            nodes, edges, part, first[cases], second[cases], order, begin, *teeth, *more, *here
+        )
+        gap[cases], edge[cases] = here
+    return Touch(gap, edge)
+
+
+@lru_cache(maxsize=12)
+def _nodes(
+    pair: GearPair, size: tuple[int, ...], places: bytes, extended: bool, span: float, last: int
+) -> tuple[Floats, NDArray[np.int8], Floats, Floats, Floats]:
+    """Nodes, edges, part, gained and lost of ``touch_teeth`` at the places s of ``size``.
+
+    For shapes of a ``span`` [m], in tables of ``last`` steps.
+    """
+    from thermogear.gears.touch_kernel import advance_many
+
+    once = np.frombuffer(places).reshape(size)
     nominal = contact_point(pair, once, extended)
-    span = np.ptp(first, axis=-1).max() + np.ptp(second, axis=-1).max()
-    where = _looked_at(pair, once.ravel(), ContactPoint(*(x.ravel() for x in nominal)), span)
+    where = _looked_at(
+        pair, once.ravel(), ContactPoint(*(x.ravel() for x in nominal)), np.array(span)
+    )
     ends = np.array(flank_ends(pair))
     nodes = np.zeros((*once.shape, _POINTS, 7))
     nodes[..., 0], nodes[..., 1], nodes[..., 2] = (
@@ -228,20 +320,12 @@ def _of_teeth(
     )
     edges = np.repeat(_corner_of(pair, once)[..., None], 2, axis=-1)
     advance_many(*where, ends[0], ends[1], nodes.reshape(-1, _POINTS, 7), edges.reshape(-1, 2))
-    last = first.shape[-1] - 1.0
     step = np.diff(ends).ravel() / last
     nodes[..., :2] = np.clip((nodes[..., :2] - ends[:, 0]) / step, 0.0, last)
     nodes[..., 5:] /= step
     path = pair.path
     part = np.clip((path.e - once) / (path.e - path.a), 0.0, 1.0)
-    whole = (first.shape[1], *contacts.s.shape)
-    gap, edge = np.empty(whole), np.empty(whole, np.int8)
-    teeth = (contacts.pinion_tooth % len(first), contacts.wheel_tooth % len(second))
-    more = _at_ends(nominal, where[2].reshape(once.shape))
-    touch_teeth(nodes, edges, part, first, second, place, *teeth, *more, gap, edge)
-    gap.setflags(write=False)
-    edge.setflags(write=False)
-    return Touch(gap.reshape(*lead, *whole[1:]), edge.reshape(*lead, *whole[1:]))
+    return nodes, edges, part, *_at_ends(nominal, where[2].reshape(once.shape))
 
 
 @lru_cache(maxsize=16)
@@ -250,23 +334,26 @@ def _tables(
 ) -> tuple[list[Floats], tuple[int, ...]]:
     """What each tooth of pinion and wheel takes off [m], means over a contact, and ``lead``.
 
-    [tooth, case, step] over the flank in even steps of the string; one row where all are alike.
+    [case, step, tooth] over the flank in even steps of the string; one tooth where all are alike.
     """
-    parts = [shape for d in shapes for shape in (d.shapes if isinstance(d, ToothShapes) else (d,))]
-    lead = np.broadcast_shapes(*(d.taken_off(pair, np.ones(1)).shape[:-1] for d in parts))
-    out = []
+    tables: list[Floats] = []
     steps = _STEPS[spread == 0.0] + 1
     for name, ends in zip(GEARS, flank_ends(pair), strict=True):
         inside, weights = _averaged(pair, name, np.linspace(*ends, steps), spread)
-        several = [d.shapes for d in shapes if isinstance(d, ToothShapes) and d.gear == name]
-        table = np.zeros((len(several[0]) if several else 1, *lead, steps))
-        for shape in (d for d in shapes if isinstance(d, FlankShape) and d.gear == name):
-            table += shape.taken_off(pair, inside) @ weights
-        for tooth, row in enumerate(zip(*several, strict=True)):
-            for shape in row:
-                table[tooth] += shape.taken_off(pair, inside) @ weights
-        out.append(table.reshape(len(table), -1, steps))
-    return out, lead
+        table = np.zeros((steps, 1))
+        for shape in shapes:
+            if shape.gear == name:
+                each = shape.shapes if isinstance(shape, ToothShapes) else (shape,)
+                taken = type(each[0]).each(each, pair, inside, weights)
+                table = table + np.moveaxis(taken, 0, -1)
+        tables.append(table)
+    lead = np.broadcast_shapes(*(table.shape[:-2] for table in tables))
+    return [
+        np.ascontiguousarray(
+            np.broadcast_to(table, (*lead, *table.shape[-2:])).reshape(-1, *table.shape[-2:])
+        )
+        for table in tables
+    ], lead
 
 
 def _averaged(pair: GearPair, name: str, at: Floats, spread: float) -> tuple[Floats, Floats]:

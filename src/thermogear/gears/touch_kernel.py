@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 
 from thermogear.base.arrays import Floats
 from thermogear.base.kernel_cache import compiled
-from thermogear.gears.sharing_kernel import NOUGHT
 
 _MOST_TURNS = 60
 _PLACE = 1e-12
@@ -28,8 +27,8 @@ _LEVEL = 1e-8
 """dE/drho counted as 0: with d2E/drho2 > 1 /m the gap is exact to 1e-16 m."""
 _AHEAD = 1e-4
 """Move of the place [r_b1] over which slopes of an advance are taken."""
-_HALVINGS = 5
-"""Of the distance of two nodes, about the least of them."""
+_PARABOLAS = 2
+"""Through the nodes about the least of them."""
 _LAST = 1e-9
 """Newton's step of the gap [m] after which the next would be below its rounding, 1e-16 m."""
 
@@ -311,39 +310,73 @@ def advance_many(
 
 
 @compiled
-def _between(table: Floats, place: float) -> float:
-    """``table`` at ``place``, a number of steps from its begin, linear in between."""
-    k = min(max(int(place), 0), table.size - 2)
-    return float(table[k] + (place - k) * (table[k + 1] - table[k]))
+def _between(table: Floats, place: float, tooth: int) -> float:
+    """One tooth's column of ``table`` at ``place``, a number of steps, linear in between."""
+    k = min(max(int(place), 0), table.shape[0] - 2)
+    low = table[k, tooth]
+    return float(low + (place - k) * (table[k + 1, tooth] - low))
 
 
 @compiled
-def _gap_at(node: Floats, part: float, own: Floats, mate: Floats, gap: float) -> float:
-    """Gap [m] at which the points of one ``node`` touch.
+def _gap_at(
+    nodes: Floats, n: int, part: float, own: Floats, i: int, mate: Floats, j: int, gap: float
+) -> float:
+    """Gap [m] at which the points of node n of the teeth i and j touch.
 
     e = [a + (1 - a') e_1 + a'' x^2/2 + e_2]/(1 - part a'), a the advance, a' and a'' its slope and
     bend by the place, e_1 and e_2 by the tables ``own`` and ``mate`` where the points are when the
     pinion's has moved on by x = part ``gap`` - e_1 [m].
     """
-    shift = part * gap - _between(own, node[0])
-    off = _between(own, node[0] + node[5] * shift)
-    taken = (1.0 - node[3]) * off + _between(mate, node[1] + node[6] * shift)
-    return float((node[2] + taken + 0.5 * node[4] * shift * shift) / (1.0 - part * node[3]))
+    by = nodes[n, 3]
+    shift = part * gap - _between(own, nodes[n, 0], i)
+    off = _between(own, nodes[n, 0] + nodes[n, 5] * shift, i)
+    taken = (1.0 - by) * off + _between(mate, nodes[n, 1] + nodes[n, 6] * shift, j)
+    return float((nodes[n, 2] + taken + 0.5 * nodes[n, 4] * shift * shift) / (1.0 - part * by))
 
 
 @compiled
-def _at_nodes(table: Floats, nodes: Floats, part: Floats, column: int) -> Floats:
-    """What each tooth adds to the gap at each node to first order [m], [tooth, place, pair, node].
+def _at_nodes(
+    table: Floats, nodes: Floats, known: int, part: float, column: int, out: Floats
+) -> None:
+    """What each tooth adds to the gap at ``known`` of the ``nodes``, to first order [m], into out.
 
-    table [tooth, step] of the gear whose string is in that ``column`` of ``nodes``.
+    table [step, tooth] of the gear whose string is in that ``column`` of ``nodes``; out [node,
+    tooth].
     """
-    out = np.empty((table.shape[0], *nodes.shape[:3]))
-    for q, r, k in np.ndindex(nodes.shape[:3]):
-        by = nodes[q, r, k, 3]
-        weight = (1.0 - by if column == 0 else 1.0) / (1.0 - part[q, r] * by)
-        for tooth in range(table.shape[0]):
-            out[tooth, q, r, k] = weight * _between(table[tooth], nodes[q, r, k, column])
-    return out
+    for k in range(known):
+        by, place = nodes[k, 3], nodes[k, column]
+        weight = (1.0 - by if column == 0 else 1.0) / (1.0 - part * by)
+        low = min(max(int(place), 0), table.shape[0] - 2)
+        after = weight * (place - low)
+        before = weight - after
+        for tooth in range(table.shape[1]):
+            out[k, tooth] = before * table[low, tooth] + after * table[low + 1, tooth]
+
+
+@compiled
+def _least_near(
+    nodes: Floats, best: int, bend: float, rise: float, part: float, own: Floats, i: int,
+    mate: Floats, j: int, gap: float, node: Floats,
+) -> float:  # fmt: skip
+    """Least gap [m] at node ``best`` and between its neighbours, from its ``gap`` to first order.
+
+    By parabolas: the first of bend and rise [m] a node to first order, the second through what the
+    gap is to second order at the node and at the least of the first.
+    """
+    start = least = _gap_at(nodes, best, part, own, i, mate, j, gap)
+    x, last = -rise / max(bend, 1e-30), 0.0
+    for _ in range(_PARABOLAS):
+        x = min(max(x, -1.0), 1.0)
+        if x == last:
+            break
+        for n in range(node.shape[1]):
+            before, here, after = nodes[best - 1, n], nodes[best, n], nodes[best + 1, n]
+            node[0, n] = here + 0.5 * x * (after - before + x * (before - 2.0 * here + after))
+        value = _gap_at(node, 0, part, own, i, mate, j, least)
+        least, last = min(least, value), x
+        # through both values, with the bend of the first
+        x = 0.5 * x - (value - start) / (max(bend, 1e-30) * x)
+    return least
 
 
 @compiled
@@ -353,7 +386,8 @@ def touch_teeth(
     part: Floats,
     first: Floats,
     second: Floats,
-    place: NDArray[np.int64],
+    order: NDArray[np.int64],
+    begin: NDArray[np.int64],
     pinion: NDArray[np.int64],
     wheel: NDArray[np.int64],
     gained: Floats,
@@ -364,46 +398,53 @@ def touch_teeth(
     """Gap [m] and edge [case, position, pair] of teeth that differ, the least over the nodes.
 
     nodes [place, pair, node, 7] and edges [place, pair, 2]: see :func:`advance_many`, strings in
-    steps of the tables; part [place, pair]: of the advance, the pinion's; first, second [tooth,
-    case, step]: what is taken off; place [position]; pinion, wheel [position, pair]: rows of the
-    tables; gained, lost [place, pair]: what is added, and taken off again on an edge. Gaps to first
-    order at all nodes, to second order between the neighbours of the least.
+    steps of the tables; part [place, pair]: of the advance, the pinion's; first, second [case,
+    step, tooth]: what is taken off; order [position]: positions by their place, those of each from
+    begin [place + 1] on; pinion, wheel [position, pair]: teeth of the tables; gained, lost [place,
+    pair]: what is added, and taken off again on an edge. Gaps to first order at all nodes, to
+    second order between the neighbours of the least.
     """
     count = nodes.shape[2]
-    node = np.empty(nodes.shape[3])
+    node = np.empty((1, nodes.shape[3]))
+    own, mate = np.empty((count, first.shape[2])), np.empty((count, second.shape[2]))
+    most = np.max(np.diff(begin))
+    least, best = np.empty(most), np.empty(most, np.int64)
+    # without a sign: an index from the end would be looked for at every one
+    own_row, mate_row = np.empty((2, most), np.uint64)
     advance = nodes[..., 2] / (1.0 - np.expand_dims(part, 2) * nodes[..., 3])
-    advance[..., 1] = advance[..., count - 2] = np.inf
     # one place alone where the flanks are not near
     several = np.where(nodes[..., 0, 0] == nodes[..., count - 1, 0], 1, count)
     for c in range(gap.shape[0]):
-        firsts, seconds = (
-            _at_nodes(first[:, c], nodes, part, 0),
-            _at_nodes(second[:, c], nodes, part, 1),
-        )
-        for p in range(place.size):
-            q = place[p]
-            for r in range(gap.shape[2]):
+        one, two = first[c], second[c]
+        for q, r in np.ndindex(part.shape):
+            these, share, known = nodes[q, r], part[q, r], several[q, r]
+            _at_nodes(one, these, known, share, 0, own)
+            _at_nodes(two, these, known, share, 1, mate)
+            size = begin[q + 1] - begin[q]
+            for n in range(size):
+                p = order[begin[q] + n]
                 i, j = pinion[p, r], wheel[p, r]
-                least, best = math.inf, NOUGHT
-                for k in range(several[q, r]):
-                    value = advance[q, r, k] + firsts[i, q, r, k] + seconds[j, q, r, k]
-                    if value < least:
-                        least, best = value, k
-                own, mate, these, share = first[i, c], second[j, c], nodes[q, r], part[q, r]
-                if least < math.inf:
-                    least = _gap_at(these[best], share, own, mate, least)
-                edge[c, p, r] = edges[q, r, min(best, 1)]
-                if 1 < best < count - 2:
-                    edge[c, p, r] = 0
-                    before, here, after = these[best - 1], these[best], these[best + 1]
-                    middle, step = 0.0, 0.5
-                    for _ in range(_HALVINGS):
-                        for x in (middle - step, middle + step):
-                            for n in range(node.size):
-                                bend = before[n] - 2.0 * here[n] + after[n]
-                                node[n] = here[n] + 0.5 * x * (after[n] - before[n] + x * bend)
-                            value = _gap_at(node, share, own, mate, least)
-                            if value < least:
-                                least, middle = value, x
-                        step *= 0.5
-                gap[c, p, r] = least + gained[q, r] - lost[q, r] * (edge[c, p, r] > 0)
+                own_row[n], mate_row[n] = i, j
+                least[n], best[n] = advance[q, r, 0] + own[0, i] + mate[0, j], 0
+            for k in range(2, known):
+                if k == count - 2:  # the nodes next to the ends are those of the ends again
+                    continue
+                plain = advance[q, r, k]
+                for n in range(size):
+                    value = plain + own[k, own_row[n]] + mate[k, mate_row[n]]
+                    nearer = value < least[n]
+                    least[n] = value if nearer else least[n]
+                    best[n] = k if nearer else best[n]
+            for n in range(size):
+                p, k, i, j, near = order[begin[q] + n], best[n], own_row[n], mate_row[n], least[n]
+                edge[c, p, r] = 0 if 1 < k < count - 2 else edges[q, r, min(k, 1)]
+                if 1 < k < count - 2:
+                    low = advance[q, r, k - 1] + own[k - 1, i] + mate[k - 1, j]
+                    high = advance[q, r, k + 1] + own[k + 1, i] + mate[k + 1, j]
+                    near = _least_near(
+                        these, k, low - 2.0 * near + high, 0.5 * (high - low), share,
+                        one, i, two, j, near, node,
+                    )  # fmt: skip
+                elif near < math.inf:
+                    near = _gap_at(these, k, share, one, i, two, j, near)
+                gap[c, p, r] = near + gained[q, r] - lost[q, r] * (edge[c, p, r] > 0)

@@ -1,0 +1,102 @@
+"""A series: many gear pairs of one drawing and class, what each of them does over its turn."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.base.arrays import Floats
+from thermogear.base.errors import InputError
+from thermogear.base.excitation import Excitations
+from thermogear.case.case import GearCase
+from thermogear.case.flanks import deviations
+from thermogear.dynamics.turns import PartTables, follow_parts
+from thermogear.gears.deviations import Deviation
+from thermogear.mesh.series import SeriesMesh
+
+AT_BOUNDS = 16
+"""Parts of a series whose motions are followed at the bounds of the damping."""
+HARMONICS = 24
+"""Of the mesh frequency, of stiffness and error, as in a case."""
+
+
+def series_parts(case: GearCase, count: int) -> tuple[tuple[Deviation, ...], ...]:
+    """Deviations of the first ``count`` parts of the series of ``case``.
+
+    Part n has the n-th drawing of the case's class and seed
+    (:func:`~thermogear.gears.population.drawn_pair`), also where the flanks of the case itself are
+    no drawing of whole gears, and what the case states beside it. InputError without a class.
+    """
+    flanks = case.file.flanks
+    if flanks is None or case.accuracy is None:
+        raise InputError(
+            "flanks.accuracy", "none", allowed="a class of ISO 1328-1", fix="give the class"
+        )
+
+    def part(place: int) -> tuple[Deviation, ...]:
+        drawn = flanks.model_copy(update={"teeth": "drawn", "drawing": place})
+        return deviations(case.file.model_copy(update={"flanks": drawn}), case.pair, case.charts)
+
+    return tuple(part(place) for place in range(count))
+
+
+@dataclass(frozen=True, eq=False)
+class SeriesMotion:
+    """Motions of the parts of a series, (damping, part, speed).
+
+    ``speed`` (speed,) [rad/s] of the pinion, ``damping_ratio`` (damping,). ``dynamic_factor``:
+    greatest mesh force over its mean; ``contact_loss_share``: of time, out of drive-side contact;
+    ``mesh_force_min`` [N], < 0 on the back flanks; each over the last turn that was followed, also
+    where that does not repeat another: ``repeats``. All parts at the first damping ratio, the
+    first :data:`AT_BOUNDS` at the others: nan for the rest, which does not repeat.
+    """
+
+    speed: Floats
+    damping_ratio: Floats
+    dynamic_factor: Floats
+    contact_loss_share: Floats
+    mesh_force_min: Floats
+    repeats: NDArray[np.bool_]
+
+
+def series_motion(
+    mesh: SeriesMesh, point: Excitations, speed: Floats, damping_ratio: Floats
+) -> SeriesMotion:
+    """Motions of every part of ``mesh`` at each ``speed`` [rad/s] of the pinion.
+
+    ``point``: excitation of one operating point, of any part at any speed: inertias, base radii
+    and mean force are taken from it; stiffness, error and half backlash are the
+    parts' own in ``mesh``.
+    """
+    mass, load = float(point.equivalent_mass[0]), float(point.mean_force[0])
+    count = len(mesh.stiffness)
+    shape = (damping_ratio.size, count, speed.size)
+    factor, lost, least = np.full((3, *shape), np.nan)
+    repeats = np.zeros(shape, bool)
+    mean = mesh.stiffness.mean(axis=1)
+    natural = np.sqrt(mean / mass)
+    tables = PartTables.of(
+        mesh.stiffness / mean[:, None], mesh.spring_error, mesh_periods=mesh.mesh_periods,
+        harmonics=HARMONICS, ahead=mesh.ahead, periodic=mesh.whole,
+    )  # fmt: skip
+    rate = 2.0 * np.pi * natural[:, None] / (mesh.pair.pinion.teeth * speed)
+    backlash, deep = mesh.half_backlash.mean(axis=1), load / mean
+    first, few = np.arange(count), np.arange(min(count, AT_BOUNDS))
+    bounds = np.arange(1, damping_ratio.size)
+    for number, part in (
+        (np.zeros(count, int), first),
+        (np.repeat(bounds, few.size), np.tile(few, bounds.size)),
+    ):
+        if not part.size:
+            continue
+        motions = follow_parts(
+            tables.take(part), rate=rate[part], damping_ratio=damping_ratio[number],
+            backlash=backlash[part], load=deep[part],
+        )  # fmt: skip
+        at, newton = (number, part), mean[part, None]
+        most = newton * np.maximum(motions.greatest, -motions.least)
+        factor[at], least[at] = most / load, newton * motions.least
+        lost[at], repeats[at] = motions.lost, motions.repeats
+    return SeriesMotion(speed, damping_ratio, factor, lost, least, repeats)
