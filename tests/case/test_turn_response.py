@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from thermogear.analysis.orbits import periodic_orbit
-from thermogear.base.period import Period
+from thermogear.base.period import Period, line_names
 from thermogear.base.vocabulary import label_words
 from thermogear.case.case import GearCase, gear_case, load_case, load_example
 from thermogear.case.family import family
@@ -60,7 +60,7 @@ def test_nearly_perfect_gears_jump_where_the_mean_tooth_jumps() -> None:
 def test_a_slow_eccentric_pinion_has_its_run_out_as_first_order(eccentric: Result) -> None:
     data = eccentric.data
     assert data["order"].values[:3].tolist() == [1 / 25, 2 / 25, 3 / 25]
-    names = data["line"].values.astype(str)
+    names = line_names(data.attrs, data["order"].values)
     assert [names[n - 1] for n in (1, 25, 26)] == [
         Period.of((25, 75), pinion=True).line(n) for n in (1, 25, 26)
     ]

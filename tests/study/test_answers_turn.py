@@ -1,12 +1,16 @@
 """Answers of gears whose teeth differ: over the turn, of one assembly, beside the others."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from thermogear.analysis.settle import UNDECIDED
 from thermogear.case.case import GearCase, gear_case, load_case
+from thermogear.case.family import family
 from thermogear.results.answer import Answer
 from thermogear.study.answers.survey import answers
+from thermogear.study.speeds import look
 
 pytestmark = pytest.mark.filterwarnings("ignore::thermogear.base.errors.ValidityWarning")
 CASE = """[gears]
@@ -85,6 +89,24 @@ def test_teeth_that_differ_lose_contact_where_their_mean_tooth_does_not(
     assert told["dynamic_factor"].value > 1.3 * mean["dynamic_factor"].value
     first = told["contact_loss"].figures["ranges"][0][0]
     assert first < 0.8 * mean["contact_loss"].figures["ranges"][0][0]
+
+
+def test_motions_that_never_meet_the_back_side_know_no_backlash(told: dict[str, Answer]) -> None:
+    # so answers may take the least of the turn all along
+    mesh = family(_case(), ["rpm"]).excitations(np.array([[300.0]]))
+    looks = [
+        look(
+            replace(mesh, half_backlash=part * mesh.half_backlash), teeth=20, own=np.array([300.0])
+        )
+        for part in (1.0, 0.8)
+    ]
+    assert looks[0].column("mesh_force_min").min() >= 0.0
+    assert looks[0].column("contact_loss_share").max() > 0.1
+    for name in ("dynamic_factor", "contact_loss_share", "dte_peak_to_peak"):
+        first, second = (np.asarray(found.column(name)) for found in looks)
+        np.testing.assert_allclose(second, first, rtol=1e-3, atol=1e-3 * first.max())
+    gap = told["back_contact"].figures["gap"]
+    assert gap < 2e6 * float(mesh.half_backlash[0])
 
 
 def test_motions_that_do_not_settle_count_however_teeth_are_numbered() -> None:

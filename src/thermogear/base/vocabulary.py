@@ -402,11 +402,11 @@ FIXED_STEPS = (
     "repeats itself: no orbit is proven; what does not is undecided, its figures those of the "
     "later half of what was followed"
 )
-"""What stands behind the labels of run-ups and sweeps over a turn."""
+"""What proves the labels of run-ups and sweeps over a turn."""
 
 
 def of_turn(mesh_periods: float) -> str:
-    """What stands behind a count of periods that are turns of ``mesh_periods``; else nothing."""
+    """Words after a count of periods that are turns of ``mesh_periods``; else nothing."""
     return " of the turn" if mesh_periods > 1 else ""
 
 

@@ -37,12 +37,11 @@ SAMPLES = STEPS // 2
 
 
 def over_turn(data: Dataset, case: GearCase) -> Dataset:
-    """Stored motions with what they are of the turn of ``case``: its size, the names of its lines.
+    """Stored motions with what they are of the turn of ``case``: its mesh periods and teeth.
 
     As they are where the case repeats itself after one mesh period.
     """
-    turn, teeth = case.period, [case.pair.pinion.teeth, case.pair.wheel.teeth]
-    of = turn.mesh_periods
+    of, teeth = case.period.mesh_periods, [case.pair.pinion.teeth, case.pair.wheel.teeth]
     if of == 1:
         return data
     closed = f"turns of {of} mesh periods after which the motion repeats itself, 0: none seen"
@@ -50,9 +49,6 @@ def over_turn(data: Dataset, case: GearCase) -> Dataset:
         period=data["period"].assign_attrs(long_name=closed),
         label=data["label"].assign_attrs(comment=FIXED_STEPS),
     )
-    if "order" in data.coords:
-        names = [turn.line(round(order * of)) for order in data["order"].values]
-        data = data.assign(line=("order", names, {"long_name": "name of the line"}))
     return data.assign_attrs(mesh_periods=of, teeth=teeth)
 
 

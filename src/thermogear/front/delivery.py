@@ -121,10 +121,12 @@ def put_csv(result: Result) -> None:
         from thermogear.results.tables import csv_text
 
         put(path, csv_text(result.to_frame(units="display")))
-        if "line" in result.data and "dte_line" in result.data:
+        if "dte_line" in result.data and "mesh_periods" in result.data.attrs:
+            from thermogear.base.period import line_names
+
             along = [str(dim) for dim in result.data["dte_line"].dims]
             lines = result.to_frame(along=along, units="display")
-            names = result.data["line"].values.astype(str).tolist()
+            names = line_names(result.data.attrs, result.data["order"].values)
             lines.insert(along.index("order"), "line", names * (len(lines) // len(names)))
             put(path.with_name(f"{path.stem}_lines.csv"), csv_text(lines))
 

@@ -20,7 +20,7 @@ from thermogear.analysis.outcome import outcome_arrays, outcome_variables, settl
 from thermogear.analysis.settle import PERIODIC, Rule, Settled
 from thermogear.base.arrays import Floats, Whole
 from thermogear.base.errors import InputError
-from thermogear.base.notice import Notice, stored_notices
+from thermogear.base.notice import stored_notices
 from thermogear.base.plan import (
     Alive,
     Arrays,
@@ -57,8 +57,6 @@ LISTED_PERIOD = 4
 """Jumps of longer orbits, which live in windows of chaos, are not listed."""
 LISTED = 1e-3
 """A jump that changes the transmission error by less than this share is not listed."""
-APART = 1e-3
-"""Half backlashes between two motions that are not one."""
 ENDS = ("end_x", "end_v", "end_speed", "end_period")
 """What is stored of the motion that is carried on to the next speed."""
 LEAP_KINDS = (FOLD, FLIP)
@@ -159,9 +157,7 @@ class RunUpPlan:
             0,
             {"long_name": "periods of the orbit that is followed, 0: none"} | NO_COUNT,
         )
-        found |= {name: number(*told, "leap") for name, told in LEAP.items()}
-        early = {"long_name": "1: a run in these steps alone leaves its branch before this speed"}
-        return found | {"left_early": Variable(dims, "int8", 0, early)}
+        return found | {name: number(*told, "leap") for name, told in LEAP.items()}
 
     def coordinates(self) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]:
         cold = self.case.stated.temperatures.reference
@@ -271,7 +267,6 @@ class RunUpPlan:
             row = {name: values[0] for name, values in outcome.items()} | {
                 "section_x": settled.sections[0, :, 0],
                 "section_v": settled.sections[0, :, 1],
-                "left_early": run.early,
             }
             row |= dict(zip(ENDS, (*run.state, run.at, run.period), strict=True))
             for name in LEAP if run.leaps else ():
@@ -294,10 +289,6 @@ class RunUpPlan:
         }
         data = _with_jumps(self, data)
         told = [*range_notices(self.case, data), *difference_notices(data)]
-        early = np.argwhere(data["left_early"].values > 0)
-        if early.size:
-            speeds = np.unique(np.array(self.speeds)[early[:, 2]])
-            told.append(Notice.of("motion_followed_in_finer_steps", speeds=speeds))
         return data.assign_attrs(notices=stored_notices(told))
 
 
@@ -335,24 +326,17 @@ class _Run:
         self.state = np.array(plan.case.simulation.initial_state, dtype=float)
         self.period = 0
         self.leaps: list[dict[str, float]] = []
-        self.early = 0
         self.maps: dict[float, ReturnMap] = {}
 
     def step(self, point: Points, speed: float) -> Settled:
         """What is felt at ``speed``, coming from where the last step ended."""
-        self.leaps, self.early = [], 0
+        self.leaps = []
         first = not np.isfinite(self.at)
-        before = self.state if self.period > 0 else None
         if self.table is None or first or point.still[0]:
             self.period = 0
         else:
             self._walk(self.table, speed)
-        starts = [self.state, before] if before is not None and self.period > 0 else [self.state]
-        both = self._settled(point.take(np.zeros(len(starts), int)), np.array(starts))
-        found = both.part(slice(0, 1))
-        if len(starts) > 1 and _period(found) > 0:
-            apart = np.abs(both.sections[1] - both.sections[0][-1]) / point.flat.unit
-            self.early = int(not np.max(apart, axis=-1).min() < APART)
+        found = self._settled(point, self.state[None])
         if first:
             self._stand(speed, found)
         return found
@@ -524,9 +508,9 @@ def run_up(
     Between two speeds the orbit is followed slowly, and what is no orbit of up to 16 periods is
     carried on in steps of 0.5 % of the speed that stand still, so that jumps do not depend on the
     step of ``speeds``. ``jump_...``: where the motion leaves its branch (``fold``, of orbits of up
-    to 4 periods), and where a run back jumps (``return``); ``left_early``: the step alone would
-    have left it before; ``bifurcation_...`` and ``branch_...``: the folds behind it, from
-    continuation of the orbits of up to ``branch_period`` mesh periods (0: none).
+    to 4 periods), and where a run back jumps (``return``);
+    ``bifurcation_...`` and ``branch_...``: the folds behind it, from continuation of the orbits of
+    up to ``branch_period`` mesh periods (0: none).
     Of a case whose period is a turn of many mesh periods the motion is followed in fixed steps from
     each of the ``speeds`` to the next, its lines at all orders of the turn; no orbit is located.
     """

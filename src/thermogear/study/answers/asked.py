@@ -121,8 +121,14 @@ class Asked:
         return int(self.hot["status"].size)
 
     def _part(self, points: list[int]) -> dict[str, NDArray[Any]]:
-        """What moves the hot pair at some operating points."""
+        """What moves the hot pair at some operating points.
+
+        Over a turn with its least half backlash all along: motions that do not reach the back side
+        are the same with any, and a hit is told rather than missed.
+        """
         part = {name: self.hot[name][points] for name in MOVES}
+        if self.mesh_periods > 1:
+            part["half_backlash"] = self.hot["least_half_backlash"][points]
         return part | {"mesh_periods": np.full(len(points), self.mesh_periods)}
 
     @cached_property
@@ -330,15 +336,6 @@ class Asked:
         found = look(mesh, teeth=self.case.pair.pinion.teeth, own=self.case.stated.speed)
         self.progress("speeds", 1, 1)
         return found
-
-    @cached_property
-    def tightest(self) -> Speeds | None:
-        """The same with the least half backlash of a turn all along; None where it is one."""
-        if self.mesh_periods == 1 or self.speeds is None:
-            return None
-        mesh = excitations(self.case, self._part([self.hardest]))
-        tight = replace(mesh, half_backlash=self.hot["least_half_backlash"][[self.hardest]])
-        return look(tight, teeth=self.case.pair.pinion.teeth, own=self.case.stated.speed)
 
     @cached_property
     def assemblies(self) -> tuple[Floats, Floats]:

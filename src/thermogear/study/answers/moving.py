@@ -63,18 +63,17 @@ def speeds(asked: Asked) -> Iterator[Answer]:
     if open_at and asked.mesh_periods > 1:
         open_at += f": {LATER} counts"
         of_open["followed"] = longest(asked.mesh_periods)
-    tight = asked.tightest
     for name, ranges, happens, never, apart in (
         ("contact_loss", found.lost,
          ("Flanks lose contact", ", for up to {most:.0f %} of the time"),
          "Flanks keep contact at every", parted),
-        ("back_contact", (tight or found).back, ("Teeth hit the back side", ""),
+        ("back_contact", found.back, ("Teeth hit the back side", ""),
          "No tooth hits the back side at any",
          struck),
     ):  # fmt: skip
         words, figures = told(ranges, ends=ends)
         sentence = f"{happens[0]} {words}{happens[1]}" if ranges else f"{never} {LOOKED}"
-        if name == "back_contact" and tight is not None:
+        if name == "back_contact" and asked.mesh_periods > 1:
             sentence += ", were the backlash all along the least of the turn, {gap:.1f µm}"
             figures["gap"] = 2e6 * float(asked.hot["least_half_backlash"][asked.hardest])
         if apart.any():

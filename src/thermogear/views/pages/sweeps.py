@@ -11,6 +11,7 @@ import numpy as np
 
 from thermogear.base.arrays import Dataset
 from thermogear.base.display import CELSIUS, MICROMETRE, PERCENT, SPEED, exactly, number
+from thermogear.base.period import line_names
 from thermogear.base.vocabulary import ASSUMED, FASTER_RULE, of_turn
 from thermogear.results.result import Result
 from thermogear.results.tables import in_words
@@ -213,17 +214,16 @@ def _waterfall_caption(data: Dataset) -> str:
 
 def _turn_lines(data: Dataset) -> list[dict[str, Any]]:
     """Of every line of a turn its greatest amplitude in the run-up and where; greatest first."""
-    if "line" not in data or "dte_line" not in data:
-        return []
     lines = data["dte_line"].values.reshape(-1, data.sizes["order"])
+    names = line_names(data.attrs, data["order"].values)
     known = np.where(np.isfinite(lines), lines, -1.0)
     place = np.unravel_index(known.argmax(axis=0), data["dte_line"].shape[:-1])
     at = dict(zip(map(str, data["dte_line"].dims), place, strict=False))
     rows: list[dict[str, Any]] = [
-        {"line": str(name), "order": float(order), "amplitude": float(known[:, n].max()),
+        {"line": name, "order": float(order), "amplitude": float(known[:, n].max()),
          "speed": float(data["pinion_speed"].values[at["pinion_speed"][n]]),
          "gears": float(data["gear_temperature"].values[at["state"][n]])}
-        for n, (name, order) in enumerate(zip(data["line"].values, data["order"].values,
+        for n, (name, order) in enumerate(zip(names, data["order"].values,
                                               strict=True))
         if known[:, n].max() > 0.0
     ]  # fmt: skip
@@ -245,7 +245,7 @@ def _points(data: Dataset, result: Result) -> Section:
     if jumps:
         blocks.append(declared("Jumps", JUMPS, jumps))
         blocks.append(Text(JUMPS_EXPLAINED))
-    elif "line" in data:
+    elif "mesh_periods" in data.attrs:
         blocks.append(Text(TURN_EXPLAINED))
         if str(data.attrs["kind"]) == "run-up":
             blocks.append(declared(TURN_LINES, LINES, _turn_lines(data)))
@@ -446,7 +446,7 @@ def numbers(result: Result) -> dict[str, Any]:
         found |= {"parameter": parameter, "ways_apart": apart.tolist()}
     if kind == "run-up":
         found["jumps"] = [in_full(JUMPS, row) for row in _jumps(data)]
-        if "line" in data:
+        if "mesh_periods" in data.attrs:
             found["lines"] = [in_full(LINES, row) for row in _turn_lines(data)]
             found["mesh_periods"] = int(data.attrs["mesh_periods"])
     if kind in ("diagram", "run-up"):
