@@ -320,6 +320,16 @@ def test_pitch_deviations_act_as_those_of_a_case_along_the_arc(tmp_path: Path, g
     )
 
 
+def test_a_chart_beside_profiles_of_the_same_teeth_is_refused(tmp_path: Path) -> None:
+    own_chart.case(tmp_path, chart({LEFT: TRACE}, diameter(RHO)))
+    with pytest.raises(InputError) as caught:
+        load_case(tmp_path / "mine.toml", ["gears.pinion.tooth_profiles=[{slope='1 um'}]"])
+    assert str(caught.value) == (
+        "flanks.pinion: got pinion.csv; [gears.pinion.tooth_profiles] gives the same flanks; leave "
+        "one out"
+    )
+
+
 def test_single_pitches_of_a_chart_that_do_not_close_are_refused(tmp_path: Path) -> None:
     rows = "".join(f"{k + 1},1\n" for k in range(20))
     text = chart({LEFT: TRACE}, diameter(RHO)) + f"\ntooth,single pitch left [um]\n{rows}"

@@ -151,6 +151,9 @@ REFUSED = {
     "gears.pinion.tooth_profiles=[{slope='1 um', waves=3}]":
         "gears.pinion.tooth_profiles[0].form: got nothing; allowed form beside phase or waves; for "
         'none write form = "0 um"',
+    "gears.pinion.teeth_differ=[{tooth=2, index='1 um', flank='back'}]":
+        "gears.pinion.teeth_differ[0].flank: got 'back'; allowed beside slope or form; an index "
+        "moves the whole tooth; leave it out",
     "gears.marks=[21, 1]": "gears.marks[0]: got 21; allowed 1..20",
     "gears.marks=[1]":
         "gears.marks: got a list of 1; allowed 2 entries; write for instance [1, 1]",
@@ -212,6 +215,10 @@ def test_what_changes_nothing_is_said() -> None:
             case(change)
         assert [str(one.message) for one in caught] == [f"{line}; leave it out"]
         case(errors, change)  # where a warning would be an error
+    own = [f"gears.{gear}.tooth_profiles=[{{slope='1 um'}}]" for gear in ("pinion", "wheel")]
+    for change in ("accuracy=5", "seed=2", "teeth=drawn"):
+        with pytest.warns(ValidityWarning, match=rf"^flanks\.{change.replace('=', ': ')} has no "):
+            graded(*own, f"flanks.{change}")
     for change in ("drawing=3", "drawing=0"):
         with pytest.warns(ValidityWarning, match=r"^flanks\.drawing: \d has no effect: it is one"):
             graded(f"flanks.{change}")

@@ -148,13 +148,14 @@ def charts(file: GearFile, pair: GearPair) -> tuple[Chart, ...]:
         if names is None:
             continue
         try:
-            if getattr(file.gears, gear).profile is not None:
-                raise InputError(
-                    "",
-                    ", ".join(names),
-                    why=f"[gears.{gear}.profile] gives the same flanks",
-                    fix="leave one out",
-                )
+            for field in ("profile", "tooth_profiles"):
+                if getattr(getattr(file.gears, gear), field):
+                    raise InputError(
+                        "",
+                        ", ".join(names),
+                        why=f"[gears.{gear}.{field}] gives the same flanks",
+                        fix="leave one out",
+                    )
             texts = tuple((name, file.files[name].text) for name in names)
             read.append(_chart(gear, names, _read(texts), pair))
         except InputError as error:

@@ -109,7 +109,8 @@ def without_effect(
     """(field and value, why) of what the file states of flanks and ``every`` deviation ignores."""
     tables = [getattr(file.gears, gear) for gear in GEARS]
     graded = bool(unmeasured(file))
-    drawn = graded and file.flanks is not None and file.flanks.teeth == "drawn"
+    drawn = file.flanks is not None and file.flanks.teeth == "drawn"
+    of_its_own = "both gears have flanks of their own"
     alike = turn_period(pair, every).mesh_periods == 1
     for idle, fields, why in (
         (all(table.pitch_errors is None for table in tables),
@@ -117,9 +118,9 @@ def without_effect(
         (alike, ("gears.marks", "gears.period"), "the teeth of each gear are alike"),
         (all(isinstance(deviation, Relief) for deviation in every), ("gears.part",),
          "no flank deviates but by reliefs"),
-        (not graded, ("flanks.accuracy", "flanks.edition", "flanks.seed"),
-         "both gears have flanks of their own"),
-        (not drawn, ("flanks.drawing",), 'it is one of teeth = "drawn"'),
+        (not graded, ("flanks.accuracy", "flanks.edition", "flanks.seed"), of_its_own),
+        (drawn and not graded, ("flanks.teeth",), of_its_own),
+        (not (drawn and graded), ("flanks.drawing",), 'it is one of teeth = "drawn"'),
     ):  # fmt: skip
         for field in fields if idle else ():
             name, _, key = field.partition(".")
@@ -213,6 +214,11 @@ def _require_differing(gear: str, given: Sequence[ToothTable]) -> None:
             raise InputError(
                 field, f"tooth {tooth.tooth} without a difference", fix="give index, slope or form"
             )
+        if tooth.flank != "both" and not (tooth.slope or tooth.form):
+            raise InputError(
+                f"{field}.flank", repr(tooth.flank), allowed="beside slope or form",
+                why="an index moves the whole tooth", fix="leave it out",
+            )  # fmt: skip
 
 
 def _index(gear: str, file: GearFile, pair: GearPair) -> PitchError:
