@@ -28,10 +28,12 @@ else:
 def rows_at(rows: NDArray[Any], index: Whole) -> NDArray[Any]:
     """``rows[index]``, for reading: where all of them are one row that row is held once.
 
+    So the tables of a turn, which are large, along a row of speeds.
+
     >>> rows_at(np.eye(2), np.zeros(3, int)).strides
     (0, 8)
     """
-    if len(index) < 2 or not (rows.strides[0] == 0 or np.all(index == index[0])):
+    if rows.ndim < 2 or len(index) < 2 or not (rows.strides[0] == 0 or np.all(index == index[0])):
         return np.asarray(rows[index])
     return np.broadcast_to(rows[index[0]], (len(index), *rows.shape[1:]))
 

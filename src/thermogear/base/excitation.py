@@ -241,11 +241,8 @@ class Excitations:
         if rubbed is not None:
             rubbed = tuple(rubbed[i] for i in np.arange(len(self))[chosen])
         arrays = [field.name for field in fields(self) if field.name not in _OF_ALL]
-        taken = {name: getattr(self, name)[chosen] for name in arrays if name not in _WIDE}
-        # of a turn these are large, and along a row of speeds they are all the same
         place = np.arange(len(self))[chosen]
-        for name in _WIDE:
-            taken[name] = rows_at(getattr(self, name), place)
+        taken = {name: rows_at(getattr(self, name), place) for name in arrays}
         return replace(self, **taken, friction=rubbed)
 
     @classmethod
@@ -317,7 +314,6 @@ class Excitations:
         )
 
 
-_WIDE = ("stiffness", "error")
 _OF_ALL = ("friction", "mesh_periods")
 """Fields of :class:`Excitations` that are no arrays over the points."""
 

@@ -130,7 +130,8 @@ def _of_few_loads(share: Floats) -> Floats:
     x = 2.0 * (share / top[:, None]) ** 0.25 - 1.0
     means = np.ones((*top.shape, LOADS + 1))
     # Chebyshev's polynomials one after the other: all at once are six times as large
-    before, term, twice = 1.0, x, 2.0 * x
+    before: Floats = np.ones(1)
+    term, twice = x, 2.0 * x
     for order in range(1, LOADS + 1):
         means[..., order] = term.mean(axis=1)
         before, term = term, term * twice - before
