@@ -23,6 +23,7 @@ from thermogear.gears.pair import GearPair
 from thermogear.gears.stiffness import Moduli
 from thermogear.gears.touch import touch_of_parts
 from thermogear.gears.turn import numbered_from, turn_period
+from thermogear.mesh.clearance import Clearance
 from thermogear.mesh.elastic import BLOCK, TURN_POSITIONS, elastic_pair, turn_phases
 from thermogear.mesh.thermal import HotPair, ThermalDeviation
 
@@ -114,7 +115,8 @@ def series_mesh(
     ``periods`` mesh periods are followed, each of so many ``positions``: from mesh period ``start``
     of each part on, 0 by default. Where they are not the whole turn the springs have
     :data:`AHEAD` more before them, from which a motion can settle. Parts hang on each other in no
-    digit. Textbook springs do not feel deviations; their errors are those without load.
+    digit. Textbook springs do not
+    feel deviations; their errors are those without load.
     """
     pair, phase = hot.pair, np.arange(positions) / positions
     turn = max((turn_period(pair, part).mesh_periods for part in parts), default=1)
@@ -125,10 +127,14 @@ def series_mesh(
         for part, first in zip(parts, start or [0] * len(parts), strict=True)
     ]
     every = turn_phases(periods + ahead, phase)
-    step = max(BLOCK // every.size, 1)
-    blocks = [
-        _curves(hot, numbered[first : first + step], every) for first in range(0, len(parts), step)
-    ]
+    if hot.model.stiffness == "loaded":
+        step = max(BLOCK // every.size, 1)
+        blocks = [
+            _curves(hot, numbered[first : first + step], every)
+            for first in range(0, len(parts), step)
+        ]
+    else:
+        blocks = [_alone(hot, part, phase, periods + ahead) for part in numbered]
     curves = [np.concatenate(several) for several in zip(*blocks, strict=True)]
     transmission, error, stiffness, backlash = curves
     seen = slice(ahead * positions, None)
@@ -183,6 +189,18 @@ def _curves(
         stiffness,
         backlash,
     )
+
+
+def _alone(
+    hot: HotPair, part: Sequence[Deviation], phase: Floats, periods: int
+) -> tuple[Floats, Floats, Floats, Floats]:
+    """The curves of :func:`_curves` of one part with textbook springs, whose error is heat's."""
+    curves, gap = elastic_pair(hot, part).over(phase), Clearance(hot, phase, part)
+    every = (curves.transmission_error, gap.error, curves.stiffness, gap.half_backlash)
+    transmission, error, stiffness, backlash = (
+        np.resize(curve[0], (1, periods * phase.size)) for curve in every
+    )
+    return transmission, error, stiffness, backlash
 
 
 def _flat(moduli: Moduli) -> Moduli:
