@@ -156,9 +156,13 @@ def test_figures_of_alike_teeth_are_those_of_one_mesh_period() -> None:
     rule = Rule(settled=1e-6)
     ends = [settle(one.flat, np.array([START]), rule) for one in points]
     assert [int(one.label[0]) for one in ends] == [PERIODIC, PERIODIC]
-    record = Recording(periods=4, samples=64, highest_order=3.0)
+    records = [
+        Recording(periods=periods, samples=64 * count, highest_order=3.0)
+        for count, periods in ((1, 4), (9, 2))
+    ]
     found = [
-        respond(one, end.state, record, lines=True) for one, end in zip(points, ends, strict=True)
+        respond(one, end.state, record, lines=True)
+        for one, end, record in zip(points, ends, records, strict=True)
     ]
     for name, values in found[0].items():
         assert found[1][name] == pytest.approx(values, rel=1e-6, abs=1e-12), name
