@@ -6,7 +6,13 @@ import pytest
 from thermogear.analysis.orbits import periodic_orbit
 from thermogear.base.excitation import Periodic
 from thermogear.dynamics.models import DeadZoneModel
-from thermogear.dynamics.turns import TurnLanes, TurnTables, follow_turns
+from thermogear.dynamics.turns import (
+    PartTables,
+    TurnLanes,
+    TurnTables,
+    follow_parts,
+    follow_turns,
+)
 
 MESH_PERIODS = 12
 
@@ -69,3 +75,46 @@ def test_flanks_that_part_move_on_the_exact_orbit(compared, ratio: float) -> Non
     compared("greatest mesh force", "event-exact orbit", factor, 2e-3, "1")
     share = motions.lost[0] - (1.0 - orbit.time_share["drive"])
     compared("share of time out of contact", "event-exact orbit", share, 2e-3, "1")
+
+
+def test_parts_that_never_part_move_as_linear_theory_says(compared) -> None:
+    # three parts of errors of their own, at three speeds, k constant
+    ranks, phase = np.arange(3 * MESH_PERIODS + 1), np.arange(96 * MESH_PERIODS)
+    errors = np.stack([_tables(seed, 0.01).error for seed in (1, 2, 3)])
+    samples = (errors @ np.exp(2j * np.pi * np.outer(ranks, phase) / phase.size)).real
+    tables = PartTables.of(np.ones_like(samples), samples, mesh_periods=MESH_PERIODS, harmonics=3)
+    ratio, ones = np.array([0.15, 0.4, 1.1]), np.ones(3)
+    motions = follow_parts(
+        tables, rate=np.tile(2.0 * np.pi / ratio, (3, 1)), damping_ratio=0.05 * ones,
+        backlash=ones, load=0.8 * ones,
+    )  # fmt: skip
+    assert motions.repeats.all()
+    assert (motions.lost == 0.0).all()
+    every = np.exp(2j * np.pi * np.outer(np.arange(8192) / 8192, ranks))
+    for part, error in enumerate(errors):
+        for speed, mesh in enumerate(ratio):
+            rate = ranks * mesh / MESH_PERIODS
+            answer = error * rate**2 / (1.0 - rate**2 + 0.1j * rate)
+            force = 0.8 + (every @ answer).real
+            ends = motions.greatest[part, speed], motions.least[part, speed]
+            worst = np.abs(np.array(ends) - [force.max(), force.min()]).max()
+            compared("force of a part in contact", "linear theory", worst, 2e-4, "b_c")
+
+
+def test_a_stretch_that_goes_on_and_on_is_a_turn() -> None:
+    """Mesh periods that are all alike: a stretch of them moves as one that comes again."""
+    phase = np.arange(96) / 96
+    stiffness = 1.0 + 0.1 * np.cos(2.0 * np.pi * phase)[None]
+    error = 0.02 * np.sin(2.0 * np.pi * phase + 0.4)[None]
+    given = {
+        "rate": 2.0 * np.pi / np.array([[0.4, 0.9]]), "damping_ratio": np.array([0.07]),
+        "backlash": np.ones(1), "load": np.array([0.05]),
+    }  # fmt: skip
+    turn = PartTables.of(stiffness, error, mesh_periods=1, harmonics=24)
+    many = [np.tile(row, 60) for row in (stiffness, error)]
+    stretch = PartTables.of(*many, mesh_periods=40, harmonics=24, ahead=20, periodic=False)
+    one, other = follow_parts(turn, **given), follow_parts(stretch, **given)
+    assert one.lost[0, 1] > 0.05
+    assert (one.repeats & other.repeats).all()
+    for name in ("greatest", "least", "lost"):
+        assert getattr(other, name) == pytest.approx(getattr(one, name), abs=2e-4)

@@ -314,13 +314,13 @@ def follow_parts(
     felt, repeats = run.settled()
     back = np.argsort(order)
     if not tables.periodic:
-        alike = _apart(*np.split(run.state[back], 2), lanes[: len(lanes) // 2]) < REPEATED
+        shallow, far = np.split(run.state[back], 2)
+        alike = _apart(shallow, far, lanes[: len(lanes) // 2]) < REPEATED
         repeats = np.tile(alike, (2, 1))[order]
-    (one, other), (first, second) = (
-        np.split(values[back][..., :parts], 2) for values in (felt, repeats)
-    )
+    one, other = np.split(felt[back][..., :parts], 2)
     worst, least = np.maximum(one, other), np.minimum(one, other)[:, 1]
-    return PartMotions(worst[:, 0].T, least.T, worst[:, 2].T, (first & second).T)
+    both = np.logical_and(*np.split(repeats[back][..., :parts], 2))
+    return PartMotions(worst[:, 0].T, least.T, worst[:, 2].T, both.T)
 
 
 def _apart(one: Floats, other: Floats, lanes: Floats) -> Floats:

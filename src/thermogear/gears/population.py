@@ -15,7 +15,6 @@ from dataclasses import KW_ONLY, dataclass, replace
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from thermogear.base import bounds
 from thermogear.base.arrays import Floats
@@ -38,6 +37,8 @@ from thermogear.gears.turn import Eccentricity, ToothShapes
 MEASURED_TEETH = 4
 """Teeth whose profiles are measured, evenly around the gear. Source: ISO 1328-1:2013, at least 3
 or 4 are usual."""
+Size = float | Floats
+"""Of one tooth, or of several: a column (tooth, 1)."""
 _POINTS = 65  # of a profile that is measured: 16 or more for each of four waves
 
 
@@ -145,8 +146,8 @@ class ToothProfile(FlankShape):
 
 
 def _taken_off(
-    pair: GearPair, name: str, rho: Floats, *, slope: ArrayLike, barrel: ArrayLike, wave: ArrayLike,
-    waves: float, phase: ArrayLike,
+    pair: GearPair, name: str, rho: Floats, *, slope: Size, barrel: Size, wave: Size,
+    waves: float, phase: Size,
 ) -> Floats:  # fmt: skip
     """e [m] at ``rho`` (n,) [m] of the named gear; sizes are numbers or columns (tooth, 1)."""
     start, pitch, tip = active_profile(pair, name)
@@ -279,10 +280,8 @@ def drawn_gear(
     return (
         replace(centre, amount=scale * centre.amount),
         replace(pitch, errors=tuple(scale * np.asarray(pitch.errors))),
-        *(
-            _shapes(name, flank, sides[flank], waves=waves[flank], size=size)
-            for flank, size in (("drive", scale), ("back", scale * back))
-        ),
+        _shapes(name, "drive", sides["drive"], waves=waves["drive"], size=scale),
+        _shapes(name, "back", sides["back"], waves=waves["back"], size=scale * back),
     )
 
 

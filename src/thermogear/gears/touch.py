@@ -162,7 +162,7 @@ def touch_of_parts(
             for count, of_gear in zip(teeth, zip(*rows, strict=True), strict=bool(rows))
         ]
         if rows:
-            gap, touch.edge[drawn] = _touched(points, *tables, extended)
+            gap, touch.edge[drawn] = _touched(points, tables[0], tables[1], extended)
             touch.gap[drawn] += gap
     return found
 
@@ -258,8 +258,8 @@ def _of_teeth(
     """
     pair = points.contacts.pair
     solve = _tables if all(isinstance(d, Hashable) for d in shapes) else _tables.__wrapped__
-    tables, lead = solve(pair, shapes, spread)
-    gap, edge = _touched(points, *tables, extended)
+    (first, second), lead = solve(pair, shapes, spread)
+    gap, edge = _touched(points, first, second, extended)
     gap.setflags(write=False)
     edge.setflags(write=False)
     return Touch(gap.reshape(*lead, *gap.shape[1:]), edge.reshape(*lead, *gap.shape[1:]))
@@ -286,14 +286,15 @@ def _touched(points: MeshPoints, first: Floats, second: Floats, extended: bool) 
     gap, edge = np.empty(whole), np.empty(whole, np.int8)
     for size in np.unique(span):
         cases = np.flatnonzero(span == size)
-        nodes, edges, part, *more = _nodes(
+        nodes, edges, part, gained, lost = _nodes(
             contacts.pair, shared.s.shape, shared.s.tobytes(), extended, float(size),
             first.shape[1] - 1,
         )  # fmt: skip
-        here = np.empty((cases.size, *whole[1:])), np.empty((cases.size, *whole[1:]), np.int8)
+        here = Touch(gap[cases], edge[cases])
         touch_teeth(
-            nodes, edges, part, first[cases], second[cases], order, begin, *teeth, *more, *here
-        )
+            nodes, edges, part, first[cases], second[cases], order, begin, *teeth, gained, lost,
+            here.gap, here.edge,
+        )  # fmt: skip
         gap[cases], edge[cases] = here
     return Touch(gap, edge)
 

@@ -417,7 +417,7 @@ def touch_teeth(
     for c in range(gap.shape[0]):
         one, two = first[c], second[c]
         for q, r in np.ndindex(part.shape):
-            these, share, known = nodes[q, r], part[q, r], several[q, r]
+            these, share, known = nodes[q, r], float(part[q, r]), int(several[q, r])
             _at_nodes(one, these, known, share, 0, own)
             _at_nodes(two, these, known, share, 1, mate)
             size = begin[q + 1] - begin[q]

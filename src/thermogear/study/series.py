@@ -18,8 +18,6 @@ from thermogear.mesh.series import SeriesMesh
 
 AT_BOUNDS = 16
 """Parts of a series whose motions are followed at the bounds of the damping."""
-HARMONICS = 24
-"""Of the mesh frequency, of stiffness and error, as in a case."""
 
 
 def series_parts(case: GearCase, count: int) -> tuple[tuple[Deviation, ...], ...]:
@@ -67,29 +65,32 @@ def series_motion(
     """Motions of every part of ``mesh`` at each ``speed`` [rad/s] of the pinion.
 
     ``point``: excitation of one operating point, of any part at any speed: inertias, base radii
-    and mean force are taken from it; stiffness, error and half backlash are the
-    parts' own in ``mesh``.
+    and mean force are taken from it, and how many harmonics of the mesh frequency are kept;
+    stiffness, error and half backlash are the parts' own in ``mesh``. nan for parts that are jammed
+    somewhere or whose contact does not settle, and without load.
     """
     mass, load = float(point.equivalent_mass[0]), float(point.mean_force[0])
     count = len(mesh.stiffness)
+    moves = np.isfinite(mesh.stiffness).all(axis=1) & (mesh.half_backlash.min(axis=1) > 0.0)
     shape = (damping_ratio.size, count, speed.size)
     factor, lost, least = np.full((3, *shape), np.nan)
     repeats = np.zeros(shape, bool)
     mean = mesh.stiffness.mean(axis=1)
     natural = np.sqrt(mean / mass)
+    harmonics = (point.stiffness.shape[1] - 1) // point.mesh_periods
     tables = PartTables.of(
         mesh.stiffness / mean[:, None], mesh.spring_error, mesh_periods=mesh.mesh_periods,
-        harmonics=HARMONICS, ahead=mesh.ahead, periodic=mesh.whole,
+        harmonics=harmonics, ahead=mesh.ahead, periodic=mesh.whole,
     )  # fmt: skip
     rate = 2.0 * np.pi * natural[:, None] / (mesh.pair.pinion.teeth * speed)
     backlash, deep = mesh.half_backlash.mean(axis=1), load / mean
-    first, few = np.arange(count), np.arange(min(count, AT_BOUNDS))
+    first, few = np.flatnonzero(moves), np.flatnonzero(moves[:AT_BOUNDS])
     bounds = np.arange(1, damping_ratio.size)
     for number, part in (
-        (np.zeros(count, int), first),
+        (np.zeros(first.size, int), first),
         (np.repeat(bounds, few.size), np.tile(few, bounds.size)),
     ):
-        if not part.size:
+        if not part.size or load <= 0.0:
             continue
         motions = follow_parts(
             tables.take(part), rate=rate[part], damping_ratio=damping_ratio[number],

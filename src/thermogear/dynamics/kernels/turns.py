@@ -116,13 +116,19 @@ def advance_parts(
                 continue
             for j in range(count):
                 b, half = backlash[j], 0.5 * double[j]
+                y = old[j] - tables[mid - 1, 1, j]
+                before = tables[mid - 1, 0, j] * (y - b if y > b else y + b if y < -b else 0.0)
                 y = 0.5 * (old[j] + x[j]) - tables[mid, 1, j]
                 y += 0.125 * h * (fast[j] - half * old[j] - w[j] + half * x[j])
                 force = tables[mid, 0, j] * (y - b if y > b else y + b if y < -b else 0.0)
-                y2 = x[j] - tables[end, 1, j]
-                force2 = tables[end, 0, j] * (y2 - b if y2 > b else y2 + b if y2 < -b else 0.0)
-                lost[j] += (1.0 if y <= b else 0.0) + (1.0 if y2 <= b else 0.0)
-                high = force if force > force2 else force2
-                low = force if force < force2 else force2
-                most[j] = high if high > most[j] else most[j]
+                lost[j] += 1.0 if y <= b else 0.0
+                y = x[j] - tables[end, 1, j]
+                after = tables[end, 0, j] * (y - b if y > b else y + b if y < -b else 0.0)
+                lost[j] += 1.0 if y <= b else 0.0
+                low = force if force < after else after
                 least[j] = low if low < least[j] else least[j]
+                # the top of the parabola through all three, where it lies between them
+                rise, bend = after - before, 2.0 * force - before - after
+                inside = bend > 0.0 and abs(rise) <= 2.0 * bend
+                top = force + 0.125 * rise * rise / bend if inside else after
+                most[j] = top if top > most[j] else most[j]
