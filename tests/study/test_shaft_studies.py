@@ -234,7 +234,9 @@ def test_orders_name_mesh_shafts_and_elements() -> None:
 
 
 def test_answers_ask_about_the_shafts() -> None:
-    asked = {one.name: one for one in answers(gear_case(load_case(CASE, ["flanks.seed=1"]))).answers}
+    asked = {
+        one.name: one for one in answers(gear_case(load_case(CASE, ["flanks.seed=1"]))).answers
+    }
     assert {"critical_speed", "bearing_safety", "bearing_clearance", "tilt"} <= set(asked)
     tilt = asked["tilt"]
     assert tilt.value is not None
