@@ -377,9 +377,6 @@ def run_ups(count: int, found: Found) -> None:
                 ]
             )
             size = "coarse" if step == COARSE else "fine"
-            found.counts[f"steps that alone leave a branch early, {size}"] += int(
-                data["left_early"].values.sum()
-            )
             found.counts[f"chaotic or undecided motions, {size}"] += int(
                 (data["label"].values != 1).sum()
             )

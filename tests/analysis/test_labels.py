@@ -231,6 +231,10 @@ def test_chaos_says_how_long_and_from_how_many_starts():
     assert numbers(found.reason)[-2:] == [3.0, found.followed]
     assert numbers(label_words("chaotic", followed=500, starts=1)) == [500.0, 1.0]
     assert label_words("period-2", followed=500, starts=4) == "period-2"
+    # what went by is counted in mesh periods also where an orbit closes after turns
+    of_turn = label_words("chaotic", followed=500, starts=1, mesh_periods=40)
+    assert numbers(of_turn) == [500.0, 1.0]
+    assert of_turn != label_words("chaotic", followed=500, starts=1)
     assert found.name == "chaotic"
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from said import numbers
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import Periodic
 from thermogear.dynamics import exact
@@ -232,6 +233,46 @@ def test_a_frequency_too_low_for_the_maps_falls_back_to_fixed_steps():
     )
     with pytest.raises(InputError, match="more than 49152 sub-steps"):
         exact.substeps(model.lanes())
-    data = simulate(model, periods=1, samples_per_period=0, steps_per_period=64)
+    data = simulate(model, periods=1, discard=0, samples_per_period=0, steps_per_period=64)
     assert data.attrs["method"] == "rk4"
     assert "sub-steps" in data.attrs["method_reason"]
+
+
+def of_turn(mesh_periods: int, frequency: float = 0.7) -> DeadZoneModel:
+    return DeadZoneModel(
+        damping_ratio=0.05,
+        frequency=frequency / mesh_periods,
+        stiffness=Periodic(1.0, (0.02, *[0.0] * (mesh_periods - 2), 0.2)),
+        force=Periodic(0.1, (0.05j, *[0.0] * (mesh_periods - 2), 0.3)),
+        half_backlash=1.0,
+        mesh_periods=mesh_periods,
+    )
+
+
+def test_a_lane_of_a_turn_moves_alone_as_beside_another():
+    """Alone it has no table of eight lanes: the numbers are those behind its polynomials."""
+    alone = of_turn(40).lanes()
+    both = alone.take([0, 0])
+    ends = []
+    for lanes in (alone, both):
+        ((_, borders, marks),) = exact.layouts(lanes)
+        maps = exact.prepare_maps(lanes, borders, marks)
+        state = exact.State.start(
+            x=np.ones(len(lanes)), y=np.zeros(len(lanes)), backlash=maps.backlash
+        )
+        sections, _, _ = exact.advance(maps, state, 3, columns=2)
+        assert maps.steps.size == (0 if lanes is alone else maps.half.shape[0] * 88)
+        assert state.counts[0, 0] > 0
+        ends.append((sections[:, :, 0], state.tangent[:, 0], state.spent[:, 0]))
+    for one, other in zip(*ends, strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
+def test_a_turn_too_long_for_the_maps_names_the_longest_and_the_ways_out():
+    lanes = of_turn(50_000).lanes()
+    with pytest.raises(InputError) as refused:
+        exact.substeps(lanes)
+    longest = round(numbers(str(refused.value))[1])
+    assert 2000 < longest < 50_000
+    assert "--mean-tooth" in str(refused.value)
+    assert exact.substeps(of_turn(longest).lanes()) <= exact.MOST_OF_TURN

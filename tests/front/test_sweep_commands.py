@@ -216,3 +216,17 @@ def test_numbers_beside_a_gear_case_are_refused(cases, tmp_path):
         assert str(caught.value) == (
             f"--against: got '{name}'; allowed state=VALUE of a gear case; {fix}"
         )
+
+
+def test_a_run_up_over_the_turn_writes_its_lines_by_name(cases, tmp_path):
+    path, lines = tmp_path / "points.csv", tmp_path / "points_lines.csv"
+    call("runup", cases / "rig.toml", "--turn", "--rpm", "300:400:2", "--csv", path,
+         "--set", "gears.pinion.eccentricity={amount='10 um'}", "-o", tmp_path / "up")  # fmt: skip
+    rows = pd.read_csv(lines)
+    # states, directions, speeds and orders 1/25 to 10
+    assert len(rows) == 2 * 2 * 2 * 250
+    largest = rows.loc[rows["dte_line [µm]"].idxmax()]
+    assert largest["line"] == "pinion"
+    assert largest["order [–]"] == 1 / 25
+    assert largest["dte_line [µm]"] == pytest.approx(10.0, rel=1e-3)
+    assert len(path.read_text().splitlines()) == 1 + 2 * 2 * 2

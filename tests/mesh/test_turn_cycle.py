@@ -13,6 +13,8 @@ from thermogear.base.excitation import Periodic
 from thermogear.base.materials import lubricant
 from thermogear.gears.deviations import Deviation, PitchError, Relief
 from thermogear.gears.turn import Eccentricity
+from thermogear.mesh import cycle as of_cycle
+from thermogear.mesh import elastic
 from thermogear.mesh.balance import heat_balance
 from thermogear.mesh.clearance import Clearance
 from thermogear.mesh.cycle import Cycle
@@ -264,3 +266,37 @@ def test_the_excitation_of_a_turn_keeps_the_harmonics_of_every_mesh_period() -> 
     plain = mesh_cycle(SMALL, replaced, MODEL, deviations=alike, want=EXCITES)
     assert "mesh_periods" not in plain.attrs
     assert excitations(plain, SMALL, damping_ratio=0.05).mesh_periods == 1
+
+
+@pytest.mark.parametrize("teeth", ["alike", "differ"])
+def test_a_cycle_solves_its_shares_once(monkeypatch: pytest.MonkeyPatch, teeth: str) -> None:
+    """Load, springs and the spread over the turn stand on one solution at the path's places."""
+    flanks = tuple(errors(SMALL)) if teeth == "differ" else ()
+    cycle = Cycle(HotPair(SMALL, at(), MODEL), flanks, np.linspace(*SMALL.path[::4], 7), 8)
+    seen: list[int] = []
+    solve = elastic.tooth_pair_shares
+    for module in (elastic, of_cycle):
+        monkeypatch.setattr(module, "tooth_pair_shares", lambda *a: (seen.append(1), solve(*a))[1])
+    values = cycle.quantities()
+    assert len(seen) == 1
+    np.testing.assert_array_equal(
+        values["pair_stiffness"], elastic_pair(cycle.hot, flanks).pair_stiffness(cycle.s)
+    )
+
+
+def test_stretches_of_a_turn_change_no_number(monkeypatch: pytest.MonkeyPatch) -> None:
+    def figures_of() -> dict[str, np.ndarray]:
+        cycle = mesh_cycle(SMALL, at(), MODEL, deviations=errors(SMALL), path_positions=7)
+        return {str(name): values.values for name, values in cycle.data_vars.items()}
+
+    whole = figures_of()
+    monkeypatch.setattr(elastic, "BLOCK", 900)
+    sizes: list[int] = []
+    solve = elastic.solve_mesh
+    monkeypatch.setattr(
+        elastic, "solve_mesh", lambda p, f, x, **k: (sizes.append(len(x)), solve(p, f, x, **k))[1]
+    )
+    for name, values in figures_of().items():
+        np.testing.assert_allclose(values, whole[name], rtol=1e-12, atol=1e-18, err_msg=name)
+    # 900 positions and the first mesh period, but eight periods and it at least
+    assert max(sizes) <= 900 + TURN_POSITIONS

@@ -1,11 +1,16 @@
 """Answers of gears whose teeth differ: over the turn, of one assembly, beside the others."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from thermogear.analysis.settle import UNDECIDED
 from thermogear.case.case import GearCase, gear_case, load_case
+from thermogear.case.family import family
 from thermogear.results.answer import Answer
 from thermogear.study.answers.survey import answers
+from thermogear.study.speeds import look
 
 pytestmark = pytest.mark.filterwarnings("ignore::thermogear.base.errors.ValidityWarning")
 CASE = """[gears]
@@ -86,12 +91,44 @@ def test_teeth_that_differ_lose_contact_where_their_mean_tooth_does_not(
     assert first < 0.8 * mean["contact_loss"].figures["ranges"][0][0]
 
 
-def test_light_loads_part_also_where_no_motion_settles() -> None:
-    light = gear_case(load_case(_case().text, ["operating.torque=4 N m"]))
-    found = {answer.name: answer for answer in answers(light).answers}
-    speeds = answers(light)["speeds"]
-    unsettled = np.isnan(speeds["contact_loss_share"].values)
-    assert unsettled.any()
-    low, high = np.array(found["contact_loss"].figures["ranges"][0])
-    rpm = speeds["pinion_speed"].values[unsettled] * 30.0 / np.pi
+def test_motions_that_never_meet_the_back_side_know_no_backlash(told: dict[str, Answer]) -> None:
+    # so answers may take the least of the turn all along
+    mesh = family(_case(), ["rpm"]).excitations(np.array([[300.0]]))
+    looks = [
+        look(
+            replace(mesh, half_backlash=part * mesh.half_backlash), teeth=20, own=np.array([300.0])
+        )
+        for part in (1.0, 0.8)
+    ]
+    assert looks[0].column("mesh_force_min").min() >= 0.0
+    assert looks[0].column("contact_loss_share").max() > 0.1
+    for name in ("dynamic_factor", "contact_loss_share", "dte_peak_to_peak"):
+        first, second = (np.asarray(found.column(name)) for found in looks)
+        np.testing.assert_allclose(second, first, rtol=1e-3, atol=1e-3 * first.max())
+    gap = told["back_contact"].figures["gap"]
+    assert gap < 2e6 * float(mesh.half_backlash[0])
+
+
+def test_motions_that_do_not_settle_count_however_teeth_are_numbered() -> None:
+    light = ["operating.torque=4 N m"]
+    both = [
+        answers(gear_case(load_case(_case(**first).text, light)))
+        for first in ({}, {"pinion": 3, "wheel": 23})
+    ]
+    one, other = ({answer.name: answer for answer in found.answers} for found in both)
+    speeds, renumbered = (found["speeds"] for found in both)
+    unsettled = speeds["label_code"].values == UNDECIDED
+    assert unsettled.sum() > 10
+    for name in ("dynamic_factor", "contact_loss_share", "mesh_force_min"):
+        values = speeds[name].values
+        assert np.isfinite(values).all()
+        np.testing.assert_allclose(renumbered[name].values, values, rtol=1e-9)
+    # of the later half of what was followed: as much as beside it, where motions settle
+    factor, speed = speeds["dynamic_factor"].values, speeds["pinion_speed"].values
+    assert factor[unsettled].max() > 0.5 * factor[~unsettled].max()
+    low, high = np.array(one["contact_loss"].figures["ranges"][0])
+    rpm = speed[unsettled] * 30.0 / np.pi
     assert ((rpm >= 0.99 * low) & (rpm <= 1.01 * high)).any()
+    assert one["contact_loss"].figures["followed"] == 4080
+    for name, answer in one.items():
+        assert other[name].sentence == answer.sentence

@@ -184,3 +184,25 @@ def test_parts_that_cannot_move_have_no_figures(even: tuple[tg.GearCase, SeriesM
     moves = np.isfinite(found.dynamic_factor).all(axis=(0, 2))
     assert moves.tolist() == [True, False, False, True, True]
     assert not found.repeats[:, ~moves].any()
+
+
+def test_the_series_of_a_pair_has_the_quantiles_of_another_program() -> None:
+    """64 parts of 20:40, module 3 mm, class 6, 80 N m, drawn with another seed elsewhere.
+
+    Medians and 5 and 95 % quantiles: two such series differ by a few percent.
+    """
+    case = case_of(20, 40)
+    mesh = mesh_of(case, 64, 40)
+    error = 1e6 * mesh.transmission_error
+    ratios = np.geomspace(0.1, 1.4, 45)
+    factor = moved(mesh, case, ratios, 0.07).dynamic_factor[0]
+    synchronous = np.ptp(error.reshape(64, 40, -1).mean(axis=1), axis=1)
+    known = {
+        "error of the turn": (1e6 * mesh.peak_to_peak, (24.0, 32.0, 41.0), 0.12),
+        "mesh-synchronous error": (synchronous, (2.3, 4.2, 6.7), 0.25),
+        "factor at .5": (factor[:, np.argmin(np.abs(ratios - 0.5))], (2.3, 3.2, 3.9), 0.12),
+        "greatest factor": (factor.max(axis=1), (2.9, 3.9, 4.8), 0.12),
+    }
+    for name, (values, expected, within) in known.items():
+        got = np.quantile(values, [0.05, 0.5, 0.95])
+        assert got == pytest.approx(expected, rel=within), name

@@ -128,6 +128,15 @@ def begun(starts: Floats, lanes: Models, dimension: int) -> Floats:
     return found
 
 
+def started(status: NDArray[np.int8], start: Floats, keep: int = 0) -> Settled:
+    """Nothing known yet of motions from ``start`` (lane, d), but of those that stay still, why."""
+    result = Settled.empty(len(start), keep=keep, dimension=start.shape[1])
+    result.state[:] = start
+    for word in STILL:
+        result.label[status == STATUS.index(word)] = LABELS.index(word)
+    return result
+
+
 def settle_with_status(
     lanes: Lanes | Sequence[object],
     status: NDArray[np.int8],
@@ -137,10 +146,7 @@ def settle_with_status(
     alive: Alive = keep_going,
 ) -> Settled:
     """:func:`settle` for the lanes that move; the others carry their status as a label."""
-    result = Settled.empty(len(lanes), keep=keep, dimension=start.shape[1])
-    result.state[:] = start
-    for word in STILL:
-        result.label[status == STATUS.index(word)] = LABELS.index(word)
+    result = started(status, start, keep)
     moving = np.flatnonzero(moves(status))
     if moving.size:
         result.put(moving, settle(taken(lanes, moving), start[moving], rule, keep, alive))

@@ -80,6 +80,9 @@ def periodic(
         if shorter is None:
             return None, False
         orbit = shorter
+    if lane.mesh_periods > 1:
+        # without its maps, which are large: they are made again where they are asked for
+        orbit = replace(orbit, section=return_map(lane))
     points = orbit.points / unit
     largest = float(np.max(np.abs(orbit.multipliers)))
     shown = f"largest Floquet multiplier {_shown(orbit)} over {period} "

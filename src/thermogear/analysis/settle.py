@@ -149,10 +149,6 @@ class Settled:
             sections=np.full((lanes, keep, dimension), nan),
         )
 
-    def part(self, places: slice) -> Settled:
-        """Some of the lanes."""
-        return Settled(**{one.name: getattr(self, one.name)[places] for one in fields(self)})
-
     def put(self, index: Whole | Flags, other: Settled) -> None:
         """Write the lanes of ``other`` to the places ``index``."""
         for field in fields(self):

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base import fourier
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Floats, rows_at
 from thermogear.base.errors import InputError
 from thermogear.base.period import Period
 from thermogear.base.pieces import Pieces
@@ -241,7 +241,9 @@ class Excitations:
         if rubbed is not None:
             rubbed = tuple(rubbed[i] for i in np.arange(len(self))[chosen])
         arrays = [field.name for field in fields(self) if field.name not in _OF_ALL]
-        return replace(self, **{n: getattr(self, n)[chosen] for n in arrays}, friction=rubbed)
+        place = np.arange(len(self))[chosen]
+        taken = {name: rows_at(getattr(self, name), place) for name in arrays}
+        return replace(self, **taken, friction=rubbed)
 
     @classmethod
     def of(cls, rows: Sequence[Excitation]) -> Excitations:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from thermogear.base.errors import InputError
 
@@ -76,6 +78,17 @@ class Period:
     def frequency(self, mesh_frequency: float) -> float:
         """How often the period repeats [the unit of ``mesh_frequency``]."""
         return mesh_frequency / self.mesh_periods
+
+
+def line_names(about: Mapping[str, Any], orders: Iterable[float]) -> list[str]:
+    """Names of lines at ``orders`` of the mesh, of a turn that ``mesh_periods`` and ``teeth`` tell.
+
+    >>> line_names({"mesh_periods": 60, "teeth": [20, 30]}, [0.05, 1.0, 2.1])
+    ['pinion', 'mesh', '2 mesh + 2 pinion']
+    """
+    pinion, wheel = (int(z) for z in about["teeth"])
+    period = Period(int(about["mesh_periods"]), (pinion, wheel))
+    return [period.line(round(float(order) * period.mesh_periods)) for order in orders]
 
 
 def _times(count: int, name: str) -> str:

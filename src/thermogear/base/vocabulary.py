@@ -401,6 +401,17 @@ FASTER_RULE = (
     "positive; chaos may end later, and a start on a border may end elsewhere"
 )
 """What proves the labels of maps, diagrams, basins and run-ups."""
+FIXED_STEPS = (
+    "over the turn motions are followed in fixed steps until a turn, or up to eight of them, "
+    "repeats itself: no orbit is proven; what does not is undecided, its figures those of the "
+    "later half of what was followed"
+)
+"""What proves the labels of run-ups and sweeps over a turn."""
+
+
+def of_turn(mesh_periods: float) -> str:
+    """Words after a count of periods that are turns of ``mesh_periods``; else nothing."""
+    return " of the turn" if mesh_periods > 1 else ""
 
 
 def label_words(name: str, *, followed: int, starts: int, mesh_periods: int = 1) -> str:
@@ -408,13 +419,14 @@ def label_words(name: str, *, followed: int, starts: int, mesh_periods: int = 1)
 
     ``followed`` periods were run from each of ``starts`` starts and none closed; 0: not known.
     Where ``mesh_periods`` are a turn, after which a pair of gears repeats itself, an orbit closes
-    after turns: "period 6 of the turn".
+    after turns: "period 6 of the turn"; what went by is counted in mesh periods.
     """
     if name != "chaotic" or followed <= 0:
-        of_turn = mesh_periods > 1 and name.startswith("period-")
-        return f"{name.replace('-', ' ')} of the turn" if of_turn else name
+        turns = of_turn(mesh_periods) if name.startswith("period-") else ""
+        return f"{name.replace('-', ' ')}{turns}" if turns else name
     length = f"{followed:,}".replace(",", " ")
-    return f"chaotic for {length} periods, {starts} start{'s' * (starts > 1)}"
+    counted = "mesh periods" if mesh_periods > 1 else "periods"
+    return f"chaotic for {length} {counted}, {starts} start{'s' * (starts > 1)}"
 
 
 def told_labels(data: Dataset) -> NDArray[np.str_]:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base import fourier
-from thermogear.base.arrays import Dataset, Floats, Whole
+from thermogear.base.arrays import Dataset, Floats, Whole, by_row, rows_at
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import Excitations, Periodic
 from thermogear.base.vocabulary import moves
@@ -100,7 +100,7 @@ class Points:
             self.rate[index],
             self.stiffness[index],
             self.force[index],
-            self.error[index],
+            rows_at(self.error, index),
             self.mesh_frequency[index],
             self.half_backlash[index],
         )
@@ -151,16 +151,17 @@ def points_of(found: Excitations) -> Points:
     frequency = found.mesh_frequency / found.mesh_periods / rate
     # d/dtau = (w/2 pi) d/dphi
     ranks = np.arange(found.error.shape[1])
-    bent: NDArray[np.complex128] = found.error * (2j * np.pi * ranks) ** 2
+    bent = by_row(lambda error: error * (2j * np.pi * ranks) ** 2, found.error)
     scale = (frequency / (2.0 * np.pi)) ** 2 / length
-    force = (bent * scale[:, None] * -1.0).astype(complex)
+    force: NDArray[np.complex128] = bent * scale[:, None]
+    force *= -1.0
     force[:, 0] = found.mean_force / (mean * length)
     none_at_all = (None,) * count
     lanes = Lanes(
         period=2.0 * np.pi / frequency,
         damping=2.0 * found.damping_ratio,
         half_backlash=found.half_backlash / length,
-        stiffness=found.stiffness * (1.0 / mean)[:, None],
+        stiffness=by_row(lambda k: k * (1.0 / k[:, :1].real), found.stiffness),
         force=force,
         stiffness_pieces=none_at_all,
         force_pieces=none_at_all,

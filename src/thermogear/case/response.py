@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import gcd
 from typing import Any
 
 import numpy as np
@@ -11,7 +10,6 @@ from numpy.typing import NDArray
 
 from thermogear.analysis.settle import Rule
 from thermogear.base.arrays import Floats
-from thermogear.base.period import turns
 from thermogear.base.plan import Alive, Arrays, Variable, keep_going
 from thermogear.base.vocabulary import moves
 from thermogear.case.points import Points
@@ -45,25 +43,26 @@ class Recording:
     order_step: float = 0.5
     highest_order: float = 10.0
 
-    def turned(self, mesh_periods: int, *, lines: bool) -> Recording:
-        """The same record, in periods that are turns of ``mesh_periods``, rounded up.
+    def in_orders_of(self, mesh_periods: int) -> Recording:
+        """The same record with every line of a turn of ``mesh_periods``, as high as it has room.
 
-        With ``lines`` in so many of them that every order kept is a line.
+        That is with steps of 1/L, the orders of both shafts, their side lines at the mesh and the
+        hunting tooth among them, up to order :data:`LEAST_HIGHEST` of the mesh at least.
         """
         if mesh_periods == 1:
             return self
-        count = turns(self.periods, of=mesh_periods)
-        steps = round(1.0 / self.order_step) if lines else 1
-        whole = steps // gcd(steps, mesh_periods)
+        highest = max(LEAST_HIGHEST, MOST_LINES // mesh_periods)
         return replace(
-            self, periods=-(-count // whole) * whole, samples=self.samples * mesh_periods
+            self,
+            order_step=1.0 / mesh_periods,
+            highest_order=min(self.highest_order, float(highest)),
         )
 
     @property
     def orders(self) -> Floats:
         """Orders of the mesh frequency, from the first step on."""
         count = round(self.highest_order / self.order_step)
-        return np.asarray(self.order_step * np.arange(1, count + 1, dtype=float))
+        return np.arange(1, count + 1) / round(1.0 / self.order_step)
 
     @property
     def coordinate(self) -> tuple[tuple[str, ...], Floats, dict[str, Any]]:
@@ -75,6 +74,8 @@ RECORD = Recording()
 RULE = Rule(first=128, cap=8192, settled=1e-6, chaos_periods=1000)
 """How long the motion of gears is followed in run-ups and sweeps."""
 ROUNDING = 1e-12
+MOST_LINES, LEAST_HIGHEST = 4000, 3
+"""Lines of a turn that are kept, and the order of the mesh up to which they are at least."""
 
 
 def response_variables(dims: tuple[str, ...], *, lines: bool) -> dict[str, Variable]:
@@ -111,15 +112,13 @@ def respond(
 
     DTE = x + e with x the relative displacement of the flanks from the middle of the gap; the
     mesh force is the elastic one, k f(x), over its mean for the dynamic factor. ``record`` counts
-    mesh periods, whole turns where the lanes repeat after one.
+    periods of the tables and samples of one.
     """
-    record = record.turned(points.mesh_periods, lines=lines)
     count = len(points.status)
     found: dict[str, NDArray[Any]] = {name: np.full(count, np.nan) for name in VALUES}
     if lines:
         found["dte_line"] = np.full((count, record.orders.size), np.nan)
     moving = np.flatnonzero(moves(points.status) & np.isfinite(state).all(axis=1))
-    phase = np.arange(record.samples) / record.samples
     for part, borders, marks in exact.layouts(points.flat.take(moving), samples=record.samples):
         alive()
         index = moving[part]
@@ -127,9 +126,8 @@ def respond(
         maps = exact.prepare_maps(lanes, borders, marks)
         run = exact.State.start(x=state[index, 0], y=state[index, 1], backlash=lanes.half_backlash)
         _, _, samples = exact.advance(maps, run, record.periods, sampled=True)
-        each = _figures(
-            points.take(index), np.ascontiguousarray(samples[:, 0].T), phase, record, lines
-        )
+        x = np.ascontiguousarray(samples[:, 0].T)
+        each = figures_of_record(points.take(index), x, record, lines=lines)
         for name, values in each.items():
             found[name][index] = values
         drive = run.spent[2] / (record.periods * lanes.period)
@@ -141,10 +139,14 @@ def respond(
     return found
 
 
-def _figures(
-    points: Points, x: Floats, phase: Floats, record: Recording, lines: bool
+def figures_of_record(
+    points: Points, x: Floats, record: Recording, *, lines: bool
 ) -> dict[str, Floats]:
-    """The figures of motions ``x`` (point, sample)."""
+    """The figures of motions ``x`` (point, sample) from phase 0 of the tables on, as ``record``.
+
+    With ``lines`` those of its orders.
+    """
+    phase = np.arange(record.samples) / record.samples
     length, b = points.length[:, None], points.flat.half_backlash[:, None]
     periods = 1, record.periods
     dte = length * x + np.tile(points.kinematic(phase), periods)

@@ -27,9 +27,9 @@ ORDER = 12
 BLOCK = 128
 _COUNTS = tuple(base * 2**k for k in range(11) for base in (32, 48))
 _OF_TURN = np.array([base * 2**k for k in range(14) for base in (32, 40, 48, 56)])
-MOST_OF_TURN = 400_000
-"""Sub-steps of a turn at most: a lane's maps then take some 600 MB."""
-ROOM = 2**19
+MOST_OF_TURN = 1_300_000
+"""Sub-steps of a turn at most: a lane's maps then take some 1.1 GB."""
+ROOM = 2**18
 """Sub-steps of all lanes of a block at most: what their maps take bounds the memory."""
 
 
@@ -75,7 +75,6 @@ def substeps(lanes: LaneTables, order: int = ORDER) -> Whole:
     counts = np.array(_COUNTS)
     if lanes.by_fft:
         counts = lanes.mesh_periods * _OF_TURN
-        counts = counts[counts <= max(MOST_OF_TURN, counts[0])]
     half = lanes.period[:, None] / (2.0 * counts)
     allowed = 2e-17 * factorial(order + 1)
     good = half * np.maximum(np.sqrt(stiffest), lanes.damping)[:, None] <= 0.3
@@ -90,6 +89,13 @@ def substeps(lanes: LaneTables, order: int = ORDER) -> Whole:
             tail = np.sum(np.abs(coefficients)[:, :, None] * powers, axis=1)
         good &= half**2 * tail <= allowed * size[:, None]
     needed = np.where(good.any(axis=1), counts[np.argmax(good, axis=1)], 0)
+    turn, longest = lanes.mesh_periods, int(needed.max())
+    if turn > 1 and longest > MOST_OF_TURN:
+        raise InputError(
+            "mesh_periods", turn, allowed=f"up to {MOST_OF_TURN * turn // longest} at this speed",
+            why=f"the exact motion over a turn takes {longest // turn} sub-steps of each of them",
+            fix="take the mean tooth (--mean-tooth), or let the teeth of one gear alone differ",
+        )  # fmt: skip
     if np.all(needed):
         return needed
     lane = int(np.argmin(needed))
@@ -268,7 +274,9 @@ def prepare_maps(lanes: LaneTables, borders: Floats, marks: Bytes, order: int = 
     size, rate = _bounds(lanes, "force")
     reach = (rate / lanes.period + lanes.damping * size) * half.max(axis=0) ** 3
     width, room = order + 1, -(-(5 * (order + 1) + BEHIND) // 8) * 8
-    (steps,) = _aligned((centres.size, -(-len(lanes) // 8), 11, 8))
+    # a group of eight lanes for one is as large as its curves, which have the same numbers
+    slim = lanes.by_fft and len(lanes) == 1
+    (steps,) = _aligned((0 if slim else centres.size, -(-len(lanes) // 8), 11, 8))
     (curves,) = _aligned((centres.size, len(lanes), room))
     work, tables, ends, table, turned = _aligned(
         (40 * width,), (16 * width,), (80,), (8 * room,), (64,)
@@ -462,7 +470,7 @@ def advance(
     flat: list[NDArray[Any]] = [array.reshape(-1) for array in owned]
     x, y, region, tangent, counts, spent = flat
     advance_exact(
-        maps.steps.ravel(),
+        maps.steps.ravel() if maps.steps.size else np.zeros(11 * 8),
         maps.curves.ravel(),
         width,
         maps.reach,

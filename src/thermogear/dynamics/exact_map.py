@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -158,12 +158,16 @@ class ExactMap:
     def __init__(self, lanes: LaneTables, samples: int = 0) -> None:
         if len(lanes) != 1:
             raise InputError("model", f"{len(lanes)} lanes", allowed="one lane")
-        self.lanes = lanes
-        ((_, borders, marks),) = exact.layouts(lanes, samples=samples)
-        self.maps = exact.prepare_maps(lanes, borders, marks)
+        self.lanes, self._samples = lanes, samples
         self.period = float(lanes.period[0])
         self.backlash = float(lanes.half_backlash[0])
         self._unit: Floats = lanes.unit[0]
+
+    @cached_property
+    def maps(self) -> exact.ExactMaps:
+        """Made when first asked for: those of a turn are large."""
+        ((_, borders, marks),) = exact.layouts(self.lanes, samples=self._samples)
+        return exact.prepare_maps(self.lanes, borders, marks)
 
     @property
     def dimension(self) -> int:

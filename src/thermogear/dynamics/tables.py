@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from thermogear.base import fourier
-from thermogear.base.arrays import Complexes, Floats
+from thermogear.base.arrays import Complexes, Floats, rows_at
 from thermogear.base.excitation import Periodic
 from thermogear.base.pieces import Pieces as Pieces
 
@@ -61,13 +61,13 @@ class LaneTables:
 
     def take(self, index: ArrayLike) -> Self:
         """The lanes of ``index``, in that order."""
-        chosen = np.atleast_1d(np.asarray(index))
+        chosen = np.arange(len(self))[np.atleast_1d(np.asarray(index))]
         return type(self)(
             period=self.period[chosen],
             damping=self.damping[chosen],
             half_backlash=self.half_backlash[chosen],
-            stiffness=self.stiffness[chosen],
-            force=self.force[chosen],
+            stiffness=rows_at(self.stiffness, chosen),
+            force=rows_at(self.force, chosen),
             stiffness_pieces=tuple(self.stiffness_pieces[i] for i in chosen),
             force_pieces=tuple(self.force_pieces[i] for i in chosen),
             mesh_periods=self.mesh_periods,

@@ -43,12 +43,14 @@ LEAST_TURNS = 4
 class TurnTables:
     """What all speeds of a pair share: Fourier coefficients over the turn, the mean first.
 
-    ``stiffness`` k over its mean, ``error`` e in half backlashes; ``mesh_periods`` in a turn.
+    ``stiffness`` k over its mean, ``error`` e in half backlashes; ``mesh_periods`` in a turn, of
+    which the tables begin at the one of number ``first``.
     """
 
     stiffness: Complexes
     error: Complexes
     mesh_periods: int
+    first: int = 0
     _sampled: dict[int, tuple[Floats, Floats, Floats]] = field(default_factory=dict, init=False)
 
     def from_greatest(self) -> TurnTables:
@@ -57,12 +59,14 @@ class TurnTables:
         So a run begins at the same teeth however they are numbered.
         """
         error = self.sampled(STEPS)[2][::STEPS]
-        shift = int(np.argmax(error)) / self.mesh_periods
+        first = int(np.argmax(error))
         stiffness, error = (
-            row * np.exp(2j * np.pi * shift * np.arange(row.size))
+            row * np.exp(2j * np.pi * first / self.mesh_periods * np.arange(row.size))
             for row in (self.stiffness, self.error)
         )
-        return TurnTables(stiffness=stiffness, error=error, mesh_periods=self.mesh_periods)
+        return TurnTables(
+            stiffness=stiffness, error=error, mesh_periods=self.mesh_periods, first=first
+        )
 
     def sampled(self, steps: int) -> tuple[Floats, Floats, Floats]:
         """k and e'' (phase in turns) at half steps, e at the ``steps`` of every mesh period."""
@@ -95,14 +99,15 @@ def _series(coefficients: Complexes, count: int) -> Floats:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class TurnMotions:
-    """One entry per run: ``period`` in turns (0: none was seen), ``state`` (run, 2) at phase 0, and
-    over its cycle, or the later half of what was followed where none was seen: greatest and least
-    force k f over the mean stiffness, greatest and least x + e, share of time out of drive-side
-    contact.
+    """One entry per run: ``period`` in turns (0: none was seen), ``state`` (run, 2) at phase 0,
+    ``followed`` mesh periods, and over its cycle, or the later half of what was followed where
+    none was seen: greatest and least force k f over the mean stiffness, greatest and least x + e,
+    share of time out of drive-side contact.
     """
 
     period: NDArray[np.int32]
     state: Floats
+    followed: NDArray[np.int32]
     force: Floats
     travel: Floats
     lost: Floats
@@ -120,73 +125,116 @@ class TurnLanes:
     backlash: Floats
     period: Floats
 
+    def take(self, index: NDArray[np.intp]) -> TurnLanes:
+        """Some of the lanes."""
+        return TurnLanes(**{name: values[index] for name, values in vars(self).items()})
 
-def follow_turns(tables: TurnTables, lanes: TurnLanes, start: Floats) -> TurnMotions:
+
+def follow_turns(
+    tables: TurnTables, lanes: TurnLanes, start: Floats, *, carried: bool = False
+) -> TurnMotions:
     """What each lane settles on from ``start`` (lane, 2), held ahead of the turn.
 
-    The run begins as long ahead of phase 0 as a vibration takes to fall to :data:`DIED_OUT`. It
-    ends where two turns in a row end within :data:`SAME`, or where the states at phase 0 are those
-    of up to :data:`LONGEST_CYCLE` turns before, a cycle long.
+    The run begins as long ahead of phase 0 as a vibration takes to fall to :data:`DIED_OUT`; where
+    it is ``carried`` on from another motion, at phase 0 with that motion's state there. It ends
+    where two turns in a row end within :data:`SAME`, or where the states at phase 0 are those of up
+    to :data:`LONGEST_CYCLE` turns before, a cycle long.
     """
     count, mesh = lanes.mean.size, tables.mesh_periods
     out = TurnMotions(
         period=np.zeros(count, np.int32),
+        followed=np.zeros(count, np.int32),
         state=np.array(start, dtype=float),
         force=np.full((count, 2), np.nan),
         travel=np.full((count, 2), np.nan),
         lost=np.full(count, np.nan),
     )
-    # steps of a mesh period: a power of two of the least, so that few tables are made
-    needed = lanes.period / (LONGEST_STEP * mesh * STEPS)
-    doublings = np.ceil(np.log2(np.maximum(needed, 1.0))).astype(int)
+    doublings = _doublings(lanes, mesh)
     for power in np.unique(doublings):
         index = np.flatnonzero(doublings == power)
-        _follow(tables, STEPS * 2 ** int(power), lanes, index, out)
+        _follow(tables, STEPS * 2 ** int(power), lanes.take(index), index, out, carried=carried)
     return out
 
 
+def _doublings(lanes: TurnLanes, mesh_periods: int) -> NDArray[np.int64]:
+    """Steps of a mesh period are :data:`STEPS` doubled so often, so that few tables are made."""
+    needed = lanes.period / (LONGEST_STEP * mesh_periods * STEPS)
+    return np.asarray(np.ceil(np.log2(np.maximum(needed, 1.0))).astype(int))
+
+
 def _follow(
-    tables: TurnTables, steps: int, lanes: TurnLanes, index: NDArray[np.intp], out: TurnMotions
-) -> None:
-    """Lanes ``index`` with so many steps a mesh period, into ``out``."""
-    stiffness, bend, error = tables.sampled(steps)
-    turn, mesh = error.size, tables.mesh_periods
-    decay = 2.0 * math.log(1.0 / DIED_OUT) / np.maximum(lanes.damping[index], 1e-9)
-    ahead = float((decay / lanes.period[index]).max()) * mesh
-    first = math.ceil(min(max(ahead, 1.0), MOST_MESH_PERIODS)) * steps
+    tables: TurnTables, steps: int, lanes: TurnLanes, index: NDArray[np.intp], out: TurnMotions,
+    *, carried: bool,
+) -> None:  # fmt: skip
+    """``lanes``, with so many steps a mesh period, into the entries ``index`` of ``out``."""
+    mesh = tables.mesh_periods
+    turn = steps * mesh
+    decay = 2.0 * math.log(1.0 / DIED_OUT) / np.maximum(lanes.damping, 1e-9)
+    ahead = float((decay / lanes.period).max()) * mesh
+    first = 0 if carried else math.ceil(min(max(ahead, 1.0), MOST_MESH_PERIODS)) * steps
     most = longest(mesh) // mesh
-    x, v = out.state[index].T.copy()
+    state = out.state[index].T.copy()
     ends, felt = np.empty((most + 1, 2, index.size)), np.empty((most, 5, index.size))
     active = np.arange(index.size)
 
     def run(begin: int, count: int) -> Floats:
-        here = index[active]
-        seen = np.tile([[-np.inf], [np.inf], [-np.inf], [np.inf], [0.0]], active.size)
-        states = x[active], v[active]
-        advance_turn(
-            stiffness, bend, error, lanes.mean[here], -1.0 / lanes.period[here] ** 2,
-            lanes.damping[here], lanes.backlash[here], lanes.period[here] / turn,
-            begin, count, *states, seen,
-        )  # fmt: skip
-        x[active], v[active] = states
+        moved = state[:, active]
+        seen = _advance(tables.sampled(steps), lanes.take(active), moved, begin, count)
+        state[:, active] = moved
         return seen
 
     run(-first % turn, first)
-    ends[0] = x, v
+    ends[0] = state
     for number in range(most):
         felt[number][:, active] = run(0, turn)
-        ends[number + 1][:, active] = x[active], v[active]
-        cycle = _cycle(ends[: number + 2][:, :, active] / lanes.backlash[index[active]])
+        ends[number + 1][:, active] = state[:, active]
+        cycle = _cycle(ends[: number + 2][:, :, active] / lanes.backlash[active])
         seen = cycle > 0 if number + 1 < most else np.ones(active.size, bool)
         for length in np.unique(cycle[seen]):
             rows = active[seen & (cycle == length)]
             span = length or most // 2
             _keep(out, index[rows], felt[number + 1 - span : number + 1][:, :, rows], turn)
             out.period[index[rows]] = length
-        out.state[index[active]] = ends[number + 1][:, active].T
+        out.state[index[active]] = state[:, active].T
+        out.followed[index[active]] = first // steps + (number + 1) * mesh
         active = active[cycle == 0]
         if not active.size:
             return
+
+
+def _advance(
+    sampled: tuple[Floats, Floats, Floats], lanes: TurnLanes, state: Floats, begin: int,
+    count: int, path: Floats | None = None,
+) -> Floats:  # fmt: skip
+    """What lanes of ``state`` (2, lane), moved in place, feel in ``count`` steps from ``begin``."""
+    seen = np.tile([[-np.inf], [np.inf], [-np.inf], [np.inf], [0.0]], lanes.mean.size)
+    advance_turn(
+        *sampled, lanes.mean, -1.0 / lanes.period**2, lanes.damping, lanes.backlash,
+        lanes.period / sampled[2].size, begin, count, state[0], state[1], seen,
+        np.empty((0, lanes.mean.size)) if path is None else path,
+    )  # fmt: skip
+    return seen
+
+
+def record_turns(
+    tables: TurnTables, lane: TurnLanes, state: Floats, *, turns: int, samples: int
+) -> tuple[Floats, Floats, Floats]:
+    """One motion over so many turns from mesh period 0 of the gears on, which it meets first.
+
+    ``state`` (2,) where the ``tables`` begin; ``samples`` of a mesh period divide :data:`STEPS`.
+    The state there, x (sample,), and figures (5,): greatest and least k f, greatest and least
+    x + e, share of time out of drive-side contact.
+    """
+    steps = STEPS * 2 ** int(_doublings(lane, tables.mesh_periods)[0])
+    moved, sampled = state[:, None].copy(), tables.sampled(steps)
+    begin = -tables.first % tables.mesh_periods * steps
+    _advance(sampled, lane, moved, 0, begin)
+    met = moved[:, 0].copy()
+    count = turns * sampled[2].size
+    path = np.empty((count // steps * samples, 1))
+    seen = _advance(sampled, lane, moved, begin, count, path)
+    seen[4] /= count
+    return met, path[:, 0], seen[:, 0]
 
 
 def _cycle(ends: Floats) -> NDArray[np.int32]:

@@ -101,13 +101,24 @@ csv = click.option(
 
 
 def put_csv(result: Result) -> None:
-    """Write the points of ``result`` where ``--csv`` wants them, whole or not at all."""
+    """Write the points of ``result`` where ``--csv`` wants them, whole or not at all.
+
+    Lines at the orders of a turn stand in a file beside it, ``points_lines.csv``.
+    """
     path = click.get_current_context().meta.get(CSV)
     if path is not None:
         from thermogear.base.files import put
         from thermogear.results.tables import csv_text
 
         put(path, csv_text(result.to_frame(units="display")))
+        if "dte_line" in result.data and "mesh_periods" in result.data.attrs:
+            from thermogear.base.period import line_names
+
+            along = [str(dim) for dim in result.data["dte_line"].dims]
+            lines = result.to_frame(along=along, units="display")
+            names = line_names(result.data.attrs, result.data["order"].values)
+            lines.insert(along.index("order"), "line", names * (len(lines) // len(names)))
+            put(path.with_name(f"{path.stem}_lines.csv"), csv_text(lines))
 
 
 def _hidden(context: click.Context, _: click.Parameter, given: tuple[str, ...]) -> None:

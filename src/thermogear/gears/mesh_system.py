@@ -319,7 +319,7 @@ def _pressed_touch(points: MeshPoints, deviations: Sequence[Deviation], load: Ar
 
 
 def pressed_spread(pair: GearPair, load: ArrayLike) -> Floats:
-    """4 F/(pi b E*) [m] of each ``load`` [N] on the pair as drawn, cold: see ``first_touch``."""
+    """4 F/(pi b E*) [m] of each ``load`` [N], with cold moduli: see ``first_touch``."""
     softness = 4.0 / (np.pi * pair.face_width * pair_reduced_modulus(pair))
     return np.asarray(softness * np.asarray(load, dtype=float))
 

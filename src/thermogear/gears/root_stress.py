@@ -101,6 +101,8 @@ def table_of(sector: Sector) -> RootTable:
     )
 
 
+BLOCK = 10_000
+"""Positions looked at together: some 10 MB."""
 FLAT = 0.99
 """Part of the greatest stress that is reached where it is said to be: a maximum is flat, and which
 point has it hangs on the elements."""
@@ -138,23 +140,35 @@ def root_stress(
     >>> f"{1e-6 * pinion.stress:.0f} MPa, {1e-6 * wheel.stress:.0f} MPa"
     '96 MPa, 89 MPa'
     """
-    point, pairs = mesh.points.point, range(mesh.force.shape[-1])
+    (once, place), pairs = mesh.points.fractions, range(mesh.force.shape[-1])
+    point = once.point
     load = mesh.force / (pair.face_width * pair.pinion.module)
     found = []
     # the pinion's load points against its rotation, the wheel's along it
     for gear, string, sign in ((pair.pinion, point.pinion, 1), (pair.wheel, point.wheel, -1)):
         table, t = root_table(gear, plane), string / gear.base_radius
-        felt = [
-            sum(
-                load[..., k, None] * table.stress(t[:, k], sign * (j - k))
-                for k in pairs
-                if abs(j - k) <= MATES
-            )
+        unit = {
+            (j, k): table.stress(t[:, k], sign * (j - k))
             for j in pairs
-        ]
-        every = np.stack(felt, axis=-2).reshape(*load.shape[:-2], -1, table.slope.size)
-        worst = every.max(axis=-1).argmax(axis=-1)[..., None, None]
-        course = np.take_along_axis(every, worst, axis=-2)[..., 0, :]
+            for k in pairs
+            if abs(j - k) <= MATES
+        }
+        course = np.full((*load.shape[:-2], table.slope.size), -np.inf)
+        for start in range(0, len(place), BLOCK):
+            here = slice(start, start + BLOCK)
+            felt = [
+                sum(
+                    load[..., here, k, None] * unit[j, k][place[here]]
+                    for k in pairs
+                    if (j, k) in unit
+                )
+                for j in pairs
+            ]
+            every = np.stack(felt, axis=-2).reshape(*load.shape[:-2], -1, table.slope.size)
+            worst = every.max(axis=-1).argmax(axis=-1)[..., None, None]
+            there = np.take_along_axis(every, worst, axis=-2)[..., 0, :]
+            greater = ~(there.max(axis=-1, keepdims=True) <= course.max(axis=-1, keepdims=True))
+            course = np.where(greater, there, course)
         slope = np.apply_along_axis(_middle, -1, course, table.slope)
         stress = np.where(mesh.settled.all(axis=-1), course.max(axis=-1), np.nan)
         found.append(RootStress(stress, slope))

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property, reduce
+from functools import cached_property, partial, reduce
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +20,7 @@ from thermogear.gears.candidates import MeshPoints, mesh_points
 from thermogear.gears.deviations import Deviation
 from thermogear.gears.touch import first_touch
 from thermogear.gears.turn import turn_period
-from thermogear.mesh.elastic import turn_phases
+from thermogear.mesh.elastic import over_turn, turn_phases
 from thermogear.mesh.thermal import HotPair, ThermalDeviation
 
 Gaps = tuple[Floats, ...]
@@ -60,11 +60,16 @@ class Clearance:
     def _gaps(self) -> tuple[Gaps, Gaps]:
         """Of drive and back flanks."""
         every = turn_phases(self.mesh_periods, self.phase)
+
+        def touch(flank: str, phase: Floats) -> list[Floats]:
+            gap = first_touch(mesh_points(self.hot.pair, phase, flank), self.deviations).gap
+            return [gap.reshape(-1, *gap.shape[-2:])]
+
         drive, back = (
             (
-                _by_period(
-                    first_touch(mesh_points(self.hot.pair, every, flank), self.deviations).gap,
-                    self.mesh_periods,
+                *(
+                    _by_period(gap, self.mesh_periods)
+                    for gap in over_turn(partial(touch, flank), every, self.mesh_periods)
                 ),
                 *(_by_period(gap, 1) for gap in ThermalDeviation(self.hot).gaps(points.contacts)),
             )

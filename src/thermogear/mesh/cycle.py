@@ -30,9 +30,11 @@ from thermogear.mesh.clearance import PARTS, Clearance
 from thermogear.mesh.elastic import (
     TURN_POSITIONS,
     ElasticPair,
+    LoadedPair,
     MeshCurves,
     PathShare,
     elastic_pair,
+    in_series,
     mean_share,
     mean_stiffness_of_body,
     tooth_pair_shares,
@@ -231,7 +233,8 @@ class Cycle:
 
     @cached_property
     def parts(self) -> dict[str, Floats]:
-        return self.elastic.parts(self.s)
+        known = self.path.solved if isinstance(self.elastic, LoadedPair) else None
+        return self.elastic.parts(self.s, known)
 
     @cached_property
     def flash(self) -> Floats:
@@ -407,7 +410,7 @@ TABLE: dict[str, tuple[tuple[str, ...], Made]] = {
     "wheel_base_growth": (POINT, lambda c: c.base_growth(c.hot.pair.wheel)),
     "wheel_shaft_heat": (POINT, lambda c: c.shaft_heat(c.hot.pair.wheel)),
     **{name: (PATH, partial(_one_of, lambda c: c.parts, name)) for name in SPRINGS},
-    "pair_stiffness": (PATH, lambda c: c.elastic.pair_stiffness(c.s)),
+    "pair_stiffness": (PATH, lambda c: in_series(c.parts)),
     "elastic_stiffness": (PHASE, lambda c: c.curves.stiffness),
     "thermal_stiffness": (PHASE, lambda c: c.thermal),
     "mesh_stiffness": (PHASE, lambda c: c.stiffness),

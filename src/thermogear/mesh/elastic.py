@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,8 +39,10 @@ TURN_POSITIONS = 96
 """Positions of every mesh period of a turn. The greatest dynamic force over a turn at a natural
 over a mesh frequency of .15 moves by .3 % (median of 64 drawings of four pairs, at most 4 %) from
 there to 192, by 1 % at most above; 64 positions move it by 3 %."""
-BLOCK = 200_000
-"""Positions of all operating points over a turn that are solved at once: about 100 MB."""
+BLOCK = 40_000
+"""Positions of all operating points over a turn that are solved at once: about 30 MB."""
+KEPT = 200_000
+"""Positions of all operating points over a turn whose shares are kept at once: about 30 MB."""
 
 
 def turn_phases(mesh_periods: int, phase: Floats) -> Floats:
@@ -50,6 +52,35 @@ def turn_phases(mesh_periods: int, phase: Floats) -> Floats:
     array([0. , 0.5, 1. , 1.5])
     """
     return np.asarray((np.arange(mesh_periods)[:, None] + phase).ravel())
+
+
+def over_turn(
+    law: Callable[[Floats], Sequence[NDArray[Any]]],
+    phase: Floats,
+    mesh_periods: int,
+    *,
+    count: int = 1,
+) -> list[NDArray[Any]]:
+    """The arrays that ``law`` makes of phases, (..., positions, ...) with that axis second.
+
+    :data:`BLOCK` positions of ``count`` operating points of a turn at a time; those of the first
+    mesh period are asked for with all others, since their places are those of all.
+
+    >>> over_turn(lambda here: [np.floor(here)[None]], np.array([0.0, 0.5, 1.0, 1.5]), 2)[0]
+    array([[0., 0., 1., 1.]])
+    """
+    if mesh_periods == 1:
+        return list(law(phase))
+    first = phase.size // mesh_periods
+    step = max(BLOCK // count, 8 * first)
+    whole: list[NDArray[Any]] = []
+    for start in range(0, phase.size, step):
+        some = law(np.concatenate([phase[:first], phase[start : start + step]]))
+        if not whole:
+            whole = [np.empty((len(v), phase.size, *v.shape[2:]), v.dtype) for v in some]
+        for values, part in zip(whole, some, strict=True):
+            values[:, start : start + step] = part[:, first:]
+    return whole
 
 
 class MeshCurves(NamedTuple):
@@ -92,10 +123,10 @@ class ElasticPair(ABC):
         return turn_period(self.pair, self.deviations).mesh_periods
 
     def blocks(self, positions: int) -> Iterator[ElasticPair]:
-        """The same pair at some of its operating points after others, :data:`BLOCK` of
+        """The same pair at some of its operating points after others, :data:`KEPT` of
         ``positions`` at a time; at all of them where one mesh period is all.
         """
-        step, count = max(BLOCK // positions, 1), self.hot.count
+        step, count = max(KEPT // positions, 1), self.hot.count
         whole = self.mesh_periods == 1 or step >= count
         # a deviation may differ between the points itself
         if whole or first_touch(mesh_points(self.pair, [0.0]), self.deviations).gap.ndim > 2:
@@ -137,7 +168,7 @@ class ElasticPair(ABC):
 
     def pair_stiffness(self, s: Floats) -> Floats:
         """Stiffness of one tooth pair at ``s`` [m], [N/m]: its :meth:`parts` in series."""
-        return np.asarray(1.0 / sum(1.0 / k for k in self.parts(s).values()))
+        return in_series(self.parts(s))
 
     def share(self, s: Floats) -> PathShare:
         """Share of the load on the pair at ``s`` [m], by the model's rule.
@@ -154,8 +185,11 @@ class ElasticPair(ABC):
         return PathShare(shares, np.zeros(shares.shape, np.int8))
 
     @abstractmethod
-    def parts(self, s: Floats) -> dict[str, Floats]:
-        """Every spring of one tooth pair at ``s`` [m], [N/m], by its stored name."""
+    def parts(self, s: Floats, shares: PathShare | None = None) -> dict[str, Floats]:
+        """Every spring of one tooth pair at ``s`` [m], [N/m], by its stored name.
+
+        ``shares`` of the load at ``s`` where they are known already; else :meth:`share` says.
+        """
 
     @abstractmethod
     def over(self, phase: Floats) -> MeshCurves:
@@ -180,7 +214,7 @@ def _named(gear: str, tooth: ToothCompliances, body: Floats) -> dict[str, Floats
 class TextbookPair(ElasticPair):
     """Uncoupled springs of the teeth in contact, in parallel; deviations are not felt."""
 
-    def parts(self, s: Floats) -> dict[str, Floats]:
+    def parts(self, s: Floats, shares: PathShare | None = None) -> dict[str, Floats]:
         found = pair_compliances(self.pair, s, self.start, *self.moduli)
         parts = {"hertz_stiffness": found.contact}
         for name, gear in (("pinion", found.pinion), ("wheel", found.wheel)):
@@ -224,10 +258,22 @@ class LoadedPair(ElasticPair):
         )
         return solved if self.hot.operating.varied.face_width is None else solved.wider(wider)
 
-    def parts(self, s: Floats) -> dict[str, Floats]:
+    def solved(self, phase: Floats, *names: str) -> list[NDArray[Any]]:
+        """Arrays of :meth:`solve` by their ``names``, (count, positions, ...).
+
+        Over a turn only what is asked for is kept, see :func:`over_turn`.
+        """
+
+        def some(here: Floats) -> list[NDArray[Any]]:
+            mesh = self.solve(here)
+            return [getattr(mesh, name) for name in names]
+
+        return over_turn(some, phase, self.mesh_periods, count=self.hot.count)
+
+    def parts(self, s: Floats, shares: PathShare | None = None) -> dict[str, Floats]:
         compliances: dict[str, Floats] = {}
         pair, width = self.pair, self.hot.face_width
-        carried = self.share(s).share * self.force[:, None]
+        carried = (self.share(s) if shares is None else shares).share * self.force[:, None]
         load = np.maximum(carried, LEAST_LINE_LOAD * width)
         half_width = hertz_half_width(load / width, reduced_radius(pair, s), self.contact_modulus)
         near = contact_point(pair, s)
@@ -273,25 +319,19 @@ class LoadedPair(ElasticPair):
         )
 
     def over(self, phase: Floats) -> MeshCurves:
-        every = turn_phases(self.mesh_periods, phase)
-        parts = [loaded_pair(part)._curves(every) for part in self.blocks(every.size)]
-        if len(parts) == 1:
-            return parts[0]
-        return MeshCurves(*(np.concatenate(curve) for curve in zip(*parts, strict=True)))
-
-    def _curves(self, phase: Floats) -> MeshCurves:
-        solved = self.solve(phase)
-        if self.hot.model.spring == "secant":
-            k, error = solved.secant, solved.unloaded
-        else:
-            k = solved.tangent
-            error = solved.deflection - self.force[:, None] / k
+        secant = self.hot.model.spring == "secant"
+        k, deflection, unloaded, edge, settled = self.solved(
+            turn_phases(self.mesh_periods, phase),
+            *("secant" if secant else "tangent", "deflection", "unloaded", "edge", "settled"),
+        )
+        error = unloaded if secant else deflection - self.force[:, None] / k
+        carried = (edge > 0).any(axis=-1).mean(axis=-1)
         # what is the same all along belongs to the backlash, not to the error
         return MeshCurves(
             k,
             error - error.mean(axis=-1, keepdims=True),
-            solved.deflection - solved.unloaded.mean(axis=-1, keepdims=True),
-            np.where(solved.settled.all(axis=-1), solved.edge_share, np.nan),
+            deflection - unloaded.mean(axis=-1, keepdims=True),
+            np.where(settled.all(axis=-1), carried, np.nan),
         )
 
 
@@ -329,13 +369,12 @@ def tooth_pair_shares(elastic: ElasticPair, s: Floats) -> PathShare:
     place = np.arange(s.size)
     parts = []
     for part in elastic.blocks(phase.size):
-        solved = loaded_pair(part).solve(phase)
         whole = (part.hot.count, periods, s.size, -1)
         # the candidates begin one pair before the one that entered last
         parts.append(
             [
                 values.reshape(whole)[:, period, place, rank + 1]
-                for values in (solved.share, solved.edge)
+                for values in loaded_pair(part).solved(phase, "share", "edge")
             ]
         )
     # in the order of their axes: sums along the path go by it
@@ -343,6 +382,15 @@ def tooth_pair_shares(elastic: ElasticPair, s: Floats) -> PathShare:
         np.ascontiguousarray(np.concatenate(values)) for values in zip(*parts, strict=True)
     )
     return PathShare(share, edge)
+
+
+def in_series(parts: Mapping[str, Floats]) -> Floats:
+    """Stiffness [N/m] of springs one after the other.
+
+    >>> in_series({"tooth": np.array([2e8]), "body": np.array([2e8])})
+    array([1.e+08])
+    """
+    return np.asarray(1.0 / sum(1.0 / k for k in parts.values()))
 
 
 def elastic_pair(hot: HotPair, deviations: Sequence[Deviation] = ()) -> ElasticPair:

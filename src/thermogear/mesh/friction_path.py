@@ -150,25 +150,26 @@ class FrictionPath:
         return rolling_velocities(self.hot.pair, self.hot.operating.speed[:, None], self.s)
 
     @cached_property
-    def _solved(self) -> PathShare:
+    def solved(self) -> PathShare:
+        """Share and corners at ``s``."""
         return self.elastic.share(self.s) if self.shares is None else self.shares
 
     @cached_property
     def settled(self) -> NDArray[np.bool_]:
         """Whether the shares of an operating point are known, (count,)."""
-        return np.asarray(np.isfinite(self._solved.share).all(axis=1))
+        return np.asarray(np.isfinite(self.solved.share).all(axis=1))
 
     @cached_property
     def share(self) -> Floats:
         """Share of the normal force; equal shares, which are no result, where not ``settled``."""
         return np.where(
-            self.settled[:, None], self._solved.share, equal_share(self.hot.pair, self.s)
+            self.settled[:, None], self.solved.share, equal_share(self.hot.pair, self.s)
         )
 
     @property
     def edge(self) -> NDArray[np.int8]:
         """Where a tip corner carries: Hertz's formula says nothing about its pressure there."""
-        return self._solved.edge
+        return self.solved.edge
 
     def checked(self) -> FrictionPath:
         """The same where every point is settled; raises ConvergenceError where one is not."""

@@ -105,7 +105,7 @@ def _around(
     if share is None:
         every, parts = turn_phases(periods, phase), []
         for part in elastic.blocks(every.size):
-            solved = loaded_pair(part).solve(every).share
+            (solved,) = loaded_pair(part).solved(every, "share")
             by_pair = solved.reshape(part.hot.count, periods, -1)[..., inside]
             parts.append(by_pair[:, 0] if periods == 1 else _of_few_loads(by_pair))
         share = np.concatenate(parts)
@@ -127,7 +127,14 @@ def _of_few_loads(share: Floats) -> Floats:
     top = np.where(top == 0.0, 1.0, top)
     nodes = 0.5 - 0.5 * np.cos(np.pi * np.arange(LOADS + 1) / LOADS)
     to_values = np.linalg.inv(chebvander(2.0 * nodes - 1.0, LOADS))[:, 1:]
-    means = chebvander(2.0 * (share / top[:, None]) ** 0.25 - 1.0, LOADS).mean(axis=1)
+    x = 2.0 * (share / top[:, None]) ** 0.25 - 1.0
+    means = np.ones((*top.shape, LOADS + 1))
+    # Chebyshev's polynomials one after the other: all at once are six times as large
+    before: Floats = np.ones(1)
+    term, twice = x, 2.0 * x
+    for order in range(1, LOADS + 1):
+        means[..., order] = term.mean(axis=1)
+        before, term = term, term * twice - before
     # the load of the pairs is 0 at the first node, which adds nothing
     every = np.stack([nodes[1:] ** 4 * top[..., None], means @ to_values], axis=1)
     return np.swapaxes(every, 2, 3).reshape(len(share), 2, -1)

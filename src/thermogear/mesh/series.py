@@ -24,12 +24,14 @@ from thermogear.gears.stiffness import Moduli
 from thermogear.gears.touch import touch_of_parts
 from thermogear.gears.turn import numbered_from, turn_period
 from thermogear.mesh.clearance import Clearance
-from thermogear.mesh.elastic import BLOCK, TURN_POSITIONS, elastic_pair, turn_phases
+from thermogear.mesh.elastic import TURN_POSITIONS, elastic_pair, turn_phases
 from thermogear.mesh.thermal import HotPair, ThermalDeviation
 
 STRETCH = 140
 """Mesh periods followed of a turn that is longer. Measured on hunting pairs of class 6: greatest
 dynamic forces are .6 to 2.6 % lower in the mean than over the whole turn."""
+BLOCK = 200_000
+"""Positions of all parts that are solved at once: about 100 MB."""
 AHEAD = 24
 """Mesh periods ahead of those of a longer turn: at a mesh over a natural frequency of 1.1 and a
 damping ratio of .07 a vibration falls to 1e-4 of itself in 23 of them."""

@@ -81,12 +81,14 @@ def branch_results(
         notices += told
     summary = summary_of(point.title, varied, legs, (begin, to), cut)
     summary["parameters"] = point.parameters
-    if point.points.mesh_periods > 1:
-        summary["mesh_periods"] = point.points.mesh_periods
     groups = {f"branch_{i}": dataset(leg, varied.unit) for i, leg in enumerate(legs)}
     if plane is not None:
         summary |= plane.summary(curves, varied)
         groups |= plane.groups(curves, varied)
+    if point.points.mesh_periods > 1:
+        summary["mesh_periods"] = point.points.mesh_periods
+        for group in groups.values():
+            group.attrs["mesh_periods"] = point.points.mesh_periods
     return found("branch", groups, summary, notices, interrupted=cut)
 
 

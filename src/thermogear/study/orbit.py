@@ -189,6 +189,8 @@ def told_orbit(
     data = labelled(variables)
     if of > 1:
         data.attrs["mesh_periods"] = of
+        if points.gears:
+            data.attrs["teeth"] = point.gears.period.teeth
     data["phase"] = (("sample",), phase, {"units": "1", "long_name": "time in mesh periods"})
     if not points.gears:
         _without_units(data)

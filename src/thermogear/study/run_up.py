@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -18,9 +18,9 @@ from thermogear.analysis.family import axis_values
 from thermogear.analysis.follow import Leap, follow
 from thermogear.analysis.outcome import outcome_arrays, outcome_variables, settle_with_status
 from thermogear.analysis.settle import PERIODIC, Rule, Settled
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Floats, Whole
 from thermogear.base.errors import InputError
-from thermogear.base.notice import Notice, stored_notices
+from thermogear.base.notice import stored_notices
 from thermogear.base.plan import (
     Alive,
     Arrays,
@@ -39,6 +39,7 @@ from thermogear.case.family import GearFamily, Tabulated
 from thermogear.case.points import Points
 from thermogear.case.response import RECORD, RULE, Recording, respond, response_variables
 from thermogear.case.thermal_state import HOT, UNDEFORMED, StateLike, ThermalState
+from thermogear.case.turn_response import over_turn, settled_response
 from thermogear.dynamics.return_map import ReturnMap
 from thermogear.results.result import Result
 from thermogear.results.work import Report, carry_out
@@ -56,8 +57,8 @@ LISTED_PERIOD = 4
 """Jumps of longer orbits, which live in windows of chaos, are not listed."""
 LISTED = 1e-3
 """A jump that changes the transmission error by less than this share is not listed."""
-APART = 1e-3
-"""Half backlashes between two motions that are not one."""
+ENDS = ("end_x", "end_v", "end_speed", "end_period")
+"""What is stored of the motion that is carried on to the next speed."""
 LEAP_KINDS = (FOLD, FLIP)
 LEAP = {
     "leap_fold": ("speed at which the followed motion leaves its branch", "rad/s"),
@@ -156,9 +157,7 @@ class RunUpPlan:
             0,
             {"long_name": "periods of the orbit that is followed, 0: none"} | NO_COUNT,
         )
-        found |= {name: number(*told, "leap") for name, told in LEAP.items()}
-        early = {"long_name": "1: a run in these steps alone leaves its branch before this speed"}
-        return found | {"left_early": Variable(dims, "int8", 0, early)}
+        return found | {name: number(*told, "leap") for name, told in LEAP.items()}
 
     def coordinates(self) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]:
         cold = self.case.stated.temperatures.reference
@@ -199,45 +198,89 @@ class RunUpPlan:
         mine = np.arange(every.size)[ranges_of(self, key)["pinion_speed"]]
         speeds = every[mine]
         order = np.arange(speeds.size) if up else np.arange(speeds.size)[::-1]
+        found = empty_arrays(self, key)
+        ends = None
+        if before is not None:
+            last = 0, 0, -1 if up else 0
+            ends = {name: before[name][last] for name in ENDS}
+        if self.turn > 1:
+            points = self.family(key[0])(speeds[:, None])
+            rows = self._of_turns(points, order, ends, alive)
+        else:
+            rows = self._of_orbits(key, mine, order, ends, alive)
+        for place, row in rows:
+            for name, value in row.items():
+                found[name][0, 0, place] = value
+        return found
+
+    @property
+    def turn(self) -> int:
+        """After how many mesh periods the gears repeat themselves."""
+        return self.case.period.mesh_periods
+
+    def _of_turns(
+        self, points: Points, order: Whole, ends: Arrays | None, alive: Alive
+    ) -> Iterator[tuple[int, Arrays]]:
+        """What is felt over the turn at each speed, carried on from the speed before."""
+        state = np.array(self.case.simulation.initial_state, dtype=float)
+        if ends is not None:
+            state = np.array([ends["end_x"], ends["end_v"]])
+        carried = ends is not None
+        for place in order:
+            here = points.take(np.array([place]))
+            settled, arrays = settled_response(
+                here, state[None], self.rule, self.record, lines=True, carried=carried, alive=alive
+            )
+            state, carried = settled.state[0], carried or not here.still[0]
+            row = {name: values[0] for name, values in arrays.items()}
+            section = np.full((2, KEEP), np.nan)
+            section[:, -1] = settled.point[0]
+            yield (
+                int(place),
+                row
+                | dict(zip(("section_x", "section_v"), section, strict=True))
+                | dict(zip(ENDS, (*state, self.speeds[place], row["period"]), strict=True)),
+            )
+
+    def _of_orbits(
+        self, key: Key, mine: Whole, order: Whole, ends: Arrays | None, alive: Alive
+    ) -> Iterator[tuple[int, Arrays]]:
+        """What is felt at each speed of teeth that are alike, on orbits that are followed."""
         # the step from the speed before the block belongs to it; with another one beyond, slopes
         # there are those of any other block
+        every = np.array(self.speeds)
         wide = np.arange(max(mine[0] - 2, 0), min(mine[-1] + 3, every.size))
         whole = self.family(key[0])(every[wide][:, None])
         points = whole.take(np.searchsorted(wide, mine))
         table = Tabulated(self.family(key[0]), every[wide], whole) if wide.size > 1 else None
         run = _Run(self, table, alive)
-        if before is not None:
-            last = 0, 0, -1 if up else 0
-            run.at = float(before["end_speed"][last])
-            run.state = np.array([before["end_x"][last], before["end_v"][last]])
-            run.period = int(before["end_period"][last])
-        found = empty_arrays(self, key)
-        ends = np.full((speeds.size, 2), np.nan)
+        if ends is not None:
+            run.at = float(ends["end_speed"])
+            run.state = np.array([ends["end_x"], ends["end_v"]])
+            run.period = int(ends["end_period"])
+        states = np.full((mine.size, 2), np.nan)
         for place in order:
             one = np.array([place])
-            settled = run.step(points.take(one), float(speeds[place]))
-            ends[place] = np.where(np.isfinite(settled.state).all(), settled.state[0], np.nan)
+            settled = run.step(points.take(one), float(every[mine[place]]))
+            states[place] = np.where(np.isfinite(settled.state).all(), settled.state[0], np.nan)
             outcome = outcome_arrays(settled, points.status[one])
             row = {name: values[0] for name, values in outcome.items()} | {
                 "section_x": settled.sections[0, :, 0],
                 "section_v": settled.sections[0, :, 1],
-                "end_x": run.state[0],
-                "end_v": run.state[1],
-                "end_speed": run.at,
-                "end_period": run.period,
-                "left_early": run.early,
             }
-            for name, value in row.items():
-                found[name][0, 0, place] = value
-            for number, leap in enumerate(run.leaps[:LEAPS]):
-                for name, value in leap.items():
-                    found[name][0, 0, place, number] = value
-        for name, values in respond(points, ends, self.record, lines=True, alive=alive).items():
-            found[name][0, 0] = values
-        return found
+            row |= dict(zip(ENDS, (*run.state, run.at, run.period), strict=True))
+            for name in LEAP if run.leaps else ():
+                leaps = [leap[name] for leap in run.leaps[:LEAPS]]
+                row[name] = np.array(leaps + [np.nan] * (LEAPS - len(leaps)))
+            yield int(place), row
+        for name, values in respond(points, states, self.record, lines=True, alive=alive).items():
+            for place, value in enumerate(values):
+                yield place, {name: value}
 
     def finish(self, data: xr.Dataset) -> xr.Dataset:
-        data = _with_folds(self, data) if self.branch_period > 0 else data
+        if self.branch_period > 0 and self.turn == 1:
+            data = _with_folds(self, data)
+        data = over_turn(data, self.case)
         data.attrs |= {
             "bundle": self.bundle,
             "pinion_torque": self.torque,
@@ -246,10 +289,6 @@ class RunUpPlan:
         }
         data = _with_jumps(self, data)
         told = [*range_notices(self.case, data), *difference_notices(data)]
-        early = np.argwhere(data["left_early"].values > 0)
-        if early.size:
-            speeds = np.unique(np.array(self.speeds)[early[:, 2]])
-            told.append(Notice.of("motion_followed_in_finer_steps", speeds=speeds))
         return data.assign_attrs(notices=stored_notices(told))
 
 
@@ -287,24 +326,17 @@ class _Run:
         self.state = np.array(plan.case.simulation.initial_state, dtype=float)
         self.period = 0
         self.leaps: list[dict[str, float]] = []
-        self.early = 0
         self.maps: dict[float, ReturnMap] = {}
 
     def step(self, point: Points, speed: float) -> Settled:
         """What is felt at ``speed``, coming from where the last step ended."""
-        self.leaps, self.early = [], 0
+        self.leaps = []
         first = not np.isfinite(self.at)
-        before = self.state if self.period > 0 else None
         if self.table is None or first or point.still[0]:
             self.period = 0
         else:
             self._walk(self.table, speed)
-        starts = [self.state, before] if before is not None and self.period > 0 else [self.state]
-        both = self._settled(point.take(np.zeros(len(starts), int)), np.array(starts))
-        found = both.part(slice(0, 1))
-        if len(starts) > 1 and _period(found) > 0:
-            apart = np.abs(both.sections[1] - both.sections[0][-1]) / point.flat.unit
-            self.early = int(not np.max(apart, axis=-1).min() < APART)
+        found = self._settled(point, self.state[None])
         if first:
             self._stand(speed, found)
         return found
@@ -377,7 +409,7 @@ class _Run:
     def _size(self, speed: float, state: Floats) -> float:
         """Peak to peak transmission error of the motion at ``state``."""
         point = self._single(speed)
-        record = replace(self.plan.record, periods=LISTED_PERIOD * max(4, point.mesh_periods))
+        record = replace(self.plan.record, periods=LISTED_PERIOD * 4)
         found = respond(point, state[None], record, lines=False)
         return float(found["dte_peak_to_peak"][0])
 
@@ -433,6 +465,7 @@ def run_up_plan(
         bundle=family.bundle,
         torque=load,
         rule=rule,
+        record=RECORD.in_orders_of(case.period.mesh_periods),
         branch_period=branch_period,
         block=block,
     )
@@ -475,9 +508,11 @@ def run_up(
     Between two speeds the orbit is followed slowly, and what is no orbit of up to 16 periods is
     carried on in steps of 0.5 % of the speed that stand still, so that jumps do not depend on the
     step of ``speeds``. ``jump_...``: where the motion leaves its branch (``fold``, of orbits of up
-    to 4 periods), and where a run back jumps (``return``); ``left_early``: the step alone would
-    have left it before; ``bifurcation_...`` and ``branch_...``: the folds behind it, from
-    continuation of the orbits of up to ``branch_period`` mesh periods (0: none).
+    to 4 periods), and where a run back jumps (``return``);
+    ``bifurcation_...`` and ``branch_...``: the folds behind it, from continuation of the orbits of
+    up to ``branch_period`` mesh periods (0: none).
+    Of a case whose period is a turn of many mesh periods the motion is followed in fixed steps from
+    each of the ``speeds`` to the next, its lines at all orders of the turn; no orbit is located.
     """
     plan = run_up_plan(
         case,

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.diagram import DIRECTIONS
 from thermogear.analysis.family import axis_values
-from thermogear.analysis.outcome import outcome_arrays, outcome_variables, settle_with_status
+from thermogear.analysis.outcome import outcome_variables
 from thermogear.analysis.settle import Rule
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import Excitations
@@ -35,9 +35,10 @@ from thermogear.base.plan import (
 from thermogear.case.case import GearCase, gear_case
 from thermogear.case.family import GearFamily
 from thermogear.case.points import points_of
-from thermogear.case.response import RECORD, RULE, Recording, respond, response_variables
+from thermogear.case.response import RECORD, RULE, Recording, response_variables
 from thermogear.case.samples import fields_of
 from thermogear.case.thermal_state import HOT, StateLike, ThermalState
+from thermogear.case.turn_response import over_turn, settled_response
 from thermogear.results.work import Report, carry_out
 
 LANES = 64
@@ -124,17 +125,17 @@ class RunUpsPlan:
         count, teeth = len(springs), self.family.case.pair.pinion.teeth
         state = np.tile(np.array(self.family.case.simulation.initial_state), (count, 1))
         found = empty_arrays(self, key)
-        order = range(len(self.speeds))
+        order, carried = range(len(self.speeds)), False
         for place in order if key[0] == 0 else reversed(order):
             mesh = np.full(count, teeth * self.speeds[place])
             points = points_of(replace(springs, mesh_frequency=mesh))
-            settled = settle_with_status(points.flat, points.status, state, self.rule, alive=alive)
-            arrays = outcome_arrays(settled, points.status)
-            arrays |= respond(points, settled.state, self.record, lines=False, alive=alive)
+            settled, arrays = settled_response(
+                points, state, self.rule, self.record, lines=False, carried=carried, alive=alive
+            )
             for name, values in arrays.items():
                 found[name][0, :, place] = values
             there = np.asarray(np.isfinite(settled.state).all(axis=1))
-            state = np.where(there[:, None], settled.state, state)
+            state, carried = np.where(there[:, None], settled.state, state), True
         return found
 
     def _springs(self, chunk: int, rows: NDArray[np.float64]) -> Excitations:
@@ -144,7 +145,7 @@ class RunUpsPlan:
         return self._kept[chunk]
 
     def finish(self, data: xr.Dataset) -> xr.Dataset:
-        return data.assign_attrs(
+        return over_turn(data, self.family.case).assign_attrs(
             bundle=self.family.bundle,
             state=self.family.state.stored,
             total_periods=int(data["used_periods"].sum()),

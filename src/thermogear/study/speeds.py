@@ -19,12 +19,12 @@ from thermogear.analysis.settle import CHAOTIC, PERIODIC, UNDECIDED, WATCHED
 from thermogear.analysis.side_by_side import APART, Motions, motions_along
 from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.excitation import Excitations
-from thermogear.base.period import turns
 from thermogear.base.units import RPM
 from thermogear.base.vocabulary import NO_COUNT, label
 from thermogear.case.points import Points, points_of
 from thermogear.case.response import Recording, respond
-from thermogear.dynamics.turns import TurnLanes, TurnTables, follow_turns
+from thermogear.case.turn_response import DIGITS, turn_lanes, turn_tables
+from thermogear.dynamics.turns import follow_turns
 
 LOWEST, HIGHEST, STEP = 0.05, 1.8, 0.025
 """Mesh over natural frequency, and the step of it. At the lowest the twentieth harmonic of the
@@ -64,9 +64,8 @@ MOTIONS = {
 class Speeds:
     """What a look over the speeds found: ``columns`` over (motion), and what is read off it.
 
-    Among them the ``state`` (motion, 2) that a motion goes on from, which is not stored, nor are,
-    over a turn, ``parted`` and ``struck``: whether flanks part and teeth hit the back side, also in
-    motions that do not settle.
+    Among them the ``state`` (motion, 2) that a motion goes on from, which is not stored. Over a
+    turn those that do not settle have figures too, of the later half of what was followed.
     """
 
     columns: Mapping[str, ArrayLike]
@@ -117,28 +116,31 @@ class Speeds:
     @property
     def lost(self) -> list[tuple[float, float]]:
         """Ranges [rad/s] in which the flanks part."""
-        parted = self.column("contact_loss_share") > LOST
-        return self.ranges(parted | (np.asarray(self.columns.get("parted", 0.0)) > 0.0))
+        return self.ranges(self.column("contact_loss_share") > LOST)
 
     @property
     def back(self) -> list[tuple[float, float]]:
         """Ranges [rad/s] in which a tooth hits the back side."""
-        struck = self.column("mesh_force_min") < 0.0
-        return self.ranges(struck | (np.asarray(self.columns.get("struck", 0.0)) > 0.0))
+        return self.ranges(self.column("mesh_force_min") < 0.0)
 
     @property
     def several(self) -> list[tuple[float, float]]:
         """Ranges [rad/s] in which two motions or more exist: a run-up may jump there."""
         speed = self.column("pinion_speed")
         _, place = np.unique(speed, return_inverse=True)
-        count = np.bincount(place, np.isfinite(self.column("contact_loss_share")))
+        count = np.bincount(place, self.settled)
         return self.ranges(count[place] > 1)
 
     @property
     def unsettled(self) -> int:
-        """At how many speeds no motion settles: nothing is said of them."""
+        """At how many speeds no motion settles."""
+        return self.grid.size - np.unique(self.column("pinion_speed")[self.settled]).size
+
+    @property
+    def settled(self) -> NDArray[np.bool_]:
+        """Of each motion whether it is known and more than what was followed of it."""
         known = np.isfinite(self.column("contact_loss_share"))
-        return self.grid.size - np.unique(self.column("pinion_speed")[known]).size
+        return np.asarray(known & (self.column("label_code") != UNDECIDED))
 
     @property
     def open(self) -> int:
@@ -216,48 +218,27 @@ def motions_of(
         rows["lane"].astype(np.int64), np.stack([rows["x"], rows["v"]], axis=1),
         rows["label"].astype(np.int8), rows["period"].astype(np.int32),
     )  # fmt: skip
-    return motions, {name: rows[name] for name in (*VALUES, "parted", "struck")}
+    return motions, {name: rows[name] for name in VALUES}
 
 
 def _over_the_turn(points: Points, starts: Floats) -> dict[str, Floats]:
     """Every motion over a turn that the ``starts`` (point, start, 2) lead to, in columns."""
     count = starts.shape[1]
     rows: list[dict[str, float]] = []
-    shared = [
-        (row.tobytes(), error.tobytes(), float(length))
-        for row, error, length in zip(
-            points.flat.stiffness, points.error, points.length, strict=True
-        )
-    ]
-    for key in dict.fromkeys(shared):
-        index = np.array([place for place, other in enumerate(shared) if other == key])
+    for index, tables in turn_tables(points):
         here = points.take(index)
-        tables = TurnTables(
-            stiffness=here.flat.stiffness[0],
-            error=here.error[0] / here.length[0],
-            mesh_periods=points.mesh_periods,
-        ).from_greatest()
         each = np.repeat(np.arange(index.size), count)
-        lanes = TurnLanes(
-            mean=here.flat.force[each, 0].real,
-            damping=here.flat.damping[each],
-            backlash=here.flat.half_backlash[each],
-            period=here.flat.period[each],
-        )
-        motions = follow_turns(tables, lanes, starts[index].reshape(-1, 2))
+        begun = np.round(starts[index].reshape(-1, 2), DIGITS)
+        motions = follow_turns(tables, turn_lanes(here).take(each), begun)
         newton = here.stiffness[each] * here.length[each]
         force = newton[:, None] * motions.force
-        # figures of what does not repeat hang on where it was begun; that flanks part does not
-        known = np.where(motions.period > 0, 1.0, np.nan)
         columns = {
             "lane": index[each],
             "frequency_ratio": (here.mesh_frequency / here.rate)[each],
-            "dynamic_factor": known * np.abs(force).max(axis=1) / here.force[each],
-            "dte_peak_to_peak": known * here.length[each] * np.ptp(motions.travel, axis=1),
-            "contact_loss_share": known * motions.lost,
-            "mesh_force_min": known * force[:, 1],
-            "parted": motions.lost > LOST,
-            "struck": force[:, 1] < 0.0,
+            "dynamic_factor": np.abs(force).max(axis=1) / here.force[each],
+            "dte_peak_to_peak": here.length[each] * np.ptp(motions.travel, axis=1),
+            "contact_loss_share": motions.lost,
+            "mesh_force_min": force[:, 1],
             "period": motions.period,
             "label": np.where(motions.period > 0, PERIODIC, UNDECIDED),
             "x": motions.state[:, 0],
@@ -294,10 +275,9 @@ def figures_of(points: Points, motions: Motions) -> dict[str, Floats]:
     """
     lanes = points.take(motions.lane)
     found = respond(lanes, motions.state, RECORD, lines=False)
-    of = points.mesh_periods
-    long = (motions.label == CHAOTIC) | (motions.period > turns(RECORD.periods, of=of))
+    long = (motions.label == CHAOTIC) | (motions.period > RECORD.periods)
     if long.any():
-        record = replace(LONG, periods=max(LONG.periods, of * int(motions.period[long].max())))
+        record = replace(LONG, periods=max(LONG.periods, int(motions.period[long].max())))
         more = respond(lanes.take(np.flatnonzero(long)), motions.state[long], record, lines=False)
         for name, values in more.items():
             found[name][long] = values

@@ -13,11 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.family import axis_values
 from thermogear.analysis.maps import grid_of
-from thermogear.analysis.outcome import (
-    outcome_arrays,
-    outcome_variables,
-    settle_with_status,
-)
+from thermogear.analysis.outcome import outcome_variables
 from thermogear.analysis.settle import Rule
 from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.errors import InputError
@@ -35,8 +31,9 @@ from thermogear.base.plan import (
 from thermogear.case.allowed import gear_parameter
 from thermogear.case.case import GearCase, gear_case
 from thermogear.case.family import GearFamily
-from thermogear.case.response import RECORD, RULE, Recording, respond, response_variables
+from thermogear.case.response import RECORD, RULE, Recording, response_variables
 from thermogear.case.thermal_state import HOT, StateLike, ThermalState
+from thermogear.case.turn_response import over_turn, settled_response
 from thermogear.results.result import Result
 from thermogear.results.work import Report, carry_out
 from thermogear.study.answers.points import answer_numbers, answer_variables
@@ -110,9 +107,8 @@ class SweepPlan:
     def _rows(self, rows: Floats, alive: Alive) -> Arrays:
         points = self.family(rows)
         start = np.broadcast_to(np.array(self.start), (len(rows), 2)).copy()
-        settled = settle_with_status(points.flat, points.status, start, self.rule, alive=alive)
-        found = outcome_arrays(settled, points.status) | answer_numbers(self.family, rows)
-        return found | respond(points, settled.state, self.record, lines=True, alive=alive)
+        _, found = settled_response(points, start, self.rule, self.record, lines=True, alive=alive)
+        return found | answer_numbers(self.family, rows)
 
     def compute(self, key: Key, before: Arrays | None, alive: Alive) -> Arrays:
         ranges = ranges_of(self, key)
@@ -123,7 +119,7 @@ class SweepPlan:
         return {name: a.reshape(*shape, *a.shape[1:]) for name, a in flat.items()}
 
     def finish(self, data: Dataset) -> Dataset:
-        return data.assign_attrs(
+        return over_turn(data, self.family.case).assign_attrs(
             bundle=self.family.bundle,
             state=self.family.state.stored,
             notices=stored_notices(range_notices(self.family.case, data)),
@@ -159,7 +155,11 @@ def sweep_plan(
     family = GearFamily(case, tuple(named), bundle, ThermalState.of(state))
     family.require(named)
     return SweepPlan(
-        family=family, axes=values, start=case.simulation.initial_state, rule=rule, record=record
+        family=family,
+        axes=values,
+        start=case.simulation.initial_state,
+        rule=rule,
+        record=record.in_orders_of(case.period.mesh_periods),
     )
 
 

@@ -46,7 +46,8 @@ def prepare(
     turned: Real,
     at: Whole,
 ) -> None:
-    """Fill ``steps`` (N, group, 11, 8) and ``curves`` (N, lane, 5 (K + 1) + 14 and more).
+    """Fill ``steps`` (N, group, 11, 8), if it is not empty, and ``curves`` (N, lane, 5 (K + 1) +
+    14 and more), which has the same numbers behind the polynomials.
 
     ``damping``, ``backlash`` and ``reach`` (lane), ``half`` (N, lane) half widths in time,
     ``stiffness`` and ``force`` (N, lane, K + 1): Taylor coefficients in u of k and F about the
@@ -59,7 +60,8 @@ def prepare(
     full = work.size // 5
     width = full // EIGHT
     order = width - 1
-    groups = steps.size // (11 * EIGHT * count)
+    groups = -(-lanes // EIGHT)
+    full_steps = steps.size > 0
     room = table.size // EIGHT
     for group in range(groups):
         here = min(EIGHT, lanes - EIGHT * group)
@@ -156,19 +158,21 @@ def prepare(
                     rate = rate + float(m) * part
                 value = value + load(table, q * full)
                 rate = rate / h
-                store(steps, row + 2 * q * EIGHT, value)
-                store(steps, row + (2 * q + 1) * EIGHT, rate)
+                if full_steps:
+                    store(steps, row + 2 * q * EIGHT, value)
+                    store(steps, row + (2 * q + 1) * EIGHT, rate)
                 store(table, 5 * full + 2 * q * EIGHT, value)
                 store(table, 5 * full + (2 * q + 1) * EIGHT, rate)
-            store(steps, row + HALF * EIGHT, h)
+            if full_steps:
+                store(steps, row + HALF * EIGHT, h)
+                for i in range(here, EIGHT):
+                    for q in range(11):
+                        steps[row + EIGHT * q + i] = 0.0
             store(table, 5 * full + HALF * EIGHT, h)
             store(table, 5 * full + SINCE * EIGHT, elapsed)
             store(table, 5 * full + GAP * EIGHT, pick(backlash, 0, at, 0))
             store(table, 5 * full + REACH * EIGHT, pick(reach, 0, at, 0))
             elapsed = elapsed + 2.0 * h
-            for i in range(here, EIGHT):
-                for q in range(11):
-                    steps[row + EIGHT * q + i] = 0.0
             for first in range(0, room, EIGHT):
                 for i in range(EIGHT):
                     at[EIGHT + i] = EIGHT * (first + i)

@@ -69,7 +69,8 @@ def advance_exact(
     """Advance all lanes by ``len(sections)`` periods, in place.
 
     ``steps`` (N, group of eight lanes, 11, 8) and ``curves`` (N, lane, 5 ``width`` + 14 and more)
-    as ``affine.prepare`` fills them; ``reach`` (lane) how far a hidden turn can swing in a
+    as ``affine.prepare`` fills them, or, of one lane, ``steps`` zeros of one sub-step: work space
+    for what ``curves`` has; ``reach`` (lane) how far a hidden turn can swing in a
     sub-step; ``columns`` 0, 1 or 2 tangent columns of ``tangent`` (4, lane) = m11, m12, m21, m22;
     with ``normalise`` the first column is normalised every period and its logarithm added to
     ``stretch`` (period, lane). ``sections`` (period, 2, lane). ``samples`` (period marked, 2,
@@ -85,6 +86,7 @@ def advance_exact(
     groups = stride // EIGHT
     one = 11 * EIGHT  # numbers of a group's sub-step
     room = table.size // EIGHT
+    slim = steps.size < count * groups * one
     for i in range(stride):
         # lanes that fill up the last group rest in the middle of a gap
         real = i < lanes
@@ -118,7 +120,10 @@ def advance_exact(
             for g in range(groups):
                 # contact and free step both, then the choice
                 at = EIGHT * g
-                row = (n * groups + g) * one
+                row = 0 if slim else (n * groups + g) * one
+                if slim:
+                    for q in range(11):
+                        steps[EIGHT * q] = curves[n * room + 5 * width + q]
                 x0 = load(carried, X * stride + at)
                 y0 = load(carried, Y * stride + at)
                 shift = load(carried, SHIFT * stride + at)

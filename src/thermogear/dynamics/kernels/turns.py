@@ -25,14 +25,17 @@ def advance_turn(
     x: Floats,
     v: Floats,
     felt: Floats,
+    path: Floats,
 ) -> None:
     """Advance all lanes by ``count`` classical Runge-Kutta steps from step ``first``, in place.
 
     x'' + damping x' + k f(x; b) = mean + scale e''. ``stiffness`` k and ``bend`` e'' (2 N,) at the
     half steps of a turn of N steps, ``error`` e (N,), shared by the lanes. ``felt`` (5, lane) is
     kept up: greatest and least k f, greatest and least x + e, steps out of drive-side contact.
+    ``path`` (sample, lane): x at so many evenly spaced steps, from the first on; none where empty.
     """
     steps = error.shape[0]
+    stride = count // path.shape[0] if path.shape[0] else count
     for number in range(count):
         at = (first + number) % steps
         here = 2 * at
@@ -44,6 +47,8 @@ def advance_turn(
             b, c, h = backlash[j], damping[j], step[j]
             half = 0.5 * h
             x1, v1 = x[j], v[j]
+            if path.shape[0] and number % stride == 0:
+                path[number // stride, j] = x1
             force = k0 * (x1 - min(max(x1, -b), b))
             felt[0, j] = max(felt[0, j], force)
             felt[1, j] = min(felt[1, j], force)

@@ -121,8 +121,14 @@ class Asked:
         return int(self.hot["status"].size)
 
     def _part(self, points: list[int]) -> dict[str, NDArray[Any]]:
-        """What moves the hot pair at some operating points."""
+        """What moves the hot pair at some operating points.
+
+        Over a turn with its least half backlash all along: motions that do not reach the back side
+        are the same with any, and a hit is told rather than missed.
+        """
         part = {name: self.hot[name][points] for name in MOVES}
+        if self.mesh_periods > 1:
+            part["half_backlash"] = self.hot["least_half_backlash"][points]
         return part | {"mesh_periods": np.full(len(points), self.mesh_periods)}
 
     @cached_property
@@ -332,15 +338,6 @@ class Asked:
         return found
 
     @cached_property
-    def tightest(self) -> Speeds | None:
-        """The same with the least half backlash of a turn all along; None where it is one."""
-        if self.mesh_periods == 1 or self.speeds is None:
-            return None
-        mesh = excitations(self.case, self._part([self.hardest]))
-        tight = replace(mesh, half_backlash=self.hot["least_half_backlash"][[self.hardest]])
-        return look(tight, teeth=self.case.pair.pinion.teeth, own=self.case.stated.speed)
-
-    @cached_property
     def assemblies(self) -> tuple[Floats, Floats]:
         """Static error [m] peak to peak and dynamic factor, greatest of the motions, of assemblies.
 
@@ -394,9 +391,9 @@ class Asked:
         """Figures (point, motion) of the motions at the operating points answered, else nan.
 
         From rest first, then from the other starts of the look over speeds and from the motions
-        that it found within a step of the point's own. Nan too where a motion does not settle,
-        which is 1 in ``undecided``, and where the pair turns so slowly that none is followed: the
-        load is static.
+        that it found within a step of the point's own. Where a motion does not settle ``undecided``
+        is 1, its figures nan or, over a turn, of the later half of what was followed. Nan too where
+        the pair turns so slowly that none is followed: the load is static.
         """
         points = points_of(excitations(self.case, self._part(self.points)))
         slow = np.array([self.slow(point) for point in self.points])

@@ -14,6 +14,7 @@ from thermogear.base.limits import FINE, LOAD_SHARE, PARTING
 from thermogear.base.units import RPM
 from thermogear.case.case import GearCase
 from thermogear.case.thermal_state import HOT, UNDEFORMED, ThermalState
+from thermogear.dynamics.turns import longest
 from thermogear.gears.accuracy import EDITIONS, flank_tolerances
 from thermogear.gears.deviations import GEARS, Deviation, PressureAngleError, Relief
 from thermogear.gears.dynamic_factor import dynamic_factor
@@ -26,6 +27,8 @@ SPEEDS = "At which speeds does it resonate?"
 LOADS, ERROR = "How large is the dynamic factor?", "How large is the transmission error?"
 
 LOOKED = "speed looked at, {looked[0]:~3 rpm} to {looked[1]:~3 rpm}"
+LATER = "the later half of the {followed} mesh periods followed"
+"""Over what figures are those of a motion over a turn that does not settle."""
 OF_SPEEDS = {"ranges": "rpm", "looked": "rpm", "there": "rpm", "strong": "rpm", "off": "%",
              "most": "%"}  # fmt: skip
 """Units of figures that not every sentence states."""
@@ -38,7 +41,7 @@ RELIEFS = (0.25, 0.5, 0.75, 1.0, 1.25, 1.5)
 
 def speeds(asked: Asked) -> Iterator[Answer]:
     found = asked.speeds
-    if found is None or found.unsettled == found.grid.size:
+    if found is None or not np.isfinite(found.column("contact_loss_share")).any():
         why = asked.still(asked.hardest) or (
             "its mesh has no stiffness that moves" if found is None else
             asked.motionless(asked.hardest)
@@ -57,18 +60,20 @@ def speeds(asked: Asked) -> Iterator[Answer]:
     ends = (float(speed.min()), float(speed.max()))
     open_at = "; at {unsettled} of {speeds} speeds no motion settles" * (found.unsettled > 0)
     of_open = {"unsettled": found.unsettled, "speeds": found.grid.size} if open_at else {}
-    tight = asked.tightest
+    if open_at and asked.mesh_periods > 1:
+        open_at += f": {LATER} counts"
+        of_open["followed"] = longest(asked.mesh_periods)
     for name, ranges, happens, never, apart in (
         ("contact_loss", found.lost,
          ("Flanks lose contact", ", for up to {most:.0f %} of the time"),
          "Flanks keep contact at every", parted),
-        ("back_contact", (tight or found).back, ("Teeth hit the back side", ""),
+        ("back_contact", found.back, ("Teeth hit the back side", ""),
          "No tooth hits the back side at any",
          struck),
     ):  # fmt: skip
         words, figures = told(ranges, ends=ends)
         sentence = f"{happens[0]} {words}{happens[1]}" if ranges else f"{never} {LOOKED}"
-        if name == "back_contact" and tight is not None:
+        if name == "back_contact" and asked.mesh_periods > 1:
             sentence += ", were the backlash all along the least of the turn, {gap:.1f µm}"
             figures["gap"] = 2e6 * float(asked.hot["least_half_backlash"][asked.hardest])
         if apart.any():
@@ -82,7 +87,7 @@ def speeds(asked: Asked) -> Iterator[Answer]:
         figures |= of_open
         value = 100.0 * float(np.mean(apart)) if apart.size else float("nan")
         yield answer(SPEEDS, name, f"{sentence}.", value, figures=figures, units=OF_SPEEDS)
-    yield _coexisting(asked, found, moves, ends)
+    yield _coexisting(asked, found, moves & (asked.motion["undecided"] != 1.0), ends)
 
 
 def _coexisting(
@@ -175,8 +180,8 @@ def resonance(
 def loads(asked: Asked) -> Iterator[Answer]:
     for point in asked.points:
         at = asked.at(point)
-        every = asked.motion["dynamic_factor"][point]
-        rested, every = bool(np.isfinite(every[0])), every[np.isfinite(every)]
+        factors = asked.motion["dynamic_factor"][point]
+        rested, every = bool(np.isfinite(factors[0])), factors[np.isfinite(factors)]
         words, figures = rated_factor(asked, point)
         rated = figures.get("factor", np.inf)
         limit = "dynamic_factor" if rated < PARTING else "parting"
@@ -193,6 +198,9 @@ def loads(asked: Asked) -> Iterator[Answer]:
             figures |= {"motions": every.tolist()}
             others = ", ".join(f"{{motions[{n}]:.2f}}" for n in range(1, every.size))
             gives = f"{{motions[0]:.2f}} from rest, {others} in another motion at the same speed"
+        if asked.motion["undecided"][point][np.nanargmax(factors)] == 1.0:
+            gives += f", the greatest in a motion that does not settle, over {LATER}"
+            figures["followed"] = longest(asked.mesh_periods)
         if point == asked.hardest and asked.assemblies[1].size:
             gives += (
                 " as its teeth are numbered, {smallest:.2f} to {largest:.2f} in {assemblies} of "

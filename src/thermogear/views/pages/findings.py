@@ -13,7 +13,7 @@ from thermogear.base.display import PERCENT, exactly, number, stretches
 from thermogear.base.vocabulary import ASSUMED
 from thermogear.views.plots.lost_contact import has_lost, lost_of, things
 from thermogear.views.plots.parameters import each_state, parameter_of, shown
-from thermogear.views.plots.sweeps import CLASSES, classes_of
+from thermogear.views.plots.sweeps import CLASSES, class_words, classes_of
 
 UNDECIDED, PERIODIC = 9, 7
 """Places of the classes: undecided, and the last of the periodic ones."""
@@ -105,10 +105,11 @@ def _basins(data: Dataset) -> str:
 
 def _counts(data: Dataset) -> str:
     codes, assumed = classes_of(data), data["status"].values == ASSUMED
+    names = class_words(data)
 
     def words(some: NDArray[np.int64]) -> str:
         found = Counter(int(n) for n in some if n != UNDECIDED)
-        return ", ".join(f"{CLASSES[n][0]} at {c}" for n, c in found.most_common())
+        return ", ".join(f"{names[n]} at {c}" for n, c in found.most_common())
 
     told = words(codes[~assumed])
     if not told:

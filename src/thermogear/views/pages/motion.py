@@ -9,7 +9,7 @@ from typing import Any
 
 from thermogear.base.arrays import Dataset
 from thermogear.base.display import MICROMETRE, NANOMETRE, PERCENT, Display, number
-from thermogear.base.vocabulary import label_words
+from thermogear.base.vocabulary import label_words, of_turn
 from thermogear.results.result import Result
 from thermogear.views.columns import Column, Row, declared, pairs
 from thermogear.views.csv_files import cell_text, head_text
@@ -67,8 +67,9 @@ def plane_tables(summary: Summary) -> list[Block]:
     second = page_words(summary["second"])
     if not summary["curves"]:
         return [Text(f"No bifurcation was followed in the second parameter, {second}.")]
+    turn = of_turn(summary.get("mesh_periods", 1))
     curves = [
-        {**curve, "name": f"{number} {curve['kind']}, period {curve['period']}"}
+        {**curve, "name": f"{number} {curve['kind']}, period {curve['period']}{turn}"}
         for number, curve in enumerate(summary["curves"], start=1)
     ]
     points = (
@@ -250,7 +251,7 @@ def _orbit_tables(summary: Summary) -> list[Block]:
             words: (number(float(length(summary[name])), 6), length.unit)
             for words, name in (
                 ("least displacement", "least"), ("greatest displacement", "greatest"),
-                ("half backlash", "half_backlash"),
+                (f"half backlash{', mean of the turn' * (of > 1)}", "half_backlash"),
             )
         },
     }  # fmt: skip

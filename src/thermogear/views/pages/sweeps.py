@@ -11,7 +11,8 @@ import numpy as np
 
 from thermogear.base.arrays import Dataset
 from thermogear.base.display import CELSIUS, MICROMETRE, PERCENT, SPEED, exactly, number
-from thermogear.base.vocabulary import ASSUMED, FASTER_RULE
+from thermogear.base.period import line_names
+from thermogear.base.vocabulary import ASSUMED, FASTER_RULE, of_turn
 from thermogear.results.result import Result
 from thermogear.results.tables import in_words
 from thermogear.views.columns import PLAIN, Column, Row, declared, in_full, key, pairs, rows_along
@@ -44,6 +45,12 @@ JUMPS_EXPLAINED = (
     "less than that is passed over. Between a jump and the return of the run back two motions "
     "exist, and which one is seen depends on where the run came from."
 )
+TURN_EXPLAINED = (
+    "Over the turn the motion at each speed begins as the one at the speed before it, and is "
+    "followed in fixed steps until it repeats itself after one turn or up to eight. A jump stands "
+    "at the first speed behind it, and no orbit, fold or multiplier is located between two speeds."
+)
+TURN_LINES = "Lines of the transmission error, each where it is greatest."
 EXPLAINED = {
     "fold": "Fold: the motion ends here and jumps to another one.",
     "period doubling": "Period doubling: from here on every second mesh is alike only.",
@@ -88,16 +95,18 @@ def page(result: Result) -> Page:
 def _summary(data: Dataset) -> str:
     kind = str(data.attrs["kind"])
     if "label" in data:
-        said = [lost_words(data), finding(data), f"{FASTER_RULE.capitalize()}."]
+        said = [lost_words(data), finding(data), f"{_rule(data).capitalize()}."]
         if kind in ("diagram", "run-up"):  # of the others the finding counts the points
-            code = sweeps.classes_of(data)
-            parts = [
-                f"{sweeps.CLASSES[n][0]} at {PERCENT(np.mean(code == n)):.3g} %"
-                for n in np.unique(code)
-            ]
+            code, names = sweeps.classes_of(data), sweeps.class_words(data)
+            parts = [f"{names[n]} at {PERCENT(np.mean(code == n)):.3g} %" for n in np.unique(code)]
             said.insert(2, f"Of {code.size} points: {', '.join(parts)}.")
         return " ".join(one for one in said if one)
     return finding(data)
+
+
+def _rule(data: Dataset) -> str:
+    """What stands behind the labels."""
+    return str(data["label"].attrs.get("comment", FASTER_RULE)) if "label" in data else FASTER_RULE
 
 
 def _pictures(data: Dataset) -> Section:
@@ -129,7 +138,7 @@ def _pictures(data: Dataset) -> Section:
             ),
             (
                 "waterfall", "Waterfall",
-                "Lines of the transmission error over speed and order, running up.",
+                _waterfall_caption,
                 sweeps.waterfall_picture,
             ),
         ],
@@ -190,6 +199,37 @@ def _run_up_caption(data: Dataset) -> str:
     return words + ("; thin vertical lines are located folds." if folds else ".")
 
 
+def _waterfall_caption(data: Dataset) -> str:
+    words = "Lines of the transmission error over speed and order, running up"
+    of = int(data.attrs.get("mesh_periods", 1))
+    if of == 1:
+        return f"{words}."
+    pinion, wheel = (int(z) for z in data.attrs["teeth"])
+    return (
+        f"{words}: of the mesh with the side lines beside its harmonics, below of the slower shaft "
+        f"whose turns fill the {of} mesh periods. Order 1 of the pinion is 1/{pinion} of the mesh, "
+        f"of the wheel 1/{wheel}."
+    )
+
+
+def _turn_lines(data: Dataset) -> list[dict[str, Any]]:
+    """Of every line of a turn its greatest amplitude in the run-up and where; greatest first."""
+    lines = data["dte_line"].values.reshape(-1, data.sizes["order"])
+    names = line_names(data.attrs, data["order"].values)
+    known = np.where(np.isfinite(lines), lines, -1.0)
+    place = np.unravel_index(known.argmax(axis=0), data["dte_line"].shape[:-1])
+    at = dict(zip(map(str, data["dte_line"].dims), place, strict=False))
+    rows: list[dict[str, Any]] = [
+        {"line": name, "order": float(order), "amplitude": float(known[:, n].max()),
+         "speed": float(data["pinion_speed"].values[at["pinion_speed"][n]]),
+         "gears": float(data["gear_temperature"].values[at["state"][n]])}
+        for n, (name, order) in enumerate(zip(names, data["order"].values,
+                                              strict=True))
+        if known[:, n].max() > 0.0
+    ]  # fmt: skip
+    return sorted(rows, key=lambda row: -float(row["amplitude"]))[:MOST_LINES]
+
+
 def _points(data: Dataset, result: Result) -> Section:
     blocks: list[Block] = [lost_table(data)] if result.kind == "diagram" and has_lost(data) else []
     if "label" in data:
@@ -205,6 +245,10 @@ def _points(data: Dataset, result: Result) -> Section:
     if jumps:
         blocks.append(declared("Jumps", JUMPS, jumps))
         blocks.append(Text(JUMPS_EXPLAINED))
+    elif "mesh_periods" in data.attrs:
+        blocks.append(Text(TURN_EXPLAINED))
+        if str(data.attrs["kind"]) == "run-up":
+            blocks.append(declared(TURN_LINES, LINES, _turn_lines(data)))
     elif str(data.attrs["kind"]) == "run-up":
         blocks.append(
             Text(
@@ -221,7 +265,7 @@ def _points(data: Dataset, result: Result) -> Section:
                 f"Basin entropy {entropy['basin_entropy']:.4f}, on borders "
                 f"{entropy['boundary_basin_entropy']:.4f} (above ln 2 = 0.6931 a border is "
                 f"fractal), in boxes of {entropy['box_cells']} x {entropy['box_cells']} starts. "
-                f"{FASTER_RULE.capitalize()}."
+                f"{_rule(data).capitalize()}."
             )
         )
     return Section("points", "Located points", blocks)
@@ -313,6 +357,15 @@ JUMPS = (
     key("return_rpm", "jump_return", SPEED),
     key("into_period", "jump_into"),
 )
+MOST_LINES = 16
+LINES = (
+    Column("line", "line", key="line"),
+    Column("order of the mesh", "order", 4, key="order"),
+    Column("amplitude", "amplitude", 3, MICROMETRE),
+    Column("at", "speed", 6, SPEED, "speed_rpm"),
+    Column("gears", "gears", 4, CELSIUS, "gears_degC"),
+    key("amplitude_m", "amplitude"),
+)
 ATTRACTORS = (
     Column(
         "attractor",
@@ -393,11 +446,14 @@ def numbers(result: Result) -> dict[str, Any]:
         found |= {"parameter": parameter, "ways_apart": apart.tolist()}
     if kind == "run-up":
         found["jumps"] = [in_full(JUMPS, row) for row in _jumps(data)]
+        if "mesh_periods" in data.attrs:
+            found["lines"] = [in_full(LINES, row) for row in _turn_lines(data)]
+            found["mesh_periods"] = int(data.attrs["mesh_periods"])
     if kind in ("diagram", "run-up"):
         columns, rows = _bifurcations(data)
         found["bifurcations"] = [in_full(columns, row) for row in rows]
     seconds = result.text("seconds")
-    return found | {"rule": FASTER_RULE} | ({"seconds": float(seconds)} if seconds else {})
+    return found | {"rule": _rule(data)} | ({"seconds": float(seconds)} if seconds else {})
 
 
 def _labels(data: Dataset) -> dict[str, Any]:
@@ -405,6 +461,7 @@ def _labels(data: Dataset) -> dict[str, Any]:
     told = np.char.replace(in_words(data)["label"].values, "_", " ").astype("U32")
     periodic = told == "periodic"
     told[periodic] = np.char.add("period-", data["period"].values[periodic].astype(str))
+    told[periodic] = np.char.add(told[periodic], of_turn(data.attrs.get("mesh_periods", 1)))
     assumed = data["status"].values == ASSUMED
     found: dict[str, Any] = {
         "points": told.size,

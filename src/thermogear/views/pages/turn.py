@@ -10,7 +10,7 @@ import numpy as np
 
 from thermogear.base.arrays import Dataset
 from thermogear.base.display import MEGAPASCAL, MICROMETRE, MILLIMETRE, PERCENT, number
-from thermogear.base.period import Period
+from thermogear.base.period import line_names
 from thermogear.results.tables import rows_along
 from thermogear.views.columns import Column, declared, in_full, key
 from thermogear.views.page import Shown, Table
@@ -56,10 +56,9 @@ SWINGS = ("transmission_error", "unloaded_error", "mesh_synchronous_error")
 
 def lines(turn: Dataset) -> list[dict[str, Any]]:
     """All lines of the loaded error with their names, the greatest first."""
-    of, rows = int(turn.attrs["mesh_periods"]), rows_along(turn, "order")
-    pinion, wheel = (int(z) for z in turn.attrs["teeth"])
-    period = Period(of, (pinion, wheel))
-    named = [row | {"name": period.line(round(row["order"] * of))} for row in rows]
+    names = line_names(turn.attrs, turn["order"].values)
+    rows = zip(rows_along(turn, "order"), names, strict=True)
+    named = [row | {"name": name} for row, name in rows]
     return sorted(named, key=lambda row: -float(row["line_amplitude"]))
 
 

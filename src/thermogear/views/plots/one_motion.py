@@ -9,11 +9,19 @@ import numpy as np
 
 from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.display import MICROMETRE, MILLIMETRE_PER_SECOND, SPEED, STIFFNESS, Display
+from thermogear.base.vocabulary import of_turn
 from thermogear.views.picture import Axis, Panel, Picture, Top
 from thermogear.views.plots.curves import draw_phase
 from thermogear.views.plots.motion import refined
 from thermogear.views.plots.parameters import axis_words, shown
-from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
+from thermogear.views.plots.spectrum import (
+    MESH_ORDERS,
+    SHAFT_ORDERS,
+    draw_lines,
+    floor_of,
+    over_orders,
+    shaft_orders,
+)
 from thermogear.views.style import COLD, HOT, INK, OKABE_ITO, QUIET, WIDE
 from thermogear.views.typesetting import plain
 
@@ -71,7 +79,24 @@ def orbit_picture(data: Dataset) -> Picture:
         phase.line(x=length(place), colour=QUIET, width=1.0, dash=DASHED)
     unit = _multipliers(data["multiplier_real"].values, data["multiplier_imag"].values)
     spectrum = _spectrum(data, length)
-    return Picture([[history, phase], [unit, spectrum]], size=(WIDE, 6.6), above=0.95, between=0.9)
+    rows, high = [[history, phase], [unit, spectrum]], 6.6
+    if "teeth" in data.attrs:
+        mesh = ("order of the mesh frequency [–]", 1.0)
+        near = (_lines(data, length, *mesh, MESH_ORDERS),
+                _lines(data, length, *shaft_orders(data), SHAFT_ORDERS))  # fmt: skip
+        rows, high = [*rows, [*near]], 9.6
+    return Picture(rows, size=(WIDE, high), above=0.95, between=0.9)
+
+
+def _lines(data: Dataset, length: Display, words: str, factor: float, highest: float) -> Panel:
+    """Lines of a turn up to the ``highest`` order, of which one of the mesh is ``factor``."""
+    order, amplitude = data["order"].values, length(data["line_amplitude"].values)
+    floor, top = floor_of(amplitude, order=order, highest=HIGHEST_ORDER)
+    y = Axis(f"amplitude [{length.unit}]", low=floor, high=top, log="decades")
+    panel = Panel(Axis(words, low=0.0, high=highest), y)
+    near = order * factor <= highest
+    draw_lines(panel, order=order[near] * factor, amplitude=amplitude[near], colour=COLD, label="")
+    return panel
 
 
 def edges_in_sight(data: Dataset) -> list[float]:
@@ -136,7 +161,8 @@ def branch_picture(branches: Sequence[Dataset], title: str = "") -> Picture:
     for data in branches:
         period = int(data.attrs["period"])
         colour = OKABE_ITO[min(int(np.log2(period)), len(OKABE_ITO) - 1)]
-        draw_branch(panel, data, parameter, colour, f"period {period}", rows)
+        words = f"period {period}{of_turn(data.attrs.get('mesh_periods', 1))}"
+        draw_branch(panel, data, parameter, colour, words, rows)
     _marks(panel, branches, parameter, rows[1])
     if not train:
         return Picture([[panel]], size=(WIDE, 4.0), legend=4)
@@ -291,7 +317,8 @@ def plane_picture(curves: Sequence[Dataset]) -> Picture:
     for data in curves:
         kind = str(data.attrs["kind"])
         marker, colour = MARKS[kind]
-        label = f"{kind}, period {int(data.attrs['period'])}"
+        turn = of_turn(data.attrs.get("mesh_periods", 1))
+        label = f"{kind}, period {int(data.attrs['period'])}{turn}"
         x, y = shown(first, data["first"]), shown(second, data["second"])
         met = data["stable"].values.astype(bool)
         cuts = [0, *(np.flatnonzero(np.diff(met.astype(int))) + 1).tolist(), met.size]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.views.picture import Axis, Panel
 from thermogear.views.style import FAINT, QUIET
 
@@ -14,6 +14,21 @@ DECADES = 5.0
 """How far below the greatest line the picture reaches."""
 ROOM, END = 0.2, 0.05
 """Lines so far [orders] beyond the highest one are drawn still, and what is free after them."""
+
+
+SHAFT_ORDERS, MESH_ORDERS = 12.0, 3.4
+"""How far pictures of a turn reach, in orders of the slower shaft and of the mesh."""
+
+
+def shaft_orders(data: Dataset) -> tuple[str, float]:
+    """Words of an axis in orders of the slower shaft that fills a turn, and how many one mesh is.
+
+    ``data`` with the attributes ``mesh_periods`` and ``teeth`` of pinion and wheel.
+    """
+    of, teeth = int(data.attrs["mesh_periods"]), map(int, data.attrs["teeth"])
+    count, gear = max((z, name) for z, name in zip(teeth, ("pinion", "wheel"), strict=True)
+                      if of % z == 0)  # fmt: skip
+    return f"order of the {gear}'s shaft [–]", float(count)
 
 
 def over_orders(x: str, y: str, *, floor: float, top: float, highest: float) -> Panel:

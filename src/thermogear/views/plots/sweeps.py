@@ -10,10 +10,21 @@ from numpy.typing import NDArray
 
 from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.display import CELSIUS, KILONEWTON, MICROMETRE, PERCENT, Display
-from thermogear.base.vocabulary import ASSUMED, STATUS, UNDEFORMED
+from thermogear.base.vocabulary import ASSUMED, STATUS, UNDEFORMED, of_turn
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.parameters import axis_words, parameter_of, shown
-from thermogear.views.style import COLD, FAINT, HOT, INK, MIXED, OKABE_ITO, QUIET, WIDE, scale
+from thermogear.views.plots.spectrum import MESH_ORDERS, SHAFT_ORDERS, shaft_orders
+from thermogear.views.style import (
+    COLD,
+    FAINT,
+    HOT,
+    INK,
+    MIXED,
+    OKABE_ITO,
+    QUIET,
+    WIDE,
+    scale,
+)
 
 Rows = Sequence[Mapping[str, Any]]
 DIVERGED = STATUS.index("diverged")
@@ -52,6 +63,12 @@ def classes_of(data: Dataset) -> NDArray[np.int64]:
     found[label == 3] = 10
     found[label > 3] = label[label > 3] + 7
     return found
+
+
+def class_words(data: Dataset) -> list[str]:
+    """The names of :data:`CLASSES`, with periods of a turn where that is what repeats itself."""
+    turn = of_turn(data.attrs.get("mesh_periods", 1))
+    return [name + turn * name.startswith("period") for name, _ in CLASSES]
 
 
 def edges(values: Floats) -> Floats:
@@ -209,8 +226,8 @@ def _over_two(data: Dataset) -> tuple[Panel, tuple[Floats, Floats]]:
 
 def regimes(data: Dataset) -> Panel:
     panel, borders = _over_two(data)
-    names, colours = zip(*CLASSES, strict=True)
-    panel.field(*borders, classes_of(data).T, colours=colours, classes=names)
+    colours = [colour for _, colour in CLASSES]
+    panel.field(*borders, classes_of(data).T, colours=colours, classes=class_words(data))
     hatch_assumed(panel, data)
     return panel
 
@@ -275,24 +292,48 @@ def run_up_picture(data: Dataset) -> Picture:
 
 
 def waterfall_picture(data: Dataset) -> Picture:
-    """Lines of the transmission error over speed and order, running up, one panel a state."""
-    borders = (
-        edges(shown("pinion_speed", data["pinion_speed"])), edges(data["order"].values)
-    )  # fmt: skip
+    """Lines of the transmission error over speed and order, running up, one panel a state.
+
+    Over a turn the orders of the mesh with their side lines, and below those of the slower shaft
+    that fills it.
+    """
+    speeds = edges(shown("pinion_speed", data["pinion_speed"]))
     lines = MICROMETRE(data["dte_line"].values[:, 0])
     known = lines[np.isfinite(lines) & (lines > 0.0)]
     top = float(known.max()) if known.size else 1.0
-    panels = []
-    for state in range(data.sizes["state"]):
-        panel = Panel(_along(data, "pinion_speed"), Axis(), _state_words(data, state))
-        panel.field(
-            *borders, np.clip(np.nan_to_num(lines[state], nan=1e-4 * top), 1e-4 * top, None).T,
-            low=1e-4 * top, high=top, log=True, colours=scale("magma"),
-            words="line of the transmission error [µm]",
-        )  # fmt: skip
-        panels.append(panel)
-    panels[0].y.words = "order of the mesh frequency [–]"
-    return Picture([panels], size=(WIDE, 4.2), share_y="row")
+    lines = np.clip(np.nan_to_num(lines, nan=1e-4 * top), 1e-4 * top, None)
+    rows = []
+    for words, factor, highest in _order_axes(data):
+        kept = data["order"].values * factor <= highest
+        # a row of the picture shows the greatest of the lines in it
+        first = np.arange(0, kept.sum(), -(-int(kept.sum()) // ROWS))
+        order = edges(data["order"].values[kept] * factor)[[*first, -1]]
+        row = []
+        for state in range(data.sizes["state"]):
+            panel = Panel(_along(data, "pinion_speed"), Axis(), _state_words(data, state))
+            panel.field(
+                speeds, order, np.maximum.reduceat(lines[state][:, kept], first, axis=1).T,
+                low=1e-4 * top, high=top, log=True, colours=scale("magma"),
+                words="line of the transmission error [µm]",
+            )  # fmt: skip
+            row.append(panel)
+        row[0].y.words = words
+        rows.append(row)
+    return Picture(rows, size=(WIDE, 4.2 * len(rows)), share_y="row")
+
+
+ROWS = 400
+"""Rows of a field of lines."""
+
+
+def _order_axes(data: Dataset) -> list[tuple[str, float, float]]:
+    """Words, orders for one of the mesh and highest order of each row of a waterfall."""
+    mesh = "order of the mesh frequency [–]"
+    of = int(data.attrs.get("mesh_periods", 1))
+    if of == 1:
+        return [(mesh, 1.0, np.inf)]
+    words, factor = shaft_orders(data)
+    return [(mesh, 1.0, MESH_ORDERS), (words, factor, SHAFT_ORDERS)]
 
 
 def sweep_picture(data: Dataset) -> Picture:
