@@ -498,7 +498,7 @@ def test_check_lists_the_defaults_of_a_short_case(
     assert not any(line.strip().startswith("gears.wheel.bore_radius") for line in lines)
     assert not any(line.strip().startswith(("grid.", "simulation.")) for line in lines)
     assert [10.0] in [numbers(line) for line in lines if line.startswith("numerics:")]
-    assert numbers(lines[-1])[0] == 66.0
+    assert numbers(lines[-1])[0] == 70.0
     choices = [line.split()[0] for line in lines if line.startswith("  model.")]
     assert choices == [f"model.{name}" for name in ("bundle", *MeshModel.consistent().choices())]
     assert told["model.tooth"].split()[1] == "solved:"

@@ -15,7 +15,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import bdtr, betainc, betaincinv
 
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
@@ -45,6 +44,8 @@ def interval_ranks(count: int, *, share: float, confidence: float = CONFIDENCE) 
     """
     if count < 1 or not 0.0 < share < 1.0:
         raise InputError("sample", f"{count} values, share {share:g}", allowed="1.., 0..1 between")
+    from scipy.special import bdtr
+
     below = np.append(0.0, bdtr(np.arange(count + 1), count, share))  # P(B < k), k = 0..count + 1
     low = np.arange(count + 2)
     high = np.searchsorted(below, below[low] + confidence)
@@ -81,6 +82,8 @@ def quantile(values: ArrayLike, *, share: float, confidence: float = CONFIDENCE)
 @lru_cache(maxsize=256)
 def _weights(count: int, share: float) -> Floats:
     """Of the ordered values: steps of the beta distribution function at i/n."""
+    from scipy.special import betainc
+
     steps = np.arange(count + 1) / count
     return np.diff(betainc((count + 1) * share, (count + 1) * (1.0 - share), steps))
 
@@ -98,6 +101,8 @@ def proportion(hits: int, *, of: int, confidence: float = CONFIDENCE) -> Estimat
     """
     if not 0 <= hits <= of or of < 1:
         raise InputError("sample", f"{hits} of {of}", allowed="0 <= hits <= of, from 1 on")
+    from scipy.special import betaincinv
+
     tail = (1.0 - confidence) * (1.0 if hits in (0, of) else 0.5)
     low = float(betaincinv(hits, of - hits + 1, tail)) if hits else 0.0
     high = float(betaincinv(hits + 1, of - hits, 1.0 - tail)) if hits < of else 1.0
