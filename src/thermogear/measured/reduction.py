@@ -42,7 +42,7 @@ from thermogear.measured.readers import read_record
 from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.stated import expected_mesh, speed_undecided, stated_gearing
 from thermogear.measured.traps import unknown_unit
-from thermogear.measured.turns import MeshTurns, mesh_turns
+from thermogear.measured.turns import MeshTurns, few_turns, mesh_turns
 from thermogear.signals.envelope import envelope_rate
 from thermogear.signals.windows import Window
 
@@ -240,6 +240,9 @@ def measure(
         gearing = replace(gearing, mesh_frequency=turns.frequency)
         turns = replace(turns, half_width=turns.half_width + through.turned)
     if gearing is not None:
+        few = few_turns(gearing, teeth=teeth, samples=table.shape[-1])
+        notices += few
+        sidebands = 0 if few else sidebands
         undecided = speed_undecided(gearing, teeth=given[0], speed=speed, rate=record.rate)
         doubt = check_rate(
             record,
@@ -285,8 +288,7 @@ def measure(
             ),
         )
     notices += harmonics_told(gearing, harmonics, record.rate)
-    beside = [line.position for line in lines if line.kind != "mesh"]
-    notices += turns.told_of(beside) if turns is not None else []
+    notices += dict.fromkeys(turns.told) if turns is not None else []
     lines = [of_velocity(line, record.channel(line.channel)) for line in lines]
     notices += _untold(record, chosen, sensor_tolerance)
     notices += _filtered(wanted, rate, mesh, gearing)
