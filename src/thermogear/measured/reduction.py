@@ -287,7 +287,7 @@ def measure(
                 speed=undecided is not None,
             ),
         )
-    notices += harmonics_told(gearing, harmonics, record.rate)
+    notices += harmonics_told(gearing.mesh_frequency if gearing else None, harmonics, record.rate)
     notices += dict.fromkeys(turns.told) if turns is not None else []
     lines = [of_velocity(line, record.channel(line.channel)) for line in lines]
     notices += _untold(record, chosen, sensor_tolerance)
@@ -362,8 +362,7 @@ def _of_slices(
     """The measurement of a run whose speed changes: its lines are means of the slices."""
     run = found.slices
     if run is not None and not run.of_mesh and record.rate is not None:
-        said = of_speed(given[1], lowest=float(run.speed.min()), highest=float(run.speed.max()))
-        notices += [said] if said is not None else []
+        notices += of_speed(given[1], lowest=float(run.speed.min()), highest=float(run.speed.max()))
     return Measurement(
         record,
         tuple(c.name for c in through.channels),
