@@ -164,12 +164,12 @@ def run(case: tuple[int, int]) -> Row:
     except ValueError as error:
         refused = str(error)
     else:
-        open_line = any("is not decided: orders" in one.text for one in result.notices)
+        open_line = {"followed_line_undecided", "few_turns"} & {one.code for one in result.notices}
         found = {line.name: line for line in result.lines}
         for name, truth in made.amplitudes.items():
             line = found.get(name)
             if line.withheld if line is not None else open_line and "shaft" in name:
-                withheld += 1  # a run whose line may be another gear's has no sidebands
+                withheld += 1  # none are read of few turns, or where the line may be another gear's
                 continue
             off = np.inf if line is None else (1.0 - truth / line.reading) / line.half_width
             errors["sidebands" if "shaft" in name else "mesh line"].append(float(off))

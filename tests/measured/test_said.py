@@ -122,7 +122,7 @@ def test_what_agrees_or_is_open_is_no_contradiction() -> None:
     assert of_pulses(2.0, mesh=20.0, teeth=20) == []
     assert of_pulses(2.0, mesh=20.0, teeth=None) == []
     assert of_pulses(None, mesh=30.0, teeth=20) == []
-    assert of_speed(1000.0, lowest=1090.0, highest=2000.0) is None
+    assert of_speed(1000.0, lowest=1090.0, highest=2000.0) == []
     line, apart = (Gearing(mesh_frequency=f, harmonics=(9.0,)) for f in (0.2, 0.29))
     assert of_line(line, apart) == []
     (unlike,) = of_pulses(1.0, mesh=7.3, teeth=20)

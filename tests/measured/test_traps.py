@@ -414,11 +414,7 @@ def test_an_unknown_unit_of_time_is_named(tmp_path: Path) -> None:
     assert told(record) == [("time_unit_not_known", {"column": "time [weeks]", "unit": "weeks"})]
 
 
-def test_a_rate_that_no_sensor_has_asks_for_the_unit(tmp_path: Path) -> None:
-    record = read(tmp_path, columns("time [ms],acc [g]", STAMPS / 10.0, WAVE))
-    ((code, data),) = told(record)
-    assert (code, data["column"], data["other_units"]) == ("time_unit_doubtful", "time", ["s"])
-    assert [data["rate"], *data["other_rates"]] == pytest.approx([1e7, 1e4])
+def test_a_unit_of_time_is_told(tmp_path: Path) -> None:
     plain = read(tmp_path, columns("time [us],acc [g]", STAMPS * 1e6, WAVE))
     assert told(plain) == [("time_unit", {"column": "time", "unit": "us"})]
 

@@ -405,15 +405,14 @@ def require_orders(
         raise InputError("orders", f"{order:g}", allowed=allowed, why=why, fix=fix)
 
 
-def harmonics_told(mesh: Gearing | float | None, asked: int, rate: float | None) -> list[Notice]:
+def harmonics_told(line: float | None, asked: int, rate: float | None) -> list[Notice]:
     """How many of the ``asked`` mesh harmonics are below rate/2.56, where not all are.
 
-    ``mesh`` line [cycles/sample], or the gearing that has it; ``rate`` [samples/s].
+    Mesh ``line`` [cycles/sample]; ``rate`` [samples/s].
 
     >>> [told.data["read"] for told in harmonics_told(0.0596, 20, 10_000.0)]
     [6]
     """
-    line = mesh.mesh_frequency if isinstance(mesh, Gearing) else mesh
     fit = asked if line is None else max(int(_HIGHEST / line), 1)
     if fit >= asked:
         return []

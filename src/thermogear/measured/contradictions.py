@@ -57,11 +57,11 @@ def of_tacho_speed(
     ]
 
 
-def of_speed(given: float | None, *, lowest: float, highest: float) -> Notice | None:
+def of_speed(given: float | None, *, lowest: float, highest: float) -> list[Notice]:
     """A speed ``given`` [rad/s] that the first shaft, from ``lowest`` to ``highest``, never has."""
     if given is None or (1.0 - NEAR) * lowest <= given <= (1.0 + NEAR) * highest:
-        return None
-    return Notice.of("speed_contradicted", given=given, lowest=lowest, highest=highest)
+        return []
+    return [Notice.of("speed_contradicted", given=given, lowest=lowest, highest=highest)]
 
 
 def of_line(near: Gearing, free: Gearing) -> list[Notice]:

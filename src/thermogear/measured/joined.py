@@ -13,7 +13,6 @@ from thermogear.base.errors import InputError, nearest
 from thermogear.measured.options import place_of
 from thermogear.measured.parts import Joined, Part
 from thermogear.measured.record import Channel, Notice, Record, Samples
-from thermogear.measured.traps import same_samples
 from thermogear.measured.units import counts_turns
 
 JOINS = ("channels", "time")
@@ -21,7 +20,6 @@ SIGN = "::"
 """Between a file and a channel of it: ``left.csv::a1``."""
 
 _CUT = 0.01  # of the longest file: a shorter one within it lost its last block
-_OFF = 0.25  # of a sample: where a gap is no whole number of samples
 _LONGEST_GAP = 1.0  # of the samples of all pieces
 
 
@@ -170,13 +168,8 @@ def _source(files: Sequence[str]) -> str:
 def _pieces(records: Sequence[Record], files: Sequence[str], rate: float | None) -> Record:
     """The pieces one after another, gaps between them as samples without a number."""
     first = records[0]
-    for place, (file, one) in enumerate(zip(files, records, strict=True)):
+    for file, one in zip(files, records, strict=True):
         _require_alike(first, one, files[0], file)
-        for other, before in zip(files[:place], records[:place], strict=True):
-            alike = (same_samples(before.channel(name), one.channel(name)) for name in first.names)
-            if before.samples == one.samples and all(alike):
-                why = f"it holds the same samples as {other}"
-                raise InputError("file", file, why=why, fix="name every piece once")
     gaps, notes = _gaps(records, files, rate)
     parts: dict[str, list[Part]] = {name: [] for name in first.names}
     for gap, one in zip(gaps, records, strict=True):
@@ -251,11 +244,6 @@ def _gaps(
                     before=files[k - 1],
                     after=files[k],
                 )
-            )
-        if abs(lost - gaps[k]) > _OFF:
-            off = lost - gaps[k]
-            notes.append(
-                Notice.of("clock_off_between", samples=off, before=files[k - 1], after=files[k])
             )
     if not any(gaps):
         notes.append(Notice.of("pieces_without_gap"))

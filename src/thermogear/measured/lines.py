@@ -324,11 +324,8 @@ def channel_lines(
         own += turned_by(damage, samples=values.size)
         half_width = float(np.hypot(relative, _NORMAL * (sensor_tolerance or 0.0))) + damage
         half_width += 2.0 * record.rate_share + float(jittered(position, record.jitter))
-        why = turns.why_withheld(want.position) if turns and want.kind != "mesh" else ""
-        whys = doubts.withheld, why
-        doubtful = replace(doubts, withheld="; ".join(one for one in whys if one))
         found.append(
-            doubtful.applied(
+            doubts.applied(
                 MeasuredLine(
                     channel=channel.name,
                     kind=want.kind,

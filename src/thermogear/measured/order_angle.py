@@ -88,9 +88,6 @@ def order_angle(
     elif mesh is not None and teeth and abs(mesh / teeth - 1.0) > 0.02:
         factor = mesh / teeth
         notices.append(Notice.of("teeth_on_other_shaft", order=mesh, teeth=teeth, ratio=factor))
-    elif gearing and mesh and gearing.alone and abs(mesh - round(mesh)) < 0.02 and mesh > 4.5:
-        z = round(mesh)
-        notices.append(Notice.of("teeth_by_tacho", order=mesh, teeth=z))
     return OrderAngle(
         turns=turns * factor,
         first=shaft.first,
@@ -117,7 +114,7 @@ def _teeth_of(
     speed, rate = stated
     per_sample = 2.0 * np.pi * (mesh or 1.0) / teeth * (rate or 1.0)
     low, high = (per_sample * turning for turning in shaft.speeds)
-    fits = speed is not None and of_speed(speed, lowest=low, highest=high) is None
+    fits = speed is not None and not of_speed(speed, lowest=low, highest=high)
     if fits or gearing.is_theirs:
         return teeth
     notices.append(Notice.of("followed_line_undecided", teeth=teeth))

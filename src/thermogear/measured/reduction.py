@@ -42,7 +42,7 @@ from thermogear.measured.readers import read_record
 from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.stated import expected_mesh, speed_undecided, stated_gearing
 from thermogear.measured.traps import unknown_unit
-from thermogear.measured.turns import MeshTurns, mesh_turns
+from thermogear.measured.turns import MeshTurns, few_turns, mesh_turns
 from thermogear.signals.envelope import envelope_rate
 from thermogear.signals.windows import Window
 
@@ -240,6 +240,9 @@ def measure(
         gearing = replace(gearing, mesh_frequency=turns.frequency)
         turns = replace(turns, half_width=turns.half_width + through.turned)
     if gearing is not None:
+        few = few_turns(gearing, teeth=teeth, samples=table.shape[-1])
+        notices += few
+        sidebands = 0 if few else sidebands
         undecided = speed_undecided(gearing, teeth=given[0], speed=speed, rate=record.rate)
         doubt = check_rate(
             record,
@@ -284,9 +287,8 @@ def measure(
                 speed=undecided is not None,
             ),
         )
-    notices += harmonics_told(gearing, harmonics, record.rate)
-    beside = [line.position for line in lines if line.kind != "mesh"]
-    notices += turns.told_of(beside) if turns is not None else []
+    notices += harmonics_told(gearing.mesh_frequency if gearing else None, harmonics, record.rate)
+    notices += dict.fromkeys(turns.told) if turns is not None else []
     lines = [of_velocity(line, record.channel(line.channel)) for line in lines]
     notices += _untold(record, chosen, sensor_tolerance)
     notices += _filtered(wanted, rate, mesh, gearing)
@@ -360,8 +362,7 @@ def _of_slices(
     """The measurement of a run whose speed changes: its lines are means of the slices."""
     run = found.slices
     if run is not None and not run.of_mesh and record.rate is not None:
-        said = of_speed(given[1], lowest=float(run.speed.min()), highest=float(run.speed.max()))
-        notices += [said] if said is not None else []
+        notices += of_speed(given[1], lowest=float(run.speed.min()), highest=float(run.speed.max()))
     return Measurement(
         record,
         tuple(c.name for c in through.channels),

@@ -48,7 +48,6 @@ MOST_STAMPS = 1 << 23
 _OFF = 0.5  # of a step: farthest of a stamp from an even clock, beside rounding
 _JITTER = 0.02  # of a step: jitter, or rounding, that is told
 _EXACTLY = 1e-8  # relative half width that is not told
-_LOW, _HIGH = 1e3, 1e6  # samples/s: between them records of vibration are taken
 
 
 def is_time_name(name: str) -> bool:
@@ -216,25 +215,8 @@ def _paced(found: TimeBase, name: str, seconds: Floats, grain: Floats, unit_name
             )
         )
     if unit_name != "s":
-        notes.append(_in_unit(name, unit_name, 1.0 / pace.step))
+        notes.append(Notice.of("time_unit", column=name, unit=unit_name))
     return _with_rate(replace(found, gaps=gaps, notices=tuple(notes)), name, pace)
-
-
-def _in_unit(name: str, unit_name: str, rate: float) -> Notice:
-    """The unit of a time column; asked about where it makes a ``rate`` [1/s] that is too high for
-    sensors of vibration, and a longer unit would not."""
-    slower = {each: rate * factor_of(unit_name) / factor_of(each) for each in ("us", "ms", "s")}
-    fits = {each: slow for each, slow in slower.items() if _LOW < slow < _HIGH}
-    if rate < _HIGH or not fits:
-        return Notice.of("time_unit", column=name, unit=unit_name)
-    return Notice.of(
-        "time_unit_doubtful",
-        column=name,
-        unit=unit_name,
-        rate=rate,
-        other_units=list(fits),
-        other_rates=list(fits.values()),
-    )
 
 
 def _with_rate(base: TimeBase, name: str, pace: Pace) -> TimeBase:

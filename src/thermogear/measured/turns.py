@@ -50,8 +50,7 @@ class MeshTurns:
     noise brings to that angle and what of the turning it misses, in the mesh line's own phase;
     ``unfollowed``: power beside the line that its reading lacks and that may be its own, of its
     power; ``spread``: what of ``half_width`` comes of that; ``doubt``: share of the power near the
-    line that may be its own or others'; ``withheld``: why lines nearer to it and its harmonics than
-    ``near`` are.
+    line that may be its own or others'.
     """
 
     frequency: float
@@ -64,20 +63,13 @@ class MeshTurns:
     unfollowed: float = 0.0
     spread: float = 0.0
     doubt: float = 0.0
-    withheld: Notice | None = None
-    near: float = 0.0
 
-    def told_of(self, positions: Sequence[float]) -> list[Notice]:
-        """What is told, with that lines at the ``positions`` are withheld, where some are."""
-        near = any(map(self.why_withheld, positions))
-        more = [self.withheld] if self.withheld is not None and near else []
-        return list(dict.fromkeys((*self.told, *more)))
 
-    def why_withheld(self, position: float) -> str:
-        """Why a line at this place [cycles/sample], no harmonic itself, is withheld, or ''."""
-        harmonic = max(1.0, float(np.rint(position / self.frequency))) * self.frequency
-        near = abs(position - harmonic) < self.near
-        return self.withheld.text if self.withheld is not None and near else ""
+def few_turns(gearing: Gearing, *, teeth: int | None, samples: int) -> list[Notice]:
+    """Where the gear of these ``teeth`` turned so little in the ``samples`` that its sidebands are
+    not told from a speed that wanders: they are not read."""
+    turns = gearing.mesh_frequency * samples / teeth if teeth else np.inf
+    return [Notice.of("few_turns", turns=turns, least=_FEW)] if turns < _FEW else []
 
 
 def mesh_turns(
@@ -103,10 +95,6 @@ def mesh_turns(
     turns: MeshTurns | None = None
     if least is not None:
         turns = _follow(values, spectrum, line.frequency, per_cycle, least=least, beside=beside)
-    nearest = min((abs(one - line.frequency) for one in beside), default=np.inf)
-    few = nearest < _FEW * spectrum.bin_width
-    if turns is not None and few:
-        return _or_sidebands(turns, values, spectrum, reading, nearest)
     if turns is not None:
         return _or_steady(turns, spectrum, reading, beside, strong)
     best = reading.frequency, reading.frequency_half_width
@@ -122,14 +110,13 @@ def mesh_turns(
         if other.frequency_half_width / rank < 0.5 * best[1]:  # not the luckier estimate: clearly
             best = other.frequency / rank, other.frequency_half_width / rank
     share, spread = unfollowed(spectrum, reading, beside, strong)
-    steady = MeshTurns(
+    return MeshTurns(
         frequency=best[0],
         half_width=float(np.hypot(best[1], spread)),
         told=_beside(reading, least, share),
         unfollowed=share,
         spread=spread,
     )
-    return _or_sidebands(steady, values, spectrum, reading, nearest) if few else steady
 
 
 def unfollowed(
@@ -209,45 +196,6 @@ def _or_steady(
 def _with_unknown(turns: MeshTurns) -> tuple[Notice, ...]:
     """What is told, and once that lines beside may be sidebands of a shaft that is not known."""
     return tuple(dict.fromkeys((*turns.told, Notice.of("sidebands_or_swing"))))
-
-
-def _or_sidebands(
-    turns: MeshTurns,
-    values: Floats,
-    spectrum: LineSpectrum,
-    reading: Reading,
-    nearest: float,
-) -> MeshTurns:
-    """A line over few turns of a shaft, whose sidebands are ``nearest``.
-
-    A speed that wanders puts power where the sidebands are, and what they hold turns the line's
-    phase. Where the line was followed, or the sidebands are less than two bins off, all power near
-    it that a steady one has not may be the one's or the other's, and may turn the line at both
-    ends. Lines that near are withheld.
-    """
-    width, near = spectrum.bin_width, 2.0 * spectrum.bin_width
-    why = Notice.of("few_turns", turns=nearest / width, least=_FEW)
-    reach = _AS_FAR * nearest + near
-    turned = 0.0
-    if turns.turning is not None:
-        near = reach
-        straight = line_spectrum(turns.turning.resampled(values, 0), float(turns.turning.per_cycle))
-        turned = max(band_power(straight, 1.0, reach / turns.frequency) / turns.power - 1.0, 0.0)
-    elif nearest >= near:
-        return replace(turns, withheld=why, near=near)
-    own = reading.amplitude**2 / (1.0 + reading.changing**2 + reading.turning**2)
-    more = max(band_power(spectrum, reading.frequency, reach) - own, 0.0)
-    # a phase that oscillates by sqrt(turned) [rad] may be at any place at both ends
-    spread = float(np.sqrt(turned)) / np.pi * width
-    return replace(
-        turns,
-        doubt=max(turns.doubt, more / (own + more)),
-        half_width=float(np.hypot(turns.half_width, spread)),
-        spread=float(np.hypot(turns.spread, spread)),
-        withheld=why,
-        near=near,
-        told=turns.told if turns.turning else (*turns.told, why),
-    )
 
 
 def _beside(reading: Reading, least: float | None, share: float) -> tuple[Notice, ...]:
