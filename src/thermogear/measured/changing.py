@@ -201,7 +201,7 @@ def _sliced(
     _require_seen(orders, angle, highest=min(0.43 * per_turn, _HIGHEST / slowest))
     if angle.mesh is not None:
         pace = angle.mesh * slowest if gearing is None else gearing.mesh_frequency
-        notices += harmonics_told(pace, harmonics, record.rate)
+        notices += harmonics_told(pace, asked=harmonics, rate=record.rate)
     wanted = _wanted(gearing, angle, inside, per_turn, harmonics, sidebands, orders, mean)
     if not wanted:
         why = f"in the angle of {shaft.origin} no line is above the noise: does it mark the turns?"
@@ -405,12 +405,12 @@ def require_orders(
         raise InputError("orders", f"{order:g}", allowed=allowed, why=why, fix=fix)
 
 
-def harmonics_told(line: float | None, asked: int, rate: float | None) -> list[Notice]:
+def harmonics_told(line: float | None, *, asked: int, rate: float | None) -> list[Notice]:
     """How many of the ``asked`` mesh harmonics are below rate/2.56, where not all are.
 
     Mesh ``line`` [cycles/sample]; ``rate`` [samples/s].
 
-    >>> [told.data["read"] for told in harmonics_told(0.0596, 20, 10_000.0)]
+    >>> [told.data["read"] for told in harmonics_told(0.0596, asked=20, rate=10_000.0)]
     [6]
     """
     fit = asked if line is None else max(int(_HIGHEST / line), 1)

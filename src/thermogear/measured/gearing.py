@@ -196,7 +196,7 @@ def _clear(sharp: Prominence, ranks: Sequence[int], distance: float) -> list[boo
 
 def _is_confirmed(sharp: Prominence, ranks: Sequence[int], distance: float) -> bool:
     """Whether first sidebands at the ``distance`` [mesh lines] show where lines at any distance
-    would hardly show by chance: about the harmonic that stands out most, or about all."""
+    would hardly show by chance: about the harmonic that is clearest, or about all."""
     top = max(ranks, key=sharp.at, default=1)
     anywhere = np.linspace(*_ANYWHERE, _TRIED)
     share = np.mean([clear for away in anywhere for clear in _clear(sharp, [top], away)] or [True])

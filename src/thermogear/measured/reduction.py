@@ -287,7 +287,9 @@ def measure(
                 speed=undecided is not None,
             ),
         )
-    notices += harmonics_told(gearing.mesh_frequency if gearing else None, harmonics, record.rate)
+    notices += harmonics_told(
+        gearing.mesh_frequency if gearing else None, asked=harmonics, rate=record.rate
+    )
     notices += dict.fromkeys(turns.told) if turns is not None else []
     lines = [of_velocity(line, record.channel(line.channel)) for line in lines]
     notices += _untold(record, chosen, sensor_tolerance)
