@@ -234,7 +234,8 @@ def _stored(result: Result) -> Iterator[str]:
         place = points.get(one.operating, 0)
         here, along = mesh.isel(operating=place), path.isel(operating=place)
         for (name, figure), of in STORED.items():
-            if name != one.name or one.value is None:
+            # a run stores one part beside the answers of a series
+            if name != one.name or one.value is None or "parts" in one.figures:
                 continue
             told = one.value if not figure else getattr(one, "figures", {}).get(figure)
             if told is not None and not math.isclose(told, of(here, along), rel_tol=1e-9):
