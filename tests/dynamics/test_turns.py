@@ -82,7 +82,9 @@ def test_parts_that_never_part_move_as_linear_theory_says(compared) -> None:
     ranks, phase = np.arange(3 * MESH_PERIODS + 1), np.arange(96 * MESH_PERIODS)
     errors = np.stack([_tables(seed, 0.01).error for seed in (1, 2, 3)])
     samples = (errors @ np.exp(2j * np.pi * np.outer(ranks, phase) / phase.size)).real
-    tables = PartTables.of(np.ones_like(samples), samples, mesh_periods=MESH_PERIODS, harmonics=3)
+    tables = PartTables.of(
+        stiffness=np.ones_like(samples), error=samples, mesh_periods=MESH_PERIODS, harmonics=3
+    )
     ratio, ones = np.array([0.15, 0.4, 1.1]), np.ones(3)
     motions = follow_parts(
         tables, rate=np.tile(2.0 * np.pi / ratio, (3, 1)), damping_ratio=0.05 * ones,
@@ -110,9 +112,9 @@ def test_a_stretch_that_goes_on_and_on_is_a_turn() -> None:
         "rate": 2.0 * np.pi / np.array([[0.4, 0.9]]), "damping_ratio": np.array([0.07]),
         "backlash": np.ones(1), "load": np.array([0.05]),
     }  # fmt: skip
-    turn = PartTables.of(stiffness, error, mesh_periods=1, harmonics=24)
-    many = [np.tile(row, 60) for row in (stiffness, error)]
-    stretch = PartTables.of(*many, mesh_periods=40, harmonics=24, ahead=20, periodic=False)
+    turn = PartTables.of(stiffness=stiffness, error=error, mesh_periods=1, harmonics=24)
+    many = {"stiffness": np.tile(stiffness, 60), "error": np.tile(error, 60)}
+    stretch = PartTables.of(**many, mesh_periods=40, harmonics=24, ahead=20, periodic=False)
     one, other = follow_parts(turn, **given), follow_parts(stretch, **given)
     assert one.lost[0, 1] > 0.05
     assert (one.repeats & other.repeats).all()

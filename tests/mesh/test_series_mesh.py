@@ -62,7 +62,7 @@ def mixed(pair: GearPair) -> list[Sequence[Deviation]]:
 def test_every_part_is_what_it_is_alone(spring: str, compared) -> None:
     hot = hot_pair(EVEN, model=MeshModel.consistent().override(spring=spring))
     parts, phase = mixed(EVEN), np.arange(16) / 16
-    several = series_mesh(hot, parts, 36, 16)
+    several = series_mesh(hot, parts, 36, positions=16)
     assert several.whole
     for place, part in enumerate(parts):
         curves, gap = elastic_pair(hot, part).over(phase), Clearance(hot, phase, part)
@@ -74,10 +74,10 @@ def test_every_part_is_what_it_is_alone(spring: str, compared) -> None:
 
 def test_no_digit_hangs_on_the_other_parts(monkeypatch: pytest.MonkeyPatch) -> None:
     hot, parts = hot_pair(EVEN), [*mixed(EVEN), *drawn(EVEN, 5)]
-    whole = series_mesh(hot, parts, 36, 8)
+    whole = series_mesh(hot, parts, 36, positions=8)
     monkeypatch.setattr(series, "BLOCK", 3 * 36 * 8)
     for some in (parts, parts[:4]):
-        again = series_mesh(hot, some, 36, 8)
+        again = series_mesh(hot, some, 36, positions=8)
         for name in CURVES:
             assert np.array_equal(getattr(again, name), getattr(whole, name)[: len(some)])
 
@@ -85,8 +85,8 @@ def test_no_digit_hangs_on_the_other_parts(monkeypatch: pytest.MonkeyPatch) -> N
 def test_a_stretch_is_a_part_of_the_turn(compared) -> None:
     hot, parts = hot_pair(HUNTING), drawn(HUNTING, 4)
     turn, start = 13 * 19, [0, 100, 150, 230]
-    whole = series_mesh(hot, parts, turn, 12)
-    stretch = series_mesh(hot, parts, 60, 12, start)
+    whole = series_mesh(hot, parts, turn, positions=12)
+    stretch = series_mesh(hot, parts, 60, positions=12, start=start)
     assert (whole.whole, stretch.whole) == (True, False)
     ahead = stretch.stiffness.shape[1] // 12 - 60
     assert ahead == stretch.ahead
@@ -103,8 +103,8 @@ def test_a_stretch_is_a_part_of_the_turn(compared) -> None:
 
 def test_the_error_of_the_turn_follows_from_a_stretch_of_it(compared) -> None:
     hot, parts = hot_pair(HUNTING, 300.0), drawn(HUNTING, 6)
-    whole = series_mesh(hot, parts, 13 * 19, 12)
-    stretch = series_mesh(hot, parts, 60, 12, range(0, 240, 40))
+    whole = series_mesh(hot, parts, 13 * 19, positions=12)
+    stretch = series_mesh(hot, parts, 60, positions=12, start=range(0, 240, 40))
     assert np.array_equal(whole.peak_to_peak, np.ptp(whole.transmission_error, axis=1))
     seen = np.ptp(stretch.transmission_error, axis=1) / whole.peak_to_peak
     assert seen.min() < 0.95
@@ -126,7 +126,7 @@ def test_eccentric_gears_of_every_turn_add_up(compared) -> None:
     ]  # fmt: skip
     amounts = np.array([sum(one.amount for one in part) for part in parts])
     hot = hot_pair(HUNTING, 1e-3, temperatures=COLD)
-    swing = series_mesh(hot, parts, 60, 16).peak_to_peak
+    swing = series_mesh(hot, parts, 60, positions=16).peak_to_peak
     # what tip corners add at next to no load is on top
     compared("swing of two eccentric gears", "2 (e1 + e2)", swing / (2.0 * amounts) - 1.0, 4e-3)
 
@@ -141,7 +141,7 @@ def test_a_known_population_has_its_quantiles() -> None:
         for row in xy
     ]  # fmt: skip
     hot = hot_pair(pair, 1e-3, temperatures=COLD)
-    swing = 1e6 * series_mesh(hot, parts, 14, 12).peak_to_peak
+    swing = 1e6 * series_mesh(hot, parts, 14, positions=12).peak_to_peak
     assert np.median(swing) == pytest.approx(16.651, abs=4 * 0.9)
     # of 64 the greatest bounds the 95 % quantile in 96 of 100 series
     assert swing.max() > 34.6
@@ -155,7 +155,7 @@ def test_how_much_of_a_turn_is_followed() -> None:
 def test_textbook_springs_feel_no_deviation() -> None:
     pair = GearPair(Gear(30, 3e-3), Gear(30, 3e-3))
     hot = hot_pair(pair, model=MeshModel.consistent().override(stiffness="textbook-root-circle"))
-    mesh = series_mesh(hot, drawn(pair, 2), 30, 8)
+    mesh = series_mesh(hot, drawn(pair, 2), 30, positions=8)
     assert np.array_equal(mesh.stiffness[0], mesh.stiffness[1])
     gap = Clearance(hot, np.arange(8) / 8, drawn(pair, 2)[1])
     assert mesh.spring_error[1] == pytest.approx(gap.error[0], abs=1e-15)

@@ -285,7 +285,7 @@ class PartTables:
 
     @classmethod
     def of(
-        cls, stiffness: Floats, error: Floats, *, mesh_periods: int, harmonics: int, ahead: int = 0,
+        cls, *, stiffness: Floats, error: Floats, mesh_periods: int, harmonics: int, ahead: int = 0,
         periodic: bool = True,
     ) -> PartTables:  # fmt: skip
         """Of uniform samples (part, phase) over all mesh periods, so many ``harmonics`` of each.
@@ -318,7 +318,7 @@ class PartTables:
         return replace(self, table=np.ascontiguousarray(self.table[:, :, index]))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class PartMotions:
     """(part, speed) each: greatest and least force k f over the mean stiffness [length], share of
     time out of drive-side contact, and whether the motion repeats itself.
@@ -368,7 +368,7 @@ def follow_parts(
     one, other = np.split(felt[back][..., :parts], 2)
     worst, least = np.maximum(one, other), np.minimum(one, other)[:, 1]
     both = np.logical_and(*np.split(repeats[back][..., :parts], 2))
-    return PartMotions(worst[:, 0].T, least.T, worst[:, 2].T, both.T)
+    return PartMotions(greatest=worst[:, 0].T, least=least.T, lost=worst[:, 2].T, repeats=both.T)
 
 
 def _apart(one: Floats, other: Floats, lanes: Floats) -> Floats:

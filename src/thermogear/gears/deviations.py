@@ -128,7 +128,7 @@ class FlankShape(ABC):
 
     @classmethod
     def each(
-        cls, shapes: Sequence[FlankShape], pair: GearPair, rho: Floats, weights: Floats
+        cls, shapes: Sequence[FlankShape], pair: GearPair, rho: Floats, *, weights: Floats
     ) -> Floats:
         """Weighted means over the last axis of ``rho`` [m] of what each shape takes off [m].
 

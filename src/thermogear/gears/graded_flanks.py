@@ -59,11 +59,11 @@ def profile_figures(position: ArrayLike, *, added: ArrayLike) -> ProfileFigures:
         raise InputError(
             "profile", f"{x.size} positions", allowed="three or more, strictly rising, one trace"
         )
-    (figures,) = trace_figures((x - x[0]) / (x[-1] - x[0]), trace[None])
+    (figures,) = trace_figures((x - x[0]) / (x[-1] - x[0]), traces=trace[None])
     return ProfileFigures(*figures.tolist())
 
 
-def trace_figures(share: Floats, traces: Floats) -> Floats:
+def trace_figures(share: Floats, *, traces: Floats) -> Floats:
     """:func:`profile_figures` of ``traces`` (trace, n) at one ``share``, (trace, figure)."""
     line = np.stack([share, np.ones_like(share)], axis=1)
     size = np.sqrt((line * line).sum(axis=0))

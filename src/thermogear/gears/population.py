@@ -120,12 +120,12 @@ class ToothProfile(FlankShape):
 
     @classmethod
     def each(
-        cls, shapes: Sequence[FlankShape], pair: GearPair, rho: Floats, weights: Floats
+        cls, shapes: Sequence[FlankShape], pair: GearPair, rho: Floats, *, weights: Floats
     ) -> Floats:
         """The means of :meth:`FlankShape.each`: of what one tool made from one set of waves."""
         rows = [s for s in shapes if isinstance(s, ToothProfile)]
         if len({row.waves for row in rows}) != 1 or len(rows) < len(shapes):
-            return super().each(shapes, pair, rho, weights)
+            return super().each(shapes, pair, rho, weights=weights)
         start, pitch, tip = active_profile(pair, rows[0].gear)
         slope, barrel, wave, phase = np.array(
             [(row.slope, row.barrel, row.wave, row.phase) for row in rows]
@@ -197,7 +197,7 @@ def _figures(pair: GearPair, name: str, added: Floats) -> GearFigures:
     arc = added[: gear.teeth] / math.cos(gear.pressure_angle)
     traces = added[gear.teeth :].reshape(MEASURED_TEETH, _POINTS)
     share = np.arange(_POINTS) / (_POINTS - 1.0)
-    slope, form, total = np.abs(trace_figures(share, traces)).max(axis=0)
+    slope, form, total = np.abs(trace_figures(share, traces=traces)).max(axis=0)
     steps = np.abs(np.diff(np.append(arc, arc[0])))
     return GearFigures(float(steps.max()), float(np.ptp(arc)), *map(float, (slope, form, total)))
 

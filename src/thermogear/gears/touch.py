@@ -345,7 +345,7 @@ def _tables(
         for shape in shapes:
             if shape.gear == name:
                 each = shape.shapes if isinstance(shape, ToothShapes) else (shape,)
-                taken = type(each[0]).each(each, pair, inside, weights)
+                taken = type(each[0]).each(each, pair, inside, weights=weights)
                 table = table + np.moveaxis(taken, 0, -1)
         tables.append(table)
     lead = np.broadcast_shapes(*(table.shape[:-2] for table in tables))

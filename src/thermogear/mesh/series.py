@@ -37,7 +37,7 @@ AHEAD = 24
 damping ratio of .07 a vibration falls to 1e-4 of itself in 23 of them."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class SeriesMesh:
     """The mesh of every part over ``mesh_periods`` mesh periods, (part, phase), one after another.
 
@@ -109,6 +109,7 @@ def series_mesh(
     hot: HotPair,
     parts: Sequence[Sequence[Deviation]],
     periods: int,
+    *,
     positions: int = TURN_POSITIONS,
     start: Sequence[int] | None = None,
 ) -> SeriesMesh:
@@ -141,8 +142,10 @@ def series_mesh(
     transmission, error, stiffness, backlash = curves
     seen = slice(ahead * positions, None)
     return SeriesMesh(
-        pair, transmission[:, seen], error, stiffness, backlash[:, seen], periods, whole, ahead
-    )
+        pair=pair, transmission_error=transmission[:, seen], spring_error=error,
+        stiffness=stiffness, half_backlash=backlash[:, seen], mesh_periods=periods, whole=whole,
+        ahead=ahead,
+    )  # fmt: skip
 
 
 def _from(pair: GearPair, deviation: Deviation, first: int) -> Deviation:

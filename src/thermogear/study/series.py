@@ -40,7 +40,7 @@ def series_parts(case: GearCase, count: int) -> tuple[tuple[Deviation, ...], ...
     return tuple(part(place) for place in range(count))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class SeriesMotion:
     """Motions of the parts of a series, (damping, part, speed).
 
@@ -79,8 +79,8 @@ def series_motion(
     natural = np.sqrt(mean / mass)
     harmonics = (point.stiffness.shape[1] - 1) // point.mesh_periods
     tables = PartTables.of(
-        mesh.stiffness / mean[:, None], mesh.spring_error, mesh_periods=mesh.mesh_periods,
-        harmonics=harmonics, ahead=mesh.ahead, periodic=mesh.whole,
+        stiffness=mesh.stiffness / mean[:, None], error=mesh.spring_error,
+        mesh_periods=mesh.mesh_periods, harmonics=harmonics, ahead=mesh.ahead, periodic=mesh.whole,
     )  # fmt: skip
     rate = 2.0 * np.pi * natural[:, None] / (mesh.pair.pinion.teeth * speed)
     backlash, deep = mesh.half_backlash.mean(axis=1), load / mean
@@ -100,4 +100,7 @@ def series_motion(
         most = newton * np.maximum(motions.greatest, -motions.least)
         factor[at], least[at] = most / load, newton * motions.least
         lost[at], repeats[at] = motions.lost, motions.repeats
-    return SeriesMotion(speed, damping_ratio, factor, lost, least, repeats)
+    return SeriesMotion(
+        speed=speed, damping_ratio=damping_ratio, dynamic_factor=factor, contact_loss_share=lost,
+        mesh_force_min=least, repeats=repeats,
+    )  # fmt: skip
