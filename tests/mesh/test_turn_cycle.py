@@ -11,6 +11,7 @@ import pytest
 from thermogear import Gear, GearPair, InputError, MeshModel, Operating, Temperatures, mesh_cycle
 from thermogear.base.excitation import Periodic
 from thermogear.base.materials import lubricant
+from thermogear.case.points import points_of
 from thermogear.gears.deviations import Deviation, PitchError, Relief
 from thermogear.gears.turn import Eccentricity
 from thermogear.mesh import cycle as of_cycle
@@ -300,3 +301,23 @@ def test_stretches_of_a_turn_change_no_number(monkeypatch: pytest.MonkeyPatch) -
         np.testing.assert_allclose(values, whole[name], rtol=1e-12, atol=1e-18, err_msg=name)
     # 900 positions and the first mesh period, but eight periods and it at least
     assert max(sizes) <= 900 + TURN_POSITIONS
+
+
+def test_the_tables_of_a_turn_are_held_once_along_a_row_of_speeds() -> None:
+    cycle = mesh_cycle(SMALL, at(), MODEL, deviations=errors(SMALL), want=EXCITES)
+    mesh = excitations(
+        cycle, SMALL, damping_ratio=0.05, transmission_error=Periodic(0.0), harmonics=4
+    )
+    speeds = np.linspace(1e3, 2e3, 5)
+    along = replace(mesh.take(np.zeros(5, int)), mesh_frequency=speeds)
+    points = points_of(along)
+    apart = points_of(replace(along, stiffness=along.stiffness.copy(), error=along.error.copy()))
+    for tables in (
+        along.stiffness,
+        along.error,
+        points.flat.stiffness,
+        points.take(np.arange(5)).error,
+    ):
+        assert tables.strides[0] == 0
+    np.testing.assert_array_equal(points.flat.stiffness, apart.flat.stiffness)
+    np.testing.assert_array_equal(points.flat.force, apart.flat.force)

@@ -242,7 +242,7 @@ class Excitations:
             rubbed = tuple(rubbed[i] for i in np.arange(len(self))[chosen])
         arrays = [field.name for field in fields(self) if field.name not in _OF_ALL]
         place = np.arange(len(self))[chosen]
-        taken = {name: rows_at(getattr(self, name), place) for name in arrays}
+        taken: dict[str, Any] = {name: rows_at(getattr(self, name), place) for name in arrays}
         return replace(self, **taken, friction=rubbed)
 
     @classmethod

@@ -153,7 +153,7 @@ def points_of(found: Excitations) -> Points:
     ranks = np.arange(found.error.shape[1])
     bent = by_row(lambda error: error * (2j * np.pi * ranks) ** 2, found.error)
     scale = (frequency / (2.0 * np.pi)) ** 2 / length
-    force: NDArray[np.complex128] = bent * scale[:, None]
+    force: NDArray[np.complex128] = np.multiply(bent, scale[:, None])
     force *= -1.0
     force[:, 0] = found.mean_force / (mean * length)
     none_at_all = (None,) * count

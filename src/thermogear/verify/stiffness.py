@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -44,8 +45,13 @@ class FinitePair:
     share: Floats
 
 
+@lru_cache(maxsize=2)
 def _sectors(pair: GearPair, line_load: float, density: Density) -> tuple[FlankSector, FlankSector]:
-    """Meshes whose elements are a part of the half width of one pair at the pitch point."""
+    """Meshes whose elements are a part of the half width of one pair at the pitch point.
+
+    Remembered with what was solved on them, which is most of the work: the plane state around the
+    contacts and the model beside play no part in it.
+    """
     materials = (pair.pinion.material, pair.wheel.material)
     modulus = 1.0 / sum((1.0 - m.poisson_ratio**2) / m.youngs_modulus for m in materials)
     rho = pair.path.c * (1.0 - pair.path.c / pair.line_of_action)
