@@ -14,7 +14,7 @@ BENCH_STAMP := .bench-venv/.installed
 AUDIT_BIN := .audit-venv/bin
 AUDIT_STAMP := .audit-venv/.installed
 
-.PHONY: audit bench bench-coordinates bench-geared bench-measure bench-paths bench-shafts bench-train-map check chromium clean compile demo friction-evidence house licences lint lock look lowest mutate release-check same sbom test trial-answers trial-app trial-attacks trial-base-sets trial-branches trial-coverage trial-damage trial-defects trial-experiment trial-heat trial-hostile trial-kills trial-labels trial-located trial-long trial-matched trial-pairs trial-public trial-shafts trial-stamps trial-swings trial-teeth trial-trains trial-turn trial-turning trial-verdicts unit
+.PHONY: audit bench bench-coordinates bench-geared bench-measure bench-paths bench-shafts bench-train-map check chromium clean compile demo friction-evidence house licences lint lock look lowest mutate release-check same sbom test trial-answers trial-app trial-attacks trial-base-sets trial-branches trial-coverage trial-damage trial-defects trial-experiment trial-heat trial-hostile trial-kills trial-labels trial-located trial-long trial-matched trial-pairs trial-public trial-series trial-shafts trial-stamps trial-swings trial-teeth trial-trains trial-turn trial-turning trial-verdicts unit
 
 demo: $(STAMP)  ## the main job: the rig's case file to a report
 	$(BIN)/thermogear example rig > .venv/rig.toml
@@ -184,6 +184,9 @@ trial-coverage: $(STAMP)  ## do stated 95 % intervals of lines hold? 500 records
 
 trial-turn: $(STAMP)  ## 40 random pairs with pitch errors: motion over a turn against an own integration, five minutes; docs/trial_turn.md
 	@OPENBLAS_NUM_THREADS=1 $(BIN)/python checks/trial_turn.py
+
+trial-series: $(STAMP)  ## do the bands of a series hold fresh pairs of the class? ten pairs, minutes; docs/trial_series.md
+	@OPENBLAS_NUM_THREADS=1 $(BIN)/python checks/trial_series.py
 
 trial-turning: $(STAMP)  ## orders of runs of eight kinds (lost pulses, no tacho, a stop, ...): do intervals hold? ten minutes; docs/trial_turning.md
 	@OPENBLAS_NUM_THREADS=1 $(BIN)/python checks/trial_turning.py

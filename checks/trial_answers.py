@@ -24,6 +24,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.stats.mstats import hdquantiles
 
 from thermogear import answers, load_case, run
 from thermogear.base.errors import InputError
@@ -62,7 +63,8 @@ def contradictions(result: Result) -> Iterator[str]:
         if UNSAID.search(NAMES.sub("", notice.text)):
             yield f"notice: {notice.text}"
     yield from _each_other(answers)
-    yield from _drawn(result)
+    if result.group("series") is not None:
+        yield from _series(result)
     if result.group("speeds") is not None:
         yield from _speeds(result)
     if result.group("mesh") is not None:
@@ -141,17 +143,30 @@ def _each_other(answers: tuple[Answer, ...]) -> Iterator[str]:
             yield f"{left:.3g} um left beside a margin of {margin:.3g} K"
 
 
-def _drawn(result: Result) -> Iterator[str]:
-    """The notice on other drawings of flanks has the range of the answer."""
-    told = [one.data for one in result.notices if one.code == "flanks_are_one_drawing"]
-    figures = [one.figures for one in result.answers if "drawings" in getattr(one, "figures", {})]
-    for data in told if figures else ():
-        known = [float(figures[0][name]) for name in ("drawings", "least", "greatest", "hot")]
-        stated = [data["drawings"], *(1e6 * end for end in (*data["errors"][0], data["this"]))]
-        if not np.allclose(stated, known):
-            yield f"{stated} beside {known}"
-        if not known[1] <= known[3] <= known[2]:
-            yield f"this drawing's {known[3]:.4g} um is outside {known[1]:.4g} to {known[2]:.4g}"
+def _series(result: Result) -> Iterator[str]:
+    """The answers of a series against what is stored of its parts."""
+    data = result.group("series")
+    assert data is not None
+    by = {one.name: one for one in result.answers}
+    rpm = data["contact_loss_onset"].values[0] / RPM
+    figures = by["contact_loss"].figures
+    told = [figures["pairs"], figures.get("first", math.nan)]
+    within = int((rpm <= figures["top"] * (1.0 + 1e-9)).sum())
+    stored = [within, float(np.nanmin(rpm)) if np.isfinite(rpm).any() else math.nan]
+    if not np.allclose(told, stored, rtol=1e-9, equal_nan=True):
+        yield f"contact_loss: {told} told, {stored} stored"
+    if len({one.operating for one in result.answers if one.operating}) > 1:
+        return  # what is stored is of the hardest point
+    error, factor = data["mesh_error"].values, data["own_dynamic_factor"].values[0]
+    for name, prefix, values in (
+        ("transmission_error", "mesh", 1e6 * error),
+        ("dynamic_factor", "part", factor),
+    ):
+        figures, shares = by[name].figures, (0.05, 0.5, 0.95)
+        names = [f"{prefix}_{which}" for which in ("low", "middle", "high")]
+        stored = [float(value) for value in hdquantiles(values[np.isfinite(values)], shares)]
+        if names[0] in figures and not np.allclose([figures[n] for n in names], stored):
+            yield f"{name}: {[figures[n] for n in names]} told, {stored} stored"
 
 
 def _speeds(result: Result) -> Iterator[str]:
@@ -272,6 +287,7 @@ def drawn_text(number: int, seed: int = SEED) -> str:
             text += 'material = "POM"\n'
     if rng.random() < 0.7:
         text += f"[flanks]\naccuracy = {rng.integers(3, 11)}\nseed = {rng.integers(1, 100)}\n"
+        text += "parts = 16\n" * (number % 4 == 0)
         text += 'edition = "1995"\n' * (rng.random() < 0.3)
     heat = float(rng.uniform(30.0, 130.0))
     text += f'[oil]\nname = "{sorted(LUBRICANTS)[int(rng.integers(len(LUBRICANTS)))]}"\n'

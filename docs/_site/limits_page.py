@@ -27,7 +27,7 @@ ERROR = r"""
 Peak to peak, the sum of what manufacture and the load leave. Flanks within the tolerances of
 ISO 1328-1 lead by at most $f_{H\alpha1} + f_{f\alpha1} + f_{H\alpha2} + f_{f\alpha2}$ without
 load: slope and form of both gears, by their class, module and diameter. Most pairs of a class stay
-well below; the answer tells what 16 drawings of it have. The load adds $\tfrac{3}{7}\,w/c'$, the
+well below; the answer tells what 64 pairs of it have. The load adds $\tfrac{3}{7}\,w/c'$, the
 line load over the single stiffness of ISO 6336-1: with $c_\gamma = c'(0.75\varepsilon + 0.25)$ what
 the step from one pair to two leaves at $\varepsilon = 2$, on flanks without relief.
 """

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -10,9 +11,10 @@ import xarray as xr
 
 from coded import coded
 from thermogear.base.errors import GeometryError, InputError
-from thermogear.case.case import GearCase, load_example
+from thermogear.case.case import GearCase, gear_case, load_case, load_example
 from thermogear.case.flanks import relief_text
 from thermogear.gears.deviations import FlankTable, PitchError, PressureAngleError, Relief
+from thermogear.gears.population import Population, drawn_pair
 from thermogear.mesh.cycle import mesh_cycle
 from thermogear.study.run import run
 
@@ -24,6 +26,19 @@ def rig(*changes: str) -> GearCase:
     case = load_example("rig", [*ONE, *changes])
     assert isinstance(case, GearCase)
     return case
+
+
+SERIES = """[gears]
+module = "3 mm"
+face_width = "30 mm"
+[gears.pinion]
+teeth = 20
+[gears.wheel]
+teeth = 40
+[operating]
+speed = "3000 rpm"
+torque = "80 N m"
+"""
 
 
 def test_every_kind_of_deviation_is_read_in_si() -> None:
@@ -148,3 +163,65 @@ def test_a_relief_pasted_into_a_case_is_the_same_relief() -> None:
     assert read.amount == pytest.approx(relief.amount, rel=1e-12)
     assert read.length == pytest.approx(relief.length, rel=1e-12)
     assert read.shape == "parabolic"
+
+
+@pytest.mark.parametrize(
+    ("changes", "parts"),
+    [
+        ((), 64),
+        (("flanks.accuracy=8",), 64),
+        (("flanks.parts=16",), 16),
+        (("flanks.seed=1",), 1),
+        (("flanks.seed=3", "flanks.parts=100"), 100),
+        (("flanks.teeth=drawn",), 64),
+        (("flanks.teeth=drawn", "flanks.drawing=0"), 1),
+        (("gears.period=mesh",), 1),
+        (("gears.part=nominal",), 1),
+        (("model.stiffness=textbook-30-degree",), 1),
+        (("gears.pinion.eccentricity.amount=5 um",), 1),
+        (("gears.wheel.tooth_profiles=[{slope=['2 um']}]",), 1),
+        (("transmission_error.harmonics=[{order=1, amplitude='3 um'}]",), 1),
+    ],
+)
+def test_a_class_without_a_seed_is_a_series(changes: tuple[str, ...], parts: int) -> None:
+    case = gear_case(load_case(SERIES, changes))
+    assert case.series == parts
+    told = {one.field for one in case.assumptions}
+    assert {"flanks.parts", "dynamics.damping_ratio_least"} <= told or parts != 64
+    assert ("dynamics.damping_ratio_least" in told) == (parts > 1)
+    # what other studies follow is the drawing that it was
+    seeded = gear_case(load_case(SERIES, [*changes, "flanks.seed=1"]))
+    if case.deviations and "flanks.seed=3" not in changes:
+        assert case.deviations == seeded.deviations
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        (("flanks.parts=15",), "flanks.parts: got 15; allowed 1, or 16..1024"),
+        (("flanks.parts=64", "gears.pinion.eccentricity.amount=5 um"),
+         "flanks.parts: got 64; allowed 1"),
+        (("dynamics.damping_ratio=0.1", "dynamics.damping_ratio_least=0.02"),
+         "dynamics.damping_ratio: got 0.1; allowed 0.02..0.07"),
+    ],
+)  # fmt: skip
+def test_a_series_that_cannot_be_is_refused(changes: tuple[str, ...], message: str) -> None:
+    with pytest.raises(InputError, match=re.escape(message)):
+        load_case(SERIES, changes)
+
+
+def test_a_damping_that_is_stated_narrows_the_band() -> None:
+    def dampings(*changes: str) -> tuple[float, ...]:
+        names = (f"dynamics.damping_ratio{change}" for change in changes)
+        return gear_case(load_case(SERIES, tuple(names))).dampings
+
+    assert dampings() == pytest.approx((0.07, 0.02, math.sqrt(0.02 * 0.07)))
+    assert dampings("=0.05") == (0.05,)
+    assert dampings("=0.05", "_least=0.03") == (0.05, 0.03, 0.07)
+    assert dampings("=0.05", "_least=0.05", "_most=0.05") == (0.05,)
+
+
+def test_the_population_is_that_of_the_file() -> None:
+    case = gear_case(load_case(SERIES, ["flanks.population.wave=0.1", "flanks.teeth=drawn"]))
+    assert case.population == Population(wave=0.1)
+    assert case.deviations == drawn_pair(case.pair, 6, seed=1, population=Population(wave=0.1))

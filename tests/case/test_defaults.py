@@ -109,11 +109,12 @@ SETTINGS = ("grid.", "simulation.")
 PURE = re.compile(r"[0-9.e+-]+(, [0-9.e+-]+)*")
 NAMES = {
     "gears.pinion.material", "gears.wheel.material", "housing.material", "oil.name",
-    "inertia.model", "temperatures.follow", "flanks.accuracy",
+    "inertia.model", "temperatures.follow", "flanks.accuracy", "flanks.population",
 }  # fmt: skip
 UNITLESS = {
     "gears.pinion.profile_shift", "gears.wheel.profile_shift", "gearbox.wetted_share",
     "gearbox.immersion", "gearbox.bearing_coefficient", "dynamics.damping_ratio", "flanks.seed",
+    "dynamics.damping_ratio_least", "dynamics.damping_ratio_most", "flanks.parts",
 }  # fmt: skip
 
 

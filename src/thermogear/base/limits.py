@@ -133,6 +133,12 @@ LIMITS: dict[str, Limit] = {
         "speed with a dynamic factor above 2",
     ),
     "contact_loss": Limit("%", what="own speeds in it", most=0.0, source="flanks that part hammer"),
+    "parting_pairs": Limit(
+        "%",
+        what="pairs in which it happens",
+        most=10.0,
+        source="ours: nine of ten pairs run without it up to the greatest own speed",
+    ),
     "back_contact": Limit(
         "%", what="own speeds in it", most=0.0, source="a tooth that hits the back side rattles"
     ),

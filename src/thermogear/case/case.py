@@ -35,7 +35,14 @@ from thermogear.case.charts import Chart, charts, enclosed
 from thermogear.case.dimensionless import Point, points_of
 from thermogear.case.dimensionless_schema import DimensionlessFile
 from thermogear.case.examples import example_text
-from thermogear.case.flanks import accuracy, deviations, first_tooth, unmeasured
+from thermogear.case.flanks import (
+    accuracy,
+    deviations,
+    first_tooth,
+    population,
+    series,
+    unmeasured,
+)
 from thermogear.case.gearbox import Reading, gearbox, heated
 from thermogear.case.ranges import in_proportion, warn_of_temperatures, warn_of_torque
 from thermogear.case.refusals import complaints, together
@@ -48,7 +55,7 @@ from thermogear.case.units import shown
 from thermogear.gears.accuracy import flank_class
 from thermogear.gears.deviations import Deviation
 from thermogear.gears.pair import GearPair
-from thermogear.gears.population import measured
+from thermogear.gears.population import Population, measured
 from thermogear.gears.turn import turn_period
 from thermogear.heat.gearbox import Surroundings, fluid_from
 from thermogear.mesh.balance import Gearbox, HeatBalance, heat_balance
@@ -123,6 +130,7 @@ class GearCase(Case):
     ``gear_temperatures`` [K] is the row of addendum temperatures of both gears; ``follow`` says how
     the other temperatures go along with it (:data:`~thermogear.case.fields.FOLLOW`).
     ``deviations`` of the flanks, their ``accuracy`` class where they follow from one, the
+    ``series``: how many parts of it the answers are of (1: the part of the case alone), the
     ``charts`` they were measured in; ``readings`` of thermometers; ``sensors`` that watch a
     warm-up; ``train`` of shafts, if drawn; ``scuffing_load_stage`` of the oil in the FZG test, None
     where unknown. ``inertias`` [kg m^2]; ``transmission_error`` the kinematic one [m] over the mesh
@@ -150,6 +158,7 @@ class GearCase(Case):
     base_sets: tuple[str, ...] = ()
     deviations: tuple[Deviation, ...] = ()
     accuracy: int | None = None
+    series: int = 1
     charts: tuple[Chart, ...] = ()
     gearbox: Gearbox = field(default_factory=Gearbox)
     readings: tuple[Reading, ...] = ()
@@ -183,6 +192,21 @@ class GearCase(Case):
     def period(self) -> Period:
         """After how many mesh periods the deviations come again."""
         return turn_period(self.pair, self.deviations)
+
+    @property
+    def population(self) -> Population:
+        """How the gears of a class differ."""
+        return population(self.file)
+
+    @property
+    def seed(self) -> int:
+        """The seed of flanks that are drawn."""
+        return 1 if self.file.flanks is None else self.file.flanks.seed
+
+    @property
+    def dampings(self) -> tuple[float, ...]:
+        """Damping ratios [-] of a series: the case's own first, then two others or none."""
+        return self.file.dynamics.dampings
 
     def tooth_number(self, gear: str, place: int) -> int:
         """The number, from 1, in the file of the ``place``-th tooth, from 0, that meshes."""
@@ -479,6 +503,15 @@ def case_of(
                 f"{case.assembly_count} assemblies; decides which errors meet",
             ),
         )
+    one_part = case.series == 1
+    drawn = read.flanks is not None and read.flanks.teeth == "drawn"
+    unused = {
+        "flanks.parts": one_part,
+        "flanks.population": one_part and not drawn,
+        "dynamics.damping_ratio_least": one_part or len(case.dampings) == 1,
+        "dynamics.damping_ratio_most": one_part or len(case.dampings) == 1,
+    }
+    found = tuple(each for each in found if not unused.get(each.field))
     if read.gears.face_width is not None:  # one for both is no default of each
         found = tuple(one for one in found if not one.field.endswith(".face_width"))
     if "bundle" in read.model.model_fields_set:  # who names a bundle names its choices
@@ -495,6 +528,9 @@ def _decided(case: GearCase) -> dict[str, str]:
         f"model.{name}": " and ".join(dict.fromkeys(str(one[name]) for one in choices))
         for name in choices[0]
     }
+    if case.series > 1:
+        found["flanks.parts"] = str(case.series)
+        found["flanks.population"] = "ours"
     if len(case.charts) == 2:
         found["flanks.accuracy"] = found["flanks.seed"] = "none: both gears are measured"
     return found
@@ -560,7 +596,8 @@ def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
     train = train_plan(file, pair, materials, inertias)
     if train is not None:
         box = heated(file, pair, box, train, housing)
-    measured = charts(file, pair)
+    measured, models = charts(file, pair), parts.models(file, pair)
+    grade = accuracy(file, pair)
     return GearCase(
         pair=pair,
         stated=Operating(
@@ -579,7 +616,7 @@ def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
         damping_ratio=file.dynamics.damping_ratio,
         transmission_error=parts.transmission_error(file),
         cold_backlash=backlash,
-        models=parts.models(file, pair),
+        models=models,
         speeds=speeds,
         torques=torques,
         harmonics=file.grid.harmonics,
@@ -588,7 +625,8 @@ def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
         pictures=file.draw.pictures,
         base_sets=file.draw.base_sets,
         deviations=deviations(file, pair, measured),
-        accuracy=accuracy(file, pair),
+        accuracy=grade,
+        series=series(file, grade, loaded=models[0].stiffness == "loaded"),
         charts=measured,
         gearbox=box,
         readings=readings,

@@ -10,6 +10,7 @@ from thermogear.base import bounds
 from thermogear.base.errors import InputError, short
 from thermogear.case.fields import Choice, Count, Measure, Number, Reader, Several, Words, measure
 from thermogear.case.table import Table, one_of
+from thermogear.gears.population import Population
 
 Flank = Annotated[str, Choice("drive", "back", "both")]
 
@@ -132,6 +133,63 @@ class EnclosedTable(Table):
     text: Annotated[str, Content()]
 
 
+_DRAWN = Population()
+_Share = Annotated[float, Number(low=0.0, high=5.0, example="0.25")]
+
+
+class PopulationTable(Table):
+    """How the gears of a class differ, as shares of its tolerances: assumed, no public numbers."""
+
+    eccentricity: _Share = Field(
+        default=_DRAWN.eccentricity, description="mean of 2 e/cos(alpha) over F_pT, e Rayleigh"
+    )
+    index: _Share = Field(
+        default=_DRAWN.index, description="standard deviation of each tooth's index over f_pT"
+    )
+    orders: Annotated[
+        tuple[int, ...], Several(Count(low=1, high=20, example="2"), least=0, most=20)
+    ] = Field(default=_DRAWN.orders, description="waves of the index around the gear")
+    order: _Share = Field(
+        default=_DRAWN.order, description="mean amplitude of a wave of order q over f_pT/q"
+    )
+    slope: _Share = Field(
+        default=_DRAWN.slope, description="standard deviation of all teeth's slope over f_HalphaT"
+    )
+    slope_scatter: _Share = Field(
+        default=_DRAWN.slope_scatter, description="the same of each tooth's own"
+    )
+    barrel: Annotated[
+        tuple[float, ...],
+        Several(Number(low=0.0, high=5.0, example="0.25"), least=2, most=2, single=False),
+    ] = Field(
+        default=_DRAWN.barrel,
+        description="mean and standard deviation of its height over f_falphaT",
+    )
+    wave: _Share = Field(
+        default=_DRAWN.wave, description="mean amplitude of the form's wave over f_falphaT"
+    )
+    waves: Annotated[
+        tuple[float, ...],
+        Several(Number(low=0.0, high=20.0, example="2.0"), least=2, most=2, single=False),
+    ] = Field(default=_DRAWN.waves, description="from least to most over the active profile")
+    form_scatter: _Share = Field(
+        default=_DRAWN.form_scatter, description="scatter of barrel and wave from tooth to tooth"
+    )
+    phase_scatter: Annotated[float, Measure("angle", "0 deg", "360 deg", example="43 deg")] = Field(
+        default=_DRAWN.phase_scatter, description="the same of the wave's phase"
+    )
+    least: Annotated[float, Number(low=0.0, high=1.0, example="0.7")] = Field(
+        default=_DRAWN.least,
+        description="the worst deviation of a gear is from this share of its tolerance to 1: "
+        "below 1/sqrt(2) it would be of a better class",
+    )
+
+
+LEAST_PARTS, PARTS = 16, 64
+"""Parts of a series: at least, and where none are stated. The greatest of 64 bounds 95 % of all
+parts with a confidence of 96 %."""
+
+
 class FlanksTable(Table):
     """How true the flanks are: measured, or an accuracy class that seeded deviations keep."""
 
@@ -156,6 +214,27 @@ class FlanksTable(Table):
     )
     seed: Annotated[int, Count(low=0, high=2**31 - 1, example="1")] = Field(
         default=1,
-        description="one drawing of the flanks of the class; another seed decides for other flanks "
-        "of the same class",
+        description="of the drawing of the class that all studies but the answers take, and of the "
+        "series; another seed decides for other flanks of the same class",
     )
+    parts: Annotated[int | None, Count(low=1, high=1024, example="64")] = Field(
+        default=None,
+        description="pairs of the class that the answers are of: the greatest of 64 bounds 95 % of "
+        "all with 96 % confidence; a stated seed, or measured flanks, are one. Decides the band",
+    )
+    population: PopulationTable | None = Field(
+        default=None,
+        description="how gears of a class differ is assumed: no public numbers say how much of "
+        "their tolerances real gears use. Decides the band of the answers",
+    )
+
+    @model_validator(mode="after")
+    def _enough(self) -> FlanksTable:
+        if self.parts is not None and 1 < self.parts < LEAST_PARTS:
+            raise InputError(
+                "parts",
+                self.parts,
+                allowed=f"1, or {LEAST_PARTS}..1024",
+                why="fewer say little of a series",
+            )
+        return self

@@ -10,7 +10,7 @@ import numpy as np
 
 from thermogear.base.errors import InputError
 from thermogear.case.charts import Chart
-from thermogear.case.flank_schema import ToothProfilesTable, ToothTable
+from thermogear.case.flank_schema import PARTS, ToothProfilesTable, ToothTable
 from thermogear.case.schema import GearFile, GearTable
 from thermogear.gears.candidates import mesh_points
 from thermogear.gears.deviations import (
@@ -25,7 +25,7 @@ from thermogear.gears.deviations import (
 )
 from thermogear.gears.graded_flanks import WavyProfile, graded_flanks
 from thermogear.gears.pair import GearPair
-from thermogear.gears.population import drawn_pair
+from thermogear.gears.population import Population, drawn_pair
 from thermogear.gears.turn import Eccentricity, ToothShapes, mean_tooth, numbered_from
 
 OF_METAL, OF_PLASTICS = 6, 9
@@ -221,7 +221,14 @@ def _graded(file: GearFile, pair: GearPair) -> tuple[Deviation, ...]:
                 )
     try:
         profiles: tuple[Deviation, ...] = (
-            drawn_pair(pair, grade, seed=table.seed, place=table.drawing, edition=edition)
+            drawn_pair(
+                pair,
+                grade,
+                seed=table.seed,
+                place=table.drawing,
+                edition=edition,
+                population=population(file),
+            )
             if drawn
             else graded_flanks(pair, grade, seed=table.seed, edition=edition)
         )
@@ -236,6 +243,40 @@ def _graded(file: GearFile, pair: GearPair) -> tuple[Deviation, ...]:
             fix="give [transmission_error] harmonics, or measured profiles, instead",
         ) from error
     return tuple(one for one in profiles if getattr(one, "gear", None) in unmeasured(file))
+
+
+def population(file: GearFile) -> Population:
+    """How the gears of a class differ, with what the file says of it."""
+    table = None if file.flanks is None else file.flanks.population
+    return Population() if table is None else Population(**table.model_dump())
+
+
+def series(file: GearFile, grade: int | None, *, loaded: bool) -> int:
+    """How many parts of the class ``grade`` the answers are of; 1: the part of the case alone.
+
+    One where a seed is stated, flanks or pitches are given, all teeth are taken alike, or the
+    springs do not feel the flanks (not ``loaded``).
+    """
+    table = file.flanks
+    if table is None or grade is None or file.gears.period == "mesh":
+        return 1
+    error = file.transmission_error
+    given = [gear for gear in GEARS if _differing(getattr(file.gears, gear))]
+    drawn = loaded and len(unmeasured(file)) == 2 and not given and not (error and error.harmonics)
+    if table.parts is None:
+        return PARTS if drawn and not {"seed", "drawing"} & table.model_fields_set else 1
+    if table.parts > 1 and not drawn:
+        raise InputError(
+            "flanks.parts", table.parts, allowed="1",
+            why="a series is drawn of flanks that are not given, under the loaded contact",
+            fix="leave it out",
+        )  # fmt: skip
+    return table.parts
+
+
+def _differing(table: GearTable) -> bool:
+    """Whether the teeth of a gear are given one by one."""
+    return bool(table.pitch_errors or table.eccentricity or table.teeth_differ)
 
 
 def unmeasured(file: GearFile) -> list[str]:

@@ -551,6 +551,44 @@ class DynamicsTable(Table):
         description="usual for steel gears, where 0.03 to 0.17 are measured. "
         "Decides the height of resonances and which motions are periodic",
     )
+    damping_ratio_least: Annotated[float, Number(low=0.0, high=2.0, example="0.02")] = Field(
+        default=0.02,
+        description="the other bound of a series: jumps at every load, as tests of a 50:50 pair "
+        "report them, need less than 0.035 (recalled). Decides whether flanks part",
+    )
+    damping_ratio_most: Annotated[float, Number(low=0.0, high=2.0, example="0.07")] = Field(
+        default=0.07,
+        description="the bound of a series that is usual for steel gears. Decides its gentler end",
+    )
+
+    @property
+    def dampings(self) -> tuple[float, ...]:
+        """Damping ratios of a series: the usual one first, then the bounds, least first.
+
+        Where it is one of the bounds, the geometric mean of both takes the place of that one. A
+        given ratio without bounds is the only one.
+        """
+        ratio, bounds_of = self.damping_ratio, (self.damping_ratio_least, self.damping_ratio_most)
+        stated = self.model_fields_set
+        if bounds_of[0] == bounds_of[1] or (
+            "damping_ratio" in stated and not {"damping_ratio_least", "damping_ratio_most"} & stated
+        ):
+            return (ratio,)
+        between = math.sqrt(bounds_of[0] * bounds_of[1])
+        others = [between if bound == ratio else bound for bound in bounds_of]
+        return (ratio, *sorted(others))
+
+    @model_validator(mode="after")
+    def _within(self) -> DynamicsTable:
+        ends = (self.damping_ratio_least, self.damping_ratio_most)
+        if self.dampings != (self.damping_ratio,) and not ends[0] <= self.damping_ratio <= ends[1]:
+            raise InputError(
+                "damping_ratio",
+                self.damping_ratio,
+                allowed=f"{ends[0]:g}..{ends[1]:g}, as damping_ratio_least and _most say",
+                fix="state all three, or the ratio alone",
+            )
+        return self
 
 
 class HarmonicTable(Table):

@@ -48,6 +48,7 @@ from thermogear.mesh.thermal import HotPair
 from thermogear.results.result import Notice, Result, now
 from thermogear.study import run_notices
 from thermogear.study.answers.survey import answered
+from thermogear.study.answers.survey import groups as behind_answers
 from thermogear.study.answers.survey import notices as answer_notices
 from thermogear.study.dial import dial
 from thermogear.study.drawing import drawn_points
@@ -77,17 +78,14 @@ def run(case: Case, *, progress: Progress = silent, alive: Alive = keep_going) -
         cycles = _cycles(case, progress)
         groups = _gear_groups(case, cycles, progress)
         cold, hot = (cycles[case.models[0].name].sel(state=state) for state in STATES)
-        found, speeds = answered(case, case.models[0], cold, hot, progress)
-        if speeds is not None:
-            groups["speeds"] = speeds.data
+        found, asked = answered(case, case.models[0], cold, hot, progress)
+        groups |= {name: make() for name, make in behind_answers(asked).items()}
         told: list[Notice] = []
         if case.train is not None and "motion" in case.pictures:
             from thermogear.study.shafts.motion import train_motion
 
             groups["train_motion"], told = train_motion(case, progress=progress)
-        notices = chain(
-            run_notices.notices(case, groups), answer_notices(case, found, speeds), told
-        )
+        notices = chain(run_notices.notices(case, groups), answer_notices(case, asked), told)
         own = {
             "facts": run_notices.facts(case, groups),
             "bundles": {model.name: model.choices() for model in case.models},

@@ -147,17 +147,22 @@ class Speeds:
         return np.unique(self.column("pinion_speed")[waiting]).size
 
     def peaks(self) -> list[tuple[float, float]]:
-        """(speed [rad/s], dynamic factor) of the resonances, the greatest first."""
+        """:func:`peaks` of the greatest motions."""
         speed, factor = self.column("pinion_speed"), self.column("dynamic_factor")
         top = np.array([np.nanmax(factor[speed == one], initial=0.0) for one in self.grid])
-        inner = np.arange(1, top.size - 1)
-        tops = inner[(top[inner] >= top[inner - 1]) & (top[inner] > top[inner + 1])]
-        found = [
-            (float(self.grid[i]), float(top[i]))
-            for i in tops
-            if top[i] > PEAK * max(_valley(top, i, -1), _valley(top, i, 1))
-        ]
-        return sorted(found, key=lambda one: -one[1])
+        return peaks(self.grid, top=top)
+
+
+def peaks(speed: Floats, *, top: Floats) -> list[tuple[float, float]]:
+    """(speed [rad/s], dynamic factor) of the resonances of a curve ``top``, the greatest first."""
+    inner = np.arange(1, top.size - 1)
+    tops = inner[(top[inner] >= top[inner - 1]) & (top[inner] > top[inner + 1])]
+    found = [
+        (float(speed[i]), float(top[i]))
+        for i in tops
+        if top[i] > PEAK * max(_valley(top, i, -1), _valley(top, i, 1))
+    ]
+    return sorted(found, key=lambda one: -one[1])
 
 
 def _valley(top: Floats, place: int, way: int) -> float:

@@ -15,12 +15,11 @@ from thermogear.base.units import RPM
 from thermogear.case.case import GearCase
 from thermogear.case.thermal_state import HOT, UNDEFORMED, ThermalState
 from thermogear.gears.accuracy import EDITIONS, flank_tolerances
-from thermogear.gears.deviations import GEARS, Deviation, Relief
+from thermogear.gears.deviations import GEARS, Deviation, PressureAngleError, Relief
 from thermogear.gears.dynamic_factor import dynamic_factor
-from thermogear.gears.graded_flanks import WavyProfile, graded_flanks
 from thermogear.gears.iso6336 import iso6336_stiffness
 from thermogear.results.answer import Answer
-from thermogear.study.answers.asked import POSITIONS, Asked, answer, undecided
+from thermogear.study.answers.asked import Asked, answer, undecided
 from thermogear.study.speeds import LOST, Speeds, told
 
 SPEEDS = "At which speeds does it resonate?"
@@ -30,8 +29,6 @@ LOOKED = "speed looked at, {looked[0]:~3 rpm} to {looked[1]:~3 rpm}"
 OF_SPEEDS = {"ranges": "rpm", "looked": "rpm", "there": "rpm", "strong": "rpm", "off": "%",
              "most": "%"}  # fmt: skip
 """Units of figures that not every sentence states."""
-DRAWINGS = 16
-"""Drawings of flanks of one class whose errors are told."""
 RELIEFS = (0.25, 0.5, 0.75, 1.0, 1.25, 1.5)
 """Tip reliefs that are tried, over the mean deflection of the loaded teeth."""
 
@@ -49,8 +46,8 @@ def speeds(asked: Asked) -> Iterator[Answer]:
         for name in ("resonance", "contact_loss", "back_contact", "coexisting"):
             yield undecided(SPEEDS, name, why)
         return
-    natural = np.sqrt(asked.hot["mean_stiffness"][asked.hardest] / asked.case.equivalent_mass)
-    yield _resonance(asked, found, float(natural) / asked.case.pair.pinion.teeth)
+    factor = asked.motion["dynamic_factor"]
+    yield resonance(asked, found.peaks(), factor, "greatest dynamic factors", ".2f")
     speed, share = found.column("pinion_speed"), found.column("contact_loss_share")
     moves = np.isfinite(asked.motion["contact_loss_share"])
     # a motion beside the one from rest counts too: a run may end on it
@@ -123,17 +120,21 @@ def _faster(asked: Asked, sentence: str) -> str:
     return f"Not decided at its own speeds, {asked.motionless(asked.hardest)}; elsewhere, {words}"
 
 
-def _resonance(asked: Asked, found: Speeds, main: float) -> Answer:
+def resonance(
+    asked: Asked, tops: Sequence[tuple[float, float]], factor: Floats, words: str, form: str
+) -> Answer:
     """How far the case's speeds are off the resonances.
 
-    These are ``main`` [rad/s], where the mesh frequency meets the natural one, the peaks of the
-    look with a dynamic factor above :data:`~thermogear.base.limits.PARTING`, and a speed of the
-    case itself where the motion there has one: it is off by nothing.
+    These are where the mesh frequency meets the natural one, the ``tops`` (speed [rad/s], dynamic
+    factor) with one above :data:`~thermogear.base.limits.PARTING`, and a speed of the case itself
+    where its ``factor`` (point, motion) is: it is off by nothing. ``words`` say what the tops are,
+    ``form`` with how many digits.
     """
-    own, factor = asked.case.stated.speed, asked.motion["dynamic_factor"]
+    own = asked.case.stated.speed
     factor = np.where(np.isfinite(factor), factor, 0.0).max(axis=1)  # without load there is none
-    peaks = found.peaks()
-    strong = [main, *(speed for speed, top in peaks if top > PARTING)]
+    natural = np.sqrt(asked.hot["mean_stiffness"][asked.hardest] / asked.case.equivalent_mass)
+    main = float(natural) / asked.case.pair.pinion.teeth
+    strong = [main, *(speed for speed, top in tops if top > PARTING)]
     off = 100.0 * np.abs(own[:, None] / np.array(strong) - 1.0)
     place, nearest = np.unravel_index(int(off.argmin()), off.shape)
     shaken = bool(np.any(factor > PARTING))
@@ -141,27 +142,27 @@ def _resonance(asked: Asked, found: Speeds, main: float) -> Answer:
     figures = {
         "natural": main * asked.case.pair.pinion.teeth / (2e3 * np.pi),
         "main": main / RPM,
-        "top": [top for _, top in peaks[:4]],
-        "there": [speed / RPM for speed, _ in peaks[:4]],
+        "top": [top for _, top in tops[:4]],
+        "there": [speed / RPM for speed, _ in tops[:4]],
         "own": float(own[place]) / RPM,
         "off": value,
         "strong": strong[nearest] / RPM,
         "limit": PARTING,
     }
-    tops = [f"{{top[{i}]:.2f}} at {{there[{i}]:~3 rpm}}" for i in range(len(peaks[:4]))]
-    words = f"greatest dynamic factors: {', '.join(tops)}" if tops else "no peak stands out"
+    each = [f"{{top[{i}]:{form}}} at {{there[{i}]:~3 rpm}}" for i in range(len(tops[:4]))]
+    greatest = f"{words}: {', '.join(each)}" if each else "no peak stands out"
     where = "{own:~3 rpm} is {off:.1f %} off {strong:~3 rpm}" + (
         ", the nearest factor above {limit:g}" if nearest else ", where both meet"
     )
     if shaken:
         place = np.argmax(factor)
         figures |= {"own": float(own[place]) / RPM, "factor": float(factor[place])}
-        where = "at its own {own:~3 rpm} it is {factor:.2f}"
+        where = f"at its own {{own:~3 rpm}} it is {{factor:{form}}}"
     return answer(
         SPEEDS,
         "resonance",
         "The mesh frequency meets the natural one, {natural:.2f kHz}, at {main:~3 rpm}; "
-        f"{words}; {where}.",
+        f"{greatest}; {where}.",
         value,
         figures=figures,
         units=OF_SPEEDS,
@@ -222,10 +223,10 @@ def errors(asked: Asked) -> Iterator[Answer]:
     }
     # what a shaft turns once is no noise of the mesh: the limit is for what repeats with it
     turn = asked.mesh_periods
-    with_mesh = 1e6 * np.ptp(_of_the_mesh(asked.hot["transmission_error"], turn), axis=-1)
+    with_mesh = 1e6 * np.ptp(of_the_mesh(asked.hot["transmission_error"], turn), axis=-1)
     for point in asked.points:
         at = asked.at(point)
-        words, figures = _allowed_error(asked.case, float(asked.hot["pinion_torque"][point]))
+        words, figures = allowed_error(asked.case, float(asked.hot["pinion_torque"][point]))
         most = figures.get("made", np.inf) + figures.get("load", np.inf)
         if why := asked.still(point):
             yield undecided(ERROR, "transmission_error", why, most=most, at=at)
@@ -238,9 +239,6 @@ def errors(asked: Asked) -> Iterator[Answer]:
             f"Static and loaded{over} it is {{cold:.2f µm}} peak to peak undeformed, "
             f"{{hot:.2f µm}} hot{of_mesh}; {words}"
         )
-        if point == asked.hardest and (drawn := _drawings(asked)):
-            sentence += "; {drawings} drawings of the class have {least:~2 µm} to {greatest:~2 µm}"
-            figures |= {"drawings": len(drawn), "least": min(drawn), "greatest": max(drawn)}
         if point == asked.hardest and asked.assemblies[0].size:
             sentence += (
                 "; {assemblies} of its {possible} assemblies have {smallest:.2f µm} to "
@@ -251,7 +249,7 @@ def errors(asked: Asked) -> Iterator[Answer]:
         yield answer(
             ERROR, "transmission_error", f"{sentence}.", value, most=most, at=at, figures=figures
         )
-    yield _relief(asked)
+    yield relief(asked)
 
 
 def _spread(asked: Asked, others: Floats, value: float) -> dict[str, float]:
@@ -265,7 +263,7 @@ def _spread(asked: Asked, others: Floats, value: float) -> dict[str, float]:
     }
 
 
-def _of_the_mesh(error: Floats, turn: int) -> Floats:
+def of_the_mesh(error: Floats, turn: int) -> Floats:
     """The mean of an error (point, phase) over the mesh periods of a turn, (point, phase)."""
     return np.asarray(error.reshape(len(error), turn, -1).mean(axis=1))
 
@@ -281,7 +279,7 @@ def _class(case: GearCase) -> tuple[int, str, str]:
     return max(known, default=6), drawn.edition if drawn else EDITIONS[0], whose
 
 
-def _allowed_error(case: GearCase, torque: float) -> tuple[str, dict[str, Any]]:
+def allowed_error(case: GearCase, torque: float) -> tuple[str, dict[str, Any]]:
     """What manufacture and the load leave of transmission error, in words with figures [um].
 
     f_Halpha + f_falpha of both gears: flanks within the tolerances of their class lead by no more
@@ -305,35 +303,10 @@ def _allowed_error(case: GearCase, torque: float) -> tuple[str, dict[str, Any]]:
     return f"class {{grade}}{whose} allows {{made:.1f µm}}, the load {{load:.1f µm}}", figures
 
 
-def _drawings(asked: Asked) -> list[float]:
-    """Static error [um] peak to peak at the hardest point, hot, of drawn flanks and of others.
-
-    The flanks of the case first, then other seeds of the same class, as many in all as
-    :data:`DRAWINGS`, each at up to :data:`POSITIONS` phases; empty where nothing is drawn, or whole
-    gears are, whose turns differ, or where the model's springs do not feel flanks.
-    """
-    case = asked.case
-    table = case.file.flanks
-    whole = table is not None and table.teeth == "drawn"
-    if case.accuracy is None or table is None or whole or asked.model.stiffness != "loaded":
-        return []
-    kept = [one for one in asked.mean_tooth if not isinstance(one, WavyProfile)]
-    drawn = {one.gear for one in case.deviations if isinstance(one, WavyProfile)}
-    if not drawn:
-        return []
-    error = asked.hot["transmission_error"][[asked.hardest]]
-    found = [1e6 * float(np.ptp(_of_the_mesh(error, asked.mesh_periods)))]
-    for seed in [seed for seed in range(1, DRAWINGS + 1) if seed != table.seed][: DRAWINGS - 1]:
-        flanks = graded_flanks(case.pair, case.accuracy, seed=seed, edition=table.edition)
-        taken = (*kept, *(one for one in flanks if one.gear in drawn))
-        found.append(_swing(asked, HOT, taken, min(case.mesh_positions, POSITIONS)))
-    return found
-
-
-def _relief(asked: Asked) -> Answer:
+def relief(asked: Asked) -> Answer:
     """The best of a few tip reliefs at the hardest point, hot, and the same one undeformed.
 
-    Of the mean tooth: relief is cut alike on all.
+    Of the mean tooth, of a series the flanks as designed: relief is cut alike on all.
     """
     case, point = asked.case, asked.hardest
     if why := asked.still(point):
@@ -346,6 +319,10 @@ def _relief(asked: Asked) -> Answer:
     force = float(asked.hot["normal_force"][point])
     deflection = force / float(asked.hot["mean_stiffness"][point])
     length = case.pair.path.e - case.pair.path.d
+    flanks, of_whom = asked.mean_tooth, "it" if asked.mesh_periods == 1 else "the mean tooth's"
+    if asked.series:
+        flanks = tuple(each for each in flanks if isinstance(each, Relief | PressureAngleError))
+        of_whom = "the error of true flanks"
     states = {}
     cuts: list[tuple[Deviation, ...]] = [()]
     for share in RELIEFS:
@@ -353,9 +330,7 @@ def _relief(asked: Asked) -> Answer:
         cuts.append(tuple(Relief(gear, amount=amount, length=length) for gear in GEARS))
     for number_of, (name, state) in enumerate((("cold", UNDEFORMED), ("hot", HOT))):
         asked.progress("relief", number_of, 2)
-        states[name] = [
-            _swing(asked, state, (*asked.mean_tooth, *cut), case.mesh_positions) for cut in cuts
-        ]
+        states[name] = [_swing(asked, state, (*flanks, *cut), case.mesh_positions) for cut in cuts]
     asked.progress("relief", 2, 2)
     cold, hot = (np.array(states[name]) for name in ("cold", "hot"))
     best, other = int(np.argmin(hot)), int(np.argmin(cold))
@@ -368,7 +343,6 @@ def _relief(asked: Asked) -> Answer:
         "undeformed": float(amounts[other]),
         "left": float(hot[other]),
     }
-    of_whom = "it" if asked.mesh_periods == 1 else "the mean tooth's"
     sentence = (
         f"A linear tip relief of {{relief:.1f µm}} on both gears makes {of_whom} "
         "{before:.2f µm} → "

@@ -7,7 +7,8 @@ Each question has one sentence, one number with its limit, and a verdict by the 
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -21,10 +22,9 @@ from thermogear.case.thermal_state import HOT, UNDEFORMED
 from thermogear.mesh.model import MeshModel
 from thermogear.results.answer import Answer
 from thermogear.results.result import Later, Notice, Result
-from thermogear.study.answers import moving, shafts, sharing, steady
+from thermogear.study.answers import moving, series, shafts, sharing, steady
 from thermogear.study.answers.asked import MOST_POINTS, MOVES, OF_COLD, OF_HOT, Asked
 from thermogear.study.declared import Answers, declared
-from thermogear.study.speeds import Speeds
 
 MAKERS = (
     steady.mesh,
@@ -39,6 +39,12 @@ MAKERS = (
     shafts.answers,
 )
 """What answers each question, in the order of the page."""
+
+
+OF_A_SERIES = {
+    moving.speeds: series.speeds, moving.loads: series.loads, moving.errors: series.errors,
+}  # fmt: skip
+"""What answers in their place where the case is one of a series."""
 
 
 @declared(Answers)
@@ -58,12 +64,12 @@ def answers(case: GearCase, *, progress: Progress = silent) -> Result:
         progress("mesh cycle", 1, 2)
         cold = UNDEFORMED.quantities(case, model, OF_COLD)
     progress("mesh cycle", 2, 2)
-    found, speeds = answered(case, model, cold, hot, progress)
+    found, asked = answered(case, model, cold, hot, progress)
     return Result.of(
         Answers.kind,
         case.title,
-        {} if speeds is None else Later(speeds=lambda: speeds.data),
-        notices(case, found, speeds),
+        Later(**groups(asked)),
+        notices(case, asked),
         **case.provenance,
         bundle=model.name,
         choices=model.choices(),
@@ -74,27 +80,27 @@ def answers(case: GearCase, *, progress: Progress = silent) -> Result:
     )
 
 
-def notices(case: GearCase, found: Sequence[Answer], speeds: Speeds | None) -> Iterator[Notice]:
-    """What limits the answers ``found`` as a whole, and the look over ``speeds``."""
+def groups(asked: Asked) -> dict[str, Callable[[], Dataset]]:
+    """What makes the groups behind the answers: ``series``, or the ``speeds`` of one part."""
+    if asked.series.get(asked.hardest) is not None:
+        return {"series": partial(series.data, asked)}
+    speeds = None if asked.in_series else asked.speeds
+    return {} if speeds is None else {"speeds": lambda: speeds.data}
+
+
+def notices(case: GearCase, asked: Asked) -> Iterator[Notice]:
+    """What limits the answers as a whole, and the look over speeds."""
     count = case.stated.speed.size
     if count > MOST_POINTS:
         yield Notice.of("some_points_answered", answered=MOST_POINTS, points=count)
-    if case.accuracy is not None:
-        drawn = next((one.figures for one in found if "drawings" in one.figures), {})
-        hot = "mesh" if "mesh" in drawn else "hot"
-        errors = [1e-6 * drawn[name] for name in ("least", "greatest", hot) if drawn]
+    if asked.series.get(asked.hardest) is not None:
+        yield series.notice(asked)
+    elif case.accuracy is not None:
+        yield Notice.of("flanks_are_one_drawing", accuracy=case.accuracy)
+    if not asked.in_series and asked.speeds is not None:
+        looked = asked.speeds.column("pinion_speed")
         yield Notice.of(
-            "flanks_are_one_drawing",
-            accuracy=case.accuracy,
-            drawings=drawn.get("drawings"),
-            errors=[errors[:2]] if drawn else None,
-            this=errors[2] if drawn else None,
-            choice="drawn" if case.period.mesh_periods == 1 else None,
-        )
-    if speeds is not None:
-        looked = speeds.column("pinion_speed")
-        yield Notice.of(
-            "speeds_looked_at", least=looked.min(), greatest=looked.max(), step=speeds.step
+            "speeds_looked_at", least=looked.min(), greatest=looked.max(), step=asked.speeds.step
         )
 
 
@@ -104,13 +110,13 @@ def answered(
     cold: Dataset | Mapping[str, NDArray[Any]],
     hot: Dataset | Mapping[str, NDArray[Any]],
     progress: Progress = silent,
-) -> tuple[tuple[Answer, ...], Speeds | None]:
-    """Every answer from the mesh cycles undeformed and ``hot`` under ``model``; the speeds."""
+) -> tuple[tuple[Answer, ...], Asked]:
+    """Every answer from the mesh cycles undeformed and ``hot`` under ``model``; what they share."""
     first = {name: np.asarray(cold[name]) for name in OF_COLD}
     then = {name: np.asarray(hot[name]) for name in (*OF_HOT, *MOVES)}
     asked = Asked(case, model, first, then, progress)
     found: list[Answer] = []
     with warnings.catch_warnings(action="ignore", category=ValidityWarning):
         for make in MAKERS:
-            found += make(asked)
-    return tuple(found), asked.speeds
+            found += (OF_A_SERIES.get(make, make) if asked.in_series else make)(asked)
+    return tuple(found), asked

@@ -4,20 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import groupby
+from typing import Any
 
 import numpy as np
 from markupsafe import Markup
 
 from thermogear.base.arrays import Dataset
-from thermogear.base.display import display
+from thermogear.base.display import PERCENT, display
 from thermogear.base.limits import FINE, LOOK, OPEN
 from thermogear.results.answer import Answer, worst
 from thermogear.results.result import Result
 from thermogear.views.columns import Column, declared
 from thermogear.views.page import Block, Code, Made, Page, Pictures, Section, Table
 from thermogear.views.pages.background import background
+from thermogear.views.pages.survey import csv_tables
 from thermogear.views.picture import Axis, Panel, Picture
-from thermogear.views.style import HOT, INK, QUIET, WIDE
+from thermogear.views.style import HOT, INK, OKABE_ITO, QUIET, WIDE
 
 KINDS = ("answers",)
 MOST_POINTS = 6
@@ -31,8 +33,9 @@ def page(result: Result) -> Page:
         result,
         summary(result),
         Made(lambda: sections(result, pictures) + background(result)),
-        numbers=lambda: {"answers": result.rows("answers")},
+        numbers=lambda: {"answers": result.rows("answers")} | of_series(result),
         told=lambda: told(result),
+        tables=lambda: {} if result.group("series") is None else csv_tables(result),
     )
 
 
@@ -75,6 +78,19 @@ def sections(result: Result, pictures: Pictures) -> list[Section]:
             speeds,
             ("dynamic_factor", "contact_loss_share"),
             lambda: speeds_picture(speeds),
+            wide=True,
+        )
+    series = result.group("series")
+    if series is not None:
+        pictures.add(
+            "dynamic-factor",
+            "Dynamic factor of the series over speed",
+            "Above: the median pair and the band of 90 % of pairs; dashed: the median with other "
+            "dampings; dots: every pair at the own speed. Below: the share of pairs that lose "
+            "contact.",
+            series,
+            ("dynamic_factor", "parting_share"),
+            lambda: series_picture(series),
             wide=True,
         )
     blocks: list[Block] = [_table("", gravest(found)), *pictures.take()]
@@ -147,3 +163,42 @@ def speeds_picture(data: Dataset) -> Picture:
     for own in np.unique(np.atleast_1d(data.attrs.get("own_speeds", ()))):
         panel.line(x=float(display("pinion_speed")(own)), colour=QUIET, width=1.0, dash=(4.0, 3.0))
     return Picture([[panel]], size=(WIDE, 3.2))
+
+
+def series_picture(data: Dataset) -> Picture:
+    """Band of the dynamic factor over pinion speed, dampings and parts; below, who parts."""
+    rpm = display("pinion_speed")(data["pinion_speed"].values)
+    low, middle, high = data["dynamic_factor"].values
+    dampings = data["damping_ratio"].values
+    factor = Panel(Axis("pinion speed [rpm]"), Axis("dynamic factor [–]", low=0.0))
+    parting = Panel(Axis("pinion speed [rpm]"), Axis("pairs that part [%]", low=0.0))
+    factor.band(rpm, low=low[0], high=high[0], colour=INK, opacity=0.2, label="90 % of pairs")
+    for place in range(dampings.size):
+        look = {"colour": INK} if place == 0 else {"colour": OKABE_ITO[place], "dash": (5.0, 3.0)}
+        label = f"median, damping {dampings[place]:.2g}"
+        factor.curve(rpm, middle[place], label=label, **look)
+        share = PERCENT(data["parting_share"].values[place])
+        parting.curve(rpm, share, **look)
+    speed = float(display("pinion_speed")(data.attrs["own_speed"]))
+    parts = data["own_dynamic_factor"].values[0]
+    factor.points(np.full(parts.size, speed), parts, colour=HOT, size=3.0, open=True, label="pairs")
+    for panel in (factor, parting):
+        panel.line(x=speed, colour=QUIET, width=1.0, dash=(4.0, 3.0))
+    return Picture([[factor], [parting]], size=(WIDE, 5.2))
+
+
+def of_series(result: Result) -> dict[str, Any]:
+    """What is behind the answers of a series for JSON: SI values, with unit and dimensions."""
+    data = result.group("series")
+    if data is None:
+        return {}
+    return {
+        "series": {
+            str(name): {
+                "unit": entry.attrs.get("units", "1"),
+                "along": list(entry.dims),
+                "values": entry.values.tolist(),
+            }
+            for name, entry in data.variables.items()
+        }
+    }

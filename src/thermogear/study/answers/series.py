@@ -1,0 +1,280 @@
+"""Answers of a series: pairs of one class, each over its turn, at the case's bounds of damping."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.analysis.order_statistics import Estimate, proportion, quantile
+from thermogear.base.arrays import Dataset, Floats
+from thermogear.base.limits import LIMITS, PARTING
+from thermogear.base.units import RPM
+from thermogear.base.vocabulary import label
+from thermogear.results.answer import Answer
+from thermogear.results.result import Notice
+from thermogear.study.answers.asked import Asked, Parts, answer, undecided
+from thermogear.study.answers.moving import (
+    ERROR,
+    LOADS,
+    OF_SPEEDS,
+    SPEEDS,
+    allowed_error,
+    rated_factor,
+    relief,
+    resonance,
+)
+from thermogear.study.speeds import LOST, peaks
+
+BAND = (0.05, 0.5, 0.95)
+"""Quantiles that are told: the middle, and the ends of what holds 90 % of parts."""
+BAD = 0.9
+"""Quantile that a verdict rests on: nine of ten parts do better (ours)."""
+CLOSE = 0.1
+"""Width of a band over its middle below which three figures tell its ends apart, else two do."""
+
+
+@dataclass(frozen=True)
+class Spread:
+    """Quantiles of some parts: 5, 50 and 95 %, and the one that a verdict rests on."""
+
+    low: Estimate
+    middle: Estimate
+    high: Estimate
+    bad: Estimate
+
+    @classmethod
+    def of(cls, values: Floats) -> Spread:
+        """Of what is known of the parts; nan where nothing is."""
+        known = values[np.isfinite(values)]
+        if not known.size:
+            return cls(*[Estimate(np.nan, np.nan, np.nan)] * 4)
+        return cls(*(quantile(known, share=share) for share in (*BAND, BAD)))
+
+    @property
+    def digits(self) -> int:
+        """Figures that its ends are told with."""
+        return 3 if self.high.value - self.low.value < CLOSE * self.middle.value else 2
+
+    def figures(self, name: str, scale: float = 1.0) -> dict[str, Any]:
+        """The numbers times ``scale`` as figures of an answer, their 95 % intervals beside them."""
+        found: dict[str, Any] = {}
+        for which, estimate in vars(self).items():
+            value, *ends = (scale * number for number in estimate)
+            found[f"{name}_{which}"] = value
+            if np.isfinite(ends).all():  # few parts do not bound a far quantile
+                found[f"{name}_{which}_interval"] = ends
+        return found | {"held": 100.0 * (BAND[2] - BAND[0])}
+
+
+# --- speeds -------------------------------------------------------------------------------------
+
+
+def speeds(asked: Asked) -> Iterator[Answer]:
+    point = asked.hardest
+    parts = asked.series.get(point)
+    if parts is None or asked.slow(point):
+        why = asked.still(point) or asked.motionless(point)
+        for name in ("resonance", "contact_loss", "back_contact", "coexisting"):
+            yield undecided(SPEEDS, name, why)
+        return
+    motion = parts.motion
+    worst = np.array([Spread.of(row).bad.value for row in motion.dynamic_factor[0].T])
+    factor = np.array([
+        Spread.of(other.motion.dynamic_factor[0, :, other.place]).bad.value
+        for other in asked.series.values()
+    ])  # fmt: skip
+    yield resonance(
+        asked, peaks(motion.speed, top=worst), factor[:, None],
+        "greatest dynamic factors that one pair in ten exceeds", ".1f",
+    )  # fmt: skip
+    yield _parting(asked, parts, "contact_loss", motion.contact_loss_share > LOST, "Flanks part")
+    yield _parting(
+        asked, parts, "back_contact", motion.mesh_force_min < 0.0, "Teeth hit the back side"
+    )
+    why = "each pair of a series is followed from rest alone; flanks.seed asks for one part"
+    yield undecided(SPEEDS, "coexisting", why)
+
+
+def _parting(
+    asked: Asked, parts: Parts, name: str, happens: NDArray[np.bool_], words: str
+) -> Answer:
+    """In how many pairs it ``happens`` (damping, part, speed) up to the greatest own speed."""
+    speed, dampings = parts.motion.speed, parts.motion.damping_ratio
+    top = float(asked.case.stated.speed.max())
+    within = happens[:, :, speed <= top * (1.0 + 1e-9)].any(axis=2)
+    counts = parts.counts
+    hits = within.sum(axis=1)
+    shares = 100.0 * hits / counts
+    onset = np.where(happens[0].any(axis=1), speed[happens[0].argmax(axis=1)], np.inf)[: counts[0]]
+    middle, first = quantile(onset, share=0.5), float(onset.min())
+    of_all = proportion(int(hits[0]), of=int(counts[0]))
+    figures: dict[str, Any] = {
+        "pairs": int(hits[0]), "parts": int(counts[0]), "top": top / RPM,
+        "share_interval": [100.0 * of_all.low, 100.0 * of_all.high],
+        "dampings": dampings.tolist(), "shares": shares.tolist(), "beyond": float(speed[-1]) / RPM,
+    }  # fmt: skip
+    sentence = f"{words} in {{pairs}} of {{parts}} pairs of the class up to {{top:~3 rpm}}"
+    if math.isfinite(first):
+        figures["first"] = first / RPM
+        sentence += ", first at {first:~2 rpm}"
+    else:
+        sentence += ", at no speed up to {beyond:~2 rpm}"
+    if math.isfinite(middle.value):
+        figures["half"] = middle.value / RPM
+        sentence += ", in half of them by {half:~2 rpm}"
+    more, beside = _by_damping(dampings, shares, LIMITS["parting_pairs"].most)
+    if dampings.size > 1:
+        figures |= {"least": float(dampings[1]), "pairs_there": int(hits[1]), "of": int(counts[1])}
+        sentence += "; with a damping of {least:~2} in {pairs_there} of {of}"
+    return answer(
+        SPEEDS, name, f"{sentence}{more}.", float(shares.max()), limit="parting_pairs",
+        figures=figures | beside, units=OF_SPEEDS | {"shares": "%", "share_interval": "%"},
+    )  # fmt: skip
+
+
+def _by_damping(dampings: Floats, values: Floats, most: float) -> tuple[str, dict[str, Any]]:
+    """Between which computed dampings a value comes within its bound, in words with figures.
+
+    Empty where all or none of the ``values`` (damping,) are within it.
+    """
+    order = np.argsort(dampings)
+    within = values[order] <= most
+    if within.all() or not within[-1]:
+        return "", {}
+    last = int(np.flatnonzero(~within)[-1])
+    low, high = dampings[order][last : last + 2]
+    return "; beyond the limit below a damping between {from_damping:~2} and {to_damping:~2}", {
+        "from_damping": float(low), "to_damping": float(high)
+    }  # fmt: skip
+
+
+# --- dynamic factor and error -------------------------------------------------------------------
+
+
+def loads(asked: Asked) -> Iterator[Answer]:
+    for point in asked.points_of_series:
+        words, figures = rated_factor(asked, point)
+        rated = figures.get("factor", np.inf)
+        limit = "dynamic_factor" if rated < PARTING else "parting"
+        about: dict[str, Any] = {"limit": limit, "most": min(rated, PARTING), "at": asked.at(point)}
+        parts = asked.series.get(point)
+        if parts is None or asked.slow(point):
+            why = f"{asked.still(point) or asked.motionless(point)}; ISO 6336-1 {words}"
+            yield undecided(LOADS, "dynamic_factor", why, figures=figures, **about)
+            continue
+        dampings = parts.motion.damping_ratio
+        each = [Spread.of(row) for row in parts.motion.dynamic_factor[:, :, parts.place]]
+        form, values = f".{each[0].digits - 1}f", np.array([spread.bad.value for spread in each])
+        figures |= each[0].figures("part") | {
+            "parts": int(parts.counts[0]), "dampings": dampings.tolist(), "bad": values.tolist(),
+        }  # fmt: skip
+        gives = (
+            f"{{part_middle:{form}}} in the median of {{parts}} pairs, {{part_low:{form}}} to "
+            f"{{part_high:{form}}} in {{held:.0f %}} of them; one in ten exceeds {{bad[0]:{form}}}"
+        )
+        if dampings.size > 1:
+            gives += f", or {{bad[1]:{form}}} with a damping of {{dampings[1]:~2}}"
+            moved = abs(each[1].middle.value - each[0].middle.value)
+            apart = each[0].high.value - each[0].low.value
+            gives += "; damping moves it more than the part does" if moved > apart else (
+                "; the part moves it more than damping does"
+            )  # fmt: skip
+        more, beside = _by_damping(dampings, values, about["most"])
+        sentence = f"The vibration computed gives {gives}{more}; ISO 6336-1 {words}."
+        worst = float(values.max())
+        yield answer(LOADS, "dynamic_factor", sentence, worst, figures=figures | beside, **about)
+
+
+def errors(asked: Asked) -> Iterator[Answer]:
+    for point in asked.points_of_series:
+        words, figures = allowed_error(asked.case, float(asked.hot["pinion_torque"][point]))
+        most = figures.get("made", np.inf) + figures.get("load", np.inf)
+        about: dict[str, Any] = {"most": most, "at": asked.at(point)}
+        parts = asked.series.get(point)
+        if parts is None:
+            yield undecided(ERROR, "transmission_error", asked.still(point), **about)
+            continue
+        turn, mesh = (Spread.of(values) for values in parts.errors)
+        figures |= turn.figures("turn", 1e6) | mesh.figures("mesh", 1e6)
+        figures |= {"parts": int(parts.counts[0]), "periods": parts.mesh.mesh_periods}
+        form, of_mesh = f"~{turn.digits}", f"~{mesh.digits}"
+        sentence = (
+            f"Static, loaded and hot, over {{periods}} mesh periods, it is {{turn_low:{form}}} to "
+            f"{{turn_high:{form} µm}} peak to peak in {{held:.0f %}} of {{parts}} pairs; what "
+            f"repeats with the mesh is judged, {{mesh_middle:{of_mesh} µm}} in the median, one in "
+            f"ten exceeds {{mesh_bad:{of_mesh} µm}}; {words}."
+        )
+        value = 1e6 * mesh.bad.value if np.isfinite(most) else float("nan")
+        yield answer(ERROR, "transmission_error", sentence, value, figures=figures, **about)
+    yield relief(asked)
+
+
+# --- behind the answers -------------------------------------------------------------------------
+
+
+def data(asked: Asked) -> Dataset:
+    """The hardest point over speed and damping as quantiles of parts, and every part at its own.
+
+    SI; ``contact_loss_onset`` is nan of a part that keeps contact at every speed.
+    """
+    parts = asked.series[asked.hardest]
+    motion, counts = parts.motion, parts.counts
+    over = [[Spread.of(part) for part in row.T] for row in motion.dynamic_factor]
+    quantiles = [
+        [[getattr(spread, which).value for spread in row] for row in over]
+        for which in ("low", "middle", "high")
+    ]
+    lost = motion.contact_loss_share > LOST
+    onset = np.where(lost.any(axis=2), motion.speed[lost.argmax(axis=2)], np.nan)
+    turn, mesh = parts.errors
+    along, each = ("damping", "speed"), ("damping", "part")
+    return label(
+        {
+            "dynamic_factor": (
+                ("quantile", *along), np.array(quantiles), "1",
+                "dynamic factor that a share of parts does not exceed",
+            ),
+            "parting_share": (
+                along, lost.sum(axis=1) / counts[:, None], "1", "share of parts that lose contact",
+            ),
+            "own_dynamic_factor": (
+                each, motion.dynamic_factor[:, :, parts.place], "1",
+                "dynamic factor of each part at the own speed",
+            ),
+            "contact_loss_onset": (
+                each, onset, "rad/s", "least speed at which contact is lost; nan: at none",
+            ),
+            "turn_error": ("part", turn, "m", "static error of each part, peak to peak"),
+            "mesh_error": ("part", mesh, "m", "what of it repeats with the mesh"),
+        },
+        {
+            "pinion_speed": ("speed", motion.speed, "rad/s", "pinion speed"),
+            "damping_ratio": ("damping", motion.damping_ratio, "1", "damping ratio"),
+            "quantile": ("quantile", np.array(BAND), "1", "share of parts"),
+            "drawing": ("part", np.arange(turn.size), "1", "flanks.drawing of the part"),
+        },
+        {"own_speed": float(motion.speed[parts.place]), "seed": asked.case.seed},
+    )  # fmt: skip
+
+
+def notice(asked: Asked) -> Notice:
+    """What the series is, what of it is assumed, and which parts are its median and worst."""
+    parts = asked.series[asked.hardest]
+    factor = parts.motion.dynamic_factor[0, :, parts.place]
+    order = np.argsort(factor[np.isfinite(factor)])
+    return Notice.of(
+        "answers_of_a_series",
+        parts=order.size,
+        accuracy=asked.case.accuracy,
+        seed=asked.case.seed,
+        median=int(order[(order.size - 1) // 2]),
+        worst=int(order[-1]),
+        answered=None if len(asked.points_of_series) == asked.count else 1,
+        points=asked.count,
+        periods=None if parts.mesh.whole else parts.mesh.mesh_periods,
+    )

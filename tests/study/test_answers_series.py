@@ -1,0 +1,186 @@
+"""Answers of a series: quantiles of drawn pairs, their verdict at the bad end and lower damping."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.stats.mstats import hdquantiles
+from scripts import script
+
+from coded import coded
+from said import numbers
+from thermogear.base.limits import FINE, LOOK, OPEN
+from thermogear.base.units import RPM
+from thermogear.case.case import gear_case, load_case
+from thermogear.results.answer import Answer
+from thermogear.results.result import Result
+from thermogear.study.answers.series import Spread, _by_damping
+from thermogear.study.answers.survey import answers
+from thermogear.views.write import page_of
+
+pytestmark = pytest.mark.filterwarnings("ignore::thermogear.base.errors.ValidityWarning")
+CASE = """[gears]
+module = "3 mm"
+face_width = "30 mm"
+[gears.pinion]
+teeth = 20
+[gears.wheel]
+teeth = 20
+[oil]
+name = "ISO VG 100"
+temperature = "80 degC"
+[flanks]
+parts = 16
+[operating]
+speed = "7000 rpm"
+torque = "80 N m"
+"""
+SMALL = ("grid.path_positions=41", "grid.mesh_positions=48", "grid.harmonics=12")
+
+
+def result_of(*changes: str) -> Result:
+    return answers(gear_case(load_case(CASE, [*SMALL, *changes])))
+
+
+@pytest.fixture(scope="module")
+def series() -> Result:
+    return result_of()
+
+
+@pytest.fixture(scope="module")
+def told(series: Result) -> dict[str, Answer]:
+    return {one.name: one for one in series.answers}
+
+
+def test_quantiles_are_those_of_the_parts_that_are_stored(
+    series: Result, told: dict[str, Answer]
+) -> None:
+    data = series["series"]
+    assert dict(data.sizes) == {"damping": 3, "part": 16, "speed": data.speed.size, "quantile": 3}
+    factor, mesh = data["own_dynamic_factor"].values, data["mesh_error"].values
+    figures = told["dynamic_factor"].figures
+    for name, share in (("low", 0.05), ("middle", 0.5), ("high", 0.95), ("bad", 0.9)):
+        (there,) = hdquantiles(factor[0], [share])
+        assert figures[f"part_{name}"] == pytest.approx(there, rel=1e-9)
+        (there,) = 1e6 * hdquantiles(mesh, [share])
+        assert told["transmission_error"].figures[f"mesh_{name}"] == pytest.approx(there, rel=1e-9)
+    # ranks 4 to 12 of 16 hold the median with 95 %
+    ordered = np.sort(factor[0])
+    low, high = figures["part_middle_interval"]
+    assert (low, high) == (ordered[3], ordered[11])
+    assert "part_high_interval" not in figures  # 16 do not bound the 95 % quantile
+    place = int(np.argmin(np.abs(data["pinion_speed"].values - 7000.0 * RPM)))
+    np.testing.assert_allclose(data["dynamic_factor"].values[1, 0, place], hdquantiles(
+        factor[0], [0.5]
+    )[0])  # fmt: skip
+    assert list(script("trial_answers").contradictions(series)) == []
+
+
+def test_a_verdict_rests_on_the_bad_end_at_the_worst_damping(told: dict[str, Answer]) -> None:
+    factor = told["dynamic_factor"]
+    assert factor.value == max(factor.figures["bad"]) > factor.figures["part_bad"]
+    assert factor.verdict == LOOK
+    assert factor.figures["dampings"] == pytest.approx([0.07, 0.02, math.sqrt(0.0014)])
+    error = told["transmission_error"]
+    assert error.value == error.figures["mesh_bad"] > error.figures["mesh_middle"]
+    assert error.figures["turn_middle"] > 2.0 * error.figures["mesh_middle"]
+    assert told["coexisting"].verdict == OPEN
+
+
+def test_pairs_that_part_are_counted(series: Result, told: dict[str, Answer]) -> None:
+    data = series["series"]
+    onset, lost = data["contact_loss_onset"].values / RPM, told["contact_loss"]
+    hits = (onset <= 7000.0 * (1.0 + 1e-9)).sum(axis=1)
+    assert lost.figures["shares"] == pytest.approx((100.0 * hits / 16.0).tolist())
+    assert lost.value == max(lost.figures["shares"]) > 10.0
+    assert lost.verdict == LOOK
+    assert (lost.figures["pairs"], lost.figures["parts"]) == (hits[0], 16)
+    assert lost.figures["first"] == np.nanmin(onset[0])
+    assert {float(hits[0]), 16.0, 7000.0} <= set(numbers(lost.sentence))
+    back = told["back_contact"]
+    assert (back.verdict, back.value, back.figures["pairs"]) == (FINE, 0.0, 0)
+
+
+def test_what_is_assumed_is_told_once_with_the_median_and_the_worst_part(series: Result) -> None:
+    notices = coded(series.notices)
+    (notice,) = notices["answers_of_a_series"]
+    assert "flanks_are_one_drawing" not in notices
+    assert "speeds_looked_at" not in notices
+    factor = series["series"]["own_dynamic_factor"].values[0]
+    assert (notice["parts"], notice["seed"], notice["accuracy"]) == (16, 1, 6)
+    assert notice["worst"] == np.argmax(factor)
+    assert notice["median"] == np.argsort(factor)[7]
+
+
+def test_a_part_of_the_series_is_the_case_with_its_drawing(series: Result) -> None:
+    """Drawing n asked for alone, over its turn, has the error that the series has of it."""
+    data = series["series"]
+    for place in (0, 5):
+        alone = result_of(
+            "flanks.parts=1", "flanks.teeth=drawn", f"flanks.drawing={place}", "gears.marks=[1, 1]"
+        )
+        figures = {one.name: one.figures for one in alone.answers}
+        error = 1e-6 * figures["transmission_error"]["hot"]
+        assert data["turn_error"].values[place] == pytest.approx(error, rel=0.03)
+        assert data["own_dynamic_factor"].values[0, place] == pytest.approx(
+            figures["dynamic_factor"]["own"], rel=0.06
+        )
+
+
+def test_a_stated_damping_and_a_stated_seed_narrow_the_answers() -> None:
+    damped = result_of("dynamics.damping_ratio=0.05", "operating.speed=3000 rpm")
+    by = {one.name: one for one in damped.answers}
+    assert by["dynamic_factor"].figures["dampings"] == [0.05]
+    assert damped["series"].sizes["damping"] == 1
+    seeded = result_of("flanks.parts=1")
+    assert "series" not in seeded.groups
+    assert "flanks_are_one_drawing" in coded(seeded.notices)
+    assert not any("parts" in one.figures for one in seeded.answers)
+
+
+def test_a_bound_is_met_between_two_dampings_that_were_computed() -> None:
+    words, figures = _by_damping(np.array([0.07, 0.02, 0.04]), np.array([8.0, 60.0, 30.0]), 10.0)
+    assert figures == {"from_damping": 0.04, "to_damping": 0.07}
+    assert words
+    for values in ([8.0, 9.0, 8.5], [80.0, 60.0, 30.0]):
+        assert _by_damping(np.array([0.07, 0.02, 0.04]), np.array(values), 10.0) == ("", {})
+
+
+def test_a_band_is_told_with_no_more_digits_than_it_has() -> None:
+    narrow, wide = np.linspace(1.22, 1.27, 16), np.linspace(1.4, 2.0, 16)
+    assert (Spread.of(narrow).digits, Spread.of(wide).digits) == (3, 2)
+    assert math.isnan(Spread.of(np.full(3, np.nan)).middle.value)
+
+
+def test_many_operating_points_are_answered_at_the_hardest() -> None:
+    speeds = ", ".join(f'"{rpm} rpm"' for rpm in (1000, 2000, 3000, 4000, 5000))
+    result = result_of(f"operating.speed=[{speeds}]")
+    factors = [one for one in result.answers if one.name == "dynamic_factor"]
+    assert [one.operating for one in factors] == ["5000 rpm, 80 N m"]
+    (notice,) = coded(result.notices)["answers_of_a_series"]
+    assert (notice["answered"], notice["points"]) == (1, 5)
+
+
+def test_a_jammed_series_is_not_decided() -> None:
+    tight = ("backlash.value=0.005 mm", "backlash.direction=normal", "backlash.extent=total")
+    for one in result_of(*tight).answers:
+        if one.name in ("dynamic_factor", "contact_loss", "transmission_error", "relief"):
+            assert (one.verdict, one.value) == (OPEN, None)
+
+
+def test_the_page_shows_the_band_and_stores_it_in_si(series: Result) -> None:
+    page = page_of(series)
+    (picture,) = page.pictures
+    factor, parting = picture.make().panels[0][0], picture.make().panels[1][0]
+    kinds = [type(mark).__name__ for mark in factor.marks]
+    assert kinds.count("Band") == 1
+    assert kinds.count("Curve") == 3
+    data = series["series"]
+    stored = page.figures["series"]
+    assert stored["pinion_speed"]["unit"] == "rad/s"
+    assert stored["turn_error"]["unit"] == "m"
+    assert stored["turn_error"]["values"] == data["turn_error"].values.tolist()
+    assert set(page.tables()) > {"answers_series_by_part.csv"} or page.tables()
+    assert len(parting.marks) == 4
