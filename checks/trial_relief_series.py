@@ -48,7 +48,8 @@ class Judged:
     @property
     def apart(self) -> float:
         """Printed gain less that of the fresh parts, in standard errors of the difference."""
-        return (self.printed - self.fresh) / float(np.hypot(self.error, self.fresh_error))
+        error = float(np.hypot(self.error, self.fresh_error))
+        return (self.printed - self.fresh) / error if error else 0.0  # no relief: no gain
 
     @property
     def row(self) -> str:
@@ -105,7 +106,7 @@ def judged(number: int) -> Judged:
     ratio = ratios(before, fresh.rms(designed))
     most = 2.0 * max(row["amount_m"] for row in rows.values()) or 50e-6
     grid = Ground(case.pair, shape="linear", largest=most, symmetric=True)
-    best = min(float(ratios(before, fresh.rms(grid.reliefs(x))).mean()) for x in grid.grid())
+    tried = [float(ratios(before, fresh.rms(grid.reliefs(x))).mean()) for x in grid.grid()]
     return Judged(
         (case.pair.pinion.teeth, case.pair.wheel.teeth),
         int(case.accuracy or 0),
@@ -114,14 +115,17 @@ def judged(number: int) -> Judged:
         fresh=1.0 - float(ratio.mean()),
         fresh_error=float(ratio.std(ddof=1)) / PARTS**0.5,
         worse=int((ratio > 1.0).sum()),
-        regret=float(ratio.mean()) / best - 1.0,
+        regret=float(ratio.mean()) / min(1.0, *tried) - 1.0,
     )
 
 
 def main(count: int, page: Path | None) -> int:
     """Judge ``count`` pairs, print or write the table, and return what is beyond the allowed."""
     warnings.simplefilter("ignore")
-    rows = [judged(number) for number in range(count)]
+    rows = []
+    for number in range(count):
+        rows.append(judged(number))
+        print(rows[-1].row, flush=True)
     regret = float(np.mean([row.regret for row in rows]))
     apart = sum(abs(row.apart) > ERRORS for row in rows)
     worse = sum(row.worse > WORSE for row in rows)

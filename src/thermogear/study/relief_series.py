@@ -202,9 +202,9 @@ def search(
     figure: Callable[[Reliefs], float],
     starts: Sequence[tuple[int, ...]] = (),
 ) -> tuple[int, ...]:
-    """The place with the least ``figure`` that was seen, no relief (figure 1) among them.
+    """The place with the least ``figure`` that was seen, no relief among them.
 
-    The best of a grid by ``screen`` and the other ``starts`` are compared by ``figure``; from the
+    No relief, the best of a grid by ``screen`` and other ``starts`` are compared by ``figure``; from the
     best each number is moved by a step up and down, the best move taken, and the steps halved where
     none is better, down to what can be ground. A proof that none is less there is not.
     """
@@ -216,17 +216,16 @@ def search(
             known[x] = figure(ground.reliefs(x))
         return known[x]
 
-    best = min((first, *starts), key=at)
+    best = min(((0, 0, *first[2:]), first, *starts), key=at)
     apart = np.maximum((ground.high - ground.low) // (2 * GRID), 1)
     while True:
         near = min(ground.nearby(best, apart), key=at)
         if at(near) < at(best):
             best = near
         elif np.all(apart == 1):
-            break
+            return best
         else:
             apart = np.maximum(apart // 2, 1)
-    return best if at(best) < 1.0 else (0, 0, *best[2:])
 
 
 def start_of_relief(pair: GearPair, relief: Relief) -> tuple[float, float]:
@@ -315,7 +314,7 @@ def series_relief(
     )
     reliefs = ground.reliefs(place)
     candidates: dict[str, tuple[Relief, ...]] = {
-        "none": (), "series": reliefs, "perfect flanks": ground.reliefs(on_perfect),
+        "none": (), "series": reliefs, "perfect": ground.reliefs(on_perfect),
     }  # fmt: skip
     if had := tuple(d for d in case.deviations if isinstance(d, Relief) and _tip(d)):
         candidates["case"] = had
