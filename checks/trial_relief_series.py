@@ -25,7 +25,7 @@ from thermogear.study.relief import one_point, relief_survey
 from thermogear.study.relief_series import Ground, PartErrors, drawn_periods, ratios
 from thermogear.study.series import series_parts
 
-SEED = 55_2026
+SEED = 56_2026
 PAGE = Path(__file__).parents[1] / "docs" / "trial_relief_series.md"
 PAIRS, SEEN, PARTS = 6, 80, 64
 ERRORS, WORSE, REGRET = 2.0, 12, 0.01
@@ -101,7 +101,7 @@ def judged(number: int) -> Judged:
         for torque in torques
     ]
     parts = series_parts(case, SEEN + PARTS)[SEEN:]
-    fresh = PartErrors(hots, parts, periods=drawn_periods(case.pair, 77), positions=48)
+    fresh = PartErrors(hots, parts, periods=drawn_periods(case.pair, 77), positions=32)
     before = fresh.rms(())
     ratio = ratios(before, fresh.rms(designed))
     most = 2.0 * max(row["amount_m"] for row in rows.values()) or 50e-6

@@ -40,6 +40,8 @@ GRID = 6
 """Amounts, and lengths, of the grid."""
 MOST_EVALUATIONS = 400
 """Reliefs tried in both searches together, about; told as progress."""
+MOST_WORSE = 1 / 8
+"""Share of the parts designed on that a relief may make worse: one of more is not taken (ours)."""
 GRIND = 1e-6
 """Step of the amounts [m]: what is usually written on a drawing (ours)."""
 _SHORTEST = 0.05  # base pitches
@@ -204,8 +206,8 @@ def search(
 ) -> tuple[int, ...]:
     """The place with the least ``figure`` that was seen, no relief among them.
 
-    No relief, the best of a grid by ``screen`` and other ``starts`` are compared by ``figure``; from the
-    best each number is moved by a step up and down, the best move taken, and the steps halved where
+    No relief, the best of a grid by ``screen`` and other ``starts`` are compared by ``figure``;
+    from the best each number is moved by a step up and down, the best move taken, and the steps halved where
     none is better, down to what can be ground. A proof that none is less there is not.
     """
     first = min(ground.grid(), key=lambda x: screen(ground.reliefs(x)))
@@ -264,7 +266,8 @@ def series_relief(
     seed; beside it the relief designed on perfect flanks, and that of the case, if it has any. Of a
     case of one part that part is what all are designed on and judged by. The figure of a part is
     that of :class:`PartErrors`, its ratio that of :func:`ratios`, of which the mean over the parts
-    is least.
+    is least. A relief that makes more than :data:`MOST_WORSE` of the parts designed on worse is not
+    taken.
 
     Groups: ``parts`` over (relief, load, part): figures and, over (relief, part), ratios;
     ``profile`` over (gear, place): what the relief takes off along the profile. Attributes:
@@ -294,7 +297,8 @@ def series_relief(
             nonlocal evaluations
             evaluations += 1
             progress("relief", min(evaluations, MOST_EVALUATIONS - 1), MOST_EVALUATIONS)
-            return float(ratios(before, of.rms(reliefs)).mean())
+            ratio = ratios(before, of.rms(reliefs))
+            return float(ratio.mean()) + float(np.mean(ratio > 1.0) > MOST_WORSE)
 
         return mean_ratio
 
