@@ -188,6 +188,9 @@ trial-turn: $(STAMP)  ## 40 random pairs with pitch errors: motion over a turn a
 trial-series: $(STAMP)  ## do the bands of a series hold fresh pairs of the class? ten pairs, minutes; docs/trial_series.md
 	@OPENBLAS_NUM_THREADS=1 $(BIN)/python checks/trial_series.py
 
+trial-relief-series: $(STAMP)  ## the relief of a class by parts that it has not seen, five minutes; docs/trial_relief_series.md
+	@OPENBLAS_NUM_THREADS=1 $(BIN)/python checks/trial_relief_series.py
+
 trial-turning: $(STAMP)  ## orders of runs of eight kinds (lost pulses, no tacho, a stop, ...): do intervals hold? ten minutes; docs/trial_turning.md
 	@OPENBLAS_NUM_THREADS=1 $(BIN)/python checks/trial_turning.py
 

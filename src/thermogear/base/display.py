@@ -71,6 +71,7 @@ MEGAPASCAL = Display("MPa", 1e-6)
 MINUTE = Display("min", per=60.0)
 HOUR = Display("h", per=3600.0)
 PERCENT = Display("%", 100.0)
+DEGREE = Display("°", per=math.radians(1.0))
 
 _BY_UNIT = {
     "1": Display("–"),

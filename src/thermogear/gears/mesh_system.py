@@ -10,7 +10,7 @@ Checked by ``tests/gears/test_sharing_kernel.py``: enumeration of all contact se
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -258,6 +258,10 @@ class MeshSystem:
             ),
             law=model.contact,
         )
+
+    def with_touch(self, touch: Touch) -> MeshSystem:
+        """The same cases with other gaps and edges, (case, position, pair)."""
+        return replace(self, gaps=np.ascontiguousarray(touch.gap), edges=touch.edge)
 
     def solve(
         self, asked: Floats, by_load: bool

@@ -154,17 +154,59 @@ def touch_of_parts(
                 for touch in found:
                     touch.gap[n] += known[id(d)]
     extended = bool(np.any((_corner_of(pair, contacts.s) > 0) & np.isfinite(points.point.gap)))
-    teeth = pair.pinion.teeth, pair.wheel.teeth
     for touch, spread in zip(found, spreads, strict=True):
-        rows = [_tables.__wrapped__(pair, shapes, spread)[0] for shapes in acting]
-        tables = [
-            np.concatenate([np.broadcast_to(t, (*t.shape[:2], count)) for t in of_gear])
-            for count, of_gear in zip(teeth, zip(*rows, strict=True), strict=bool(rows))
-        ]
-        if rows:
-            gap, touch.edge[drawn] = _touched(points, tables[0], tables[1], extended)
+        if acting:
+            pinion, wheel = _of_all(pair, acting, spread)
+            gap, touch.edge[drawn] = _touched(points, pinion, wheel, extended)
             touch.gap[drawn] += gap
     return found
+
+
+class ReshapedParts:
+    """Many parts whose flanks get the same shapes besides, over and over: for a search.
+
+    What the deviations of the ``parts`` take off, averaged over contacts of a ``spread`` [m] as
+    :func:`first_touch` does, is looked at once: means of sums are sums of means.
+    """
+
+    def __init__(
+        self, points: MeshPoints, parts: Sequence[Sequence[Deviation]], spread: float
+    ) -> None:
+        self._points, self._spread = points, spread
+        contacts = points.contacts
+        shapes = [[d for d in part if isinstance(d, FlankShape | ToothShapes)] for part in parts]
+        acting = [tuple(d for d in row if d.acts_on(contacts.flank)) for row in shapes]
+        self._tables = _of_all(contacts.pair, acting, spread)
+        self._rest = np.zeros((len(parts), *contacts.s.shape))
+        for rest, part in zip(self._rest, parts, strict=True):
+            for place, d in enumerate(part):
+                if not isinstance(d, FlankShape | ToothShapes):
+                    rest += _checked(place, d, d.gap(contacts)).reshape(rest.shape)
+        self._extended = bool(
+            np.any((_corner_of(contacts.pair, contacts.s) > 0) & np.isfinite(points.point.gap))
+        )
+
+    def touch(self, shapes: Sequence[FlankShape]) -> Touch:
+        """First touch with the ``shapes``, (part, position, pair), as :func:`touch_of_parts`."""
+        pair, flank = self._points.contacts.pair, self._points.contacts.flank
+        acting = tuple(d for d in shapes if d.acts_on(flank))
+        (first, second), _ = _tables.__wrapped__(pair, acting, self._spread)
+        pinion, wheel = self._tables
+        gap, edge = _touched(self._points, pinion + first, wheel + second, self._extended)
+        return Touch(gap + self._rest, edge)
+
+
+def _of_all(
+    pair: GearPair, acting: Sequence[tuple[FlankShape | ToothShapes, ...]], spread: float
+) -> list[Floats]:
+    """:func:`_tables` of all parts together, of every tooth of pinion and wheel."""
+    rows = [_tables.__wrapped__(pair, shapes, spread)[0] for shapes in acting]
+    return [
+        np.concatenate([np.broadcast_to(t, (*t.shape[:2], count)) for t in of_gear])
+        for count, of_gear in zip(
+            (pair.pinion.teeth, pair.wheel.teeth), zip(*rows, strict=True), strict=True
+        )
+    ]
 
 
 def _corner_of(pair: GearPair, s: Floats) -> NDArray[np.int8]:

@@ -23,7 +23,8 @@ from thermogear.mesh.elastic import LoadedPair
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair, ThermalDeviation
 from thermogear.results.result import Notice, Result
-from thermogear.study.declared import ReliefSurvey, declared
+from thermogear.study.declared import ReliefSurvey, declared, mean_tooth_notices
+from thermogear.study.relief_series import Asked, series_relief
 
 LOADS = tuple(np.arange(0.1, 1.75, 0.1))
 """Loads, as parts of the one designed for, at which the pairs are compared."""
@@ -36,34 +37,48 @@ EDGE_SHARE = "share of the mesh period in which a tip corner carries load"
 def relief_survey(
     case: GearCase,
     *,
-    torque: float | None = None,
-    gear_temperature: float | None = None,
+    torque: float | Sequence[float] | None = None,
+    gear_temperature: float | Sequence[float] | None = None,
     shape: str = ReliefSurvey.shape,
     symmetric: bool = ReliefSurvey.symmetric,
     largest: float | None = None,
     progress: Progress = silent,
 ) -> Result:
-    """The tip relief of both gears with the least peak-to-peak static transmission error.
+    """The tip relief of both gears with the least static transmission error.
 
-    ``torque`` [N m] of the pinion (default: the case's greatest) and ``gear_temperature`` [K] of
-    both addenda (default: the case's hot state) are what is designed for; ``shape`` linear or
-    parabolic; ``symmetric``: both gears alike; ``largest`` amount [m]. Other deviations of the
-    case stay; tip reliefs it has already are replaced.
+    ``torque`` [N m] of the pinion (default: the case's greatest), one or several, and
+    ``gear_temperature`` [K] of both addenda (default: the case's hot state), likewise, are what is
+    designed for; ``shape`` linear or parabolic; ``symmetric``: both gears alike; ``largest`` amount
+    [m]. Other deviations of the case stay; tip reliefs it has already are replaced.
 
+    Of a case of a series, and for several loads or temperatures, as
+    :func:`~thermogear.study.relief_series.series_relief`. Else the error peak to peak is least.
     Groups: ``error`` over (pair_kind, mesh_phase) at the design load; ``loads`` the peak-to-peak
     error over other loads; attributes carry the relief and its lines for the case file. Where a
     tip corner carries (``edge_contact``) the ``greatest_pressure`` is nan.
     """
     if not case.torques:
         raise InputError("operating.torque", "nothing", allowed="one torque")
-    moment = max(case.torques) if torque is None else torque
-    for name, value, unit in (("torque", moment, "N m"), ("largest", largest, "m")):
-        if value == 0.0:
+    moments = np.atleast_1d(max(case.torques) if torque is None else torque).tolist()
+    for name, values, unit in (("torque", moments, "N m"), ("largest", [largest], "m")):
+        if 0.0 in values:
             raise InputError(name, f"0 {unit}", allowed=f"> 0 {unit}")
+    whole, case = case, case if case.series > 1 else case.mean_tooth()
+    taken = tuple(mean_tooth_notices(whole, case))
     model = case.models[0].override(stiffness="loaded")
-    state = HOT if gear_temperature is None else ThermalState.of(gear_temperature)
-    state.require_settled(case, case.models[0])
-    hot = HotPair(case.pair, one_point(state.operating(case, case.models[0]), moment), model)
+    given = [None] if gear_temperature is None else np.atleast_1d(gear_temperature).tolist()
+    states = [HOT if kelvins is None else ThermalState.of(kelvins) for kelvins in given]
+    for state in states:
+        state.require_settled(case, case.models[0])
+    hots = [
+        HotPair(case.pair, one_point(state.operating(case, case.models[0]), moment), model)
+        for state in states
+        for moment in moments
+    ]
+    if case.series > 1 or len(hots) > 1:
+        job = Asked(case, hots, shape, symmetric, largest)
+        return series_relief(job, notices=taken, progress=progress)
+    (hot,), (moment,) = hots, moments
     moduli = [
         Moduli(tooth=np.ravel(m.tooth)[0], body=np.ravel(m.body)[0]) for m in LoadedPair(hot).moduli
     ]
@@ -171,7 +186,7 @@ def relief_survey(
                 },
             ),
         },
-        _notices(case, model.loaded.body, [float(c.edge_share[0]) for c in curves]),
+        (*taken, *_notices(case, model.loaded.body, [float(c.edge_share[0]) for c in curves])),
         **case.provenance,
         torque=moment,
         pinion_addendum=float(np.ravel(hot.temperatures.pinion_addendum)[0]),
