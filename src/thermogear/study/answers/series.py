@@ -266,7 +266,7 @@ def notice(asked: Asked) -> Notice:
     """What the series is, what of it is assumed, and which parts are its median and worst."""
     parts = asked.series[asked.hardest]
     factor = parts.motion.dynamic_factor[0, :, parts.place]
-    order = np.argsort(factor[np.isfinite(factor)])
+    order = np.argsort(factor)[: np.count_nonzero(np.isfinite(factor))]
     return Notice.of(
         "answers_of_a_series",
         parts=order.size,
