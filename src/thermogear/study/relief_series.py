@@ -207,8 +207,8 @@ def search(
     """The place with the least ``figure`` that was seen, no relief among them.
 
     No relief, the best of a grid by ``screen`` and other ``starts`` are compared by ``figure``;
-    from the best each number is moved by a step up and down, the best move taken, and the steps halved where
-    none is better, down to what can be ground. A proof that none is less there is not.
+    from the best each number is moved by a step up and down, the best move taken, and the steps
+    halved where none is better, down to what can be ground. A proof that none is less there is not.
     """
     first = min(ground.grid(), key=lambda x: screen(ground.reliefs(x)))
     known: dict[tuple[int, ...], float] = {}
