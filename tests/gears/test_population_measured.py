@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import pytest
@@ -42,7 +43,7 @@ def tolerances(teeth: int, grade: int) -> np.ndarray:
     return 1e-6 * math.sqrt(2.0) ** (grade - 5) * np.array(steps)
 
 
-def read(pair: GearPair, name: str, drawn: Sequence[object], side: str) -> np.ndarray:
+def read(pair: GearPair, name: str, drawn: Sequence[Any], side: str) -> np.ndarray:
     """The five figures of one side of a gear [m].
 
     In the gear's frame, angles from the axis of tooth 0 towards tooth 1: an involute flank of tooth
@@ -53,7 +54,7 @@ def read(pair: GearPair, name: str, drawn: Sequence[object], side: str) -> np.nd
     """
     gear, mate = (pair.pinion, pair.wheel)[:: 1 if name == "pinion" else -1]
     z, base = gear.teeth, gear.base_radius
-    centre, index, *sides = (d for d in drawn if d.gear == name)  # type: ignore[attr-defined]
+    centre, index, *sides = (d for d in drawn if d.gear == name)
     profiles = next(s for s in sides if s.shapes[0].flank == side).shapes
     line = math.sin(ALPHA) * 0.5 * MODULE * (gear.teeth + mate.teeth)
     tip = math.sqrt((0.5 * MODULE * z + MODULE) ** 2 - base**2)
@@ -72,7 +73,8 @@ def read(pair: GearPair, name: str, drawn: Sequence[object], side: str) -> np.nd
 
         def form(x: np.ndarray) -> np.ndarray:
             wave = np.sin(2.0 * math.pi * shape.waves * x + shape.phase)
-            return shape.slope * (x - 0.5) - shape.barrel * (2.0 * x - 1.0) ** 2 + shape.wave * wave
+            barrel = shape.barrel * (2.0 * x - 1.0) ** 2
+            return np.asarray(shape.slope * (x - 0.5) - barrel + shape.wave * wave)
 
         at_pitch = form(np.array((pitch - start) / (tip - start)))
         return np.asarray(shift + facing * index.errors[n] + form(x) - at_pitch)

@@ -31,7 +31,8 @@ from thermogear.study.relief_series import (
 from thermogear.study.series import series_parts
 from thermogear.views.pages.relief import page
 
-TORQUES = (30.0, 60.0)
+TORQUES = (90.0, 150.0)
+DEEP = [f'gears.{g}.tip_relief={{amount="60 um", length="4 mm"}}' for g in GEARS]
 TEXT = """[gears]
 module = "3 mm"
 face_width = "20 mm"
@@ -43,10 +44,10 @@ teeth = 18
 name = "ISO VG 100"
 temperature = "80 degC"
 [flanks]
-accuracy = 6
+accuracy = 5
 [operating]
 speed = "1500 rpm"
-torque = "60 N m"
+torque = "150 N m"
 """
 
 
@@ -64,7 +65,8 @@ def hot_pairs(case: GearCase) -> list[HotPair]:
 
 @cache
 def designed() -> Result:
-    return relief_survey(case_of(), torque=TORQUES)
+    """Of a case with a relief that is far too deep, which is replaced."""
+    return relief_survey(case_of(*DEEP), torque=TORQUES)
 
 
 def reliefs(result: Result) -> list[Relief]:
@@ -125,18 +127,16 @@ def test_what_is_judged_can_be_ground_and_stands_in_the_case_file() -> None:
         assert taken["roll_angle"].values[1] == pytest.approx(row["start_roll_angle_rad"])
         assert taken["taken_off"].values[-1] == pytest.approx(row["amount_m"], rel=1e-12)
     told = page(result).summary
-    assert said.numbers(told)[:2] == pytest.approx([30.0, 60.0])
+    assert said.numbers(told)[:2] == pytest.approx([90.0, 150.0])
 
 
 def test_a_relief_that_the_case_has_is_judged_beside() -> None:
-    """One that is far too deep: it makes every part worse, and the design does not feel it."""
-    cut = [f'gears.{g}.tip_relief={{amount="60 um", length="4 mm"}}' for g in GEARS]
-    result = relief_survey(case_of(*cut), torque=TORQUES)
-    assert result.table("reliefs") == designed().table("reliefs")
-    gains = result.table("gains")
+    """One that is far too deep makes every part worse; the design does not feel it."""
+    gains = designed().table("gains")
     assert list(gains) == ["series", "perfect", "case"]
     assert gains["case"]["worse"] == 64
     assert gains["case"]["worse_high"] == 1.0
+    assert gains["series"]["gain"] >= gains["perfect"]["gain"] - 0.02
 
 
 def test_several_loads_of_one_part_are_judged_by_it() -> None:
@@ -145,7 +145,6 @@ def test_several_loads_of_one_part_are_judged_by_it() -> None:
     assert set(gain) == {"gain", "worst", "worse"}
     assert gain["gain"] >= perfect["gain"] - 0.02  # designed on the part itself
     assert gain["gain"] == pytest.approx(1.0 - gain["worst"])
-    assert "error" in relief_survey(case_of("flanks.seed=3"), torque=60.0, symmetric=True).groups
 
 
 def test_a_search_on_steps_finds_the_least_of_a_bowl() -> None:

@@ -44,7 +44,7 @@ def relief_survey(
     largest: float | None = None,
     progress: Progress = silent,
 ) -> Result:
-    """The tip relief of both gears with the least static transmission error.
+    """The tip relief of both gears with the least peak-to-peak static transmission error.
 
     ``torque`` [N m] of the pinion (default: the case's greatest), one or several, and
     ``gear_temperature`` [K] of both addenda (default: the case's hot state), likewise, are what is
