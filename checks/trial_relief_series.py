@@ -103,10 +103,10 @@ def judged(number: int) -> Judged:
     parts = series_parts(case, SEEN + PARTS)[SEEN:]
     fresh = PartErrors(hots, parts, periods=drawn_periods(case.pair, 77), positions=32)
     before = fresh.rms(())
-    ratio = ratios(before, fresh.rms(designed))
+    ratio = ratios(before, after=fresh.rms(designed))
     most = 2.0 * max(row["amount_m"] for row in rows.values()) or 50e-6
     grid = Ground(case.pair, shape="linear", largest=most, symmetric=True)
-    tried = [float(ratios(before, fresh.rms(grid.reliefs(x))).mean()) for x in grid.grid()]
+    tried = [float(ratios(before, after=fresh.rms(grid.reliefs(x))).mean()) for x in grid.grid()]
     return Judged(
         (case.pair.pinion.teeth, case.pair.wheel.teeth),
         int(case.accuracy or 0),

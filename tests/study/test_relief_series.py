@@ -99,7 +99,7 @@ def test_a_relief_of_a_class_holds_for_parts_it_has_not_seen() -> None:
         hot_pairs(case), series_parts(case, 128)[80:], periods=np.arange(0.0, 18.0, 2.0),
         positions=32,
     )  # fmt: skip
-    ratio = ratios(fresh.rms(()), fresh.rms(reliefs(result)))
+    ratio = ratios(fresh.rms(()), after=fresh.rms(reliefs(result)))
     error = np.hypot(gain["standard_error"], ratio.std(ddof=1) / ratio.size**0.5)
     assert abs(1.0 - ratio.mean() - gain["gain"]) < 3.0 * error
     assert gain["gain"] > 3.0 * gain["standard_error"]

@@ -130,16 +130,16 @@ def _flat(moduli: Moduli) -> Moduli:
     return Moduli(tooth=np.ravel(moduli.tooth), body=np.ravel(moduli.body))
 
 
-def ratios(before: Floats, after: Floats) -> Floats:
+def ratios(before: Floats, *, after: Floats) -> Floats:
     """Mean over the loads of each part's figure, with a relief over without, (part,).
 
-    >>> ratios(np.array([[2.0], [4.0]]), np.array([[1.0], [2.0]]))
+    >>> ratios(np.array([[2.0], [4.0]]), after=np.array([[1.0], [2.0]]))
     array([0.5])
     """
     return np.asarray(after.mean(axis=0) / before.mean(axis=0))
 
 
-def drawn_periods(pair: GearPair, seed: int, count: int = PERIODS) -> Floats:
+def drawn_periods(pair: GearPair, seed: int, *, count: int = PERIODS) -> Floats:
     """Mesh periods of a turn drawn at random, each once: all of a turn that is no longer.
 
     >>> drawn_periods(GearPair(Gear(12, 3e-3), Gear(24, 3e-3)), 1).size
@@ -189,7 +189,7 @@ class Ground:
             for length in lengths.astype(int).tolist():
                 yield amount, amount, length, length
 
-    def nearby(self, x: Sequence[int], apart: Sequence[int]) -> Iterator[tuple[int, ...]]:
+    def nearby(self, x: Sequence[int], *, apart: Sequence[int]) -> Iterator[tuple[int, ...]]:
         """Places ``apart`` from ``x``, one number after the other; of both gears if symmetric."""
         moves = np.diag(apart)
         if self.symmetric:
@@ -221,7 +221,7 @@ def search(
     best = min(((0, 0, *first[2:]), first, *starts), key=at)
     apart = np.maximum((ground.high - ground.low) // (2 * GRID), 1)
     while True:
-        near = min(ground.nearby(best, apart), key=at)
+        near = min(ground.nearby(best, apart=apart), key=at)
         if at(near) < at(best):
             best = near
         elif np.all(apart == 1):
@@ -297,7 +297,7 @@ def series_relief(
             nonlocal evaluations
             evaluations += 1
             progress("relief", min(evaluations, MOST_EVALUATIONS - 1), MOST_EVALUATIONS)
-            ratio = ratios(before, of.rms(reliefs))
+            ratio = ratios(before, after=of.rms(reliefs))
             return float(ratio.mean()) + float(np.mean(ratio > 1.0) > MOST_WORSE)
 
         return mean_ratio
@@ -324,7 +324,7 @@ def series_relief(
         candidates["case"] = had
     judge = errors(parts[-judged_by:], 1)
     rms = np.stack([judge.rms(cut) for cut in candidates.values()])
-    ratio = np.stack([ratios(rms[0], after) for after in rms])
+    ratio = np.stack([ratios(rms[0], after=after) for after in rms])
     progress("relief", MOST_EVALUATIONS, MOST_EVALUATIONS)
     torques = [float(hot.operating.torque[0]) for hot in asked.hots]
     return Result.of(
