@@ -31,7 +31,9 @@ PITCHES = str([f"{error:.3f} um" for error in 3.0 * np.sin(2.3 * np.arange(25) *
 
 def rig(*changes: str) -> GearCase:
     """The rig of 25 and 75 teeth, over the turn of its pinion where that is not perfect."""
-    return gear_case(load_case(load_example("rig").text, ["gears.period=turn", *changes]))
+    return gear_case(
+        load_case(load_example("rig").text, ["gears.period=turn"] * bool(changes) + [*changes])
+    )
 
 
 @pytest.fixture(scope="module")

@@ -65,7 +65,7 @@ def test_a_tacho_in_another_file_is_placed_by_its_time() -> None:
     )
 
 
-def test_teeth_and_pulses_per_turn_are_found() -> None:
+def test_pulses_per_turn_are_found() -> None:
     random = np.random.default_rng(11)
     run = TRIAL.drawn(random, seconds=3.5)
     fast = replace(run, turns=4 * run.turns)
@@ -78,8 +78,6 @@ def test_teeth_and_pulses_per_turn_are_found() -> None:
         2 * np.pi * np.interp(found.slices.time, run.time, run.speed),
         rtol=5e-3,
     )
-    found = measure(record, pulses_per_turn=4.0)  # no teeth told
-    assert found.teeth == 25
 
 
 def test_a_steady_speed_is_no_run_up() -> None:

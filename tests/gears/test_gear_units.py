@@ -152,6 +152,7 @@ FORMULAS: dict[str, tuple[tuple[int, int, int], Formula]] = {
     "flank_ends": (LENGTH, lambda g: corner.flank_ends(g.pair)),
     "first_touch": (LENGTH, lambda g: touched(g, [relieved(g, 1.0)])),
     "first_touch of teeth that differ": (LENGTH, lambda g: touched(g, differing(g))),
+    "touch_of_parts": (LENGTH, lambda g: touched_parts(g)),
     "tooth_angle": (NUMBER, lambda g: turn.tooth_angle(g.pair, "wheel")),
     "turn_period": (NUMBER, lambda g: turn.turn_period(g.pair, differing(g)).mesh_periods),
     "numbered_from": (
@@ -229,6 +230,13 @@ def differing(g: Given) -> list[Deviation]:
 def touched(g: Given, deviations: Sequence[Deviation]) -> np.ndarray:
     """Gaps at positions where every candidate is in reach."""
     gap = touch.first_touch(mesh_points(g.pair, g.phase), deviations).gap
+    return np.where(gap < g.gear.module, gap, 0.0)
+
+
+def touched_parts(g: Given) -> np.ndarray:
+    """Gaps of a part whose teeth differ and of one whose teeth are alike."""
+    parts = [differing(g), [relieved(g, 1.0)]]
+    gap = touch.touch_of_parts(mesh_points(g.pair, g.phase), parts, 0.0)[0].gap
     return np.where(gap < g.gear.module, gap, 0.0)
 
 

@@ -83,7 +83,7 @@ def test_the_figure_is_that_of_the_loaded_mesh_of_each_part() -> None:
     for with_these in ((), cut):
         got = errors.rms(with_these)
         for place, hot in enumerate(hot_pairs(case)):
-            mesh = series_mesh(hot, [(*part, *with_these) for part in parts], 18, 24)
+            mesh = series_mesh(hot, [(*part, *with_these) for part in parts], 18, positions=24)
             curves = mesh.transmission_error.reshape(2, 18, 24)
             within = curves - curves.mean(axis=-1, keepdims=True)
             np.testing.assert_allclose(

@@ -5,6 +5,7 @@ import pytest
 import xarray as xr
 
 from said import numbers
+from thermogear.analysis.settle import PERIODIC
 from thermogear.base.display import rounded, worded
 from thermogear.base.units import RPM
 from thermogear.study.speeds import Speeds, told
@@ -12,7 +13,7 @@ from thermogear.study.speeds import Speeds, told
 
 def speeds(speed, factor, lost, least):
     data = {"dynamic_factor": factor, "contact_loss_share": lost, "mesh_force_min": least}
-    data |= {"pinion_speed": speed}
+    data |= {"pinion_speed": speed, "label_code": np.full(np.shape(speed), PERIODIC)}
     return Speeds(xr.Dataset({name: ("motion", np.asarray(v)) for name, v in data.items()}), 0.025)
 
 

@@ -263,9 +263,6 @@ def of_records() -> dict[str, Picture]:
     shown = made("row map_column", "map_reading").assign(
         map_order=rising("map_column"), map_speed=rising("row", low=100.0, high=300.0)
     )  # fmt: skip
-    found = xr.Dataset({"resonance_frequency": ("resonance", np.array([30.0]))}).assign_coords(
-        kind=("resonance", ["resonance"])
-    )
     run = made("channel slice step", "slice_reading", "slice_reading_half_width").assign(
         slice_speed=rising("step", low=100.0, high=300.0)
     )
@@ -274,7 +271,7 @@ def of_records() -> dict[str, Picture]:
     names = [f"line {k}" for k in range(several.sizes["line"])]
     several = several.assign_coords(name=("line", names), channel=("line", ["a"] * len(names)))
     return {
-        "order-map": record.order_map(shown, found, "g", "the first shaft"),
+        "order-map": record.order_map(shown, "g", "the first shaft"),
         "order-slices": record.over_speed(run, 0, "g"),
         "records": records.course(several),
     }

@@ -115,7 +115,9 @@ def without_effect(
     for idle, fields, why in (
         (all(table.pitch_errors is None for table in tables),
          ("gears.pitch_errors_are", "gears.pitch_errors_along"), "no pitch_errors are given"),
-        (alike, ("gears.marks", "gears.period"), "the teeth of each gear are alike"),
+        (alike, ("gears.marks",), "the teeth of each gear are alike"),
+        # of a class it may mean the part alone, and no series
+        (alike and file.flanks is None, ("gears.period",), "the teeth of each gear are alike"),
         (all(isinstance(deviation, Relief) for deviation in every), ("gears.part",),
          "no flank deviates but by reliefs"),
         (not graded, ("flanks.accuracy", "flanks.edition", "flanks.seed"), of_its_own),

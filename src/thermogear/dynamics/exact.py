@@ -89,7 +89,7 @@ def substeps(lanes: LaneTables, order: int = ORDER) -> Whole:
             tail = np.sum(np.abs(coefficients)[:, :, None] * powers, axis=1)
         good &= half**2 * tail <= allowed * size[:, None]
     needed = np.where(good.any(axis=1), counts[np.argmax(good, axis=1)], 0)
-    turn, longest = lanes.mesh_periods, int(needed.max())
+    turn, longest = lanes.mesh_periods, int(needed.max(initial=0))
     if turn > 1 and longest > MOST_OF_TURN:
         raise InputError(
             "mesh_periods", turn, allowed=f"up to {MOST_OF_TURN * turn // longest} at this speed",

@@ -121,12 +121,13 @@ def put_csv(result: Result) -> None:
         from thermogear.results.tables import csv_text
 
         put(path, csv_text(result.to_frame(units="display")))
-        if "dte_line" in result.data and "mesh_periods" in result.data.attrs:
+        data = next(iter(result.groups.values()))
+        if "dte_line" in data and "mesh_periods" in data.attrs:
             from thermogear.base.period import line_names
 
-            along = [str(dim) for dim in result.data["dte_line"].dims]
+            along = [str(dim) for dim in data["dte_line"].dims]
             lines = result.to_frame(along=along, units="display")
-            names = line_names(result.data.attrs, result.data["order"].values)
+            names = line_names(data.attrs, data["order"].values)
             lines.insert(along.index("order"), "line", names * (len(lines) // len(names)))
             put(path.with_name(f"{path.stem}_lines.csv"), csv_text(lines))
 

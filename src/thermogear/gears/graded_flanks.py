@@ -64,7 +64,11 @@ def profile_figures(position: ArrayLike, *, added: ArrayLike) -> ProfileFigures:
 
 
 def trace_figures(share: Floats, *, traces: Floats) -> Floats:
-    """:func:`profile_figures` of ``traces`` (trace, n) at one ``share``, (trace, figure)."""
+    """:func:`profile_figures` of ``traces`` (trace, n) at one ``share``, (trace, figure).
+
+    >>> trace_figures(np.linspace(0.0, 1.0, 5), traces=np.array([[0.0, 1.0, 2.0, 3.0, 4.0]]))[:, ::2]
+    array([[4., 4.]])
+    """
     line = np.stack([share, np.ones_like(share)], axis=1)
     size = np.sqrt((line * line).sum(axis=0))
     found = []

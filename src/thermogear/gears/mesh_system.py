@@ -323,7 +323,13 @@ def _pressed_touch(points: MeshPoints, deviations: Sequence[Deviation], load: Ar
 
 
 def pressed_spread(pair: GearPair, load: ArrayLike) -> Floats:
-    """4 F/(pi b E*) [m] of each ``load`` [N], with cold moduli: see ``first_touch``."""
+    """4 F/(pi b E*) [m] of each ``load`` [N], with cold moduli: see ``first_touch``.
+
+    >>> from thermogear import Gear
+    >>> pair = GearPair(Gear(20, 3e-3), Gear(40, 3e-3))
+    >>> (pressed_spread(pair, [1e3, 2e3]) / pressed_spread(pair, 1e3)).tolist()
+    [1.0, 2.0]
+    """
     softness = 4.0 / (np.pi * pair.face_width * pair_reduced_modulus(pair))
     return np.asarray(softness * np.asarray(load, dtype=float))
 

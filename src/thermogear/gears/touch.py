@@ -130,6 +130,11 @@ def touch_of_parts(
 
     Each part with its own deviations, those of one operating point; what several parts have in
     common, the same object, is looked at once. A part hangs on no other.
+
+    >>> pair = GearPair(Gear(20, 3e-3), Gear(40, 3e-3))
+    >>> (touch,) = touch_of_parts(mesh_points(pair, [0.25, 0.5]), [(), ()], 0.0)
+    >>> touch.gap.shape == (2, *mesh_points(pair, [0.25, 0.5]).s.shape)
+    True
     """
     contacts = points.contacts
     pair, size = contacts.pair, contacts.s.shape
@@ -311,7 +316,7 @@ def _touched(points: MeshPoints, first: Floats, second: Floats, extended: bool) 
     """Gap and edge [case, position, pair] of teeth that take off ``first`` and ``second`` [m].
 
     Each [case, step, tooth]. A case looks at its flanks as far as its own shapes may let them
-    touch, in powers of 2, so that what it finds hangs on no other case.
+    touch, in powers of 2 of the base pitch, so that what it finds hangs on no other case.
     """
     from thermogear.gears.touch_kernel import touch_teeth
 
@@ -320,7 +325,9 @@ def _touched(points: MeshPoints, first: Floats, second: Floats, extended: bool) 
     span = sum(
         np.ptp(np.ascontiguousarray(t[:, ::step]), axis=1).max(axis=1) for t in (first, second)
     )
-    span = np.where(span > _ROUNDING, 2.0 ** np.ceil(np.log2(np.maximum(span, _ROUNDING))), 0.0)
+    pitch = contacts.pair.base_pitch  # powers of 2 of it: the same in any unit of length
+    halvings = np.ceil(np.log2(np.maximum(span, _ROUNDING) / pitch))
+    span = np.where(span > _ROUNDING, pitch * 2.0**halvings, 0.0)
     teeth = (contacts.pinion_tooth % first.shape[2], contacts.wheel_tooth % second.shape[2])
     order = np.argsort(place, kind="stable")
     begin = np.searchsorted(place[order], np.arange(len(shared.s) + 1))

@@ -192,11 +192,13 @@ def _judged(gain: Mapping[str, float], judged: int, designed: int, torques: str)
 
 def each_part(data: Dataset) -> Picture:
     """Ratio of each part, in order, of every relief."""
-    panel = Panel(Axis("parts [%]", low=0.0, high=100.0), Axis("error, with over without", low=0.0))
+    panel = Panel(
+        Axis("share of the parts [–]", low=0.0, high=1.0), Axis("error, with over without", low=0.0)
+    )
     colours = (COLD, HOT, INK)
     for place, name in enumerate(names_of(data, "relief")[1:]):
         values = np.sort(data["ratio"].values[1 + place])
-        x = 100.0 * (np.arange(values.size) + 0.5) / values.size
+        x = (np.arange(values.size) + 0.5) / values.size
         panel.curve(x, values, colour=colours[place], label=str(name))
     panel.line(y=1.0, colour=INK, width=0.9, dash=(2, 2), label="without relief")
     return Picture([[panel]], legend=1)
