@@ -22,7 +22,7 @@ from thermogear.views.pages import (
     waterfall,
 )
 from thermogear.views.pages import temperature as thermal_map
-from thermogear.views.pages.answers import speeds_picture
+from thermogear.views.pages.answers import series_picture, speeds_picture
 from thermogear.views.picture import Picture
 from thermogear.views.plots import (
     claims,
@@ -48,6 +48,7 @@ SIZES = {
     "output": 2, "input": 3, "gear_temperature": 6, "gears.pinion.face_width": 3, "bearing": 2,
     "pinion_position": 12, "wheel_position": 12, "mode": 5, "stiffness_level": 3, "line": 3,
     "source": 3, "response_speed": 12, "map_column": 5, "slice": 3, "step": 6, "record": 4,
+    "quantile": 3, "damping": 3, "relief": 3, "gear": 2, "place": 3,
 }  # fmt: skip
 S = "path_position"
 
@@ -111,6 +112,11 @@ def of_sweeps() -> dict[str, Picture]:
         pinion_speed=rising("pinion_speed"),
         contact_loss_share=("pinion_speed", np.array([0.0, 0.0, 0.1, 0.2, 0.0])),
     ).assign_attrs(own_speeds=[1.5])  # fmt: skip
+    series = made("quantile damping pinion_speed", "dynamic_factor").assign(
+        pinion_speed=rising("pinion_speed"), damping_ratio=rising("damping"),
+        parting_share=rising("damping", "pinion_speed"),
+        own_dynamic_factor=rising("damping", "part"),
+    ).assign_attrs(own_speed=1.5)  # fmt: skip
     diagram = diagram.merge(branches).merge(events).assign_attrs(parameter="damping_ratio")
     return {
         "diagram": sweeps.orbit_diagram_picture(diagram),
@@ -123,6 +129,7 @@ def of_sweeps() -> dict[str, Picture]:
         "sweep-1": sweeps.sweep_picture(line),
         "sweep-2": sweeps.sweep_picture(both),
         "look": speeds_picture(look),
+        "series": series_picture(series),
     }
 
 
@@ -228,6 +235,14 @@ def of_surveys() -> dict[str, Picture]:
         "relief-error": relief.error(pairs),
         "relief-stiffness": relief.stiffness(pairs),
         "relief-load": relief.over_load(pairs, 1.5),
+        "relief-parts": relief.each_part(
+            made("relief part", "ratio").assign(relief=["none", "a", "b"])
+        ),
+        "relief-profile": relief.profile(
+            made("gear place", "roll_angle", "taken_off", "diameter").assign(
+                gear=["pinion", "wheel"]
+            )
+        ),
         "thermal-map": thermal_map.thermal_map(closed_loop()),
         "thermal-line": thermal_map.thermal_map(closed_loop().isel(torques=[0])),
         "thermal-map-bare": thermal_map.thermal_map(closed_loop(np.nan)),

@@ -66,7 +66,8 @@ def profile_figures(position: ArrayLike, *, added: ArrayLike) -> ProfileFigures:
 def trace_figures(share: Floats, *, traces: Floats) -> Floats:
     """:func:`profile_figures` of ``traces`` (trace, n) at one ``share``, (trace, figure).
 
-    >>> trace_figures(np.linspace(0.0, 1.0, 5), traces=np.array([[0.0, 1.0, 2.0, 3.0, 4.0]]))[:, ::2]
+    >>> share = np.linspace(0.0, 1.0, 5)
+    >>> trace_figures(share, traces=np.array([4.0 * share])).round(9)[:, ::2]
     array([[4., 4.]])
     """
     line = np.stack([share, np.ones_like(share)], axis=1)

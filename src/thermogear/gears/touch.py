@@ -131,6 +131,7 @@ def touch_of_parts(
     Each part with its own deviations, those of one operating point; what several parts have in
     common, the same object, is looked at once. A part hangs on no other.
 
+    >>> from thermogear.gears.candidates import mesh_points
     >>> pair = GearPair(Gear(20, 3e-3), Gear(40, 3e-3))
     >>> (touch,) = touch_of_parts(mesh_points(pair, [0.25, 0.5]), [(), ()], 0.0)
     >>> touch.gap.shape == (2, *mesh_points(pair, [0.25, 0.5]).s.shape)

@@ -142,8 +142,8 @@ def ratios(before: Floats, *, after: Floats) -> Floats:
 def drawn_periods(pair: GearPair, seed: int, *, count: int = PERIODS) -> Floats:
     """Mesh periods of a turn drawn at random, each once: all of a turn that is no longer.
 
-    >>> drawn_periods(GearPair(Gear(12, 3e-3), Gear(24, 3e-3)), 1).size
-    24
+    >>> drawn_periods(GearPair(Gear(20, 3e-3), Gear(40, 3e-3)), 1).size
+    40
     """
     turn = lcm(pair.pinion.teeth, pair.wheel.teeth)
     return np.sort(np.random.default_rng(seed).choice(turn, min(count, turn), replace=False))
@@ -239,7 +239,7 @@ def start_of_relief(pair: GearPair, relief: Relief) -> tuple[float, float]:
     >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
     >>> diameter, roll = start_of_relief(pair, Relief("pinion", amount=20e-6, length=4e-3))
     >>> f"{1e3 * diameter:.2f} mm, {roll:.4f} rad"
-    '84.04 mm, 0.5021 rad'
+    '84.12 mm, 0.5021 rad'
     """
     base = pair.gear(relief.gear).base_radius
     rho = active_profile(pair, relief.gear)[2] - relief.length
