@@ -193,7 +193,8 @@ def _judged(gain: Mapping[str, float], judged: int, designed: int, torques: str)
 def each_part(data: Dataset) -> Picture:
     """Ratio of each part, in order, of every relief."""
     panel = Panel(
-        Axis("share of the parts [–]", low=0.0, high=1.0), Axis("error, with over without [–]", low=0.0)
+        Axis("share of the parts [–]", low=0.0, high=1.0),
+        Axis("error, with over without [–]", low=0.0),
     )
     colours = (COLD, HOT, INK)
     for place, name in enumerate(names_of(data, "relief")[1:]):
