@@ -99,10 +99,10 @@ class Parts:
 
     @property
     def errors(self) -> tuple[Floats, Floats]:
-        """Static errors [m] peak to peak, over what is followed and repeated with the mesh."""
+        """Static errors [m] peak to peak, over the whole turn and repeated with the mesh."""
         error = self.mesh.transmission_error
         mean = error.reshape(len(error), self.mesh.mesh_periods, -1).mean(axis=1)
-        return np.ptp(error, axis=1), np.ptp(mean, axis=1)
+        return self.mesh.peak_to_peak, np.ptp(mean, axis=1)
 
 
 @dataclass(frozen=True, eq=False)

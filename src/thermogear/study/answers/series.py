@@ -201,13 +201,18 @@ def errors(asked: Asked) -> Iterator[Answer]:
             continue
         turn, mesh = (Spread.of(values) for values in parts.errors)
         figures |= turn.figures("turn", 1e6) | mesh.figures("mesh", 1e6)
-        figures |= {"parts": int(parts.counts[0]), "periods": parts.mesh.mesh_periods}
+        gears = asked.case.pair
+        figures |= {
+            "parts": int(parts.counts[0]), "periods": parts.mesh.mesh_periods,
+            "of_turn": math.lcm(gears.pinion.teeth, gears.wheel.teeth),
+        }  # fmt: skip
+        followed = ", by {periods} of them," * (not parts.mesh.whole)
         form, of_mesh = f"~{turn.digits}", f"~{mesh.digits}"
         sentence = (
-            f"Static, loaded and hot, over {{periods}} mesh periods, it is {{turn_low:{form}}} to "
-            f"{{turn_high:{form} µm}} peak to peak in {{held:.0f %}} of {{parts}} pairs; what "
-            f"repeats with the mesh is judged, {{mesh_middle:{of_mesh} µm}} in the median, one in "
-            f"ten exceeds {{mesh_bad:{of_mesh} µm}}; {words}."
+            f"Static, loaded and hot, over the turn of {{of_turn}} mesh periods{followed} it is "
+            f"{{turn_low:{form}}} to {{turn_high:{form} µm}} peak to peak in {{held:.0f %}} of "
+            f"{{parts}} pairs; what repeats with the mesh is judged, {{mesh_middle:{of_mesh} µm}} "
+            f"in the median, one in ten exceeds {{mesh_bad:{of_mesh} µm}}; {words}."
         )
         value = 1e6 * mesh.bad.value if np.isfinite(most) else float("nan")
         yield answer(ERROR, "transmission_error", sentence, value, figures=figures, **about)
