@@ -170,6 +170,15 @@ def test_a_jammed_series_is_not_decided() -> None:
             assert (one.verdict, one.value) == (OPEN, None)
 
 
+@pytest.mark.parametrize("change", ["operating.speed='300 rpm'", "operating.torque='0 N m'"])
+def test_no_motion_is_stated_below_the_slowest_or_without_load(change: str) -> None:
+    """Steps of a series are too coarse below .05 of the natural frequency."""
+    result = result_of(change)
+    every = {one.name: one for one in result.answers}
+    for name in ("dynamic_factor", "contact_loss", "back_contact", "resonance"):
+        assert (every[name].verdict, every[name].value) == (OPEN, None)
+
+
 def test_the_page_shows_the_band_and_stores_it_in_si(series: Result) -> None:
     page = page_of(series)
     (picture,) = page.pictures

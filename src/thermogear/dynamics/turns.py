@@ -256,6 +256,9 @@ def _keep(out: TurnMotions, rows: NDArray[np.intp], felt: Floats, turn: int) -> 
 
 PART_STEPS = 96
 """Steps in a mesh period of a part of a series: four in a period of its 24th harmonic."""
+SLOWEST_PART = 0.05
+"""Mesh over natural frequency below which no part is followed: a step is there 1.3 radians of the
+natural frequency, and from 2.7 on it is unstable."""
 PART_DIED_OUT = 1e-4
 """Part of a vibration that is left when figures of parts begin."""
 REPEATED = 1e-3

@@ -12,7 +12,7 @@ from thermogear.base.errors import InputError
 from thermogear.base.excitation import Excitations
 from thermogear.case.case import GearCase
 from thermogear.case.flanks import deviations
-from thermogear.dynamics.turns import PartTables, follow_parts
+from thermogear.dynamics.turns import SLOWEST_PART, PartTables, follow_parts
 from thermogear.gears.deviations import Deviation
 from thermogear.mesh.series import SeriesMesh
 
@@ -67,7 +67,7 @@ def series_motion(
     ``point``: excitation of one operating point, of any part at any speed: inertias, base radii
     and mean force are taken from it, and how many harmonics of the mesh frequency are kept;
     stiffness, error and half backlash are the parts' own in ``mesh``. nan for parts that are jammed
-    somewhere or whose contact does not settle, and without load.
+    somewhere or whose contact does not settle, without load, and below :data:`SLOWEST_PART`.
     """
     mass, load = float(point.equivalent_mass[0]), float(point.mean_force[0])
     count = len(mesh.stiffness)
@@ -100,6 +100,10 @@ def series_motion(
         most = newton * np.maximum(motions.greatest, -motions.least)
         factor[at], least[at] = most / load, newton * motions.least
         lost[at], repeats[at] = motions.lost, motions.repeats
+    slow = rate > 2.0 * np.pi / SLOWEST_PART
+    for figure in (factor, lost, least):
+        figure[:, slow] = np.nan
+    repeats[:, slow] = False
     return SeriesMotion(
         speed=speed, damping_ratio=damping_ratio, dynamic_factor=factor, contact_loss_share=lost,
         mesh_force_min=least, repeats=repeats,

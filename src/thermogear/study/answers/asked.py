@@ -25,7 +25,7 @@ from thermogear.case.duty import chosen_point, point_duty
 from thermogear.case.points import excitations, points_of
 from thermogear.case.response import VALUES
 from thermogear.case.thermal_state import HOT, ThermalState
-from thermogear.dynamics.turns import longest
+from thermogear.dynamics.turns import SLOWEST_PART, longest
 from thermogear.gears.deviations import Deviation
 from thermogear.gears.turn import mean_tooth, numbered_from, turn_period
 from thermogear.mesh.balance import Gearbox, HeatBalance
@@ -376,13 +376,16 @@ class Asked:
         """Whether the pair turns so slowly that no motion is followed."""
         natural = np.sqrt(self.hot["mean_stiffness"][point] / self.case.equivalent_mass)
         mesh = self.case.pair.pinion.teeth * self.case.stated.speed[point]
-        return bool(mesh < SLOWEST * natural)
+        # parts differ somewhat in their natural frequency
+        return bool(mesh < (1.1 * SLOWEST_PART if self.in_series else SLOWEST) * natural)
 
     def motionless(self, point: int) -> str:
         """Why a moving pair has no steady motion at a point."""
         if not self.case.stated.torque[point] > 0.0:
             return "there is no load"
         slow = "it turns too slowly to vibrate"
+        if self.in_series:
+            slow = "it turns too slowly for a series: flanks.seed asks for one part"
         most = RULE.cap if self.mesh_periods == 1 else longest(self.mesh_periods)
         return slow if self.slow(point) else f"no motion is steady within {most} mesh periods"
 

@@ -197,7 +197,8 @@ def errors(asked: Asked) -> Iterator[Answer]:
         about: dict[str, Any] = {"most": most, "at": asked.at(point)}
         parts = asked.series.get(point)
         if parts is None:
-            yield undecided(ERROR, "transmission_error", asked.still(point), **about)
+            why = asked.still(point) or asked.motionless(point)
+            yield undecided(ERROR, "transmission_error", why, **about)
             continue
         turn, mesh = (Spread.of(values) for values in parts.errors)
         figures |= turn.figures("turn", 1e6) | mesh.figures("mesh", 1e6)
@@ -274,11 +275,12 @@ def notice(asked: Asked) -> Notice:
     order = np.argsort(factor)[: np.count_nonzero(np.isfinite(factor))]
     return Notice.of(
         "answers_of_a_series",
-        parts=order.size,
+        parts=int(parts.counts[0]),
+        still=asked.case.series - int(parts.counts[0]) or None,
         accuracy=asked.case.accuracy,
         seed=asked.case.seed,
-        median=int(order[(order.size - 1) // 2]),
-        worst=int(order[-1]),
+        median=int(order[(order.size - 1) // 2]) if order.size else None,
+        worst=int(order[-1]) if order.size else None,
         answered=None if len(asked.points_of_series) == asked.count else 1,
         points=asked.count,
         periods=None if parts.mesh.whole else parts.mesh.mesh_periods,
