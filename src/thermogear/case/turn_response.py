@@ -103,12 +103,12 @@ def settled_response(
     """
     if points.mesh_periods == 1:
         settled = settle_with_status(points.flat, points.status, start, rule, alive=alive)
-        found = outcome_arrays(settled, points.status)
-        return settled, found | respond(points, settled.state, record, lines=lines, alive=alive)
+        figures = outcome_arrays(settled, points.status)
+        return settled, figures | respond(points, settled.state, record, lines=lines, alive=alive)
     settled = started(points.status, start)
     moving = np.flatnonzero(~points.still)
     back = np.full(len(start), np.nan)
-    found = respond(points, np.full_like(start, np.nan), record, lines=lines)
+    figures = respond(points, np.full_like(start, np.nan), record, lines=lines)
     for index, tables in turn_tables(points.take(moving)):
         here = moving[index]
         lanes = turn_lanes(points.take(here))
@@ -124,17 +124,17 @@ def settled_response(
                 turns=turns, samples=SAMPLES,
             )  # fmt: skip
             for name, values in _figures(point, x, felt, taken, lines).items():
-                found[name][lane] = values
+                figures[name][lane] = values
             settled.point[lane] = met
             back[lane] = np.mean(x < -point.flat.half_backlash)
         settled.period[here] = motions.period
         settled.label[here] = np.where(motions.period > 0, PERIODIC, UNDECIDED)
         settled.state[here] = motions.state
         settled.used[here] = motions.followed
-    settled.shares[:] = np.stack([back, found["contact_loss_share"] - back,
-                                  1.0 - found["contact_loss_share"]], axis=1)  # fmt: skip
+    settled.shares[:] = np.stack([back, figures["contact_loss_share"] - back,
+                                  1.0 - figures["contact_loss_share"]], axis=1)  # fmt: skip
     # a motion that does not repeat itself is none the less one
-    return settled, found | outcome_arrays(settled, points.status) | {"status": points.status}
+    return settled, figures | outcome_arrays(settled, points.status) | {"status": points.status}
 
 
 def _figures(point: Points, x: Floats, felt: Floats, record: Recording, lines: bool) -> Arrays:

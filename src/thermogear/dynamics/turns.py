@@ -368,15 +368,15 @@ def follow_parts(
         shallow, far = np.split(run.state[back], 2)
         alike = _apart(shallow, far, lanes[: len(lanes) // 2]) < REPEATED
         repeats = np.tile(alike, (2, 1))[order]
-    one, other = np.split(felt[back][..., :parts], 2)
-    worst, least = np.maximum(one, other), np.minimum(one, other)[:, 1]
+    from_shallow, from_far = np.split(felt[back][..., :parts], 2)
+    worst, least = np.maximum(from_shallow, from_far), np.minimum(from_shallow, from_far)[:, 1]
     both = np.logical_and(*np.split(repeats[back][..., :parts], 2))
     return PartMotions(greatest=worst[:, 0].T, least=least.T, lost=worst[:, 2].T, repeats=both.T)
 
 
-def _apart(one: Floats, other: Floats, lanes: Floats) -> Floats:
+def _apart(state: Floats, another: Floats, lanes: Floats) -> Floats:
     """How far two states are apart, in static deflections, (row, part)."""
-    gap = np.abs(one - other)
+    gap = np.abs(state - another)
     gap = np.maximum(gap[:, 0], gap[:, 1] / np.sqrt(lanes[:, 0]))
     return np.asarray(gap / lanes[:, 6])
 

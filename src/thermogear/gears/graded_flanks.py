@@ -72,12 +72,12 @@ def trace_figures(share: Floats, *, traces: Floats) -> Floats:
     """
     line = np.stack([share, np.ones_like(share)], axis=1)
     size = np.sqrt((line * line).sum(axis=0))
-    found = []
+    figures = []
     for trace in traces:  # each by itself, so that none hangs on the others in the last digit
         slope, level = np.linalg.lstsq(line / size, trace, share.size * EPSILON)[0] / size
         rest = trace - slope * share - level
-        found.append((slope, np.ptp(rest), np.ptp(trace)))
-    return np.array(found)
+        figures.append((slope, np.ptp(rest), np.ptp(trace)))
+    return np.array(figures)
 
 
 @dataclass(frozen=True)

@@ -140,13 +140,13 @@ def touch_of_parts(
     contacts = points.contacts
     pair, size = contacts.pair, contacts.s.shape
     whole = len(parts), *size
-    found = [Touch(np.zeros(whole), np.zeros(whole, np.int8)) for _ in spreads]
+    touches = [Touch(np.zeros(whole), np.zeros(whole, np.int8)) for _ in spreads]
     known: dict[int, Floats] = {}
     drawn, acting = [], []
     for n, part in enumerate(parts):
         shapes = [d for d in part if isinstance(d, FlankShape | ToothShapes)]
         if not any(d.differs for d in shapes if isinstance(d, ToothShapes)):
-            for touch, spread in zip(found, spreads, strict=True):
+            for touch, spread in zip(touches, spreads, strict=True):
                 touch.gap[n], touch.edge[n] = (
                     values.reshape(size) for values in first_touch(points, part, spread)
                 )
@@ -157,15 +157,15 @@ def touch_of_parts(
             if not isinstance(d, FlankShape | ToothShapes):
                 if id(d) not in known:
                     known[id(d)] = _checked(place, d, d.gap(contacts)).reshape(size)
-                for touch in found:
+                for touch in touches:
                     touch.gap[n] += known[id(d)]
     extended = bool(np.any((_corner_of(pair, contacts.s) > 0) & np.isfinite(points.point.gap)))
-    for touch, spread in zip(found, spreads, strict=True):
+    for touch, spread in zip(touches, spreads, strict=True):
         if acting:
             pinion, wheel = _of_all(pair, acting, spread)
             gap, touch.edge[drawn] = _touched(points, pinion, wheel, extended)
             touch.gap[drawn] += gap
-    return found
+    return touches
 
 
 class ReshapedParts:

@@ -319,18 +319,18 @@ def _between(table: Floats, place: float, tooth: int) -> float:
 
 @compiled
 def _gap_at(
-    nodes: Floats, n: int, part: float, own: Floats, i: int, mate: Floats, j: int, gap: float
+    nodes: Floats, n: int, part: float, e1: Floats, i: int, e2: Floats, j: int, gap: float
 ) -> float:
     """Gap [m] at which the points of node n of the teeth i and j touch.
 
     e = [a + (1 - a') e_1 + a'' x^2/2 + e_2]/(1 - part a'), a the advance, a' and a'' its slope and
-    bend by the place, e_1 and e_2 by the tables ``own`` and ``mate`` where the points are when the
+    bend by the place, e_1 and e_2 by the tables ``e1`` and ``e2`` where the points are when the
     pinion's has moved on by x = part ``gap`` - e_1 [m].
     """
     by = nodes[n, 3]
-    shift = part * gap - _between(own, nodes[n, 0], i)
-    off = _between(own, nodes[n, 0] + nodes[n, 5] * shift, i)
-    taken = (1.0 - by) * off + _between(mate, nodes[n, 1] + nodes[n, 6] * shift, j)
+    shift = part * gap - _between(e1, nodes[n, 0], i)
+    off = _between(e1, nodes[n, 0] + nodes[n, 5] * shift, i)
+    taken = (1.0 - by) * off + _between(e2, nodes[n, 1] + nodes[n, 6] * shift, j)
     return float((nodes[n, 2] + taken + 0.5 * nodes[n, 4] * shift * shift) / (1.0 - part * by))
 
 
@@ -355,15 +355,15 @@ def _at_nodes(
 
 @compiled
 def _least_near(
-    nodes: Floats, best: int, bend: float, rise: float, part: float, own: Floats, i: int,
-    mate: Floats, j: int, gap: float, node: Floats,
+    nodes: Floats, best: int, bend: float, rise: float, part: float, e1: Floats, i: int,
+    e2: Floats, j: int, gap: float, node: Floats,
 ) -> float:  # fmt: skip
     """Least gap [m] at node ``best`` and between its neighbours, from its ``gap`` to first order.
 
     By parabolas: the first of bend and rise [m] a node to first order, the second through what the
     gap is to second order at the node and at the least of the first.
     """
-    start = least = _gap_at(nodes, best, part, own, i, mate, j, gap)
+    start = least = _gap_at(nodes, best, part, e1, i, e2, j, gap)
     x, last = -rise / max(bend, 1e-30), 0.0
     for _ in range(_PARABOLAS):
         x = min(max(x, -1.0), 1.0)
@@ -372,7 +372,7 @@ def _least_near(
         for n in range(node.shape[1]):
             before, here, after = nodes[best - 1, n], nodes[best, n], nodes[best + 1, n]
             node[0, n] = here + 0.5 * x * (after - before + x * (before - 2.0 * here + after))
-        value = _gap_at(node, 0, part, own, i, mate, j, least)
+        value = _gap_at(node, 0, part, e1, i, e2, j, least)
         least, last = min(least, value), x
         # through both values, with the bend of the first
         x = 0.5 * x - (value - start) / (max(bend, 1e-30) * x)
@@ -406,11 +406,11 @@ def touch_teeth(
     """
     count = nodes.shape[2]
     node = np.empty((1, nodes.shape[3]))
-    own, mate = np.empty((count, first.shape[2])), np.empty((count, second.shape[2]))
+    e1, e2 = np.empty((count, first.shape[2])), np.empty((count, second.shape[2]))
     most = np.max(np.diff(begin))
     least, best = np.empty(most), np.empty(most, np.int64)
     # without a sign: an index from the end would be looked for at every one
-    own_row, mate_row = np.empty((2, most), np.uint64)
+    first_row, second_row = np.empty((2, most), np.uint64)
     advance = nodes[..., 2] / (1.0 - np.expand_dims(part, 2) * nodes[..., 3])
     # one place alone where the flanks are not near
     several = np.where(nodes[..., 0, 0] == nodes[..., count - 1, 0], 1, count)
@@ -418,29 +418,35 @@ def touch_teeth(
         one, two = first[c], second[c]
         for q, r in np.ndindex(part.shape):
             these, share, known = nodes[q, r], float(part[q, r]), int(several[q, r])
-            _at_nodes(one, these, known, share, 0, own)
-            _at_nodes(two, these, known, share, 1, mate)
+            _at_nodes(one, these, known, share, 0, e1)
+            _at_nodes(two, these, known, share, 1, e2)
             size = begin[q + 1] - begin[q]
             for n in range(size):
                 p = order[begin[q] + n]
                 i, j = pinion[p, r], wheel[p, r]
-                own_row[n], mate_row[n] = i, j
-                least[n], best[n] = advance[q, r, 0] + own[0, i] + mate[0, j], 0
+                first_row[n], second_row[n] = i, j
+                least[n], best[n] = advance[q, r, 0] + e1[0, i] + e2[0, j], 0
             for k in range(2, known):
                 if k == count - 2:  # the nodes next to the ends are those of the ends again
                     continue
                 plain = advance[q, r, k]
                 for n in range(size):
-                    value = plain + own[k, own_row[n]] + mate[k, mate_row[n]]
+                    value = plain + e1[k, first_row[n]] + e2[k, second_row[n]]
                     nearer = value < least[n]
                     least[n] = value if nearer else least[n]
                     best[n] = k if nearer else best[n]
             for n in range(size):
-                p, k, i, j, near = order[begin[q] + n], best[n], own_row[n], mate_row[n], least[n]
+                p, k, i, j, near = (
+                    order[begin[q] + n],
+                    best[n],
+                    first_row[n],
+                    second_row[n],
+                    least[n],
+                )
                 edge[c, p, r] = 0 if 1 < k < count - 2 else edges[q, r, min(k, 1)]
                 if 1 < k < count - 2:
-                    low = advance[q, r, k - 1] + own[k - 1, i] + mate[k - 1, j]
-                    high = advance[q, r, k + 1] + own[k + 1, i] + mate[k + 1, j]
+                    low = advance[q, r, k - 1] + e1[k - 1, i] + e2[k - 1, j]
+                    high = advance[q, r, k + 1] + e1[k + 1, i] + e2[k + 1, j]
                     near = _least_near(
                         these, k, low - 2.0 * near + high, 0.5 * (high - low), share,
                         one, i, two, j, near, node,

@@ -2,7 +2,7 @@
 
 What depends on the mesh phase alone, compliances and the advances of plain involutes, is the same
 in every mesh period and for every part; teeth and parts differ in their gaps.
-Checked by ``tests/mesh/test_series.py``: each part as if it were the only one.
+Checked by ``tests/mesh/test_series_mesh.py``: each part as if it were the only one.
 """
 
 from __future__ import annotations

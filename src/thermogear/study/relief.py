@@ -24,7 +24,7 @@ from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair, ThermalDeviation
 from thermogear.results.result import Notice, Result
 from thermogear.study.declared import ReliefSurvey, declared, mean_tooth_notices
-from thermogear.study.relief_series import Asked, series_relief
+from thermogear.study.relief_series import ReliefTask, series_relief
 
 LOADS = tuple(np.arange(0.1, 1.75, 0.1))
 """Loads, as parts of the one designed for, at which the pairs are compared."""
@@ -76,8 +76,8 @@ def relief_survey(
         for moment in moments
     ]
     if case.series > 1 or len(hots) > 1:
-        job = Asked(case, hots, shape, symmetric, largest)
-        return series_relief(job, notices=taken, progress=progress)
+        task = ReliefTask(case, hots, shape, symmetric, largest)
+        return series_relief(task, notices=taken, progress=progress)
     (hot,), (moment,) = hots, moments
     moduli = [
         Moduli(tooth=np.ravel(m.tooth)[0], body=np.ravel(m.body)[0]) for m in LoadedPair(hot).moduli

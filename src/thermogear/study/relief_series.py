@@ -109,9 +109,9 @@ class PartErrors:
         """Deflection [m] about its mean over each mesh period, (load, part, period, position)."""
         curves = []
         for case in self._loads:
-            touch, asked = case.parts.touch(reliefs), np.full(self._shape[0], case.load)
+            touch, loads = case.parts.touch(reliefs), np.full(self._shape[0], case.load)
             system = case.system.with_touch(touch)
-            _, deflection, _, settled = system.solve(asked, by_load=True)
+            _, deflection, _, settled = system.solve(loads, by_load=True)
             if not settled.all():
                 lost = int(np.count_nonzero(~settled))
                 raise ConvergenceError(
@@ -247,7 +247,7 @@ def start_of_relief(pair: GearPair, relief: Relief) -> tuple[float, float]:
 
 
 @dataclass(frozen=True)
-class Asked:
+class ReliefTask:
     """What a relief is designed for: single loaded operating points, and how it may look."""
 
     case: GearCase
@@ -258,7 +258,7 @@ class Asked:
 
 
 def series_relief(
-    asked: Asked, *, notices: Sequence[Notice] = (), progress: Progress = silent
+    task: ReliefTask, *, notices: Sequence[Notice] = (), progress: Progress = silent
 ) -> Result:
     """The tip relief with the least mean error of the parts of a case's series, over all loads.
 
@@ -273,7 +273,7 @@ def series_relief(
     ``profile`` over (gear, place): what the relief takes off along the profile. Attributes:
     ``reliefs`` with diameter and roll angle of their start, ``gains`` as :func:`_gain`.
     """
-    case, pair = asked.case, asked.case.pair
+    case, pair = task.case, task.case.pair
     judged_by = JUDGED_PARTS if case.series > 1 else 1
     parts = [
         tuple(d for d in part if not _tip(d))
@@ -288,7 +288,7 @@ def series_relief(
     evaluations = 0
 
     def errors(of: Sequence[Sequence[Deviation]], which: int, over: Floats = periods) -> PartErrors:
-        return PartErrors(asked.hots, of, periods=over, positions=POSITIONS[which])
+        return PartErrors(task.hots, of, periods=over, positions=POSITIONS[which])
 
     def figure(of: PartErrors) -> Callable[[Reliefs], float]:
         before = of.rms(())
@@ -303,11 +303,11 @@ def series_relief(
         return mean_ratio
 
     perfect = errors([()], 1, np.zeros(1))
-    largest = asked.largest
+    largest = task.largest
     if largest is None:
         plain = perfect.curves(())
         largest = 3.0 * float((np.ptp(plain, axis=-1) - plain.min(axis=-1)).max())
-    ground = Ground(pair, shape=asked.shape, largest=largest, symmetric=asked.symmetric)
+    ground = Ground(pair, shape=task.shape, largest=largest, symmetric=task.symmetric)
     screen = figure(perfect)
     on_perfect = search(ground, screen, screen)
     place = search(
@@ -326,7 +326,7 @@ def series_relief(
     rms = np.stack([judge.rms(cut) for cut in candidates.values()])
     ratio = np.stack([ratios(rms[0], after=after) for after in rms])
     progress("relief", MOST_EVALUATIONS, MOST_EVALUATIONS)
-    torques = [float(hot.operating.torque[0]) for hot in asked.hots]
+    torques = [float(hot.operating.torque[0]) for hot in task.hots]
     return Result.of(
         "relief",
         f"Tip relief: {case.title}",
@@ -344,13 +344,13 @@ def series_relief(
             ),
             "profile": _profile(pair, reliefs),
         },
-        (*notices, *_notices(case, asked.hots[0].model.loaded.body)),
+        (*notices, *_notices(case, task.hots[0].model.loaded.body)),
         **case.provenance,
         torques=torques,
-        pinion_addendum=[float(np.ravel(h.temperatures.pinion_addendum)[0]) for h in asked.hots],
-        wheel_addendum=[float(np.ravel(h.temperatures.wheel_addendum)[0]) for h in asked.hots],
-        shape=asked.shape,
-        symmetric=asked.symmetric,
+        pinion_addendum=[float(np.ravel(h.temperatures.pinion_addendum)[0]) for h in task.hots],
+        wheel_addendum=[float(np.ravel(h.temperatures.wheel_addendum)[0]) for h in task.hots],
+        shape=task.shape,
+        symmetric=task.symmetric,
         evaluations=evaluations,
         designed_on=min(DESIGN_PARTS, len(parts)),
         mesh_periods=len(periods),

@@ -159,12 +159,12 @@ def peaks(speed: Floats, *, top: Floats) -> list[tuple[float, float]]:
     """(speed [rad/s], dynamic factor) of the resonances of a curve ``top``, the greatest first."""
     inner = np.arange(1, top.size - 1)
     tops = inner[(top[inner] >= top[inner - 1]) & (top[inner] > top[inner + 1])]
-    found = [
+    resonances = [
         (float(speed[i]), float(top[i]))
         for i in tops
         if top[i] > PEAK * max(_valley(top, i, -1), _valley(top, i, 1))
     ]
-    return sorted(found, key=lambda one: -one[1])
+    return sorted(resonances, key=lambda one: -one[1])
 
 
 def _valley(top: Floats, place: int, way: int) -> float:

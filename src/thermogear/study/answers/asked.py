@@ -275,7 +275,7 @@ class Asked:
         if turn > WHOLE_TURN:
             periods = PERIODS
             start = np.random.default_rng(case.seed).integers(turn, size=len(parts)).tolist()
-        found = {}
+        by_point = {}
         points = [
             point
             for point in self.points_of_series
@@ -287,9 +287,9 @@ class Asked:
             speed = self._speeds_of_series(point)
             excited = excitations(case, self._part([point]))
             motion = series_motion(mesh, excited, speed, np.array(case.dampings))
-            own = int(np.argmin(np.abs(speed - case.stated.speed[point])))
-            found[point] = Parts(mesh, motion, own)
-        return found
+            place = int(np.argmin(np.abs(speed - case.stated.speed[point])))
+            by_point[point] = Parts(mesh, motion, place)
+        return by_point
 
     def _speeds_of_series(self, point: int) -> Floats:
         """Speeds [rad/s] of a series: of the hardest point a range with the case's own in it."""

@@ -62,13 +62,13 @@ class Spread:
 
     def figures(self, name: str, scale: float = 1.0) -> dict[str, Any]:
         """The numbers times ``scale`` as figures of an answer, their 95 % intervals beside them."""
-        found: dict[str, Any] = {}
+        figures: dict[str, Any] = {}
         for which, estimate in vars(self).items():
             value, *ends = (scale * number for number in estimate)
-            found[f"{name}_{which}"] = value
+            figures[f"{name}_{which}"] = value
             if np.isfinite(ends).all():  # few parts do not bound a far quantile
-                found[f"{name}_{which}_interval"] = ends
-        return found | {"held": 100.0 * (BAND[2] - BAND[0])}
+                figures[f"{name}_{which}_interval"] = ends
+        return figures | {"held": 100.0 * (BAND[2] - BAND[0])}
 
 
 # --- speeds -------------------------------------------------------------------------------------
