@@ -84,6 +84,11 @@ def test_quantiles_are_those_of_the_parts_that_are_stored(
     assert list(script("trial_answers").contradictions(series)) == []
 
 
+def test_a_relief_of_true_flanks_is_no_verdict_on_a_class(told: dict[str, Answer]) -> None:
+    assert told["relief"].verdict == OPEN
+    assert told["relief"].figures["after"] < told["relief"].figures["before"]
+
+
 def test_a_verdict_rests_on_the_bad_end_at_the_worst_damping(told: dict[str, Answer]) -> None:
     factor = told["dynamic_factor"]
     assert factor.value == max(factor.figures["bad"]) > factor.figures["part_bad"]

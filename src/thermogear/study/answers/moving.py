@@ -361,7 +361,13 @@ def relief(asked: Asked) -> Answer:
         "`thermogear relief` looks among all amounts and lengths."
     )
     units = dict.fromkeys(figures, "µm")
-    return answer(ERROR, "relief", sentence, gain, at=asked.at(point), figures=figures, units=units)
+    about: dict[str, Any] = {"at": asked.at(point), "figures": figures, "units": units}
+    if asked.in_series:
+        # what helps true flanks may make most pairs of a class worse
+        why = "for pairs of the class `thermogear relief` judges"
+        sentence = f"{sentence[0].lower()}{sentence[1:]}".removesuffix(".")
+        return undecided(ERROR, "relief", f"{why}; {sentence}", **about)
+    return answer(ERROR, "relief", sentence, gain, **about)
 
 
 def _swing(
