@@ -27,6 +27,7 @@ import numpy as np
 from scipy.stats.mstats import hdquantiles
 
 from thermogear import answers, load_case, run
+from thermogear.base.arrays import Dataset
 from thermogear.base.errors import InputError
 from thermogear.base.limits import FINE, LOOK, OPEN, PARTING
 from thermogear.base.materials import LUBRICANTS
@@ -147,16 +148,23 @@ def _series(result: Result) -> Iterator[str]:
     """The answers of a series against what is stored of its parts."""
     data = result.group("series")
     assert data is not None
-    by = {one.name: one for one in result.answers}
-    rpm = data["contact_loss_onset"].values[0] / RPM
+    for place in range(data.sizes["operating"]):
+        yield from _series_at(result, data.isel(operating=place))
+
+
+def _series_at(result: Result, data: Dataset) -> Iterator[str]:
+    rpm, torque = float(data["own_speed"]) / RPM, float(data["pinion_torque"])
+    at = ("", f"{rpm:.6g} rpm, {torque:.6g} N m")
+    by = {one.name: one for one in result.answers if one.operating in at}
+    onset = data["contact_loss_onset"].values[0] / RPM
     figures = by["contact_loss"].figures
+    if "pairs" not in figures:
+        return
     told = [figures["pairs"], figures.get("first", math.nan)]
-    within = int((rpm <= figures["top"] * (1.0 + 1e-9)).sum())
-    stored = [within, float(np.nanmin(rpm)) if np.isfinite(rpm).any() else math.nan]
+    within = int((onset <= figures["top"] * (1.0 + 1e-9)).sum())
+    stored = [within, float(np.nanmin(onset)) if np.isfinite(onset).any() else math.nan]
     if not np.allclose(told, stored, rtol=1e-9, equal_nan=True):
         yield f"contact_loss: {told} told, {stored} stored"
-    if len({one.operating for one in result.answers if one.operating}) > 1:
-        return  # what is stored is of the hardest point
     error, factor = data["mesh_error"].values, data["own_dynamic_factor"].values[0]
     for name, prefix, values in (
         ("transmission_error", "mesh", 1e6 * error),

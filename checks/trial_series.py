@@ -91,7 +91,7 @@ def held(number: int, parts: int = PARTS) -> Iterator[Held]:
     by = {one.name: one.figures for one in told.answers}
     for figure, (name, prefix, stored, scale) in BANDS.items():
         low, high = (by[name][f"{prefix}_{end}"] for end in ("low", "high"))
-        values = scale * fresh["series"][stored].values
+        values = scale * fresh["series"][stored].values[0]
         values = values[0] if values.ndim > 1 else values
         inside = int(((values >= low) & (values <= high)).sum())
         yield Held(teeth, figure, (low, high), proportion(inside, of=parts))

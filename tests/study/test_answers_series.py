@@ -63,7 +63,7 @@ def told(series: Result) -> dict[str, Answer]:
 def test_quantiles_are_those_of_the_parts_that_are_stored(
     series: Result, told: dict[str, Answer]
 ) -> None:
-    data = series["series"]
+    data = series["series"].isel(operating=0)
     assert dict(data.sizes) == {"damping": 3, "part": 16, "speed": data.speed.size, "quantile": 3}
     factor, mesh = data["own_dynamic_factor"].values, data["mesh_error"].values
     figures = told["dynamic_factor"].figures
@@ -101,7 +101,7 @@ def test_a_verdict_rests_on_the_bad_end_at_the_worst_damping(told: dict[str, Ans
 
 
 def test_pairs_that_part_are_counted(series: Result, told: dict[str, Answer]) -> None:
-    data = series["series"]
+    data = series["series"].isel(operating=0)
     onset, lost = data["contact_loss_onset"].values / RPM, told["contact_loss"]
     hits = (onset <= 7000.0 * (1.0 + 1e-9)).sum(axis=1)
     assert lost.figures["shares"] == pytest.approx((100.0 * hits / 16.0).tolist())
@@ -119,7 +119,7 @@ def test_what_is_assumed_is_told_once_with_the_median_and_the_worst_part(series:
     (notice,) = notices["answers_of_a_series"]
     assert "flanks_are_one_drawing" not in notices
     assert "speeds_looked_at" not in notices
-    factor = series["series"]["own_dynamic_factor"].values[0]
+    factor = series["series"]["own_dynamic_factor"].values[0, 0]
     assert (notice["parts"], notice["seed"], notice["accuracy"]) == (16, 1, 6)
     assert notice["worst"] == np.argmax(factor)
     assert notice["median"] == np.argsort(factor)[7]
@@ -130,7 +130,7 @@ def test_a_part_of_the_series_is_the_case_with_its_drawing() -> None:
 
     Else a part alone has the losses, and so the temperatures, of its own flanks.
     """
-    data = result_of(*HELD)["series"]
+    data = result_of(*HELD)["series"].isel(operating=0)
     for place in (0, 5):
         drawn = f"flanks.drawing={place}"
         alone = result_of(
@@ -168,13 +168,35 @@ def test_a_band_is_told_with_no_more_digits_than_it_has() -> None:
     assert math.isnan(Spread.of(np.full(3, np.nan)).middle.value)
 
 
-def test_many_operating_points_are_answered_at_the_hardest() -> None:
-    speeds = ", ".join(f'"{rpm} rpm"' for rpm in (1000, 2000, 3000, 4000, 5000))
-    result = result_of(f"operating.speed=[{speeds}]")
+def test_every_operating_point_has_its_own_counts() -> None:
+    """Where flanks part hangs on the load: each point says what it would say alone."""
+    loads = ("80 N m", "4 N m")
+    result = result_of("operating.torque=['80 N m', '4 N m']", "operating.speed='3000 rpm'", *HELD)
+    data = result["series"]
+    assert data["pinion_torque"].values.tolist() == [80.0, 4.0]
+    assert data.attrs["gravest"] == 1
+    parted = {one.operating: one for one in result.answers if one.name == "contact_loss"}
+    counts = []
+    for place, load in enumerate(loads):
+        alone = result_of(f"operating.torque='{load}'", "operating.speed='3000 rpm'", *HELD)
+        (lost,) = (one for one in alone.answers if one.name == "contact_loss")
+        here = parted[f"3000 rpm, {load}"]
+        assert here.figures["shares"] == lost.figures["shares"]
+        np.testing.assert_allclose(
+            data["own_dynamic_factor"].values[place],
+            alone["series"]["own_dynamic_factor"].values[0], rtol=1e-12,
+        )  # fmt: skip
+        counts.append(here.figures["pairs"])
+    assert counts[1] == 16 > counts[0]
+
+
+def test_many_operating_points_are_answered_at_the_hardest_and_the_lightest() -> None:
+    torques = "operating.torque=['80 N m', '10 N m']"
+    result = result_of("operating.speed=['1000 rpm', '3000 rpm', '5000 rpm']", torques)
     factors = [one for one in result.answers if one.name == "dynamic_factor"]
-    assert [one.operating for one in factors] == ["5000 rpm, 80 N m"]
+    assert [one.operating for one in factors] == ["5000 rpm, 80 N m", "5000 rpm, 10 N m"]
     (notice,) = coded(result.notices)["answers_of_a_series"]
-    assert (notice["answered"], notice["points"]) == (1, 5)
+    assert (notice["answered"], notice["points"]) == (2, 6)
 
 
 def test_a_jammed_series_is_not_decided() -> None:
@@ -202,10 +224,10 @@ def test_the_page_shows_the_band_and_stores_it_in_si(series: Result) -> None:
     kinds = [type(mark).__name__ for mark in factor.marks]
     assert kinds.count("Band") == 1
     assert kinds.count("Curve") == 3
-    data = series["series"]
+    data = series["series"].isel(operating=0)
     stored = page.figures["series"]
     assert stored["pinion_speed"]["unit"] == "rad/s"
     assert stored["turn_error"]["unit"] == "m"
-    assert stored["turn_error"]["values"] == data["turn_error"].values.tolist()
-    assert set(page.tables()) > {"answers_series_by_part.csv"} or page.tables()
+    assert stored["turn_error"]["values"] == [data["turn_error"].values.tolist()]
+    assert set(page.tables()) > {"answers_series_by_operating_part.csv"} or page.tables()
     assert len(parting.marks) == 4

@@ -112,11 +112,11 @@ def of_sweeps() -> dict[str, Picture]:
         pinion_speed=rising("pinion_speed"),
         contact_loss_share=("pinion_speed", np.array([0.0, 0.0, 0.1, 0.2, 0.0])),
     ).assign_attrs(own_speeds=[1.5])  # fmt: skip
-    series = made("quantile damping pinion_speed", "dynamic_factor").assign(
+    series = made("operating quantile damping pinion_speed", "dynamic_factor").assign(
         pinion_speed=rising("pinion_speed"), damping_ratio=rising("damping"),
-        parting_share=rising("damping", "pinion_speed"),
-        own_dynamic_factor=rising("damping", "part"),
-    ).assign_attrs(own_speed=1.5)  # fmt: skip
+        parting_share=rising("operating", "damping", "pinion_speed"),
+        own_dynamic_factor=rising("operating", "damping", "part"), own_speed=rising("operating"),
+    ).assign_attrs(gravest=1)  # fmt: skip
     diagram = diagram.merge(branches).merge(events).assign_attrs(parameter="damping_ratio")
     return {
         "diagram": sweeps.orbit_diagram_picture(diagram),

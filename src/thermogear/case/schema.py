@@ -581,6 +581,13 @@ class DynamicsTable(Table):
     @model_validator(mode="after")
     def _within(self) -> DynamicsTable:
         ends = (self.damping_ratio_least, self.damping_ratio_most)
+        if ends[0] > ends[1]:
+            raise InputError(
+                "damping_ratio_least",
+                ends[0],
+                allowed=f"up to {ends[1]:g}, damping_ratio_most",
+                fix="state both",
+            )
         if self.dampings != (self.damping_ratio,) and not ends[0] <= self.damping_ratio <= ends[1]:
             raise InputError(
                 "damping_ratio",

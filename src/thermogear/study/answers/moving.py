@@ -126,18 +126,26 @@ def _faster(asked: Asked, sentence: str) -> str:
 
 
 def resonance(
-    asked: Asked, tops: Sequence[tuple[float, float]], factor: Floats, words: str, form: str
+    asked: Asked,
+    tops: Sequence[tuple[float, float]],
+    factor: Floats,
+    words: str,
+    form: str,
+    *,
+    point: int | None = None,
 ) -> Answer:
     """How far the case's speeds are off the resonances.
 
     These are where the mesh frequency meets the natural one, the ``tops`` (speed [rad/s], dynamic
     factor) with one above :data:`~thermogear.base.limits.PARTING`, and a speed of the case itself
     where its ``factor`` (point, motion) is: it is off by nothing. ``words`` say what the tops are,
-    ``form`` with how many digits.
+    ``form`` with how many digits. All of the operating ``point``, where one is given.
     """
     own = asked.case.stated.speed
+    of, at = (asked.hardest, "") if point is None else (point, asked.at(point))
+    own = own if point is None else own[[point]]
     factor = np.where(np.isfinite(factor), factor, 0.0).max(axis=1)  # without load there is none
-    natural = np.sqrt(asked.hot["mean_stiffness"][asked.hardest] / asked.case.equivalent_mass)
+    natural = np.sqrt(asked.hot["mean_stiffness"][of] / asked.case.equivalent_mass)
     main = float(natural) / asked.case.pair.pinion.teeth
     strong = [main, *(speed for speed, top in tops if top > PARTING)]
     off = 100.0 * np.abs(own[:, None] / np.array(strong) - 1.0)
@@ -169,6 +177,7 @@ def resonance(
         "The mesh frequency meets the natural one, {natural:.2f kHz}, at {main:~3 rpm}; "
         f"{greatest}; {where}.",
         value,
+        at=at,
         figures=figures,
         units=OF_SPEEDS,
     )

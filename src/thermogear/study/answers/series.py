@@ -75,43 +75,37 @@ class Spread:
 
 
 def speeds(asked: Asked) -> Iterator[Answer]:
-    point = asked.hardest
-    parts = asked.series.get(point)
-    if parts is None or asked.slow(point):
-        why = asked.still(point) or asked.motionless(point)
-        for name in ("resonance", "contact_loss", "back_contact", "coexisting"):
-            yield undecided(SPEEDS, name, why)
-        return
-    motion = parts.motion
-    worst = np.array([Spread.of(row).bad.value for row in motion.dynamic_factor[0].T])
-    factor = np.array([
-        Spread.of(other.motion.dynamic_factor[0, :, other.place]).bad.value
-        for other in asked.series.values()
-    ])  # fmt: skip
-    yield resonance(
-        asked, peaks(motion.speed, top=worst), factor[:, None],
-        "greatest dynamic factors that one pair in ten exceeds", ".1f",
-    )  # fmt: skip
-    yield _parting(asked, parts, "contact_loss", motion.contact_loss_share > LOST, "Flanks part")
-    yield _parting(
-        asked, parts, "back_contact", motion.mesh_force_min < 0.0, "Teeth hit the back side"
-    )
-    why = "each pair of a series is followed from rest alone; flanks.seed asks for one part"
+    for point in asked.points_of_series:
+        at, parts = asked.at(point), asked.series.get(point)
+        if parts is None or asked.slow(point):
+            why = asked.still(point) or asked.motionless(point)
+            for name in ("resonance", "contact_loss", "back_contact"):
+                yield undecided(SPEEDS, name, why, at=at)
+            continue
+        motion = parts.motion
+        worst = np.array([Spread.of(row).bad.value for row in motion.dynamic_factor[0].T])
+        yield resonance(
+            asked, peaks(motion.speed, top=worst), worst[None, [parts.place]],
+            "greatest dynamic factors that one pair in ten exceeds", ".1f", point=point,
+        )  # fmt: skip
+        lost, struck = motion.contact_loss_share > LOST, motion.mesh_force_min < 0.0
+        yield _parting(parts, "contact_loss", lost, "Flanks part", at)
+        yield _parting(parts, "back_contact", struck, "Teeth hit the back side", at)
+    why = "each pair of a series is followed from rest alone; ask for one part by flanks.parts"
     yield undecided(SPEEDS, "coexisting", why)
 
 
-def _parting(
-    asked: Asked, parts: Parts, name: str, happens: NDArray[np.bool_], words: str
-) -> Answer:
-    """In how many pairs it ``happens`` (damping, part, speed) up to the greatest own speed."""
+def _parting(parts: Parts, name: str, happens: NDArray[np.bool_], words: str, at: str) -> Answer:
+    """In how many pairs it ``happens`` (damping, part, speed) up to the own speed of the point."""
     speed, dampings = parts.motion.speed, parts.motion.damping_ratio
-    top = float(asked.case.stated.speed.max())
+    top = float(speed[parts.place])
     within = happens[:, :, speed <= top * (1.0 + 1e-9)].any(axis=2)
     counts = parts.counts
     hits = within.sum(axis=1)
     shares = 100.0 * hits / counts
     onset = np.where(happens[0].any(axis=1), speed[happens[0].argmax(axis=1)], np.inf)[: counts[0]]
-    middle, first = quantile(onset, share=0.5), float(onset.min())
+    # onsets jump: the value of a rank, no mean of several
+    middle, first = float(np.sort(onset)[(onset.size - 1) // 2]), float(onset.min())
     of_all = proportion(int(hits[0]), of=int(counts[0]))
     figures: dict[str, Any] = {
         "pairs": int(hits[0]), "parts": int(counts[0]), "top": top / RPM,
@@ -124,16 +118,17 @@ def _parting(
         sentence += ", first at {first:~2 rpm}"
     else:
         sentence += ", at no speed up to {beyond:~2 rpm}"
-    if math.isfinite(middle.value):
-        figures["half"] = middle.value / RPM
+    if math.isfinite(middle):
+        figures["half"] = middle / RPM
         sentence += ", in half of them by {half:~2 rpm}"
     more, beside = _by_damping(dampings, shares, LIMITS["parting_pairs"].most)
     if dampings.size > 1:
         figures |= {"least": float(dampings[1]), "pairs_there": int(hits[1]), "of": int(counts[1])}
         sentence += "; with a damping of {least:~2} in {pairs_there} of {of}"
     return answer(
-        SPEEDS, name, f"{sentence}{more}.", float(shares.max()), limit="parting_pairs",
-        figures=figures | beside, units=OF_SPEEDS | {"shares": "%", "share_interval": "%"},
+        SPEEDS, name, f"{sentence}{more}.", float(shares.max()), limit="parting_pairs", at=at,
+        figures=figures | beside,
+        units=OF_SPEEDS | {"shares": "%", "share_interval": "%", "beyond": "rpm"},
     )  # fmt: skip
 
 
@@ -216,6 +211,7 @@ def errors(asked: Asked) -> Iterator[Answer]:
             f"in the median, one in ten exceeds {{mesh_bad:{of_mesh} µm}}; {words}."
         )
         value = 1e6 * mesh.bad.value if np.isfinite(most) else float("nan")
+        about["units"] = {name: "µm" for name in figures if name.startswith(("turn_", "mesh_"))}
         yield answer(ERROR, "transmission_error", sentence, value, figures=figures, **about)
     yield relief(asked)
 
@@ -223,56 +219,87 @@ def errors(asked: Asked) -> Iterator[Answer]:
 # --- behind the answers -------------------------------------------------------------------------
 
 
-def data(asked: Asked) -> Dataset:
-    """The hardest point over speed and damping as quantiles of parts, and every part at its own.
+def gravest(asked: Asked) -> int:
+    """The operating point with the greatest dynamic factor at the bad end, of those that move."""
+    return max(
+        asked.series,
+        key=lambda point: max(
+            np.nan_to_num(Spread.of(row).bad.value)
+            for row in asked.series[point].motion.dynamic_factor[:, :, asked.series[point].place]
+        ),
+    )
 
-    SI; ``contact_loss_onset`` is nan of a part that keeps contact at every speed.
+
+def data(asked: Asked) -> Dataset:
+    """Each operating point over speed and damping as quantiles of parts, every part at its own.
+
+    SI; ``contact_loss_onset`` is nan of a part that keeps contact at every speed. Attribute
+    ``gravest``: place along ``operating`` of the point of :func:`gravest`.
     """
-    parts = asked.series[asked.hardest]
-    motion, counts = parts.motion, parts.counts
-    over = [[Spread.of(part) for part in row.T] for row in motion.dynamic_factor]
-    quantiles = [
-        [[getattr(spread, which).value for spread in row] for row in over]
-        for which in ("low", "middle", "high")
-    ]
-    lost = motion.contact_loss_share > LOST
-    onset = np.where(lost.any(axis=2), motion.speed[lost.argmax(axis=2)], np.nan)
-    turn, mesh = parts.errors
-    along, each = ("damping", "speed"), ("damping", "part")
+    points = list(asked.series)
+    every = [_of_point(asked.series[point]) for point in points]
+    stated = asked.case.stated
+    along, each = ("operating", "damping", "speed"), ("operating", "damping", "part")
+    words = {
+        "dynamic_factor": (
+            ("operating", "quantile", "damping", "speed"), "1",
+            "dynamic factor that a share of parts does not exceed",
+        ),
+        "parting_share": (along, "1", "share of parts that lose contact"),
+        "own_dynamic_factor": (each, "1", "dynamic factor of each part at the own speed"),
+        "contact_loss_onset": (
+            each, "rad/s", "least speed at which contact is lost; nan: at none",
+        ),
+        "turn_error": (("operating", "part"), "m", "static error of each part, peak to peak"),
+        "mesh_error": (("operating", "part"), "m", "what of it repeats with the mesh"),
+    }  # fmt: skip
+    motion = asked.series[points[0]].motion
     return label(
         {
-            "dynamic_factor": (
-                ("quantile", *along), np.array(quantiles), "1",
-                "dynamic factor that a share of parts does not exceed",
-            ),
-            "parting_share": (
-                along, lost.sum(axis=1) / counts[:, None], "1", "share of parts that lose contact",
-            ),
-            "own_dynamic_factor": (
-                each, motion.dynamic_factor[:, :, parts.place], "1",
-                "dynamic factor of each part at the own speed",
-            ),
-            "contact_loss_onset": (
-                each, onset, "rad/s", "least speed at which contact is lost; nan: at none",
-            ),
-            "turn_error": ("part", turn, "m", "static error of each part, peak to peak"),
-            "mesh_error": ("part", mesh, "m", "what of it repeats with the mesh"),
+            name: (dims, np.array([values[name] for values in every]), unit, long_name)
+            for name, (dims, unit, long_name) in words.items()
         },
         {
+            "own_speed": ("operating", stated.speed[points], "rad/s", "own pinion speed"),
+            "pinion_torque": ("operating", stated.torque[points], "N m", "pinion torque"),
             "pinion_speed": ("speed", motion.speed, "rad/s", "pinion speed"),
             "damping_ratio": ("damping", motion.damping_ratio, "1", "damping ratio"),
             "quantile": ("quantile", np.array(BAND), "1", "share of parts"),
-            "drawing": ("part", np.arange(turn.size), "1", "flanks.drawing of the part"),
+            "drawing": ("part", np.arange(asked.case.series), "1", "flanks.drawing of the part"),
         },
-        {"own_speed": float(motion.speed[parts.place]), "seed": asked.case.seed},
-    )  # fmt: skip
+        {"gravest": points.index(gravest(asked)), "seed": asked.case.seed},
+    )
+
+
+def _of_point(parts: Parts) -> dict[str, Floats]:
+    """The variables of :func:`data` at one operating point."""
+    motion, factor = parts.motion, parts.motion.dynamic_factor
+    over = [[Spread.of(part) for part in row.T] for row in factor]
+    lost = motion.contact_loss_share > LOST
+    turn, mesh = parts.errors
+    return {
+        "dynamic_factor": np.array([
+            [[getattr(spread, which).value for spread in row] for row in over]
+            for which in ("low", "middle", "high")
+        ]),
+        "parting_share": lost.sum(axis=1) / parts.counts[:, None],
+        "own_dynamic_factor": factor[:, :, parts.place],
+        "contact_loss_onset": np.where(
+            lost.any(axis=2), motion.speed[lost.argmax(axis=2)], np.nan
+        ),
+        "turn_error": turn,
+        "mesh_error": mesh,
+    }  # fmt: skip
 
 
 def notice(asked: Asked) -> Notice:
     """What the series is, what of it is assumed, and which parts are its median and worst."""
-    parts = asked.series[asked.hardest]
+    point = gravest(asked)
+    parts = asked.series[point]
     factor = parts.motion.dynamic_factor[0, :, parts.place]
     order = np.argsort(factor)[: np.count_nonzero(np.isfinite(factor))]
+    several = asked.count > 1
+    answered = len(asked.points_of_series)
     return Notice.of(
         "answers_of_a_series",
         parts=int(parts.counts[0]),
@@ -281,7 +308,9 @@ def notice(asked: Asked) -> Notice:
         seed=asked.case.seed,
         median=int(order[(order.size - 1) // 2]) if order.size else None,
         worst=int(order[-1]) if order.size else None,
-        answered=None if len(asked.points_of_series) == asked.count else 1,
+        speed=float(asked.case.stated.speed[point]) if several else None,
+        torque=float(asked.case.stated.torque[point]) if several else None,
+        answered=None if answered == asked.count else answered,
         points=asked.count,
         periods=None if parts.mesh.whole else parts.mesh.mesh_periods,
     )

@@ -85,9 +85,9 @@ def sections(result: Result, pictures: Pictures) -> list[Section]:
         pictures.add(
             "dynamic-factor",
             "Dynamic factor of the series over speed",
-            "Above: the median pair and the band of 90 % of pairs; dashed: the median with other "
-            "dampings; dots: every pair at the own speed. Below: the share of pairs that lose "
-            "contact.",
+            "Of the operating point with the greatest dynamic factor. Above: the median pair and "
+            "the band of 90 % of pairs; dashed: the median with other dampings; dots: every pair "
+            "at the own speed. Below: the share of pairs that lose contact.",
             series,
             ("dynamic_factor", "parting_share"),
             lambda: series_picture(series),
@@ -166,7 +166,11 @@ def speeds_picture(data: Dataset) -> Picture:
 
 
 def series_picture(data: Dataset) -> Picture:
-    """Band of the dynamic factor over pinion speed, dampings and parts; below, who parts."""
+    """Band of the dynamic factor over pinion speed, dampings and parts; below, who parts.
+
+    Of the operating point with the greatest dynamic factor.
+    """
+    data = data.isel(operating=int(data.attrs["gravest"]))
     rpm = display("pinion_speed")(data["pinion_speed"].values)
     low, middle, high = data["dynamic_factor"].values
     dampings = data["damping_ratio"].values
@@ -179,7 +183,7 @@ def series_picture(data: Dataset) -> Picture:
         factor.curve(rpm, middle[place], label=label, **look)
         share = PERCENT(data["parting_share"].values[place])
         parting.curve(rpm, share, **look)
-    speed = float(display("pinion_speed")(data.attrs["own_speed"]))
+    speed = float(display("pinion_speed")(data["own_speed"]))
     parts = data["own_dynamic_factor"].values[0]
     factor.points(np.full(parts.size, speed), parts, colour=HOT, size=3.0, open=True, label="pairs")
     for panel in (factor, parting):
