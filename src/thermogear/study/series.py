@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.analysis.order_statistics import Estimate, quantile
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import Excitations
@@ -14,10 +16,53 @@ from thermogear.case.case import GearCase
 from thermogear.case.flanks import deviations
 from thermogear.dynamics.turns import SLOWEST_PART, PartTables, follow_parts
 from thermogear.gears.deviations import Deviation
-from thermogear.mesh.series import SeriesMesh
+from thermogear.gears.turn import turn_period
+from thermogear.mesh.series import SeriesMesh, followed_periods, series_mesh
+from thermogear.mesh.thermal import HotPair
 
 AT_BOUNDS = 16
 """Parts of a series whose motions are followed at the bounds of the damping."""
+
+
+BAND = (0.05, 0.5, 0.95)
+"""Quantiles that are told: the middle, and the ends of what holds 90 % of parts."""
+BAD = 0.9
+"""Quantile that a verdict rests on: nine of ten parts do better (ours)."""
+CLOSE = 0.1
+"""Width of a band over its middle below which three figures tell its ends apart, else two do."""
+
+
+@dataclass(frozen=True)
+class Spread:
+    """Quantiles of some parts: 5, 50 and 95 %, and the one that a verdict rests on."""
+
+    low: Estimate
+    middle: Estimate
+    high: Estimate
+    bad: Estimate
+
+    @classmethod
+    def of(cls, values: Floats) -> Spread:
+        """Of what is known of the parts; nan where nothing is."""
+        known = values[np.isfinite(values)]
+        if not known.size:
+            return cls(*[Estimate(np.nan, np.nan, np.nan)] * 4)
+        return cls(*(quantile(known, share=share) for share in (*BAND, BAD)))
+
+    @property
+    def digits(self) -> int:
+        """Figures that its ends are told with."""
+        return 3 if self.high.value - self.low.value < CLOSE * self.middle.value else 2
+
+    def figures(self, name: str, scale: float = 1.0) -> dict[str, Any]:
+        """The numbers times ``scale`` as figures of an answer, their 95 % intervals beside them."""
+        figures: dict[str, Any] = {}
+        for which, estimate in vars(self).items():
+            value, *ends = (scale * number for number in estimate)
+            figures[f"{name}_{which}"] = value
+            if np.isfinite(ends).all():  # few parts do not bound a far quantile
+                figures[f"{name}_{which}_interval"] = ends
+        return figures | {"held": 100.0 * (BAND[2] - BAND[0])}
 
 
 def series_parts(case: GearCase, count: int) -> tuple[tuple[Deviation, ...], ...]:
@@ -108,3 +153,67 @@ def series_motion(
         speed=speed, damping_ratio=damping_ratio, dynamic_factor=factor, contact_loss_share=lost,
         mesh_force_min=least, repeats=repeats,
     )  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class SeriesPoint:
+    """The parts of a series at one operating point: their mesh, and their motions over speed.
+
+    ``place`` of the own speed of the operating point among those of the motions.
+    """
+
+    mesh: SeriesMesh
+    motion: SeriesMotion
+    place: int
+
+    @property
+    def counts(self) -> NDArray[np.int64]:
+        """How many pairs are followed at each damping."""
+        return np.asarray(np.isfinite(self.motion.dynamic_factor).any(axis=2).sum(axis=1))
+
+    @property
+    def errors(self) -> tuple[Floats, Floats]:
+        """Static errors [m] peak to peak, over the whole turn and repeated with the mesh."""
+        error = self.mesh.transmission_error
+        mean = error.reshape(len(error), self.mesh.mesh_periods, -1).mean(axis=1)
+        return self.mesh.peak_to_peak, np.ptp(mean, axis=1)
+
+
+@dataclass(frozen=True, eq=False)
+class Series:
+    """The first parts of the series of a ``case``, and what of the turn of each is followed.
+
+    ``periods`` mesh periods, from mesh period ``start`` of each part on: the whole turn, or a
+    stretch of a longer one (:func:`~thermogear.mesh.series.followed_periods`).
+    """
+
+    case: GearCase
+    parts: tuple[tuple[Deviation, ...], ...]
+    periods: int
+    start: tuple[int, ...] | None
+
+    @classmethod
+    def of(cls, case: GearCase, count: int | None = None) -> Series:
+        """Of the first ``count`` parts; of as many as the case states by default."""
+        parts = series_parts(case, case.series if count is None else count)
+        turn = turn_period(case.pair, parts[0]).mesh_periods
+        periods = min(turn, followed_periods(case.pair))
+        if turn == periods:
+            return cls(case, parts, periods, None)
+        start = np.random.default_rng(case.seed).integers(turn, size=len(parts))
+        return cls(case, parts, periods, tuple(start.tolist()))
+
+    def mesh(self, hot: HotPair) -> SeriesMesh:
+        """The loaded mesh of every part at the one operating point of ``hot``."""
+        return series_mesh(hot, self.parts, self.periods, start=self.start)
+
+    def followed(
+        self, hot: HotPair, excited: Excitations, speed: Floats, *, own_speed: float
+    ) -> SeriesPoint:
+        """Mesh and motions at ``hot``, whose mean tooth is ``excited``, at the case's dampings.
+
+        ``speed`` (speed,) [rad/s] of the pinion, ``own_speed`` the one of the operating point.
+        """
+        mesh = self.mesh(hot)
+        motion = series_motion(mesh, excited, speed, np.array(self.case.dampings))
+        return SeriesPoint(mesh, motion, int(np.argmin(np.abs(speed - own_speed))))

@@ -27,18 +27,17 @@ from thermogear.case.response import VALUES
 from thermogear.case.thermal_state import HOT, ThermalState
 from thermogear.dynamics.turns import SLOWEST_PART, longest
 from thermogear.gears.deviations import Deviation
-from thermogear.gears.turn import mean_tooth, numbered_from, turn_period
+from thermogear.gears.turn import mean_tooth, numbered_from
 from thermogear.mesh.balance import Gearbox, HeatBalance
 from thermogear.mesh.balance_table import LOSSES
 from thermogear.mesh.clearance import PARTS
 from thermogear.mesh.elastic import ElasticPair, elastic_pair
 from thermogear.mesh.excite import EXCITES
 from thermogear.mesh.model import MeshModel
-from thermogear.mesh.series import SeriesMesh, series_mesh
 from thermogear.mesh.thermal import HotPair
 from thermogear.mesh.warm_up import WarmUp, warm_up
 from thermogear.results.answer import Answer
-from thermogear.study.series import SeriesMotion, series_motion, series_parts
+from thermogear.study.series import Series, SeriesPoint
 from thermogear.study.speeds import FARTHEST, Speeds, look, motions_of, starts_of
 
 Cycle = Mapping[str, NDArray[Any]]
@@ -78,32 +77,8 @@ WARM_UP_TOLERANCE = 0.1
 SERIES_POINTS = 4
 """Operating points up to which a series is answered for at each; else at the hardest and at that of
 the least torque, where flanks part first."""
-WHOLE_TURN, PERIODS = 200, 140
-"""Mesh periods up to which a turn is followed as a whole; of a longer one so many in a row, from a
-random one on: the dynamic factor of a part is .6 to 2.6 % lower in the mean then, at worst 15 %."""
 LOWEST, HIGHEST, STEP = 0.1, 1.4, 0.06
 """Mesh over natural frequency of a series, from where the tenth harmonic meets it, and the step."""
-
-
-@dataclass(frozen=True, eq=False)
-class Parts:
-    """The pairs of a series at one operating point: its mesh, motions over speed, its own speed."""
-
-    mesh: SeriesMesh
-    motion: SeriesMotion
-    place: int
-
-    @property
-    def counts(self) -> NDArray[np.int64]:
-        """How many pairs are followed at each damping."""
-        return np.asarray(np.isfinite(self.motion.dynamic_factor).any(axis=2).sum(axis=1))
-
-    @property
-    def errors(self) -> tuple[Floats, Floats]:
-        """Static errors [m] peak to peak, over the whole turn and repeated with the mesh."""
-        error = self.mesh.transmission_error
-        mean = error.reshape(len(error), self.mesh.mesh_periods, -1).mean(axis=1)
-        return self.mesh.peak_to_peak, np.ptp(mean, axis=1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -269,17 +244,12 @@ class Asked:
         return sorted({self.hardest, int(lightest)})
 
     @cached_property
-    def series(self) -> dict[int, Parts]:
+    def series(self) -> dict[int, SeriesPoint]:
         """The pairs of the series by operating point, where they move; empty of one part alone."""
         case = self.case
         if not self.in_series:
             return {}
-        parts = series_parts(case, case.series)
-        turn = turn_period(case.pair, parts[0]).mesh_periods
-        periods, start = turn, None
-        if turn > WHOLE_TURN:
-            periods = PERIODS
-            start = np.random.default_rng(case.seed).integers(turn, size=len(parts)).tolist()
+        series = Series.of(case)
         by_point = {}
         points = [
             point
@@ -288,12 +258,12 @@ class Asked:
         ]
         for number, point in enumerate(points):
             self.progress("series", number, len(points))
-            mesh = series_mesh(self.hot_pair(HOT, point), parts, periods, start=start)
-            speed = self._speeds_of_series
-            excited = excitations(case, self._part([point]))
-            motion = series_motion(mesh, excited, speed, np.array(case.dampings))
-            place = int(np.argmin(np.abs(speed - case.stated.speed[point])))
-            by_point[point] = Parts(mesh, motion, place)
+            by_point[point] = series.followed(
+                self.hot_pair(HOT, point),
+                excitations(case, self._part([point])),
+                self._speeds_of_series,
+                own_speed=float(case.stated.speed[point]),
+            )
         return by_point
 
     @cached_property

@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.analysis.order_statistics import Estimate, proportion, quantile
+from thermogear.analysis.order_statistics import proportion
 from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.limits import LIMITS, PARTING
 from thermogear.base.units import RPM
 from thermogear.base.vocabulary import label
 from thermogear.results.answer import Answer
 from thermogear.results.result import Notice
-from thermogear.study.answers.asked import Asked, Parts, answer, undecided
+from thermogear.study.answers.asked import Asked, answer, undecided
 from thermogear.study.answers.moving import (
     ERROR,
     LOADS,
@@ -28,48 +27,8 @@ from thermogear.study.answers.moving import (
     relief,
     resonance,
 )
+from thermogear.study.series import BAND, SeriesPoint, Spread
 from thermogear.study.speeds import LOST, peaks
-
-BAND = (0.05, 0.5, 0.95)
-"""Quantiles that are told: the middle, and the ends of what holds 90 % of parts."""
-BAD = 0.9
-"""Quantile that a verdict rests on: nine of ten parts do better (ours)."""
-CLOSE = 0.1
-"""Width of a band over its middle below which three figures tell its ends apart, else two do."""
-
-
-@dataclass(frozen=True)
-class Spread:
-    """Quantiles of some parts: 5, 50 and 95 %, and the one that a verdict rests on."""
-
-    low: Estimate
-    middle: Estimate
-    high: Estimate
-    bad: Estimate
-
-    @classmethod
-    def of(cls, values: Floats) -> Spread:
-        """Of what is known of the parts; nan where nothing is."""
-        known = values[np.isfinite(values)]
-        if not known.size:
-            return cls(*[Estimate(np.nan, np.nan, np.nan)] * 4)
-        return cls(*(quantile(known, share=share) for share in (*BAND, BAD)))
-
-    @property
-    def digits(self) -> int:
-        """Figures that its ends are told with."""
-        return 3 if self.high.value - self.low.value < CLOSE * self.middle.value else 2
-
-    def figures(self, name: str, scale: float = 1.0) -> dict[str, Any]:
-        """The numbers times ``scale`` as figures of an answer, their 95 % intervals beside them."""
-        figures: dict[str, Any] = {}
-        for which, estimate in vars(self).items():
-            value, *ends = (scale * number for number in estimate)
-            figures[f"{name}_{which}"] = value
-            if np.isfinite(ends).all():  # few parts do not bound a far quantile
-                figures[f"{name}_{which}_interval"] = ends
-        return figures | {"held": 100.0 * (BAND[2] - BAND[0])}
-
 
 # --- speeds -------------------------------------------------------------------------------------
 
@@ -95,7 +54,9 @@ def speeds(asked: Asked) -> Iterator[Answer]:
     yield undecided(SPEEDS, "coexisting", why)
 
 
-def _parting(parts: Parts, name: str, happens: NDArray[np.bool_], words: str, at: str) -> Answer:
+def _parting(
+    parts: SeriesPoint, name: str, happens: NDArray[np.bool_], words: str, at: str
+) -> Answer:
     """In how many pairs it ``happens`` (damping, part, speed) up to the own speed of the point."""
     speed, dampings = parts.motion.speed, parts.motion.damping_ratio
     top = float(speed[parts.place])
@@ -271,7 +232,7 @@ def data(asked: Asked) -> Dataset:
     )
 
 
-def _of_point(parts: Parts) -> dict[str, Floats]:
+def _of_point(parts: SeriesPoint) -> dict[str, Floats]:
     """The variables of :func:`data` at one operating point."""
     motion, factor = parts.motion, parts.motion.dynamic_factor
     over = [[Spread.of(part) for part in row.T] for row in factor]
