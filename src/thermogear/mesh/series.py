@@ -95,8 +95,8 @@ class SeriesMesh:
 def followed_periods(pair: GearPair) -> int:
     """Mesh periods to follow of a ``pair`` whose teeth differ: its turn, or a stretch of it.
 
-    A turn of :data:`WHOLE_TURN` or less; of a longer one a stretch of :data:`STRETCH`, or of as many
-    as both gears have teeth together, so that each tooth meets enough others.
+    A turn of :data:`WHOLE_TURN` or less; of a longer one a stretch of :data:`STRETCH`, or of as
+    many as both gears have teeth together, so that each tooth meets enough others.
 
     >>> followed_periods(GearPair(Gear(27, 3e-3), Gear(35, 3e-3)))
     140
