@@ -588,8 +588,6 @@ CASES = (
         (
             "verify stiffness rig --positions 1 --json",
             "verify stiffness own.toml --torque 40 --positions 1 --near stress --json",
-            "verify growth rig --json",
-            "verify growth rig --bore shaft",
         ),
         MINE,
     ),
