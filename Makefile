@@ -75,7 +75,7 @@ bench-geared: $(BENCH_STAMP)  ## drive trains that lose contact, our engine besi
 bench-coordinates: $(STAMP)  ## what more coordinates change in a drive train's impacts, and cost
 	$(BIN)/python bench/coordinates.py
 
-bench-train-map: $(STAMP)  ## a drive train's map on one thread, two and two dask workers; TRAIN_MAP="--grid 6x4" a short one, --write the page
+bench-train-map: $(STAMP)  ## a drive train's map on one thread and on two; TRAIN_MAP="--grid 6x4" a short one, --write the page
 	$(BIN)/python bench/train_map.py $(TRAIN_MAP)
 
 bench: $(BENCH_STAMP)  ## peers side by side, own environment; BENCH=--quick for a short one

@@ -1,8 +1,8 @@
-"""A drive train's map on a thread, two threads and two workers of dask: ``make bench-train-map``.
+"""A drive train's map on one thread and on two: ``make bench-train-map``.
 
 Prints the table of docs/train_map.md and writes it with ``--write``. ``--grid 6x4`` takes another
-grid than 64 speeds by 24 gear temperatures. Needs the extra [cluster]. Every way computes the whole
-map anew, into a store of its own.
+grid than 64 speeds by 24 gear temperatures. Every way computes the whole map anew, into
+a store of its own.
 """
 
 from __future__ import annotations
@@ -83,15 +83,12 @@ def plan(grid: tuple[int, int]) -> MapPlan:
     return case_map(load_case(CASE), axes, train=Train(coordinates=COORDINATES))
 
 
-def timed(work: Callable[[], xr.Dataset], others: Callable[[], float]) -> tuple[xr.Dataset, str]:
-    """What ``work`` computes, and a row's seconds of the clock and of all processors.
-
-    ``others`` tells the processor seconds of other processes up to now.
-    """
-    before, own, begun = others(), time.process_time(), time.perf_counter()
+def timed(work: Callable[[], xr.Dataset]) -> tuple[xr.Dataset, str]:
+    """What ``work`` computes, and a row's seconds of the clock and of all processors."""
+    own, begun = time.process_time(), time.perf_counter()
     found = work()
     wall = time.perf_counter() - begun
-    return found, f"{wall:.0f} | {time.process_time() - own + others() - before:.0f}"
+    return found, f"{wall:.0f} | {time.process_time() - own:.0f}"
 
 
 def equal(one: xr.Dataset, other: xr.Dataset) -> str:
@@ -103,9 +100,7 @@ def equal(one: xr.Dataset, other: xr.Dataset) -> str:
 
 
 def table(grid: tuple[int, int], show: Callable[[str], None] = print) -> list[str]:
-    """Carry the map out in three ways; the rows, and what they found."""
-    from distributed import Client, LocalCluster
-
+    """Carry the map out in both ways; the rows, and what they found."""
     made = plan(grid)
     made.pilot(2)  # loads the compiled kernels
     rows = [
@@ -127,20 +122,7 @@ def table(grid: tuple[int, int], show: Callable[[str], None] = print) -> list[st
 
         for count, words in ((1, "1 thread"), (2, "2 threads")):
             work = _threaded(made, stores / words, count)
-            put(words, *timed(work, lambda: 0.0))
-        with (
-            LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster,
-            Client(cluster) as client,
-        ):
-            client.run(made.pilot, 2)
-            address = str(cluster.scheduler_address)
-            put(
-                "2 workers",
-                *timed(
-                    lambda: carry_out(made, stores / "workers", scheduler=address),
-                    lambda: float(sum(client.run(time.process_time).values())),
-                ),
-            )
+            put(words, *timed(work))
     assert first is not None
     lost = first["lost_contact"].values
     drive, back = (100.0 * float(np.mean((lost & flag) > 0)) for flag in (1, 2))
@@ -165,7 +147,7 @@ def page(grid: tuple[int, int], rows: list[str]) -> str:
     return "\n".join(
         [
             "---", "orphan: true", "---",
-            "# A map of a drive train on threads and on a cluster", "",
+            "# A map of a drive train on threads", "",
             f"Made by `make bench-train-map`: a map of {grid[0]} speeds (1000 to 6000 rpm) by "
             f"{grid[1]} gear temperatures",
             f"(30 to 110 °C) of a 27:44 pair on two shafts in four ball bearings, {COORDINATES} "

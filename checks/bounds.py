@@ -21,7 +21,7 @@ ROOT = Path(__file__).parents[1]
 PLACE = ROOT / ".bounds-venv"
 PAGE = ROOT / "docs" / "bounds.md"
 UV = ROOT / ".venv" / "bin" / "uv"
-EXTRAS = ("measure", "cluster", "fe", "sensitivity", "app", "cad")
+EXTRAS = ("measure", "fe", "sensitivity", "app", "cad")
 TOOLS = ("pytest", "pytest-xdist", "hypothesis", "axe-core-python")
 """What the tests need beside the package; always the newest, no bound of ours."""
 QUICK = (

@@ -279,7 +279,7 @@ COMMANDS = [
     *("new", "import", "export", "draw", "answers", "run", "report", "check", "example", "schema"),
     *("friction", "temperature", "warmup", "relief", "contact"),
     *("statics", "modes", "campbell", "waterfall"),
-    *("orbit", "lyapunov", "continue", "shared-force"),
+    *("orbit", "lyapunov", "continue"),
     *("bifurcation", "map", "basins", "runup", "sweep"),
     *("measure", "compare", "thesis", "sensitivity", "verify", "versus"),
 ]
@@ -438,7 +438,6 @@ CASES = (
         ),
     ),
     Case("cascade", ("continue table-4.2 --cascade 2 --hot -o out --json",)),
-    Case("shared-force", ("shared-force rig --speeds 5 -o out --json",)),
     # --- stores
     Case(
         "bifurcation-table",
@@ -588,8 +587,6 @@ CASES = (
         (
             "verify stiffness rig --positions 1 --json",
             "verify stiffness own.toml --torque 40 --positions 1 --near stress --json",
-            "verify growth rig --json",
-            "verify growth rig --bore shaft",
         ),
         MINE,
     ),

@@ -27,10 +27,8 @@ from thermogear.analysis.labels import labels
 from thermogear.analysis.orbits import multipliers
 from thermogear.analysis.settle import PERIODIC, Rule, settle
 from thermogear.base.excitation import Excitations
-from thermogear.base.pair_springs import PairSprings
 from thermogear.case.points import Points, on_numbers, points_of
 from thermogear.case.response import Recording, respond
-from thermogear.dynamics.load_shared import LoadSharedModel
 from thermogear.dynamics.models import DeadZoneModel, from_excitation
 from thermogear.gears.deviations import PitchError
 from thermogear.gears.loaded import LoadedModel, solve_mesh
@@ -184,9 +182,6 @@ def test_the_frequency_of_the_tables_is_that_of_the_turn() -> None:
     assert Excitations.joined([columns, columns]).mesh_periods == 12
     with pytest.raises(InputError, match=r"mesh_periods: got \[1, 12\]; allowed one number"):
         Excitations.of([at, excited()])
-    springs = PairSprings.__new__(PairSprings)
-    with pytest.raises(InputError, match="mesh_periods: got 12; allowed 1: the springs"):
-        LoadSharedModel.from_excitation(at, springs, springs)
     with pytest.raises(InputError, match="mesh_periods"):
         replace(at, mesh_periods=1.5)  # type: ignore[arg-type]
     points = points_of(columns)

@@ -8,14 +8,10 @@ import numpy as np
 import pytest
 
 from thermogear.base.errors import ConvergenceError, InputError
-from thermogear.base.excitation import Periodic
-from thermogear.base.pair_springs import PairSprings
 from thermogear.base.vocabulary import STATUS
 from thermogear.dynamics.integrate import simulate
 from thermogear.dynamics.kernels.rk4 import advance_pair
-from thermogear.dynamics.kernels.shared import advance_shared, pairs_push
 from thermogear.dynamics.lanes import Lanes
-from thermogear.dynamics.load_shared import LoadSharedModel
 from thermogear.dynamics.models import TorsionalModel
 
 BASE = TorsionalModel(
@@ -92,43 +88,3 @@ def test_two_gears_that_lose_their_numbers_diverge() -> None:
     constants = np.array([1.0, 1.0, 0.1, 0.1, 1.0, 1.0, 0.1, 1e-3])
     advance_pair(tables, constants, 0.1, state, sections, np.empty((0, 4)), 1)
     assert np.isnan(sections).all()
-
-
-@pytest.mark.parametrize("run", [pairs_push, pairs_push.py_func], ids=["compiled", "python"])
-def test_a_pair_whose_place_is_unknown_is_not_taken_for_free(run) -> None:  # type: ignore[no-untyped-def]
-    straight = np.array([[-np.inf], [1.0]])
-    lost = np.array([[[1.0], [1.0]], [[1.0], [NAN]]])
-    sound = np.array([[[1.0], [1.0]], [[0.0], [0.0]]])
-    assert np.isnan(run(lost, straight, 0, 0.5))
-    assert np.isnan(run(sound, straight, 0, NAN))
-    assert run(sound, straight, 0, -1.0) == 0.0
-
-
-def test_a_shared_mesh_that_loses_its_numbers_diverges() -> None:
-    steps = 4
-    drive, back = np.ones((2, 1, 2 * steps)), np.ones((2, 1, 2 * steps))
-    drive[1, 0, 5] = NAN
-    straight = np.stack([np.full(2 * steps, -np.inf), np.ones(2 * steps)])
-    state, sections = np.zeros(2), np.empty((2, 2))
-    advance_shared(
-        drive,
-        back,
-        straight,
-        straight,
-        np.ones(2 * steps),
-        np.array([1.0, 0.1, 0.5]),
-        0.1,
-        state,
-        sections,
-        np.empty((0, 2)),
-        1,
-        np.zeros(2, np.int64),
-        np.zeros(3),
-    )
-    assert np.isnan(sections[:, 0]).all()
-    with pytest.raises(InputError, match=r"^pair_springs: got a value; allowed finite"):
-        PairSprings(np.ones((1, 2)), np.array([[0.0, NAN]]))
-    springs = PairSprings(np.ones((1, 2)), np.zeros((1, 2)))
-    assert np.isnan(springs.deflection(NAN, 0.0))
-    with pytest.raises(InputError, match=r"^mass: got nan; allowed > 0, finite"):
-        LoadSharedModel(NAN, 0.1, 1.0, 1.0, Periodic(1.0), springs, springs)

@@ -168,9 +168,10 @@ def test_the_help_lists_every_command_once_in_whole_sentences(
     shown = capsys.readouterr().out.splitlines()
     titles = [shown.index(f"{title}:") for title in command_line.GROUPS]
     assert titles == sorted(titles)
+    wide = max(map(len, listed))
     for rows in command_line.GROUPS.values():
         for name, words in rows.items():
-            assert f"  {name:<12}  {words}" in shown  # not cut off, not broken
+            assert f"  {name:<{wide}}  {words}" in shown  # not cut off, not broken
             assert words.endswith(".")
             assert words.count(".") == 1
     assert max(map(len, shown)) <= 80

@@ -197,7 +197,6 @@ def test_ctrl_c_keeps_what_is_done(
             ["continue", "table-4.2", "--cascade", "2", "--point", "2"],
             "--point: got 2; a cascade runs through the whole row",
         ),
-        (["shared-force", "rig", "--start", "0,0"], "--start: got 0,0; every speed starts"),
         (["report", "somewhere", "--kind", "svg"], "--kind: got svg; no picture is saved"),
         (["compare", "rig", "thesis-5.2", "--samples", "3"], "--samples: got 3; beside no"),
         (["compare", "rig", "thesis-5.2", "--rate", "3"], "--rate: got 3.0; there is no record"),

@@ -16,8 +16,6 @@ from thermogear.gears import mesh_system
 from thermogear.gears.deviations import Contacts
 from thermogear.mesh import balance
 from thermogear.mesh.balance import Gearbox, heat_balance
-from thermogear.mesh.load_shared import pair_springs
-from thermogear.mesh.thermal import HotPair
 from thermogear.mesh.warm_up import Duty, warm_up
 
 OIL = lubricant("M100")
@@ -42,8 +40,6 @@ def test_a_deviation_without_numbers_is_refused(rig: GearPair, hot_rig: Operatin
         heat_balance(rig, 100.0, 100.0, OIL, 125e-6, deviations=[Broken()])
     with pytest.raises(InputError, match=why):
         warm_up(rig, DUTY, OIL, 125e-6, deviations=[Broken()])
-    with pytest.raises(InputError, match=why):
-        pair_springs(HotPair(rig, hot_rig, MeshModel.consistent()), 0, [Broken()])
 
 
 @pytest.fixture
@@ -70,8 +66,6 @@ def test_a_contact_that_does_not_settle_is_never_ok(rig: GearPair, hot_rig: Oper
     lost = r"^loaded contact: \d+ of \d+ (positions|operating points) did not settle"
     with pytest.raises(ConvergenceError, match=lost):
         warm_up(rig, DUTY, OIL, 125e-6)
-    with pytest.raises(ConvergenceError, match=lost):
-        pair_springs(HotPair(rig, hot_rig, MeshModel.consistent()), 0)
 
 
 def test_one_lost_point_costs_the_others_nothing(

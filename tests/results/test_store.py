@@ -22,7 +22,6 @@ from thermogear.base.plan import gather, keys_of
 from thermogear.base.progress import duration
 from thermogear.base.stores import COPY, JOURNAL, MANIFEST, RESULT, read_store
 from thermogear.dynamics.models import TorsionalModel
-from thermogear.results import workers as crew
 from thermogear.results.result import open_results as read_result
 from thermogear.results.store import QUARANTINE, Store
 from thermogear.results.work import carry_out, estimate, require_space
@@ -221,11 +220,6 @@ def test_estimate_counts_points_chunks_and_bytes():
     assert duration(7200.0) == "2 h"
 
 
-def test_cluster_that_does_not_answer_is_one_line(tmp_path):
-    with pytest.raises(InputError, match="scheduler: got memory; a cluster needs a store"):
-        carry_out(plan_of(), scheduler="memory")
-
-
 def trial(name: str, directory: Path, count: int = 1) -> dict:
     done = subprocess.run(
         [sys.executable, Path(__file__).with_name("store_trials.py"), name, directory, str(count)],
@@ -249,38 +243,6 @@ def test_full_disk_is_an_error_and_costs_nothing_else(tmp_path):
     found = trial("full", tmp_path)
     assert found["refused"]
     assert found["same"]
-
-
-@pytest.mark.slow
-def test_cluster_that_is_not_there_is_refused_before_a_store_is_begun(tmp_path, monkeypatch):
-    monkeypatch.setattr(crew, "ANSWER", 1.0)
-    with pytest.raises(InputError, match=r"scheduler: .*no dask scheduler answers there"):
-        carry_out(plan_of(), tmp_path / "s", scheduler="tcp://127.0.0.1:1")
-    assert not (tmp_path / "s").exists()
-
-
-@pytest.mark.slow
-def test_cluster_without_workers_is_one_line_and_keeps_what_is_done(tmp_path, monkeypatch):
-    from distributed import LocalCluster
-
-    plan = plan_of()
-    whole = carry_out(plan, tmp_path / "s", threads=1)
-    monkeypatch.setattr(crew, "PAUSE", 0.05)
-    monkeypatch.setattr(crew, "PATIENCE", 0.2)
-    with LocalCluster(n_workers=0, dashboard_address=":0") as empty:
-        address = empty.scheduler_address
-        with pytest.raises(InputError, match=r"scheduler: .*no worker for .*; start workers"):
-            carry_out(plan, tmp_path / "t", scheduler=address)
-        again = carry_out(plan, tmp_path / "s", scheduler=address)
-    same_numbers(again, whole)
-
-
-@pytest.mark.slow
-def test_cluster_that_loses_a_worker(tmp_path, at_length):
-    found = trial("cluster", tmp_path, at_length(30, 60, "points of each axis of a map"))
-    assert found["killed"] == 2
-    assert found["same_calm"]
-    assert found["same_rough"]
 
 
 # --- what the numbers mean --------------------------------------------------------------------
@@ -378,21 +340,3 @@ def test_stores_of_another_format_say_so(finished, tmp_path):
         (store / name).write_text(f"{seal}\n{text}\n")
     with pytest.raises(InputError, match="another version of thermogear wrote it"):
         read_store(store)
-
-
-@pytest.mark.slow
-def test_cluster_of_good_old_bare_and_dying_workers_and_a_dying_scheduler(tmp_path, at_length):
-    found = trial("crowd", tmp_path, at_length(30, 60, "points of each axis of a map"))
-    assert found["same"], found
-    assert found["refused"] == {
-        "old": "its code is",
-        "bare": "it cannot import thermogear",
-    }
-    assert found["dead"] == ["dying"]
-    assert "it is lost; what is done is stored; start it" in found["lost"]
-    assert found["lost_after_s"] < 10.0
-    assert found["kept"] > 10
-    assert found["same_resumed"]
-    assert "none of its workers can be believed" in found["alone"]
-    assert "it cannot import thermogear" in found["alone"]
-    assert 2.0 <= found["alone_after_s"] < 22.0

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from checked_pairs import corner_pairs, drawn_pairs
 from thermogear.verify import pair_stiffness
 from thermogear.verify.contact import FlankContact, closed
-from thermogear.verify.pairs import corner_pairs, drawn_pairs
 from thermogear.verify.sector import FlankSector
 
 pytestmark = pytest.mark.slow

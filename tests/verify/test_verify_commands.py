@@ -14,7 +14,7 @@ from said import numbers
 from thermogear.base.errors import InputError
 from thermogear.case.examples import example_text
 from thermogear.front.verify_commands import verify
-from thermogear.verify import checks, pairs
+from thermogear.verify import checks
 
 pytestmark = pytest.mark.slow
 
@@ -65,40 +65,12 @@ def test_stiffness_as_a_table_and_as_json(case: str) -> None:
     assert ratio == pytest.approx(content["relative_difference"], rel=1e-9)
 
 
-def test_growth_of_both_gears(case: str) -> None:
-    text = call("growth", case)
-    assert text.exit_code == 0, text.output
-    assert text.output.count("worst") == 2
-    content = json.loads(call("growth", case, "--json").output)
-    assert np.max(np.abs(content["pinion"]["difference"])) < 0.2e-6
-    assert np.max(np.abs(content["wheel"]["difference"])) < 0.7e-6
-
-
-@pytest.mark.usefixtures("one_check")
-def test_the_fixed_pairs(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(checks, "inner_phases", lambda *_: (0.3, 0.8))
-    # the whole list is computed in the tests of the checks; here its printing
-    published = pairs.published_pair()
-    for group in ("own", "far", "corner", "drawn"):
-        named = published._replace(name=f"{group}, {published.name}")
-        monkeypatch.setattr(pairs, f"{group}_pairs", lambda named=named: (named,))
-    roots = pairs.root_pairs()
-    monkeypatch.setattr(pairs, "root_pairs", lambda: roots[2:])
-    done = call("pairs")
-    assert done.exit_code == 0, done.output
-    told = [line for line in done.output.splitlines() if published.name in line]
-    heads = [line for line in told if not line.startswith("worst")]
-    assert [numbers(line)[:4] for line in heads] == [[5.0, 25.0, 75.0, 200.0]] * 5
-    model, finite, off = numbers(done.output.splitlines()[-1])[-3:]
-    assert off == pytest.approx(100.0 * (model / finite - 1.0), abs=0.01)
-
-
 def test_refusals(case: str, tmp_path: Path) -> None:
     done = call("stiffness", case, "--torque", "0")
     assert isinstance(done.exception, InputError)
     assert str(done.exception) == "torque: got 0 N m; allowed > 0; state --torque"
     points = tmp_path / "points.toml"
     points.write_text(example_text("table-4.2"), encoding="utf-8")
-    done = call("growth", str(points))
+    done = call("stiffness", str(points))
     assert isinstance(done.exception, InputError)
     assert str(done.exception).startswith("case: got kind = 'dimensionless'; allowed kind = 'gear'")

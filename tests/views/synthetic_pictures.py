@@ -35,7 +35,7 @@ from thermogear.views.plots import (
     shafts,
     sweeps,
 )
-from thermogear.views.plots.one_motion import plane_picture, shared_picture
+from thermogear.views.plots.one_motion import plane_picture
 
 SIZES = {
     "direction": 2, "start": 1, "damping_ratio": 5, "frequency": 4, "section": 3, "branch": 1,
@@ -144,19 +144,11 @@ def of_orbits() -> dict[str, Picture]:
         event_value=rising("event", low=1.5), event_x=rising("event"),
         event_kind=("event", ["period doubling"]),
     ).assign_attrs(parameter="frequency", period=2, row="omega", heat="without heat")  # fmt: skip
-    forms = ("exact", "shared", "one_spring")
-    rest = made(
-        "load", "load", "factor", *(f"{f}_{n}" for f in forms for n in ("stiffness", "swing"))
-    )
-    motion = made("speed part", *(f"{form}_swing" for form in forms)).assign(
-        speed=rising("speed"), part=rising("part")
-    )
     return {
         "orbit": one_motion.orbit_picture(orbit),
         "lyapunov": one_motion.lyapunov_picture(made("batch", "lyapunov_batch")),
         "branch": one_motion.branch_picture([branch], "a branch"),
         "cascade": one_motion.cascade_picture([branch]),
-        "shared": shared_picture(rest, motion),
     }
 
 

@@ -54,7 +54,6 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     "orbit": ("-o", "{out}"),
     "lyapunov": (),
     "continue": ("-o", "{out}", "--parameter", "speed", "--to", "3100 rpm"),
-    "shared-force": ("-o", "{out}", "--speeds", "5"),
     "bifurcation": ("-o", "{out}", "--over", "zeta=0.1:0.2:3"),
     "map": ("-o", "{out}", "--over", "zeta=0.1:0.2:3", "--over", "omega=1:2:3"),
     "basins": ("-o", "{out}"),
@@ -101,7 +100,7 @@ def places(found: dict[str, str]) -> list[str]:
     ]
 
 
-LONG = ("run all", "shared-force", "versus", "relief", "warmup", "continue")
+LONG = ("run all", "versus", "relief", "warmup", "continue")
 ASKED = [
     pytest.param(command, "five", marks=[pytest.mark.slow] * (command in LONG))
     for command in COMMANDS

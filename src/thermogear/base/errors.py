@@ -115,10 +115,6 @@ class UnsealedWarning(ValidityWarning):
     """A stored file without its seal: nobody can say whether it is as it was written."""
 
 
-class WorkerWarning(UserWarning):
-    """A worker of a cluster whose numbers do not count, and why."""
-
-
 def nearest(name: str, known: Iterable[str]) -> str:
     """Advice for an unknown ``name``: the nearest known one, else the whole list.
 

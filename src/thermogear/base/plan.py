@@ -202,10 +202,6 @@ class Queue:
                 self._waiting.remove(key)
                 yield key, need
 
-    def back(self, key: Key) -> None:
-        """A chunk handed out in vain: it comes first now."""
-        self._waiting.insert(0, key)
-
     def there(self, key: Key) -> None:
         """A chunk is computed: those that need it can be."""
         self._missing.discard(key)

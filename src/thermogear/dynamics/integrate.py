@@ -19,7 +19,6 @@ from thermogear.dynamics import adaptive, exact
 from thermogear.dynamics.blocks import Pace, Progress, run_blocks
 from thermogear.dynamics.kernels.rk4 import advance_rk4
 from thermogear.dynamics.lanes import Lanes
-from thermogear.dynamics.load_shared import LoadSharedModel, simulate_shared
 from thermogear.dynamics.models import ClearanceModel, PairModel
 from thermogear.dynamics.outcome import DIVERGED, Result, dataset
 from thermogear.dynamics.pair import four_of, simulate_pair, with_angles
@@ -44,8 +43,6 @@ def _choose(model: object, method: str) -> tuple[str, str]:
                 fix="use method='adaptive'",
             )
         return method, "asked for"
-    if isinstance(model, LoadSharedModel):
-        return "rk4", "tooth pairs touch one by one: their edges are none of one backlash"
     if not isinstance(model, ClearanceModel):
         return "adaptive", "coefficients may depend on the state: neither maps nor tables apply"
     try:
@@ -185,7 +182,7 @@ def simulate(
     Where the tables of ``model`` repeat after a turn of many mesh periods, both counts are rounded
     up to whole turns; samples, steps and phases are of the mesh period all the same.
     ``model``: :class:`TorsionalModel`, :class:`DeadZoneModel` (lanes side by side),
-    :class:`PairModel`, :class:`LoadSharedModel`, or anything with ``derivative(t, y)`` and
+    :class:`PairModel`, or anything with ``derivative(t, y)`` and
     ``period``: of two states they are x and x'; of more each is stored by its name in the model's
     ``states`` (else y1, y2, ...), x and x' too where it has ``displacement(t, state)``.
     ``initial_state`` (x, x') for all lanes, or an array (lane, 2); for the pair (x, x') or
@@ -225,9 +222,7 @@ def simulate(
     start = np.asarray(initial_state, dtype=float)
     if not np.all(np.isfinite(start)):
         raise InputError("initial_state", start.tolist(), allowed="finite numbers")
-    if isinstance(model, LoadSharedModel) and run.method == "rk4":
-        data = simulate_shared(model, start, **run.counts, steps=run.steps)
-    elif not isinstance(model, ClearanceModel):
+    if not isinstance(model, ClearanceModel):
         data = _free(model, start, run)
     elif isinstance(model, PairModel) and run.method != "exact":
         data = simulate_pair(
@@ -240,7 +235,7 @@ def simulate(
         data = with_angles(data, model, state)
     else:
         data = _batch(model.lanes(), start, run, threads, progress)
-    _give_units(data, si=isinstance(model, PairModel | LoadSharedModel))
+    _give_units(data, si=isinstance(model, PairModel))
     data.attrs.update(run.settings)
     data.attrs.update(
         {
@@ -288,7 +283,7 @@ class _Run:
             )
         if run.precision not in ("float64", "float32"):
             raise InputError("precision", repr(run.precision), allowed="'float64' | 'float32'")
-        if run.precision == "float32" and isinstance(model, PairModel | LoadSharedModel):
+        if run.precision == "float32" and isinstance(model, PairModel):
             raise InputError(
                 "precision", repr(run.precision), allowed="'float64' for models in SI units"
             )

@@ -68,7 +68,6 @@ GROUPS = {
         "contact": "Solve the loaded tooth contact over position and load.",
         "orbit": "Find the closed orbit a motion settles on.",
         "lyapunov": "Compute the largest Lyapunov exponent of a motion.",
-        "shared-force": "Compare the force shared by tooth pairs with one spring.",
     },
     "Over speed and load": {
         "sweep": "Compute the settled motion over any grid of parameters.",

@@ -119,12 +119,6 @@ def point_of(options: dict[str, Any]) -> OnePoint:
     return _point(options, _case(options))
 
 
-def point_from_rest(options: dict[str, Any]) -> OnePoint:
-    """The same where every motion starts from rest."""
-    _unused(options, ("start",), "every speed starts from rest")
-    return point_of(options)
-
-
 @click.command("continue")
 @point_options
 @click.option(

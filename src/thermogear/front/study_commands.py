@@ -18,7 +18,6 @@ from thermogear.study.declared import Study
 SUBJECTS: dict[str, Callable[[dict[str, Any]], Any]] = {
     "gears": lambda options: delivery.load_gears(options["case"], options["overrides"]),
     "point": motion_commands.point_of,
-    "point from rest": motion_commands.point_from_rest,
 }
 """What a study is of, and how it is read from the options."""
 

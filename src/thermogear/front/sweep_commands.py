@@ -30,16 +30,6 @@ if TYPE_CHECKING:
     from thermogear.study.diagrams import AnyMap
 
 
-def _safe(context: click.Context, _: click.Parameter, address: str | None) -> str | None:
-    """The address of a scheduler; one that strangers may reach only with ``--insecure``."""
-    insecure = context.params.pop("insecure")
-    if address is not None and not insecure:
-        from thermogear.results.workers import require_private
-
-        require_private(address)
-    return address
-
-
 _common = delivery.together(
     delivery.output("Store of the results; the same command goes on with an unfinished one."),
     delivery.overrides,
@@ -47,11 +37,6 @@ _common = delivery.together(
     click.option("--state", help="undeformed, hot (as the case says), computed (from the heat "
                  "balance) or the gears' temperature in degC; default: hot."),
     click.option("--threads", type=click.IntRange(1, 1024), help="Default: all cores."),
-    click.option("--insecure", is_flag=True, is_eager=True,
-                 help="Take a scheduler over plain tcp on another machine: whoever reaches "
-                 "it runs code as you."),
-    click.option("--scheduler", metavar="ADDRESS", callback=_safe,
-                 help="Hand the chunks to this dask scheduler (extra [cluster])."),
     click.option("--force", is_flag=True, help="Run even if it may not fit."),
     click.option("--estimate", "only_estimate", is_flag=True,
                  help="Print time, memory and disk it will take, and stop."),
@@ -414,8 +399,8 @@ def _compute(plan: Plan, directory: Path, title: str, options: dict[str, Any]) -
                 watch("chunks", step.done, step.total)
 
             data = carry_out(
-                plan, directory, threads=options["threads"], scheduler=options["scheduler"],
-                report=report, forced=options["force"], title=title,
+                plan, directory, threads=options["threads"], report=report,
+                forced=options["force"], title=title,
             )  # fmt: skip
         from thermogear.base.stores import about_store
         from thermogear.study.notices import finished

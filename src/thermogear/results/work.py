@@ -1,4 +1,4 @@
-"""Carry a plan out: estimate, threads or a cluster, a store or memory, progress, Ctrl+C."""
+"""Carry a plan out: estimate, threads, a store or memory, progress, Ctrl+C."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ import shutil
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from itertools import count
 from pathlib import Path
@@ -29,7 +28,6 @@ from thermogear.base.plan import (
 )
 from thermogear.base.progress import duration
 from thermogear.results.store import Store
-from thermogear.results.workers import cluster, computed_on
 
 WORKSPACE = 48 * 2**20
 """Bytes that one thread's kernels and maps take, about."""
@@ -151,7 +149,6 @@ def carry_out(
     store: str | Path | None = None,
     *,
     threads: int | None = None,
-    scheduler: str | None = None,
     report: Report | None = None,
     forced: bool = False,
     alive: Alive = keep_going,
@@ -160,30 +157,22 @@ def carry_out(
     """Compute ``plan`` and return it as one labelled Dataset.
 
     With a ``store`` directory every chunk is written as it is ready, and the same call goes on
-    where an earlier one ended; without one it stays in memory. ``threads`` on this machine
-    (default: all cores), or a dask ``scheduler`` address, whose workers compute while this
-    process writes. ``title``: the case's, kept beside the store.
-    The result is the same to the last bit whoever computes. Ctrl+C, and ``alive`` when it raises,
+    where an earlier one ended; without one it stays in memory. ``threads``: all cores if left out;
+    the result is the same to the last bit on any number. ``title``: the case's, kept beside the
+    store. Ctrl+C, and ``alive`` when it raises,
     keep what is stored.
     """
     directory = None if store is None else Path(store)
     require_space(plan, directory, threads=threads, forced=forced)
     clock = _Clock(len(keys_of(plan)), report)
-    if directory is None and scheduler is None:
-        return gather(plan, threads=threads, progress=lambda done, _: clock.step(done), alive=alive)
     if directory is None:
-        raise InputError("scheduler", scheduler, why="a cluster needs a store", fix="name one")
-    link = nullcontext() if scheduler is None else cluster(scheduler)
-    with link as client, Store(directory, plan) as kept:
+        return gather(plan, threads=threads, progress=lambda done, _: clock.step(done), alive=alive)
+    with Store(directory, plan) as kept:
         there = kept.finished()
         clock.found = len(there)
         wanted = [key for key in keys_of(plan) if key not in there]
         clock.step(len(there))
-        source = (
-            computed(plan, wanted, kept.load, threads=threads, alive=alive)
-            if client is None
-            else computed_on(client, plan, wanted, kept.load)
-        )
+        source = computed(plan, wanted, kept.load, threads=threads, alive=alive)
         done = len(there)
         try:
             for key, arrays in source:

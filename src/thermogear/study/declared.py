@@ -612,31 +612,11 @@ class Lyapunov(
     batch_periods: int = option(500, "--batch-periods", "Periods in each.")
 
 
-@dataclass(frozen=True, kw_only=True)
-class SharedForce(
-    Study,
-    kind="shared",
-    mean_tooth="always",
-    home="thermogear.study.shared_force:shared_results",
-    of="point from rest",
-):
-    """The mesh force shared pair by pair and the one-spring form, at rest and in motion.
-
-    \b
-      thermogear shared-force rig.toml -o shared
-    """
-
-    count: int = option(41, "--speeds", "Speeds of the sweep.", allowed=range(1, 10_001))
-
-
 COMMANDS: dict[str, type[Study]] = {
-    **{
-        study.kind: study
-        for study in (
-            Answers, Friction, Temperature, WarmUpSurvey, ReliefSurvey, Contact, Sensitivity,
-            Statics, NaturalModes, Campbell, ClosedOrbit, Lyapunov,
-        )
-    },
-    "shared-force": SharedForce,
+    study.kind: study
+    for study in (
+        Answers, Friction, Temperature, WarmUpSurvey, ReliefSurvey, Contact, Sensitivity,
+        Statics, NaturalModes, Campbell, ClosedOrbit, Lyapunov,
+    )
 }  # fmt: skip
 """Every declared study by the name of its command."""

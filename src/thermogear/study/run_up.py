@@ -494,7 +494,6 @@ def run_up(
     branch_period: int = 2,
     store: str | Path | None = None,
     threads: int | None = None,
-    scheduler: str | None = None,
     report: Report | None = None,
     alive: Alive = keep_going,
 ) -> Result:
@@ -523,5 +522,5 @@ def run_up(
         rule=rule,
         branch_period=branch_period,
     )
-    how: dict[str, Any] = {"threads": threads, "scheduler": scheduler, "report": report}
+    how: dict[str, Any] = {"threads": threads, "report": report}
     return finished(carry_out(plan, store, **how, alive=alive, title=case.title), case.title)

@@ -172,7 +172,6 @@ def sweep(
     rule: Rule = RULE,
     store: str | Path | None = None,
     threads: int | None = None,
-    scheduler: str | None = None,
     report: Report | None = None,
     alive: Alive = keep_going,
 ) -> Result:
@@ -182,14 +181,13 @@ def sweep(
     [K], cold_half_backlash [m], damping_ratio, or a dotted field of the case file. Every point
     starts from the case's initial state. ``bundle`` one of the case's (the first by default),
     ``state`` "hot" or "undeformed" where the temperature is no axis. With a ``store`` directory the
-    same call resumes; ``scheduler`` is a dask address. Jammed and diverged points are a status.
+    same call resumes. Jammed and diverged points are a status.
     """
     plan = sweep_plan(case, axes, bundle=bundle, state=state, rule=rule)
     data = carry_out(
         plan,
         store,
         threads=threads,
-        scheduler=scheduler,
         report=report,
         alive=alive,
         title=case.title,

@@ -1,4 +1,4 @@
-"""Model beside finite elements: stiffness and shares of a pair, growth of a flank."""
+"""Model beside finite elements: stiffness and load shares of a pair."""
 
 from __future__ import annotations
 
@@ -10,16 +10,10 @@ from numpy.typing import ArrayLike
 
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
-from thermogear.gears.deviations import GEARS, FlankShape
-from thermogear.gears.geometry import Gear
-from thermogear.gears.iso6336 import single_contact
+from thermogear.gears.deviations import FlankShape
 from thermogear.gears.loaded import LoadedModel, loaded_contact
 from thermogear.gears.pair import GearPair
-from thermogear.gears.root_stress import root_table
 from thermogear.gears.tooth_mesh import Density
-from thermogear.heat.expansion import RadialField, flank_growth
-from thermogear.verify.growth import finite_flank_growth, flank_radii
-from thermogear.verify.sector import FlankSector
 from thermogear.verify.stiffness import pair_stiffness
 
 
@@ -130,54 +124,3 @@ def check_stiffness(
         face_width=pair.face_width,
         line_load=normal_force / pair.face_width,
     )
-
-
-def check_root(pair: GearPair, gear: str, density: Density | None = None) -> tuple[float, float]:
-    """Greatest stress sigma b m/F_n [-] in one gear's fillet: model, finer finite elements.
-
-    gear: "pinion" or "wheel", loaded at the outer point of single contact; plane stress, bore held.
-    """
-    at: Gear = getattr(pair, gear)
-    t = single_contact(pair)[GEARS.index(gear)]
-    sector = FlankSector(at, 0.05 * at.module, 3 * (density or Density()).refinement)
-    load = sector.pressed(0.5 * at.base_radius * t**2, half_width=0.12 * at.module)
-    return float(root_table(at).stress(t).max()), at.module * float(
-        sector.root_stress(load)[0].max()
-    )
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class GrowthCheck:
-    """Normal growth [m] of one flank by the model (B) and by finite elements, at ``radius`` [m]."""
-
-    radius: Floats
-    model: Floats
-    finite: Floats
-
-    @property
-    def difference(self) -> Floats:
-        """Model minus finite elements [m]."""
-        return self.model - self.finite
-
-    @property
-    def worst(self) -> int:
-        """The radius with the greatest difference."""
-        return int(np.argmax(np.abs(self.difference)))
-
-
-def check_growth(
-    gear: Gear,
-    field: RadialField,
-    radius: ArrayLike | None = None,
-    bore: str = "free",
-    density: Density | None = None,
-) -> GrowthCheck:
-    """Flank growth (B) beside a thermoelastic sector with its tooth, plane stress.
-
-    field: T(r) of one state; radius [m]: default seven from the form circle to the tip; bore:
-    a key of :data:`~thermogear.heat.expansion.BORES`. Raises as
-    :func:`~thermogear.verify.growth.finite_flank_growth`.
-    """
-    r = np.atleast_1d(flank_radii(gear) if radius is None else np.asarray(radius, dtype=float))
-    finite = finite_flank_growth(gear, field, r, bore, density)
-    return GrowthCheck(radius=r, model=flank_growth(gear, field, r, bore), finite=finite)

@@ -6,7 +6,6 @@ scikit-fem belongs to the extra ``[fe]`` and is imported when the first mesh is 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
@@ -98,13 +97,3 @@ class ReferencePatch(Patch):
         theirs = fe.BilinearForm(energy).assemble(self._basis).tocsr()
         order = self._places.ravel()
         return csc_matrix(theirs[order][:, order])
-
-    def thermal_load(self, strain: Callable[[Floats, Floats], Floats]) -> Floats:
-        """Nodal forces of a free thermal strain, ``strain(x, y)``, unit modulus, plane stress."""
-        fe, helpers = library(), library("skfem.helpers")
-        stress = 1.0 / (1.0 - self.poisson)
-
-        def work(v: Any, w: Any) -> Any:
-            return stress * strain(w.x[0], w.x[1]) * helpers.div(v)
-
-        return self._ours(fe.LinearForm(work).assemble(self._basis))

@@ -17,9 +17,16 @@ from scipy.sparse.linalg import splu
 from thermogear.base.arrays import Floats
 from thermogear.gears.elements import Integers, quadratic
 from thermogear.gears.geometry import Gear
-from thermogear.gears.tooth_mesh import Density, Foot, Profile, foot_mesh, graded, tooth_mesh
+from thermogear.gears.tooth_mesh import (
+    Density,
+    Foot,
+    Profile,
+    Tooth,
+    foot_mesh,
+    graded,
+    tooth_mesh,
+)
 from thermogear.verify.elements import ReferencePatch
-from thermogear.verify.growth import united
 
 MATES = 5
 """Farthest neighbours, in pitches, whose coupling is kept."""
@@ -32,6 +39,18 @@ TIP = 0.3
 def unknowns_of(nodes: Integers) -> Integers:
     """Numbers of the two displacements of each node, node by node."""
     return np.asarray((2 * nodes[:, None] + np.arange(2)).ravel())
+
+
+def united(foot: Foot, tooth: Tooth) -> tuple[ReferencePatch, Integers]:
+    """Foot and tooth as one patch, and the numbers of the tooth's nodes in it."""
+    below = foot.patch.nodes.shape[0]
+    rest = np.setdiff1d(np.arange(tooth.patch.nodes.shape[0]), tooth.joint)
+    number = np.empty(tooth.patch.nodes.shape[0], dtype=np.int64)
+    number[tooth.joint] = foot.joint
+    number[rest] = below + np.arange(rest.size)
+    nodes = np.concatenate([foot.patch.nodes, tooth.patch.nodes[rest]])
+    cells = np.concatenate([foot.patch.cells, number[tooth.patch.cells]])
+    return ReferencePatch(nodes, cells, foot.patch.poisson), number
 
 
 @dataclass(frozen=True, eq=False)

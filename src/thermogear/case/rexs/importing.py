@@ -3,19 +3,13 @@
 from __future__ import annotations
 
 import json
-import re
 from collections import Counter
 from collections.abc import Iterable, Iterator
-from copy import deepcopy
 from dataclasses import dataclass
-from functools import reduce
 from itertools import accumulate
 from typing import Any
 
-import numpy as np
-
 from thermogear.base.errors import InputError, InputErrors, short
-from thermogear.base.materials import NEVER, POLYMER_LIMITS, Material
 from thermogear.base.toml import flat, overridden, tables
 from thermogear.base.units import RPM
 from thermogear.case.assumptions import Assumption
@@ -24,165 +18,28 @@ from thermogear.case.rexs import gearbox
 from thermogear.case.rexs.attributes import CASE, OURS, USED, Plain, Reader, plain
 from thermogear.case.rexs.draft import Draft
 from thermogear.case.rexs.drive import Drive
-from thermogear.case.rexs.exporting import WRITTEN, model_of_case
+from thermogear.case.rexs.exporting import kept_alone
 from thermogear.case.rexs.gearbox import Stage
-from thermogear.case.rexs.lines import Line, some, stored, toml
+from thermogear.case.rexs.lines import some, stored, toml
 from thermogear.case.rexs.model import MOST_LOAD_CASES, Component, Model
 from thermogear.case.rexs.shaft_train import without_train
 from thermogear.case.rexs.stage_case import draft, one_rack, require_spur
-from thermogear.case.rexs.substances import label_of
 from thermogear.case.rexs.values import (
     TITLE,
     Key,
     Values,
     alike,
-    put_back,
     shown,
     values,
 )
 
 
+@dataclass(frozen=True)
 class Exported:
-    """A case as it was exported: its ``data`` and the values ``old`` that the file had then.
+    """A case that was exported: its tables, and a line for every value changed since then."""
 
-    ``now``: the values it has; ``keys``: those that changed. ``made``: what an import of the file
-    makes, None where nothing changed; ``changed``: fields taken from there, with their origins.
-    """
-
-    def __init__(self, reader: Reader, stage: Stage, data: dict[str, Any], old: Values) -> None:
-        self.reader, self.stage, self.data, self.old = reader, stage, data, old
-        self.parts = gearbox.parts_of(reader.model, stage)
-        self.made: Draft | None = None
-        self.changed: dict[str, str] = {}
-        self.unused: list[str] = []
-        self.notes: list[str] = []
-        self.case = checked(stage, data)
-        if not old:  # written by an earlier version, without values
-            self.old = _said_by(self.case, results=True)
-        title = {key: name for key, name in self.old.items() if key == TITLE}
-        self.now = title | values(reader, stage)  # a name that is gone was none to change
-        every = self.old | self.now
-        self.keys = [key for key in every if not alike(self.old.get(key), self.now.get(key))]
-
-    def text(self, head: Iterable[str] = ()) -> str:
-        """The case file."""
-        return stored(self.data, head, self.changed)
-
-    def take(self, speed: str | None, torque: str | None) -> None:
-        """Put in what another program changed, and ``speed`` and ``torque`` as given.
-
-        InputError in one line, with the names of what changed, where the case cannot say the same.
-        """
-        if not self.keys and speed is None and torque is None:
-            return
-        try:
-            self.made = draft(self.reader, self.stage, speed, torque)
-            model = put_back(self.reader.model, self.stage, self.old, self.keys)
-            before = draft(Reader(model), gearbox.stages(model)[self.stage.number - 1])
-            self._fields(before, self.made)
-            again = _said_by(checked(self.stage, self.data))
-        except InputError as error:
-            raise self._refused(self.keys, str(error)) from error
-        known = self.old | again
-        wrong = [key for key in self.keys if key in known and not _agree(self.now, again, key)]
-        if wrong:
-            follows = self._shown(again, wrong[0])
-            raise self._refused(wrong, f"the case of this file would have {follows}")
-        self.notes = [*self._lines(again), *self.notes]
-        self.unused = [line for line in self.made.unused if line not in before.unused]
-
-    # --- fields ----------------------------------------------------------------------------
-    def _fields(self, before: Draft, made: Draft) -> None:
-        """Put the fields into the data that an import ``made`` otherwise than ``before``.
-
-        The fields of a table go together, so that none of them is left to follow from what changed;
-        of those that are the same the case keeps its own. A backlash that it leaves open is the
-        file's, too, once the teeth are.
-        """
-        old, new = (
-            {line.path: line for line in lines if "[" not in line.path}
-            for lines in (before.lines, made.lines)
-        )
-        differ = {
-            path
-            for path in old.keys() | new.keys()
-            if path not in old or path not in new or old[path].value != new[path].value
-        }
-        differ |= {"title"} if TITLE in self.keys else set()
-        turned = {_table(new.get(path) or old[path]) for path in differ}
-        if "backlash" in turned or ("gears" in turned and not self.data.get("backlash")):
-            turned.add("backlash")
-            self.data.pop("backlash", None)
-        if "oil" in turned and "viscosity_40" not in self.data.get("oil", {}):
-            name = self.case.stated.lubricant.name
-            self.notes.append(f"oil: mineral, by two viscosities; what else {name} has is left out")
-        gears = self.data["gears"]
-        both = [key for key in ("face_width", "rack") if key in gears and "gears" in turned]
-        shared = {key: gears.pop(key) for key in both}
-        for name, _ in made.both:
-            gears[name] = gear = deepcopy(shared) | gears[name]
-            material = new.get(f"gears.{name}.material")
-            if material is not None and _table(material) in turned:
-                gear.pop("material", None)
-                known = getattr(self.case.pair, name).material
-                other = any(key.name == "material_designation" for key in self.keys)
-                mine = {} if other else _unsaid(known)
-                self.data.setdefault("materials", {}).setdefault(material.value, mine)
-                if known.name in POLYMER_LIMITS:
-                    limits = f"the temperatures that {known.name} bears are left out"
-                    self.notes.append(f"{material.value}: {limits}")
-        for path in differ - new.keys():
-            *way, last = path.split(".")
-            reduce(lambda held, key: held.get(key, {}), way, self.data).pop(last, None)
-        for path, line in new.items():
-            *way, last = path.split(".")
-            if _table(line) in turned:
-                table: Any = reduce(lambda held, key: held.setdefault(key, {}), way, self.data)
-                if path in differ or last not in table:
-                    table[last] = line.value
-                    since = "; changed since the export" if path in differ else ""
-                    self.changed[path] = f"{line.origin}: {line.note}{since}"
-
-    # --- words -----------------------------------------------------------------------------
-    def _called(self, key: Key) -> str:
-        """The attribute of a key."""
-        return key.called(self.parts, self.reader.model.version)
-
-    def _shown(self, of: Values, key: Key) -> str:
-        return shown(of.get(key), key, self.reader.model)
-
-    def _refused(self, keys: list[Key], why: str) -> InputError:
-        """Values that were changed and that no case follows from, by name."""
-        names = list(dict.fromkeys(map(self._called, keys)))
-        alone = len(names) == 1
-        return InputError(
-            some(names),
-            self._shown(self.now, keys[0]) if alone else "values changed since the export",
-            allowed=f"{self._shown(self.old, keys[0])}, as exported" if alone else None,
-            why=why,
-            fix=f"change what goes with it, or take {CASE} out of the file",
-        )
-
-    def _lines(self, again: Values) -> Iterator[str]:
-        """A line for every value that was changed, for those added, for those left behind."""
-        known, changed = self.old | again, set(self.keys)
-        for name, key in {self._called(key): key for key in self.keys if key in known}.items():
-            got, was = self._shown(self.now, key), self._shown(self.old, key)
-            yield f"{name}: got {got}; it was {was} when exported"
-        if added := dict.fromkeys(self._called(key) for key in self.keys if key not in known):
-            yield f"{some(added)}: added since the export"
-        left = {
-            self._called(key): key
-            for key, value in self.now.items()
-            if key in again
-            and key not in changed
-            and isinstance(value, float)
-            and not _agree(self.now, again, key)
-        }
-        if left:
-            key = next(iter(left.values()))
-            stays, follows = self._shown(self.now, key), self._shown(again, key)
-            yield f"{some(left)}: {stays} in the file, {follows} follows from what changed"
+    data: dict[str, Any]
+    changed: list[str]
 
 
 def checked(stage: Stage, file: str | dict[str, Any]) -> GearCase:
@@ -206,7 +63,7 @@ def exported(reader: Reader, stage: Stage) -> Exported | None:
         data = overridden(tables("case", str(kept["text"])), changes)
         old = {
             Key(min(abs(load), MOST_LOAD_CASES), str(part), str(name)): _plain(value)
-            for load, part, name, value in kept.get("values", ())
+            for load, part, name, value in kept["values"]
         }
     except (ValueError, KeyError, TypeError, RecursionError) as cause:
         raise InputError(
@@ -214,7 +71,7 @@ def exported(reader: Reader, stage: Stage) -> Exported | None:
             "no case of thermogear",
             fix=f"take the attribute {CASE} out of the file",
         ) from cause
-    return Exported(reader, stage, data, old)
+    return Exported(data, list(_changes(reader, stage, old)))
 
 
 def _plain(value: Any) -> Plain:
@@ -223,40 +80,15 @@ def _plain(value: Any) -> Plain:
     return value if isinstance(value, str) else float(value)
 
 
-def _said_by(case: GearCase, *, results: bool = False) -> Values:
-    """What a case says in a REXS file."""
-    model = model_of_case(case, WRITTEN[-1], results=results)
-    return values(Reader(model), gearbox.stages(model)[0])
-
-
-def _agree(now: Values, again: Values, key: Key) -> bool:
-    """Whether a case says ``again`` what a file says ``now``, as far as it can.
-
-    It has the middle of a least and a greatest backlash, and names a material as a table.
-    """
-    both = [of.get(key) for of in (now, again)]
-    if key.name == "material_designation":
-        both = [name and re.sub(r"_\d+$", "", label_of(str(name))) for name in both]
-    elif key.name.endswith("_normal_backlash") and None not in both:
-        ends = [key._replace(name=f"{end}_normal_backlash") for end in ("minimum", "maximum")]
-        both = [float(np.mean([of[end] for end in ends if end in of])) for of in (now, again)]
-    return alike(*both)
-
-
-def _table(line: Line) -> str:
-    """The table whose fields go together with a field."""
-    if line.path.endswith(".material"):
-        return f"materials.{line.value}"
-    parts = line.path.split(".")
-    alone = line.path == "oil.temperature" or parts[0] == "operating"
-    return line.path if alone else ".".join(parts[: 2 if parts[0] == "materials" else 1])
-
-
-def _unsaid(material: Material) -> dict[str, Any]:
-    """What a case knows of a material and REXS has no name for."""
-    tempered = material.tempering_temperature
-    slope = {"modulus_slope": f"{material.modulus_slope!r} 1/K"}
-    return slope | ({} if tempered == NEVER else {"tempering_temperature": f"{tempered!r} K"})
+def _changes(reader: Reader, stage: Stage, old: Values) -> Iterator[str]:
+    """A line for every value that is not as it was when a case was exported."""
+    model, parts = reader.model, gearbox.parts_of(reader.model, stage)
+    title = {key: name for key, name in old.items() if key == TITLE}
+    now = title | values(reader, stage)  # a name that is gone was none to change
+    for key in old | now:
+        if not alike(old.get(key), now.get(key)):
+            got, was = (shown(of.get(key), key, model) for of in (now, old))
+            yield f"{key.called(parts, model.version)}: got {got}; it was {was} when exported"
 
 
 @dataclass(frozen=True)
@@ -271,7 +103,7 @@ class Found:
 @dataclass(frozen=True)
 class Imported:
     """A stage as a case: the ``text`` of the case file, what could not be used, notes on units
-    and on what another program changed of a case that was exported.
+    and on what was changed of a case since it was exported.
 
     ``duty``: the load spectrum as the table that `thermogear warmup --duty` reads; empty without
     times of the load cases.
@@ -386,12 +218,11 @@ def imported(
     """
     reader = Reader(model)
     one = chosen(model, stage)
-    if (kept := exported(reader, one)) is not None:
-        kept.take(speed, torque)
-        unused = [*kept.unused, *left_out(model, _used(model, one))]
-        duty = "" if kept.made is None else _duty(kept.made)
-        text = kept.text(_head(model, one, unused))
-        return Imported(text, tuple(unused), (*reader.said, *kept.notes), duty)
+    kept, notes = exported(reader, one), []
+    if kept is not None:
+        if not kept.changed:
+            return _as_exported(reader, one, kept.data, {"speed": speed, "torque": torque})
+        notes = [*kept.changed, _like_any_other(checked(one, kept.data))]
     made = draft(reader, one, speed, torque)
     one_rack(made)
     if made.train:
@@ -402,8 +233,29 @@ def imported(
     shapes = _modifications(model, made)
     unused = [*made.unused, *shapes]
     unused += left_out(model, [*_used(model, one), *made.train, *made.seats], told=shapes.values())
-    text = _fresh(made, _head(model, one, unused))
-    return Imported(text, tuple(unused), tuple(reader.said), _duty(made))
+    text = _fresh(made, [*_head(model, one, unused), *map(flat, notes)])
+    return Imported(text, tuple(unused), (*reader.said, *notes), _duty(made))
+
+
+def _as_exported(
+    reader: Reader, stage: Stage, data: dict[str, Any], given: dict[str, str | None]
+) -> Imported:
+    """The case that an unchanged file was exported from, at the load that is ``given``."""
+    loads = [(f"operating.{name}", text) for name, text in given.items() if text is not None]
+    data = overridden(data, tuple(loads))
+    checked(stage, data)
+    unused = left_out(reader.model, _used(reader.model, stage))
+    text = stored(data, _head(reader.model, stage, unused))
+    return Imported(text, tuple(unused), tuple(reader.said))
+
+
+def _like_any_other(case: GearCase) -> str:
+    """What a changed file loses of the case that it was exported from."""
+    lost = ", ".join(kept_alone(case)) or "nothing"
+    return (
+        f"{CASE}: the file was changed and is read like any other, oil and materials by their "
+        f"constants; left out beside them: {lost}"
+    )
 
 
 def _head(model: Model, stage: Stage, unused: list[str]) -> list[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -55,25 +55,23 @@ def toml(lines: Iterable[Line], head: Iterable[str], defaults: Iterable[tuple[st
     return "\n".join(found) + "\n"
 
 
-def stored(data: dict[str, Any], head: Iterable[str], notes: Mapping[str, str]) -> str:
-    """The tables ``data`` of a case as they were exported; ``notes`` by dotted path for others."""
+def stored(data: dict[str, Any], head: Iterable[str]) -> str:
+    """The tables ``data`` of a case as they were exported."""
     found = [f"# {text}" for text in head]
-    _walk(data, (), notes, found)
+    _walk(data, (), found)
     return "\n".join(found) + "\n"
 
 
-def _walk(
-    table: dict[str, Any], above: tuple[str, ...], notes: Mapping[str, str], found: list[str]
-) -> None:
+def _walk(table: dict[str, Any], above: tuple[str, ...], found: list[str]) -> None:
     plain = {k: v for k, v in table.items() if not isinstance(v, dict) or above == ("ours",)}
     if above and (plain or not table):
         found += ["", heading(".".join(quoted(key) for key in above))]
     for key, value in plain.items():
-        note = notes.get(".".join((*above, key)), f"{READ}: as it was exported")
-        found.append(line(key, value, "" if above[:1] == ("ours",) else note))
+        note = "" if above[:1] == ("ours",) else f"{READ}: as it was exported"
+        found.append(line(key, value, note))
     for key, value in table.items():
         if key not in plain:
-            _walk(value, (*above, key), notes, found)
+            _walk(value, (*above, key), found)
 
 
 _ORDER = ("", "gears", "materials", "housing", "oil", "operating", "temperatures", "backlash")

@@ -7,15 +7,14 @@ of the attribute. Two models say the same where their values are alike.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
-from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
+
+import numpy as np
 
 from thermogear.base.errors import short
 from thermogear.case.rexs import gearbox
 from thermogear.case.rexs.attributes import (
     EARLIER,
-    LATER,
     MEANINGS,
     USED,
     Plain,
@@ -24,7 +23,7 @@ from thermogear.case.rexs.attributes import (
     spelled,
 )
 from thermogear.case.rexs.gearbox import Stage
-from thermogear.case.rexs.model import Attribute, Component, LoadCase, Model
+from thermogear.case.rexs.model import Component, Model
 
 _ALIKE = 1e-9
 """Relative difference up to which two values are one: what a number loses when it is written in
@@ -78,50 +77,14 @@ def alike(first: Plain | None, second: Plain | None) -> bool:
     return first == second
 
 
-def put_back(model: Model, stage: Stage, old: Values, keys: Iterable[Key]) -> Model:
-    """``model`` with the ``old`` values at ``keys``, none where ``old`` has none."""
-    held = gearbox.parts_of(model, stage)
-    again = replace(
-        model,
-        components={
-            ident: replace(part, attributes=dict(part.attributes))
-            for ident, part in model.components.items()
-        },
-        load_cases=[
-            replace(case, components={ident: dict(rows) for ident, rows in case.components.items()})
-            for case in model.load_cases
-        ],
-    )
-    for load, part, name in keys:
-        while len(again.load_cases) < load:
-            again.load(LoadCase(id=len(again.load_cases) + 1, spectrum=1, components={}))
-        if part in held:
-            table = (
-                again.load_cases[load - 1].components.setdefault(held[part].id, {})
-                if load
-                else again.components[held[part].id].attributes
-            )
-            for spelling in (name, *LATER.get(name, ())):
-                table.pop(spelling, None)
-            if (load, part, name) in old:
-                value, unit = _written(old[Key(load, part, name)], name, model)
-                table[name] = Attribute(name, unit, value)
-    return again
-
-
 def shown(value: Plain | None, key: Key, model: Model) -> str:
     """A value as messages say it, in the unit of the schema."""
+    means = MEANINGS.get(key.name)
     if value is None:
         return "nothing"
-    number, unit = _written(value, key.name, model)
-    return f"{short(number)} {unit}".removesuffix(" none")
-
-
-def _written(value: Plain, name: str, model: Model) -> tuple[Any, str]:
-    """A value in the unit of the schema, and that unit."""
-    means = MEANINGS.get(name)
     if means is None or isinstance(value, str):
-        return value, "none"
-    if isinstance(value, float):
-        return from_si(value, means, model.after)
-    return [from_si(item, means, model.after)[0] for item in value], means.unit_in(model.after)
+        return short(value)
+    items = [from_si(item, means, model.after) for item in np.ravel(value).tolist()]
+    numbers = [number for number, _ in items]
+    text = f"{short(numbers if isinstance(value, list) else numbers[0])} {items[0][1]}"
+    return text.removesuffix(" none")

@@ -476,7 +476,6 @@ def waterfall(
     coordinates: int | None = None,
     store: str | Path | None = None,
     threads: int | None = None,
-    scheduler: str | None = None,
     report: Report | None = None,
     alive: Alive = keep_going,
 ) -> Result:
@@ -493,5 +492,5 @@ def waterfall(
         case, speeds, states=states, operating=operating, duration=duration,
         coordinates=coordinates, threads=threads,
     )  # fmt: skip
-    how: dict[str, Any] = {"threads": threads, "scheduler": scheduler, "report": report}
+    how: dict[str, Any] = {"threads": threads, "report": report}
     return finished(carry_out(plan, store, **how, alive=alive, title=case.title), case.title)

@@ -1,4 +1,4 @@
-"""Pages of one motion: its orbit, its Lyapunov exponent, its branches, cascades, mesh force."""
+"""Pages of one motion: its orbit, its Lyapunov exponent, its branches and cascades."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from operator import itemgetter
 from typing import Any
 
 from thermogear.base.arrays import Dataset
-from thermogear.base.display import MICROMETRE, NANOMETRE, PERCENT, Display, number
+from thermogear.base.display import MICROMETRE, PERCENT, Display, number
 from thermogear.base.vocabulary import label_words, of_turn
 from thermogear.results.result import Result
 from thermogear.views.columns import Column, Row, declared, pairs
@@ -93,7 +93,7 @@ def plane_tables(summary: Summary) -> list[Block]:
 
 Groups = Mapping[str, Dataset]
 
-KINDS = ("orbit", "lyapunov", "branch", "cascade", "shared")
+KINDS = ("orbit", "lyapunov", "branch", "cascade")
 
 
 def page(result: Result) -> Page:
@@ -123,8 +123,6 @@ def _picture(kind: str, groups: Groups) -> Callable[[], Picture]:
     if kind in ("branch", "cascade"):
         maker = plots.branch_picture if kind == "branch" else plots.cascade_picture
         return partial(maker, _numbered(groups, "branch_"))
-    if kind == "shared":
-        return partial(plots.shared_picture, groups["rest"], groups["motion"])
     return partial(plots.orbit_picture if kind == "orbit" else plots.lyapunov_picture, groups[kind])
 
 
@@ -152,17 +150,12 @@ def csv_tables(kind: str, groups: Groups) -> dict[str, str]:
 
 
 HEADINGS = {
-    "shared": "Where the two forms part",
     "orbit": "The orbit",
     "lyapunov": "The exponent as batches come in",
     "branch": "Branches along the parameter",
     "cascade": "Cascades",
 }
 CAPTIONS = {
-    "shared": "Above: at rest over the load, the exact loaded contact beside both forms built at "
-    "the mean load (dotted). Below: settled motion over the speed, at the mean load and at a "
-    "light one. The error is the movement of one base circle against the other: the static one "
-    "towards standstill, none far above resonance.",
     "lyapunov": "The band is one standard error of the mean.",
 }
 
@@ -213,15 +206,6 @@ def _headline(kind: str, summary: Summary) -> str:
         events, legs = len(summary["bifurcations"]), len(summary["branches"])
         told = f"{events} bifurcation{'s' * (events != 1)} on {legs} branch{'es' * (legs != 1)}."
         return f"{told} {plane_headline(summary)}".strip()
-    if kind == "shared":
-        mean, light = (
-            _percent(summary.get(f"median_swing_in_motion_{load}_load"))
-            for load in ("mean", "light")
-        )
-        return (
-            "Load-shared force against one spring: over the speed the swing of the transmission "
-            f"error differs by a median of {mean} at the mean load and {light} at a light one."
-        )
     return f"{sum(len(c['flips']) for c in summary['cascades'])} period doublings located."
 
 
@@ -370,44 +354,10 @@ def _flip_words(flips: Sequence[Summary], place: int) -> str:
     return f"{flip['value']:.9f} {str(flip.get('note', '')).split(':')[0]}".strip()
 
 
-def _shared_tables(summary: Summary) -> list[Block]:
-    rows = [
-        {"name": words, **{w: summary.get(f"{name}_{w}_load") for w in ("mean", "light")}}
-        for words, name in (
-            ("mean stiffness", "stiffness_at"),
-            ("transmission error at rest, peak to peak", "swing_at_rest"),
-            ("transmission error over speed, peak to peak, median", "median_swing_in_motion"),
-            ("transmission error over speed, peak to peak, greatest", "swing_in_motion"),
-        )
-    ]
-    found: list[Block] = [declared("Load-shared force against the one spring", SHARED, rows)]
-    if "mean_clearance_m" in summary:
-        least, mean = (number(MICROMETRE(summary[f"{n}_clearance_m"])) for n in ("least", "mean"))
-        apart = number(NANOMETRE(summary["clearance_apart_m"]))
-        found.append(
-            Text(
-                f"The free play 2b′ is {mean} µm in the mean over a mesh period and {least} µm "
-                f"where it is least; both forms take it from one gap ({apart} nm apart). In motion "
-                "the one spring keeps its mean."
-            )
-        )
-    return found
-
-
-def _percent(part: float | None) -> str:
-    return "–" if part is None else f"{PERCENT(part):.2f} %"
-
-
 ORBIT = (Column("quantity", "name"), Column("value", "value"), Column("unit", "unit"))
-SHARED = (
-    Column("difference", "name"),
-    Column("mean load", "mean", ".2f", PERCENT),
-    Column("light load", "light", ".2f", PERCENT),
-)
 _TABLES: dict[str, Callable[[Summary], list[Block]]] = {
     "orbit": _orbit_tables,
     "lyapunov": _lyapunov_tables,
     "branch": _branch_tables,
     "cascade": _cascade_tables,
-    "shared": _shared_tables,
 }

@@ -6,7 +6,9 @@ with the field T(r) running on to the tip, and the sector's edges are planes of 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -21,14 +23,14 @@ from thermogear.gears.tooth_mesh import (
     Density,
     Foot,
     Profile,
-    Tooth,
     foot_mesh,
     halved,
     plain_across,
     tooth_mesh,
 )
 from thermogear.heat.expansion import BORES, RadialField
-from thermogear.verify.elements import ReferencePatch
+from thermogear.verify.elements import ReferencePatch, library
+from thermogear.verify.sector import united
 
 
 def flank_radii(gear: Gear, count: int = 7) -> Floats:
@@ -53,16 +55,15 @@ def _arcs(gear: Gear, radius: Floats, density: Density) -> tuple[Floats, Integer
     return arcs, np.argmin(np.abs(arcs - asked[:, None]), axis=-1)
 
 
-def united(foot: Foot, tooth: Tooth) -> tuple[ReferencePatch, Integers]:
-    """Foot and tooth as one patch, and the numbers of the tooth's nodes in it."""
-    below = foot.patch.nodes.shape[0]
-    rest = np.setdiff1d(np.arange(tooth.patch.nodes.shape[0]), tooth.joint)
-    number = np.empty(tooth.patch.nodes.shape[0], dtype=np.int64)
-    number[tooth.joint] = foot.joint
-    number[rest] = below + np.arange(rest.size)
-    nodes = np.concatenate([foot.patch.nodes, tooth.patch.nodes[rest]])
-    cells = np.concatenate([foot.patch.cells, number[tooth.patch.cells]])
-    return ReferencePatch(nodes, cells, foot.patch.poisson), number
+def thermal_load(patch: ReferencePatch, strain: Callable[[Floats, Floats], Floats]) -> Floats:
+    """Nodal forces of a free thermal strain, ``strain(x, y)``, unit modulus, plane stress."""
+    fe, helpers = library(), library("skfem.helpers")
+    stress = 1.0 / (1.0 - patch.poisson)
+
+    def work(v: Any, w: Any) -> Any:
+        return stress * strain(w.x[0], w.x[1]) * helpers.div(v)
+
+    return patch._ours(fe.LinearForm(work).assemble(patch._basis))
 
 
 def finite_flank_growth(
@@ -128,7 +129,7 @@ def _displacement(
     values = np.concatenate([np.ones(plain.size), x / r, y / r, y / r, -x / r])
     turn = coo_matrix((values, (rows, columns)), shape=(2 * count, 2 * count)).tocsr()
     stiffness = (turn.T @ patch.stiffness() @ turn).tocsc()
-    load = turn.T @ patch.thermal_load(strain)
+    load = turn.T @ thermal_load(patch, strain)
 
     edges = np.concatenate([foot.left, foot.right, foot.bore[[0, -1]]])
     unknown = np.zeros(2 * count)
