@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -31,6 +31,7 @@ from thermogear.case.thermal_state import UNDEFORMED, ThermalState, unknown_wher
 from thermogear.gears.contact import path_of_contact
 from thermogear.gears.geometry import Gear
 from thermogear.heat.lubrication import grade
+from thermogear.mesh.balance import HeatBalance
 from thermogear.mesh.cycle import Cycle
 from thermogear.mesh.excite import EXCITES, excitations, over_turn
 from thermogear.mesh.model import MeshModel
@@ -38,6 +39,7 @@ from thermogear.mesh.operating import Operating, Varied
 from thermogear.mesh.thermal import HotPair
 
 Columns = Mapping[str, Floats]
+Made = TypeVar("Made")
 
 BATCH = 256
 """Samples in one mesh cycle."""
@@ -317,26 +319,12 @@ def quasi_static(
     other one notices. Raises what is wrong where no sample is possible. ``alive`` is called
     before each cycle and raises to end the work.
     """
-    refused: list[ThermogearError] = []
 
-    def asked(places: NDArray[np.int64]) -> list[tuple[NDArray[np.int64], dict[str, NDArray[Any]]]]:
-        """The cycle of samples that do it, halved where one is refused until it is alone."""
-        alive()
-        some = {name: values[places] for name, values in columns.items()}
-        try:
-            here = sample(case, some, places.size)
-            return [(places, _cycle(here, some, model, state, want, path_positions))]
-        except ThermogearError as error:
-            if places.size == 1:
-                refused.append(error)
-                return []
-        halves = np.split(places, [places.size // 2])
-        return [part for half in halves for part in asked(half)]
+    def cycled(some: Columns, size: int) -> dict[str, NDArray[Any]]:
+        here = sample(case, some, size)
+        return _cycle(here, some, model, state, want, path_positions)
 
-    chunks = (np.arange(first, min(first + BATCH, count)) for first in range(0, count, BATCH))
-    parts = [part for places in chunks for part in asked(places)]
-    if not parts:
-        raise refused[0]
+    parts = _in_batches(cycled, columns, count, alive)
     found: dict[str, NDArray[Any]] = {}
     for name, like in parts[0][1].items():
         found[name] = np.full((count, *like.shape[1:]), np.nan)
@@ -347,6 +335,59 @@ def quasi_static(
     return found
 
 
+def hot_pairs(
+    case: GearCase,
+    columns: Columns,
+    count: int,
+    model: MeshModel,
+    state: ThermalState,
+    *,
+    sample: Callable[[GearCase, Columns, int], Samples] = sampled,
+) -> list[HotPair | None]:
+    """The pair of every one of ``count`` samples alone, as hot as :func:`quasi_static` takes it.
+
+    None of a sample that no case could have; raises what is wrong where no sample is possible.
+    """
+    pairs: list[HotPair | None] = [None] * count
+
+    def heated(some: Columns, size: int) -> HotPair:
+        return _hot(sample(case, some, size).case, some, model, state)[0]
+
+    for places, hot in _in_batches(heated, columns, count, keep_going):
+        for number, place in enumerate(places):
+            point = hot.operating.part(slice(number, number + 1))
+            pairs[place] = replace(hot, operating=point)
+    return pairs
+
+
+def _in_batches(
+    do: Callable[[Columns, int], Made], columns: Columns, count: int, alive: Alive
+) -> list[tuple[NDArray[np.int64], Made]]:
+    """What ``do`` makes of samples side by side, with their places.
+
+    Halved where one is refused until it is alone; raises what is wrong where each one is.
+    """
+    refused: list[ThermogearError] = []
+
+    def made(places: NDArray[np.int64]) -> list[tuple[NDArray[np.int64], Made]]:
+        alive()
+        some = {name: values[places] for name, values in columns.items()}
+        try:
+            return [(places, do(some, places.size))]
+        except ThermogearError as error:
+            if places.size == 1:
+                refused.append(error)
+                return []
+        halves = np.split(places, [places.size // 2])
+        return [part for half in halves for part in made(half)]
+
+    chunks = (np.arange(first, min(first + BATCH, count)) for first in range(0, count, BATCH))
+    parts = [part for places in chunks for part in made(places)]
+    if not parts:
+        raise refused[0]
+    return parts
+
+
 def _cycle(
     samples: Samples,
     columns: Columns,
@@ -355,7 +396,35 @@ def _cycle(
     want: Sequence[str],
     path_positions: int,
 ) -> dict[str, NDArray[Any]]:
-    temperature, case = columns.get(GEARS_AT), samples.case
+    case = samples.case
+    hot, balance = _hot(case, columns, model, state)
+    s = path_of_contact(case.pair, path_positions)
+    # what is asked after the motion takes the same mesh, and ends its keeping
+    key = (model, state, path_positions)
+    cycle = samples.cycles.pop(key, None) or Cycle(
+        hot, tuple(case.deviations), s, case.mesh_positions
+    )
+    if want == EXCITES:
+        samples.cycles[key] = cycle
+    cyclic = [name for name in want if name not in BODIES_OF]
+    found = {name: np.asarray(values) for name, values in cycle.quantities(cyclic).items()}
+    found |= {
+        name: np.broadcast_to(BODIES_OF[name](hot.operating), hot.count).copy()
+        for name in want
+        if name in BODIES_OF
+    }
+    if balance is not None:
+        lost = state.open(case, balance, given=GEARS_AT in columns)
+        found["status"] = np.where(lost, HEAT_NOT_SETTLED, found["status"])
+        found |= unknown_where(lost, found, want)
+    return found | {"pinion_speed": hot.operating.speed, "pinion_torque": hot.operating.torque}
+
+
+def _hot(
+    case: GearCase, columns: Columns, model: MeshModel, state: ThermalState
+) -> tuple[HotPair, HeatBalance | None]:
+    """The pair of samples in their ``case``, as hot as they are, and the balance behind it."""
+    temperature = columns.get(GEARS_AT)
     if temperature is None:
         balance = (
             state.balance(case, model, from_hot=False)
@@ -372,24 +441,5 @@ def _cycle(
             else None
         )
         operating = case.operating_at(temperature, model)
-    hot = HotPair(case.pair, replace(operating, housing=case.housing), model)
-    s = path_of_contact(case.pair, path_positions)
-    # what is asked after the motion takes the same mesh, and ends its keeping
-    key = (model, state, path_positions)
-    cycle = samples.cycles.pop(key, None) or Cycle(
-        hot, tuple(case.deviations), s, case.mesh_positions
-    )
-    if want == EXCITES:
-        samples.cycles[key] = cycle
-    cyclic = [name for name in want if name not in BODIES_OF]
-    found = {name: np.asarray(values) for name, values in cycle.quantities(cyclic).items()}
-    found |= {
-        name: np.broadcast_to(BODIES_OF[name](operating), hot.count).copy()
-        for name in want
-        if name in BODIES_OF
-    }
-    if balance is not None:
-        lost = state.open(case, balance, given=temperature is not None)
-        found["status"] = np.where(lost, HEAT_NOT_SETTLED, found["status"])
-        found |= unknown_where(lost, found, want)
-    return found | {"pinion_speed": operating.speed, "pinion_torque": operating.torque}
+    return HotPair(case.pair, replace(operating, housing=case.housing), model), balance
+
