@@ -442,4 +442,3 @@ def _hot(
         )
         operating = case.operating_at(temperature, model)
     return HotPair(case.pair, replace(operating, housing=case.housing), model), balance
-

@@ -44,6 +44,7 @@ from thermogear.dynamics.return_map import ReturnMap
 from thermogear.results.result import Result
 from thermogear.results.work import Report, carry_out
 from thermogear.study.notices import difference_notices, finished, range_notices
+from thermogear.study.series_along import band_notices, over_speeds, parts_taken
 
 DIRECTIONS = (1, -1)
 BLOCK = 32
@@ -92,7 +93,7 @@ JUMP = {
 
 @dataclass(frozen=True, kw_only=True)
 class RunUpPlan:
-    """A run-up over ``speeds`` [rad/s]; see :func:`run_up`."""
+    """A run-up over ``speeds`` [rad/s], ``parts`` of a series behind it; see :func:`run_up`."""
 
     case: GearCase
     speeds: tuple[float, ...]
@@ -103,6 +104,7 @@ class RunUpPlan:
     record: Recording = RECORD
     block: int = BLOCK
     branch_period: int = 2
+    parts: int = 1
     kind: str = "run-up"
     _families: dict[int, GearFamily] = field(
         init=False, repr=False, compare=False, default_factory=dict
@@ -133,7 +135,7 @@ class RunUpPlan:
             "record": asdict(self.record),
             "block": self.block,
             "branch_period": self.branch_period,
-        }
+        } | ({"parts": self.parts} if self.parts > 1 else {})
 
     def family(self, state: int) -> GearFamily:
         """Speed -> lanes in one thermal state."""
@@ -289,6 +291,11 @@ class RunUpPlan:
         }
         data = _with_jumps(self, data)
         told = [*range_notices(self.case, data), *difference_notices(data)]
+        if self.parts > 1:
+            families = [self.family(state) for state in range(len(self.states))]
+            band = over_speeds(self.case, self.parts, families, np.array(self.speeds))
+            data = data.assign_coords(band.coords).assign(band.data_vars)
+            told.extend(band_notices(self.case, self.parts, data))
         return data.assign_attrs(notices=stored_notices(told))
 
 
@@ -446,9 +453,11 @@ def run_up_plan(
     rule: Rule = RULE,
     branch_period: int = 2,
     block: int = BLOCK,
+    parts: int | None = None,
 ) -> RunUpPlan:
     """The plan of :func:`run_up`; ``block`` speeds are computed, and given out, together."""
-    case = gear_case(case).unless_stated("period", "mesh")
+    whole = gear_case(case)
+    case = whole.unless_stated("period", "mesh")
     axis = np.sort(axis_values("speeds", speeds))
     given = (UNDEFORMED, HOT) if temperatures is None else map(ThermalState.of, temperatures)
     states = tuple(_held(case, state) for state in given)
@@ -468,6 +477,7 @@ def run_up_plan(
         record=RECORD.in_orders_of(case.period.mesh_periods),
         branch_period=branch_period,
         block=block,
+        parts=parts_taken(whole, family, parts, usual=whole.series),
     )
 
 
@@ -492,6 +502,7 @@ def run_up(
     torque: float | None = None,
     rule: Rule = RULE,
     branch_period: int = 2,
+    parts: int | None = None,
     store: str | Path | None = None,
     threads: int | None = None,
     scheduler: str | None = None,
@@ -513,6 +524,10 @@ def run_up(
     up to ``branch_period`` mesh periods (0: none).
     Of a case whose period is a turn of many mesh periods the motion is followed in fixed steps from
     each of the ``speeds`` to the next, its lines at all orders of the turn; no orbit is located.
+    A case in series has a band of its first ``parts`` behind that motion (default: as many as it
+    states; 1: none), as hot as its first speed is: ``series_dynamic_factor`` (state, quantile,
+    damping, pinion_speed), ``series_parting_share``
+    (:func:`~thermogear.study.series_along.over_speeds`).
     """
     plan = run_up_plan(
         case,
@@ -522,6 +537,7 @@ def run_up(
         torque=torque,
         rule=rule,
         branch_period=branch_period,
+        parts=parts,
     )
     how: dict[str, Any] = {"threads": threads, "scheduler": scheduler, "report": report}
     return finished(carry_out(plan, store, **how, alive=alive, title=case.title), case.title)
