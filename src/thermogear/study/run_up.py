@@ -295,7 +295,7 @@ class RunUpPlan:
             families = [self.family(state) for state in range(len(self.states))]
             band = over_speeds(self.case, self.parts, families, np.array(self.speeds))
             data = data.assign_coords(band.coords).assign(band.data_vars)
-            told.extend(band_notices(self.case, self.parts, data))
+            told = [*band_notices(self.case, self.parts, data), *told]
         return data.assign_attrs(notices=stored_notices(told))
 
 

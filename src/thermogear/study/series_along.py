@@ -178,8 +178,8 @@ def at_points(family: GearFamily, rows: Floats, parts: int, alive: Alive) -> Arr
         motion = series_motion(mesh, here, hot.operating.speed, here.damping_ratio)
         point = SeriesPoint(mesh, motion, 0)
         lost = motion.contact_loss_share[0, :, 0]
-        of_parts = dict(zip(IN_COLUMNS, (point.errors[1], motion.dynamic_factor[0, :, 0], lost)))
-        for name, values in of_parts.items():
+        of_parts = (point.errors[1], motion.dynamic_factor[0, :, 0], lost)
+        for name, values in zip(IN_COLUMNS, of_parts, strict=True):
             for which, value in zip(QUANTILES, _quantiles(values), strict=True):
                 columns[f"series_{name}_{which}"][place] = value
         count = columns["series_parts"][place] = point.counts[0]

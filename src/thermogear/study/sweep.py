@@ -133,7 +133,7 @@ class SweepPlan:
         case = self.family.case
         told = [*range_notices(case, data)]
         if self.parts > 1:
-            told.append(sweep_notice(case, self.parts))
+            told.insert(0, sweep_notice(case, self.parts))
         return over_turn(data, case).assign_attrs(
             bundle=self.family.bundle,
             state=self.family.state.stored,

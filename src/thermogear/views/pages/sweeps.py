@@ -60,6 +60,11 @@ EXPLAINED = {
 }
 
 
+OF_SERIES = (
+    " Of the series of the case's class, pairs from rest over their turns: band, median (long "
+    "dashes) and what one pair in ten exceeds. All else is of one pair, the case's own drawing: "
+    "its mean tooth, unless its turn is asked for."
+)
 LOST_MAP = (
     "Teeth: whether the drive flanks part at some moment of the settled motion, and whether the "
     "back flanks are hit then. Bearings: which bear nothing at some of 64 moments a mesh period. A "
@@ -184,6 +189,7 @@ def _diagram_caption(data: Dataset) -> str:
 
 def _sweep_caption(data: Dataset) -> str:
     words = "Every point from the case's own start."
+    words += OF_SERIES if "series_parts" in data else ""
     rest = [str(name) for name in data["label"].dims[2:]]
     at = [f"{page_words(n, data[n])} {number(float(shown(n, data[n][0])))}" for n in rest]
     return f"{words} Drawn at {', '.join(at)}." if at else words
@@ -196,7 +202,8 @@ def _run_up_caption(data: Dataset) -> str:
         else "Full lines run up, dashed ones down"
     )
     folds = "bifurcation_kind" in data and bool((data["bifurcation_kind"].values == 0).any())
-    return words + ("; thin vertical lines are located folds." if folds else ".")
+    words += "; thin vertical lines are located folds." if folds else "."
+    return words + (OF_SERIES if "series_parts" in data else "")
 
 
 def _waterfall_caption(data: Dataset) -> str:
@@ -242,6 +249,8 @@ def _points(data: Dataset, result: Result) -> Section:
         kinds = {columns[0].figure(row) for row in found}
         blocks.append(Text(" ".join(w for kind, w in EXPLAINED.items() if kind in kinds)))
     jumps = _jumps(data)
+    if "series_dynamic_factor" in data:
+        blocks.append(declared(SERIES_AT_WORST, SERIES, _series(data)))
     if jumps:
         blocks.append(declared("Jumps", JUMPS, jumps))
         blocks.append(Text(JUMPS_EXPLAINED))
@@ -357,6 +366,18 @@ JUMPS = (
     key("return_rpm", "jump_return", SPEED),
     key("into_period", "jump_into"),
 )
+SERIES_AT_WORST = "The series at its worst speed: where one pair in ten exceeds most."
+SERIES = (
+    GEARS,
+    Column("damping", "damping", 2, key="damping"),
+    Column("pairs", "parts", key="pairs"),
+    Column("worst at", "speed", 4, SPEED, "speed_rpm"),
+    Column("dynamic factor, 5 %", "low", 2, key="low"),
+    Column("median", "middle", 2, key="median"),
+    Column("one in ten exceeds", "bad", 2, key="bad"),
+    Column("95 %", "high", 2, key="high"),
+    Column("pairs that part at some speed", "part", key="pairs_that_part"),
+)
 MOST_LINES = 16
 LINES = (
     Column("line", "line", key="line"),
@@ -392,6 +413,27 @@ def _located(data: Dataset, dim: str) -> list[dict[str, Any]]:
 
 def _jumps(data: Dataset) -> list[dict[str, Any]]:
     return _located(data, "jump") if "jump_kind" in data else []
+
+
+def _series(data: Dataset) -> list[dict[str, Any]]:
+    """The series of a run in each state and at each damping, at its worst speed."""
+    rows = []
+    for state, damping in np.argwhere(data["series_parts"].values > 0):
+        band = data["series_dynamic_factor"].values[state, :, damping]
+        here = data.isel(state=state, damping=damping)
+        place = int(np.nanargmax(band[2]))
+        names = zip(("low", "middle", "bad", "high"), band[:, place].tolist(), strict=True)
+        rows.append(
+            dict(names)
+            | {
+                "gears": float(here["gear_temperature"]),
+                "damping": float(here["damping_ratio"]),
+                "speed": float(data["pinion_speed"][place]),
+                "parts": int(here["series_parts"]),
+                "part": int(here["series_parting_parts"]),
+            }
+        )
+    return rows
 
 
 def _bifurcations(data: Dataset) -> tuple[list[Column], list[dict[str, Any]]]:
@@ -446,6 +488,8 @@ def numbers(result: Result) -> dict[str, Any]:
         found |= {"parameter": parameter, "ways_apart": apart.tolist()}
     if kind == "run-up":
         found["jumps"] = [in_full(JUMPS, row) for row in _jumps(data)]
+        if "series_dynamic_factor" in data:
+            found["series"] = [in_full(SERIES, row) for row in _series(data)]
         if "mesh_periods" in data.attrs:
             found["lines"] = [in_full(LINES, row) for row in _turn_lines(data)]
             found["mesh_periods"] = int(data.attrs["mesh_periods"])

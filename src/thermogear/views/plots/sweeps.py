@@ -262,7 +262,10 @@ def _state_words(data: Dataset, state: int) -> str:
 
 
 def run_up_picture(data: Dataset) -> Picture:
-    """Transmission error, mesh force and dynamic factor over speed, up and down, by state."""
+    """Transmission error, mesh force and dynamic factor over speed, up and down, by state.
+
+    Of a case in series the band of its parts behind the dynamic factor, and below who parts.
+    """
     n = shown("pinion_speed", data["pinion_speed"])
     count = data.sizes["state"]
     colours = [COLD, HOT, *OKABE_ITO[2:]]
@@ -287,8 +290,36 @@ def run_up_picture(data: Dataset) -> Picture:
                 for value in shown("pinion_speed", data["bifurcation_value"][fold]):
                     panel.line(x=float(value), colour=colour, width=0.7, opacity=0.6)
         panels.append([panel])
+    if "series_parting_share" in data:
+        panels.append([_series(panels[-1][0], data, n, colours)])
     panels[-1][0].x = _along(data, "pinion_speed")
-    return Picture(panels, size=(WIDE, 8.0), above=0.15, share_x="column", legend=4)
+    size = WIDE, 8.0 * len(panels) / 3
+    return Picture(panels, size=size, above=0.15, share_x="column", legend=4)
+
+
+def _series(factor: Panel, data: Dataset, n: Floats, colours: Sequence[str]) -> Panel:
+    """The panel of who parts; the band of the parts of a series is put behind the ``factor``.
+
+    At the first damping; dotted the second, the least one.
+    """
+    parting = Panel(Axis(), Axis("pairs that part [%]", low=0.0))
+    dampings = data["damping_ratio"].values
+    for state in range(data.sizes["state"]):
+        colour, words = colours[state % len(colours)], _state_words(data, state)
+        low, middle, bad, high = data["series_dynamic_factor"].values[state]
+        share = PERCENT(data["series_parting_share"].values[state])
+        factor.band(
+            n, low=low[0], high=high[0], colour=colour, opacity=0.15, label=f"{words} 90 % of pairs"
+        )
+        factor.curve(
+            n, middle[0], colour=colour, width=0.8, dash=(6, 2), label=f"{words} median pair"
+        )
+        parting.curve(n, share[0], colour=colour, width=1.2)
+        if dampings.size > 1:
+            label = f"{words} one in ten, damping {dampings[1]:.2g}"
+            factor.curve(n, bad[1], colour=colour, dash=(1, 2), width=1.2, label=label)
+            parting.curve(n, share[1], colour=colour, dash=(1, 2), width=1.2)
+    return parting
 
 
 def waterfall_picture(data: Dataset) -> Picture:
@@ -337,21 +368,39 @@ def _order_axes(data: Dataset) -> list[tuple[str, float, float]]:
 
 
 def sweep_picture(data: Dataset) -> Picture:
-    """Dynamic factor and regime over the first one or two axes of a sweep."""
+    """Dynamic factor and regime over the first one or two axes of a sweep.
+
+    Of a case in series also its median and band, over two axes what one part in ten exceeds.
+    """
     dims = [str(d) for d in data["label"].dims]
     here = data.isel(dict.fromkeys(dims[2:], 0))
     error, factor = "transmission error, p-p [µm]", "dynamic factor $K_{v}$ [–]"
+    series = "series_parts" in here
     if len(dims) == 1:
-        above, below = Panel(Axis(), Axis(error)), Panel(_along(here, dims[0]), Axis(factor))
         p = shown(dims[0], here[dims[0]].values)
-        for panel, values in (
-            (above, MICROMETRE(here["dte_peak_to_peak"].values)),
-            (below, here["dynamic_factor"].values)
+        static = [("static_error", "static error, p-p [µm]", MICROMETRE)] * series
+        panels = []
+        for name, words, unit in (
+            ("dte_peak_to_peak", error, MICROMETRE), ("dynamic_factor", factor, Display("–")),
+            *static,
         ):  # fmt: skip
-            panel.curve(p, values, colour=COLD, marker=_dot(p))
-        return Picture([[above], [below]], size=(WIDE, 5.4), above=0.15, share_x="column")
-    panel, borders = _over_two(here)
-    panel.background = FAINT
-    values = here["dynamic_factor"].values.T
-    panel.field(*borders, values, colours=scale("viridis"), words=factor)
-    return Picture([[regimes(here), panel]], size=(WIDE, 4.6), legend=6)
+            panel = Panel(Axis(), Axis(words))
+            panel.curve(p, unit(here[name].values), colour=COLD, marker=_dot(p), label="one pair")
+            if series and f"series_{name}_low" in here:
+                low, middle, high = (
+                    unit(here[f"series_{name}_{which}"].values)
+                    for which in ("low", "median", "high")
+                )
+                panel.band(p, low=low, high=high, colour=INK, opacity=0.15, label="90 % of pairs")
+                panel.curve(p, middle, colour=INK, dash=(6, 2), marker=_dot(p), label="median pair")
+            panels.append([panel])
+        panels[-1][0].x = _along(here, dims[0])
+        return Picture(panels, size=(WIDE, 2.7 * len(panels)), above=0.15, share_x="column")
+    row = [regimes(here)]
+    bad = [("series_dynamic_factor_bad", "dynamic factor that one pair in ten exceeds [–]")]
+    for name, words in [("dynamic_factor", factor), *bad * series]:
+        panel, borders = _over_two(here)
+        panel.background = FAINT
+        panel.field(*borders, here[name].values.T, colours=scale("viridis"), words=words)
+        row.append(panel)
+    return Picture([row], size=(WIDE, 4.6), legend=6)
