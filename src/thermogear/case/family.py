@@ -43,7 +43,6 @@ from thermogear.case.samples import (
     Columns,
     Samples,
     fields_of,
-    hot_pairs,
     quasi_static,
     sampled,
     takes,
@@ -54,7 +53,6 @@ from thermogear.dynamics.lanes import Lanes
 from thermogear.dynamics.models import TorsionalModel
 from thermogear.mesh.excite import EXCITES, NO_ERROR
 from thermogear.mesh.model import MeshModel
-from thermogear.mesh.thermal import HotPair
 
 KEPT = 8
 """Mesh cycles a family remembers."""
@@ -245,9 +243,10 @@ class GearFamily:
         """Stored quantities of the mesh cycle of every row, in SI: name -> (row, ...).
 
         ``want`` names them (:func:`~thermogear.mesh.cycle.mesh_cycle`), and "oil_temperature",
-        "tooth_temperature" (the hotter addendum), "pinion_temperature" (its addendum) [K]; only
-        they are computed. ``path_positions`` along the path of contact, where a quantity runs over
-        it.
+        "tooth_temperature" (the hotter addendum), "pinion_temperature" (its addendum) [K], and as
+        objects "hot_pair", the pair of the row alone as hot as it is, and "case", whose gears and
+        flanks it has: what varies in columns stands in the pair; only they are computed.
+        ``path_positions`` along the path of contact, where a quantity runs over it.
         With them ``status``: a row that no case could have ("impossible"), or whose heat or mesh
         does not settle, is nan, and the others do not notice.
         """
@@ -259,26 +258,10 @@ class GearFamily:
             if name == "status":
                 values[place < 0] = STATUS.index("impossible")
             elif np.any(place < 0):
-                values = np.array(values, dtype=float)
+                values = values.astype(np.promote_types(values.dtype, float))
                 values[place < 0] = np.nan
             found[name] = values
         return found
-
-    def hot_pairs(self, rows: ArrayLike) -> list[tuple[GearCase, HotPair] | None]:
-        """The case of every row, and its pair as hot as it is there; None where no case could be.
-
-        What columns say is in the pair, at its one operating point, and not in the case.
-        """
-        table = np.asarray(rows, dtype=float)
-        pairs: list[tuple[GearCase, HotPair] | None] = [None] * len(table)
-        for group in self._placed(table)[0]:
-            model, sample = self._model_of(group.case), self._sample(group)
-            every = hot_pairs(
-                group.case, group.columns, group.index.size, model, self.state, sample=sample
-            )
-            for place, hot in zip(group.index, every, strict=True):
-                pairs[place] = None if hot is None else (group.case, hot)
-        return pairs
 
     def _placed(self, rows: Floats) -> tuple[list[_Group], Whole]:
         """Groups of rows, and the place of each row in them, one after the other; -1: nowhere.
@@ -370,25 +353,21 @@ class GearFamily:
         self, group: _Group, want: Sequence[str], path_positions: int = FEW
     ) -> dict[str, NDArray[Any]]:
         """Quantities of the mesh cycle of every row of a group, and its status."""
-        return quasi_static(
-            group.case, group.columns, group.index.size, self._model_of(group.case), self.state,
-            want, path_positions=path_positions, sample=self._sample(group), alive=self.alive,
-        )  # fmt: skip
-
-    def _model_of(self, case: GearCase) -> MeshModel:
-        """The bundle of ``case``, by its place where a choice that varies changes the name."""
+        case = group.case
+        # by its place where a choice that varies changes the name
         known = [m.name for m in case.models]
         names = known if self.bundle in known else [m.name for m in self.case.models]
-        return case.models[names.index(self.bundle)]
-
-    def _sample(self, group: _Group) -> Callable[[GearCase, Columns, int], Samples]:
-        """The same for the motion and for the answers: its heat balance is solved once."""
+        model = case.models[names.index(self.bundle)]
 
         def sample(case: GearCase, columns: Columns, count: int) -> Samples:
+            """The same for the motion and for the answers: its heat balance is solved once."""
             key = (group.values, count, *((n, v.tobytes()) for n, v in columns.items()))
             return _kept(self._samples, key, lambda: sampled(case, columns, count))
 
-        return sample
+        return quasi_static(
+            case, group.columns, group.index.size, model, self.state, want,
+            path_positions=path_positions, sample=sample, alive=self.alive,
+        )  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -31,15 +31,13 @@ from thermogear.case.thermal_state import UNDEFORMED, ThermalState, unknown_wher
 from thermogear.gears.contact import path_of_contact
 from thermogear.gears.geometry import Gear
 from thermogear.heat.lubrication import grade
-from thermogear.mesh.balance import HeatBalance
 from thermogear.mesh.cycle import Cycle
 from thermogear.mesh.excite import EXCITES, excitations, over_turn
 from thermogear.mesh.model import MeshModel
-from thermogear.mesh.operating import Operating, Varied
+from thermogear.mesh.operating import Varied
 from thermogear.mesh.thermal import HotPair
 
 Columns = Mapping[str, Floats]
-Made = TypeVar("Made")
 
 BATCH = 256
 """Samples in one mesh cycle."""
@@ -58,11 +56,15 @@ BODIES = ("pinion_bore", "wheel_bore", "housing")
 OF_OIL = ("oil.viscosity_40", "oil.viscosity_100", "oil.density_15")
 OF_MATERIAL = ("youngs_modulus", "thermal_expansion")
 
-BODIES_OF: dict[str, Callable[[Operating], ArrayLike]] = {
-    "oil_temperature": lambda at: at.oil_temperature,
-    "pinion_temperature": lambda at: at.temperatures.pinion_addendum,
-    "tooth_temperature": lambda at: np.maximum(
-        at.temperatures.pinion_addendum, at.temperatures.wheel_addendum
+BODIES_OF: dict[str, Callable[[GearCase, HotPair], Any]] = {
+    "oil_temperature": lambda _, hot: hot.operating.oil_temperature,
+    "pinion_temperature": lambda _, hot: hot.temperatures.pinion_addendum,
+    "tooth_temperature": lambda _, hot: np.maximum(
+        hot.temperatures.pinion_addendum, hot.temperatures.wheel_addendum
+    ),
+    "case": lambda case, hot: np.full(hot.count, case, object),
+    "hot_pair": lambda _, hot: np.array(
+        [replace(hot, operating=hot.operating.part(slice(n, n + 1))) for n in range(hot.count)]
     ),
 }
 """What is wanted of the operating points themselves, no quantity of the mesh cycle."""
@@ -319,73 +321,35 @@ def quasi_static(
     other one notices. Raises what is wrong where no sample is possible. ``alive`` is called
     before each cycle and raises to end the work.
     """
-
-    def cycled(some: Columns, size: int) -> dict[str, NDArray[Any]]:
-        here = sample(case, some, size)
-        return _cycle(here, some, model, state, want, path_positions)
-
-    parts = _in_batches(cycled, columns, count, alive)
-    found: dict[str, NDArray[Any]] = {}
-    for name, like in parts[0][1].items():
-        found[name] = np.full((count, *like.shape[1:]), np.nan)
-        for places, values in parts:
-            found[name][places] = values[name]
-    lost = np.isnan(found["status"])
-    found["status"] = np.where(lost, STATUS.index("impossible"), found["status"]).astype(np.int8)
-    return found
-
-
-def hot_pairs(
-    case: GearCase,
-    columns: Columns,
-    count: int,
-    model: MeshModel,
-    state: ThermalState,
-    *,
-    sample: Callable[[GearCase, Columns, int], Samples] = sampled,
-) -> list[HotPair | None]:
-    """The pair of every one of ``count`` samples alone, as hot as :func:`quasi_static` takes it.
-
-    None of a sample that no case could have; raises what is wrong where no sample is possible.
-    """
-    pairs: list[HotPair | None] = [None] * count
-
-    def heated(some: Columns, size: int) -> HotPair:
-        return _hot(sample(case, some, size).case, some, model, state)[0]
-
-    for places, hot in _in_batches(heated, columns, count, keep_going):
-        for number, place in enumerate(places):
-            point = hot.operating.part(slice(number, number + 1))
-            pairs[place] = replace(hot, operating=point)
-    return pairs
-
-
-def _in_batches(
-    do: Callable[[Columns, int], Made], columns: Columns, count: int, alive: Alive
-) -> list[tuple[NDArray[np.int64], Made]]:
-    """What ``do`` makes of samples side by side, with their places.
-
-    Halved where one is refused until it is alone; raises what is wrong where each one is.
-    """
     refused: list[ThermogearError] = []
 
-    def made(places: NDArray[np.int64]) -> list[tuple[NDArray[np.int64], Made]]:
+    def asked(places: NDArray[np.int64]) -> list[tuple[NDArray[np.int64], dict[str, NDArray[Any]]]]:
+        """The cycle of samples that do it, halved where one is refused until it is alone."""
         alive()
         some = {name: values[places] for name, values in columns.items()}
         try:
-            return [(places, do(some, places.size))]
+            here = sample(case, some, places.size)
+            return [(places, _cycle(here, some, model, state, want, path_positions))]
         except ThermogearError as error:
             if places.size == 1:
                 refused.append(error)
                 return []
         halves = np.split(places, [places.size // 2])
-        return [part for half in halves for part in made(half)]
+        return [part for half in halves for part in asked(half)]
 
     chunks = (np.arange(first, min(first + BATCH, count)) for first in range(0, count, BATCH))
-    parts = [part for places in chunks for part in made(places)]
+    parts = [part for places in chunks for part in asked(places)]
     if not parts:
         raise refused[0]
-    return parts
+    found: dict[str, NDArray[Any]] = {}
+    for name, like in parts[0][1].items():
+        kind = np.promote_types(like.dtype, float)
+        found[name] = np.full((count, *like.shape[1:]), np.nan, kind)
+        for places, values in parts:
+            found[name][places] = values[name]
+    lost = np.isnan(found["status"])
+    found["status"] = np.where(lost, STATUS.index("impossible"), found["status"]).astype(np.int8)
+    return found
 
 
 def _cycle(
@@ -396,35 +360,7 @@ def _cycle(
     want: Sequence[str],
     path_positions: int,
 ) -> dict[str, NDArray[Any]]:
-    case = samples.case
-    hot, balance = _hot(case, columns, model, state)
-    s = path_of_contact(case.pair, path_positions)
-    # what is asked after the motion takes the same mesh, and ends its keeping
-    key = (model, state, path_positions)
-    cycle = samples.cycles.pop(key, None) or Cycle(
-        hot, tuple(case.deviations), s, case.mesh_positions
-    )
-    if want == EXCITES:
-        samples.cycles[key] = cycle
-    cyclic = [name for name in want if name not in BODIES_OF]
-    found = {name: np.asarray(values) for name, values in cycle.quantities(cyclic).items()}
-    found |= {
-        name: np.broadcast_to(BODIES_OF[name](hot.operating), hot.count).copy()
-        for name in want
-        if name in BODIES_OF
-    }
-    if balance is not None:
-        lost = state.open(case, balance, given=GEARS_AT in columns)
-        found["status"] = np.where(lost, HEAT_NOT_SETTLED, found["status"])
-        found |= unknown_where(lost, found, want)
-    return found | {"pinion_speed": hot.operating.speed, "pinion_torque": hot.operating.torque}
-
-
-def _hot(
-    case: GearCase, columns: Columns, model: MeshModel, state: ThermalState
-) -> tuple[HotPair, HeatBalance | None]:
-    """The pair of samples in their ``case``, as hot as they are, and the balance behind it."""
-    temperature = columns.get(GEARS_AT)
+    temperature, case = columns.get(GEARS_AT), samples.case
     if temperature is None:
         balance = (
             state.balance(case, model, from_hot=False)
@@ -441,4 +377,24 @@ def _hot(
             else None
         )
         operating = case.operating_at(temperature, model)
-    return HotPair(case.pair, replace(operating, housing=case.housing), model), balance
+    hot = HotPair(case.pair, replace(operating, housing=case.housing), model)
+    s = path_of_contact(case.pair, path_positions)
+    # what is asked after the motion takes the same mesh, and ends its keeping
+    key = (model, state, path_positions)
+    cycle = samples.cycles.pop(key, None) or Cycle(
+        hot, tuple(case.deviations), s, case.mesh_positions
+    )
+    if want == EXCITES:
+        samples.cycles[key] = cycle
+    cyclic = [name for name in want if name not in BODIES_OF]
+    found = {name: np.asarray(values) for name, values in cycle.quantities(cyclic).items()}
+    found |= {
+        name: np.broadcast_to(BODIES_OF[name](case, hot), hot.count).copy()
+        for name in want
+        if name in BODIES_OF
+    }
+    if balance is not None:
+        lost = state.open(case, balance, given=temperature is not None)
+        found["status"] = np.where(lost, HEAT_NOT_SETTLED, found["status"])
+        found |= unknown_where(lost, found, want)
+    return found | {"pinion_speed": operating.speed, "pinion_torque": operating.torque}

@@ -355,19 +355,17 @@ def waterfall(
     [[bearings]].
     """
 
+    from thermogear.case.family import GearFamily
     from thermogear.case.thermal_state import UNDEFORMED
     from thermogear.study.shafts.waterfall import waterfall_plan
 
     read = _of_mean_tooth(delivery.load_gears(case, options["overrides"]), options)
     speeds = grid("rpm", rpm) * RPM
     bundle, state = _choice(read, options)
-    named = read
-    if bundle:
-        from thermogear.case.family import GearFamily
-
-        named = replace(read, models=(GearFamily(read, ("pinion_speed",), bundle).model,))
+    model = GearFamily(read, ("pinion_speed",), bundle).model
     plan = waterfall_plan(
-        named, speeds, states=list(dict.fromkeys((UNDEFORMED, state))), operating=operating,
+        replace(read, models=(model,)), speeds,
+        states=list(dict.fromkeys((UNDEFORMED, state))), operating=operating,
         duration=seconds, coordinates=coordinates, threads=options["threads"],
     )  # fmt: skip
     _carry(plan, Path(output), read.title, as_json, options)
@@ -442,10 +440,8 @@ def _compute(plan: Plan, directory: Path, title: str, options: dict[str, Any]) -
         from thermogear.study.notices import finished
         from thermogear.views.write import page_of, write
 
-        about = about_store(directory)
-        about.pop("title", None)
-        took = round(time.monotonic() - begun, 3)
-        result = finished(data, title).with_(**about, seconds=took)
+        about = {name: value for name, value in about_store(directory).items() if name != "title"}
+        result = finished(data, title).with_(**about, seconds=round(time.monotonic() - begun, 3))
         result = replace(result, notices=(*options.get("notices", ()), *result.notices))
         write(delivery.without_hidden(page_of(result)), directory)
     except KeyboardInterrupt:

@@ -148,18 +148,22 @@ class RunUpPlan:
         dims = ("state", "direction", "pinion_speed")
 
         number = partial(real, dims)
-        found = outcome_variables(dims) | response_variables(dims, lines=True)
-        for name in "xv":
-            found[f"section_{name}"] = number("Poincare section in half backlashes", "1", "section")
-            found[f"end_{name}"] = number("state carried on", "1")
-        found["end_speed"] = number("speed of the state carried on", "rad/s")
-        found["end_period"] = Variable(
-            dims,
-            "int32",
-            0,
-            {"long_name": "periods of the orbit that is followed, 0: none"} | NO_COUNT,
-        )
-        return found | {name: number(*told, "leap") for name, told in LEAP.items()}
+        of_axes = {
+            name: variable
+            for axis in "xv"
+            for name, variable in (
+                (f"section_{axis}", number("Poincare section in half backlashes", "1", "section")),
+                (f"end_{axis}", number("state carried on", "1")),
+            )
+        }
+        words = "periods of the orbit that is followed, 0: none"
+        ends = {
+            "end_speed": number("speed of the state carried on", "rad/s"),
+            "end_period": Variable(dims, "int32", 0, {"long_name": words} | NO_COUNT),
+        }
+        leaps = {name: number(*told, "leap") for name, told in LEAP.items()}
+        felt = outcome_variables(dims) | response_variables(dims, lines=True)
+        return felt | of_axes | ends | leaps
 
     def coordinates(self) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]:
         cold = self.case.stated.temperatures.reference
@@ -198,18 +202,12 @@ class RunUpPlan:
         up = key[1] == 0
         every = np.array(self.speeds)
         mine = np.arange(every.size)[ranges_of(self, key)["pinion_speed"]]
-        speeds = every[mine]
-        order = np.arange(speeds.size) if up else np.arange(speeds.size)[::-1]
+        order = np.arange(mine.size) if up else np.arange(mine.size)[::-1]
         found = empty_arrays(self, key)
         ends = None
         if before is not None:
-            last = 0, 0, -1 if up else 0
-            ends = {name: before[name][last] for name in ENDS}
-        if self.turn > 1:
-            points = self.family(key[0])(speeds[:, None])
-            rows = self._of_turns(points, order, ends, alive)
-        else:
-            rows = self._of_orbits(key, mine, order, ends, alive)
+            ends = {name: before[name][0, 0, -1 if up else 0] for name in ENDS}
+        rows = (self._of_turns if self.turn > 1 else self._of_orbits)(key, mine, order, ends, alive)
         for place, row in rows:
             for name, value in row.items():
                 found[name][0, 0, place] = value
@@ -221,13 +219,13 @@ class RunUpPlan:
         return self.case.period.mesh_periods
 
     def _of_turns(
-        self, points: Points, order: Whole, ends: Arrays | None, alive: Alive
+        self, key: Key, mine: Whole, order: Whole, ends: Arrays | None, alive: Alive
     ) -> Iterator[tuple[int, Arrays]]:
         """What is felt over the turn at each speed, carried on from the speed before."""
-        state = np.array(self.case.simulation.initial_state, dtype=float)
-        if ends is not None:
-            state = np.array([ends["end_x"], ends["end_v"]])
-        carried = ends is not None
+        speeds, carried = np.array(self.speeds)[mine], ends is not None
+        points = self.family(key[0])(speeds[:, None])
+        first = self.case.simulation.initial_state
+        state = np.array(first if ends is None else (ends["end_x"], ends["end_v"]), dtype=float)
         for place in order:
             here = points.take(np.array([place]))
             settled, arrays = settled_response(
@@ -293,8 +291,7 @@ class RunUpPlan:
         told = [*range_notices(self.case, data), *difference_notices(data)]
         if self.parts > 1:
             families = [self.family(state) for state in range(len(self.states))]
-            band = over_speeds(self.case, self.parts, families, np.array(self.speeds))
-            data = data.assign_coords(band.coords).assign(band.data_vars)
+            data = data.merge(over_speeds(self.case, self.parts, families, np.array(self.speeds)))
             told = [*band_notices(self.case, self.parts, data), *told]
         return data.assign_attrs(notices=stored_notices(told))
 
@@ -415,9 +412,8 @@ class _Run:
 
     def _size(self, speed: float, state: Floats) -> float:
         """Peak to peak transmission error of the motion at ``state``."""
-        point = self._single(speed)
         record = replace(self.plan.record, periods=LISTED_PERIOD * 4)
-        found = respond(point, state[None], record, lines=False)
+        found = respond(self._single(speed), state[None], record, lines=False)
         return float(found["dte_peak_to_peak"][0])
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 import numpy as np
 
@@ -22,6 +21,9 @@ FEW_PARTS, MOST_PARTS = 16, 1024
 """Parts at each point of a sweep by default, and at most; the fewest of a series, as of a case."""
 QUANTILES = {"low": BAND[0], "median": BAND[1], "bad": BAD, "high": BAND[2]}
 """Shares of parts that do not exceed a value, by what they are called."""
+BAD_PLACE = [*QUANTILES].index("bad")
+HEATED = ("case", "hot_pair", "cold_half_backlash")
+"""What is asked of a family; the last is the cheapest of a mesh cycle."""
 IN_COLUMNS = {
     "static_error": ("static error of the mean tooth, peak to peak", "m"),
     "dynamic_factor": ("dynamic factor", "1"),
@@ -40,14 +42,14 @@ def parts_taken(case: GearCase, family: GearFamily, parts: int | None, *, usual:
     in_series = case.series > 1 and loaded
     if parts is None:
         return usual if in_series else 1
-    if parts != 1 and not FEW_PARTS <= parts <= MOST_PARTS:
-        raise InputError("parts", parts, allowed=f"1 | {FEW_PARTS}..{MOST_PARTS}")
-    if parts > 1 and not in_series:
+    if parts != 1 and not (in_series and FEW_PARTS <= parts <= MOST_PARTS):
+        why = (
+            "the case is one part, its springs do not feel the flanks, or a number of the equation "
+            "varies"
+        )
         raise InputError(
-            "parts", parts, allowed="1",
-            why="the case is one part, its springs do not feel the flanks, or a number of the "
-            "equation varies",
-            fix="leave it out, or state a class without flanks.seed",
+            "parts", parts, allowed=f"1 | {FEW_PARTS}..{MOST_PARTS}" if in_series else "1",
+            why=None if in_series else why,
         )  # fmt: skip
     return parts
 
@@ -73,7 +75,7 @@ def over_speeds(
     pinion_speed) and ``series_parting_share`` (state, damping, pinion_speed) of the first ``count``
     parts, each from rest at each speed, at the dampings of the case; nan where none is followed.
     ``series_parts`` that are followed and ``series_parting_parts`` that lose contact at a speed or
-    more, (state, damping).
+    more, (state, damping); ``series_worst_...`` where one part in ten exceeds the most.
     """
     series, dampings = Series.of(case, count), np.array(case.dampings)
     shape = (len(families), dampings.size)
@@ -82,20 +84,22 @@ def over_speeds(
     parts, lose = np.zeros((2, *shape), np.int32)
     at = np.array([[case.speeds[0]]])
     for state, family in enumerate(families):
-        excited, hot = family.excitations(at), family.hot_pairs(at)[0]
-        if hot is None or not moves(excited.status[0]):
+        excited = family.excitations(at)
+        if not moves(excited.status[0]):
             continue
-        point = series.followed(hot[1], excited, speeds, own_speed=case.speeds[0])
-        every, lost = point.motion.dynamic_factor, point.motion.contact_loss_share > LOST
-        factor[state] = _quantiles(every.swapaxes(1, 2))
-        there = np.isfinite(every).sum(axis=1)
-        np.divide(lost.sum(axis=1), there, out=parting[state], where=there > 0)
+        hot = family.quasi_static(at, HEATED)["hot_pair"][0]
+        point = series.followed(hot, excited, speeds, own_speed=case.speeds[0])
+        lost = point.motion.contact_loss_share > LOST
         parts[state], lose[state] = point.counts, lost.any(axis=2).sum(axis=1)
-    along = ("damping", "pinion_speed")
+        factor[state] = _quantiles(point.motion.dynamic_factor.swapaxes(1, 2))
+        share = lost.sum(axis=1) / np.maximum(point.counts, 1)[:, None]
+        parting[state] = np.where(np.isnan(factor[state, 0]), np.nan, share)
+    worst = np.argmax(np.nan_to_num(factor[:, BAD_PLACE]), axis=-1)
+    along, of_quantiles = ("damping", "pinion_speed"), ("state", "quantile", "damping")
     return label(
         {
             "series_dynamic_factor": (
-                ("state", "quantile", *along), factor, "1",
+                (*of_quantiles, "pinion_speed"), factor, "1",
                 "dynamic factor that a share of parts does not exceed",
             ),
             "series_parting_share": (
@@ -104,6 +108,14 @@ def over_speeds(
             "series_parts": (("state", "damping"), parts, "1", "parts that are followed"),
             "series_parting_parts": (
                 ("state", "damping"), lose, "1", "parts that lose contact at one speed or more"
+            ),
+            "series_worst_speed": (
+                ("state", "damping"), np.where(parts > 0, speeds[worst], np.nan), "rad/s",
+                "speed at which one part in ten exceeds the most",
+            ),
+            "series_worst_dynamic_factor": (
+                of_quantiles, np.take_along_axis(factor, worst[:, None, :, None], axis=-1)[..., 0],
+                "1", "dynamic factor there",
             ),
         },
         {
@@ -115,28 +127,23 @@ def over_speeds(
 
 def band_notices(case: GearCase, parts: int, data: Dataset) -> Iterator[Notice]:
     """What the series behind a run is, its bad end, and what of the run is not of it."""
-    bad = data["series_dynamic_factor"].values[:, [*QUANTILES].index("bad")]
-    speeds, dampings = data["pinion_speed"].values, data["damping_ratio"].values
     if not moves(data["status"].values).any():
         return
-    figures: dict[str, Any] = {}
-    for place, name in enumerate(("", "_least")[: dampings.size]):
-        here = bad[:, place]
-        if np.isfinite(here).any():
-            figures[f"bad{name}"] = float(np.nanmax(here))
-            figures[f"speed{name}"] = float(speeds[np.nanargmax(here) % speeds.size])
-            figures[f"pairs{name}"] = int(data["series_parting_parts"].values[:, place].max())
-            figures[f"of{name}"] = int(data["series_parts"].values[:, place].max())
-            figures[f"damping{name}"] = float(dampings[place])
-    slow = np.isnan(bad[:, 0]).all(axis=0)
+    bad = np.nan_to_num(data["series_worst_dynamic_factor"].values[:, BAD_PLACE, 0])
+    worst = data.isel(state=int(np.argmax(bad)), damping=0)
+    slow = data["pinion_speed"].values[np.isnan(worst["series_parting_share"].values)]
+    known = bad.any()
     yield Notice.of(
         "run_of_a_series",
-        **figures,
         parts=parts,
         accuracy=case.accuracy,
         seed=case.seed,
+        damping=case.dampings[0],
+        bad=float(bad.max()) if known else None,
+        speed=float(worst["series_worst_speed"]) if known else None,
+        pairs=int(worst["series_parting_parts"]) if known else None,
+        slow=float(slow.max()) if slow.size else None,
         own=case.period.mesh_periods,
-        slow=float(speeds[slow].max()) if slow.any() else None,
     )
 
 
@@ -162,30 +169,25 @@ def at_points(family: GearFamily, rows: Floats, parts: int, alive: Alive) -> Arr
     Of the first ``parts`` parts of the gears, and the flanks, that the row has, at its load, speed
     and damping, as hot as its own motion is. ``series_parts`` is 0 where no motion is followed.
     """
-    columns = {name: np.full(len(rows), np.nan) for name in point_variables(())}
-    columns["series_parts"] = np.zeros(len(rows))
-    excited = family.excitations(rows)
+    names = list(point_variables(()))
+    table = np.full((len(names), len(rows)), np.nan)
+    table[-1] = 0.0
+    excited, heated = family.excitations(rows), family.quasi_static(rows, HEATED)
     every: dict[int, Series] = {}
-    for place, heated in enumerate(family.hot_pairs(rows)):
+    for place in np.flatnonzero(moves(excited.status)).tolist():
         alive()
-        if heated is None or not moves(excited.status[place]):
-            continue
-        case, hot = heated
+        case, hot = (heated[name][place] for name in ("case", "hot_pair"))
         if id(case) not in every:
             every[id(case)] = Series.of(case, parts)
-        here = excited.take(np.array([place]))
-        mesh = every[id(case)].mesh(hot)
+        here, mesh = excited.take(np.array([place])), every[id(case)].mesh(hot)
         motion = series_motion(mesh, here, hot.operating.speed, here.damping_ratio)
         point = SeriesPoint(mesh, motion, 0)
-        lost = motion.contact_loss_share[0, :, 0]
-        of_parts = (point.errors[1], motion.dynamic_factor[0, :, 0], lost)
-        for name, values in zip(IN_COLUMNS, of_parts, strict=True):
-            for which, value in zip(QUANTILES, _quantiles(values), strict=True):
-                columns[f"series_{name}_{which}"][place] = value
-        count = columns["series_parts"][place] = point.counts[0]
-        if count:
-            columns["series_parting_share"][place] = (lost > LOST).sum() / count
-    return columns
+        factor, lost = motion.dynamic_factor[0, :, 0], motion.contact_loss_share[0, :, 0]
+        columns = _quantiles(np.stack([point.errors[1], factor, lost])).T
+        count = int(point.counts[0])
+        parting = (lost > LOST).sum() / count if count else np.nan
+        table[:, place] = [*columns.ravel(), parting, count]
+    return dict(zip(names, table, strict=True))
 
 
 def sweep_notice(case: GearCase, parts: int) -> Notice:

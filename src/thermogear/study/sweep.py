@@ -88,9 +88,9 @@ class SweepPlan:
 
     def variables(self) -> dict[str, Variable]:
         dims = self.family.names
-        found = outcome_variables(dims) | response_variables(dims, lines=True)
+        one_pair = outcome_variables(dims) | response_variables(dims, lines=True)
         of_parts = point_variables(dims) if self.parts > 1 else {}
-        return found | answer_variables(dims) | of_parts
+        return one_pair | answer_variables(dims) | of_parts
 
     def coordinates(self) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]:
         found = axis_coordinates(self.family.names, self.family.units, self.axes)
@@ -131,13 +131,11 @@ class SweepPlan:
 
     def finish(self, data: Dataset) -> Dataset:
         case = self.family.case
-        told = [*range_notices(case, data)]
-        if self.parts > 1:
-            told.insert(0, sweep_notice(case, self.parts))
+        of_series = [sweep_notice(case, self.parts)] if self.parts > 1 else []
         return over_turn(data, case).assign_attrs(
             bundle=self.family.bundle,
             state=self.family.state.stored,
-            notices=stored_notices(told),
+            notices=stored_notices([*of_series, *range_notices(case, data)]),
         )
 
 

@@ -34,8 +34,9 @@ def finding(data: Dataset) -> str:
         if kind == "sweep":
             words += _greatest(data, "dynamic_factor", "the greatest dynamic factor is")
             if "series_dynamic_factor_bad" in data:
-                at_most = "of the series one pair in ten exceeds at most"
-                words += _greatest(data, "series_dynamic_factor_bad", at_most)
+                words += _greatest(
+                    data, "series_dynamic_factor_bad", "one pair in ten of the series exceeds up to"
+                )
     return f"{words}{_undecided(data)}."
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -115,63 +116,20 @@ def _rule(data: Dataset) -> str:
 
 
 def _pictures(data: Dataset) -> Section:
-    kind = str(data.attrs["kind"])
-    makers: dict[str, list[tuple[str, str, str | Words, Callable[[Dataset], Picture]]]] = {
-        "diagram": [
-            (
-                "orbits", "Orbit diagram", _diagram_caption, sweeps.orbit_diagram_picture,
-            )
-        ],
-        "map": [
-            (
-                "regimes", "Regimes over two parameters",
-                _map_caption, map_picture,
-            )
-        ],
-        "basins": [
-            (
-                "basins", "Basins", "Which attractor every start ends on; dots are their sections.",
-                sweeps.basins_picture,
-            )
-        ],
-        "sweep": [
-            ("sweep", "Response", _sweep_caption, sweeps.sweep_picture)
-        ],
-        "run-up": [
-            (
-                "runup", "Response over speed", _run_up_caption, sweeps.run_up_picture,
-            ),
-            (
-                "waterfall", "Waterfall",
-                _waterfall_caption,
-                sweeps.waterfall_picture,
-            ),
-        ],
-    }  # fmt: skip
-    if has_lost(data) and kind == "map":
-        makers[kind].insert(0, ("contact", "What loses contact", LOST_MAP, lost_contact_picture))
-    if has_lost(data) and kind == "diagram":
-        makers[kind].append(
-            ("forces", "Forces and losses of contact", LOST_DIAGRAM, forces_picture)
-        )
     pictures = Pictures()
-    for name, heading, caption, make in makers[kind]:
-
-        def drawn(make: Callable[[Dataset], Picture] = make) -> Picture:
-            return make(data)
-
-        said = caption if isinstance(caption, str) else caption(data)
-        pictures.add(name, heading, said, data, (), drawn, wide=True)
+    for kind, of_lost, name, heading, caption, make in PICTURES:
+        if kind == data.attrs["kind"] and (has_lost(data) or not of_lost):
+            words = caption if isinstance(caption, str) else caption(data)
+            pictures.add(name, heading, words, data, (), partial(make, data), wide=True)
     return Section(LEAD, "In pictures", pictures.take(), folded=False)
 
 
 def _map_caption(data: Dataset) -> str:
     words = "What the motion from one start settles on."
-    if not has_lost(data):
-        words += " Beside it whether the drive flanks part, and whether the back flanks are hit."
-    if (data["status"].values == ASSUMED).any():
-        words += " Hatched: assumed, not computed; points computed around it are alike."
-    return words
+    beside = " Beside it whether the drive flanks part, and whether the back flanks are hit."
+    assumed = " Hatched: assumed, not computed; points computed around it are alike."
+    hatched = bool((data["status"].values == ASSUMED).any())
+    return words + beside * (not has_lost(data)) + assumed * hatched
 
 
 def _diagram_caption(data: Dataset) -> str:
@@ -179,10 +137,9 @@ def _diagram_caption(data: Dataset) -> str:
         "Sections at phase 0 of the settled motion, each value starting from the end of the last: "
         "up with rising values, down with falling ones"
     )
-    if data.sizes.get("branch"):
-        words += "; branches from continuation"
+    branches = "; branches from continuation" if data.sizes.get("branch") else ""
     known = np.isfinite(data["lyapunov"].values).any()
-    return words + (
+    return f"{words}{branches}" + (
         "; the largest Lyapunov exponent below, full up, dashed down." if known else "."
     )
 
@@ -217,6 +174,22 @@ def _waterfall_caption(data: Dataset) -> str:
         f"whose turns fill the {of} mesh periods. Order 1 of the pinion is 1/{pinion} of the mesh, "
         f"of the wheel 1/{wheel}."
     )
+
+
+PICTURES: tuple[tuple[str, bool, str, str, str | Words, Callable[[Dataset], Picture]], ...] = (
+    ("diagram", False, "orbits", "Orbit diagram", _diagram_caption, sweeps.orbit_diagram_picture),
+    ("diagram", True, "forces", "Forces and losses of contact", LOST_DIAGRAM, forces_picture),
+    ("map", True, "contact", "What loses contact", LOST_MAP, lost_contact_picture),
+    ("map", False, "regimes", "Regimes over two parameters", _map_caption, map_picture),
+    (
+        "basins", False, "basins", "Basins",
+        "Which attractor every start ends on; dots are their sections.", sweeps.basins_picture,
+    ),
+    ("sweep", False, "sweep", "Response", _sweep_caption, sweeps.sweep_picture),
+    ("run-up", False, "runup", "Response over speed", _run_up_caption, sweeps.run_up_picture),
+    ("run-up", False, "waterfall", "Waterfall", _waterfall_caption, sweeps.waterfall_picture),
+)  # fmt: skip
+"""Of which kind, whether only where losses of contact are told, name, heading, caption, picture."""
 
 
 def _turn_lines(data: Dataset) -> list[dict[str, Any]]:
@@ -368,15 +341,15 @@ JUMPS = (
 )
 SERIES_AT_WORST = "The series at its worst speed: where one pair in ten exceeds most."
 SERIES = (
-    GEARS,
-    Column("damping", "damping", 2, key="damping"),
-    Column("pairs", "parts", key="pairs"),
-    Column("worst at", "speed", 4, SPEED, "speed_rpm"),
+    Column("gears", "gear_temperature", 4, CELSIUS, "gears_degC"),
+    Column("damping", "damping_ratio", 2, PLAIN, "damping"),
+    Column("pairs", "series_parts", key="pairs"),
+    Column("worst at", "series_worst_speed", 4, SPEED, "speed_rpm"),
     Column("dynamic factor, 5 %", "low", 2, key="low"),
-    Column("median", "middle", 2, key="median"),
+    Column("median", "median", 2, key="median"),
     Column("one in ten exceeds", "bad", 2, key="bad"),
     Column("95 %", "high", 2, key="high"),
-    Column("pairs that part at some speed", "part", key="pairs_that_part"),
+    Column("pairs that part at some speed", "series_parting_parts", key="pairs_that_part"),
 )
 MOST_LINES = 16
 LINES = (
@@ -417,23 +390,9 @@ def _jumps(data: Dataset) -> list[dict[str, Any]]:
 
 def _series(data: Dataset) -> list[dict[str, Any]]:
     """The series of a run in each state and at each damping, at its worst speed."""
-    rows = []
-    for state, damping in np.argwhere(data["series_parts"].values > 0):
-        band = data["series_dynamic_factor"].values[state, :, damping]
-        here = data.isel(state=state, damping=damping)
-        place = int(np.nanargmax(band[2]))
-        names = zip(("low", "middle", "bad", "high"), band[:, place].tolist(), strict=True)
-        rows.append(
-            dict(names)
-            | {
-                "gears": float(here["gear_temperature"]),
-                "damping": float(here["damping_ratio"]),
-                "speed": float(data["pinion_speed"][place]),
-                "parts": int(here["series_parts"]),
-                "part": int(here["series_parting_parts"]),
-            }
-        )
-    return rows
+    worst = data["series_worst_dynamic_factor"].transpose("quantile", ...).drop_vars("quantile")
+    named = dict(zip(("low", "median", "bad", "high"), worst, strict=True))
+    return rows_along(data.assign(named), "state", "damping")
 
 
 def _bifurcations(data: Dataset) -> tuple[list[Column], list[dict[str, Any]]]:
