@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -43,13 +44,10 @@ def parts_taken(case: GearCase, family: GearFamily, parts: int | None, *, usual:
     if parts is None:
         return usual if in_series else 1
     if parts != 1 and not (in_series and FEW_PARTS <= parts <= MOST_PARTS):
-        why = (
-            "the case is one part, its springs do not feel the flanks, or a number of the equation "
-            "varies"
-        )
         raise InputError(
             "parts", parts, allowed=f"1 | {FEW_PARTS}..{MOST_PARTS}" if in_series else "1",
-            why=None if in_series else why,
+            why=None if in_series else "the case is one part, its springs do not feel the flanks, "
+            "or a number of the equation varies",
         )  # fmt: skip
     return parts
 
@@ -57,9 +55,21 @@ def parts_taken(case: GearCase, family: GearFamily, parts: int | None, *, usual:
 def _quantiles(values: Floats) -> Floats:
     """:data:`QUANTILES` of ``values`` (..., part) of the parts that are known, (quantile, ...)."""
     spreads = [Spread.of(row) for row in values.reshape(-1, values.shape[-1])]
-    names = ("low", "middle", "bad", "high")
-    each = [[getattr(spread, name).value for spread in spreads] for name in names]
-    return np.reshape(each, (len(names), *values.shape[:-1]))
+    each = [
+        [getattr(spread, name).value for spread in spreads]
+        for name in ("low", "middle", "bad", "high")
+    ]
+    return np.reshape(each, (len(QUANTILES), *values.shape[:-1]))
+
+
+def _about(case: GearCase, parts: int) -> dict[str, Any]:
+    """What is told of the first ``parts`` of the series of ``case``, and of its one pair."""
+    series = Series.of(case, 1)
+    return {
+        "parts": parts, "accuracy": case.accuracy, "seed": case.seed,
+        "periods": None if series.start is None else series.periods,
+        "own": case.period.mesh_periods,
+    }  # fmt: skip
 
 
 # --- over the speeds of a run ---------------------------------------------------------------------
@@ -135,15 +145,12 @@ def band_notices(case: GearCase, parts: int, data: Dataset) -> Iterator[Notice]:
     known = bad.any()
     yield Notice.of(
         "run_of_a_series",
-        parts=parts,
-        accuracy=case.accuracy,
-        seed=case.seed,
+        **_about(case, parts),
         damping=case.dampings[0],
         bad=float(bad.max()) if known else None,
         speed=float(worst["series_worst_speed"]) if known else None,
         pairs=int(worst["series_parting_parts"]) if known else None,
         slow=float(slow.max()) if slow.size else None,
-        own=case.period.mesh_periods,
     )
 
 
@@ -152,15 +159,16 @@ def band_notices(case: GearCase, parts: int, data: Dataset) -> Iterator[Notice]:
 
 def point_variables(dims: tuple[str, ...]) -> dict[str, Variable]:
     """How :func:`at_points` is stored over ``dims``."""
-    columns = {
+    return {
         f"series_{name}_{which}": real(
             dims, f"{words}: {100.0 * share:.0f} % of parts do not exceed it", unit
         )
         for name, (words, unit) in IN_COLUMNS.items()
         for which, share in QUANTILES.items()
+    } | {
+        "series_parting_share": real(dims, "share of parts that lose contact", "1"),
+        "series_parts": real(dims, "parts whose motion is followed", "1"),
     }
-    columns["series_parting_share"] = real(dims, "share of parts that lose contact", "1")
-    return columns | {"series_parts": real(dims, "parts whose motion is followed", "1")}
 
 
 def at_points(family: GearFamily, rows: Floats, parts: int, alive: Alive) -> Arrays:
@@ -192,10 +200,4 @@ def at_points(family: GearFamily, rows: Floats, parts: int, alive: Alive) -> Arr
 
 def sweep_notice(case: GearCase, parts: int) -> Notice:
     """What the columns of a series are, and what the others are of."""
-    return Notice.of(
-        "sweep_of_a_series",
-        parts=parts,
-        accuracy=case.accuracy,
-        seed=case.seed,
-        own=case.period.mesh_periods,
-    )
+    return Notice.of("sweep_of_a_series", **_about(case, parts))

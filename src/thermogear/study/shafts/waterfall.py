@@ -378,7 +378,6 @@ class WaterfallPlan:
             attributes = {"long_name": words} | ({"units": unit} if unit else {})
             values = np.array([row[name] for row in rows], float if unit else np.int32)
             data[f"apart_{name}"] = (("stretch",), values, attributes)
-        held = sum(int(row["held"]) for row in rows)
         first = self._first
         size = 0 if first is None else first.model.size
         error = (
@@ -386,10 +385,14 @@ class WaterfallPlan:
             if first is not None
             else float("nan")
         )
+        of_series = [Notice.of("train_of_one_pair", parts=self.case.series)]
         notices = [
+            *of_series * (self.case.series > 1),
             Notice.of("one_point_all_through", duration=self.duration),
             Notice.of("train_reduced", coordinates=size, error=error),
-            Notice.of("ways_differ", stretches=len(rows), held=held)
+            Notice.of(
+                "ways_differ", stretches=len(rows), held=sum(int(row["held"]) for row in rows)
+            )
             if rows
             else Notice.of("ways_agree", speeds=[[min(self.speeds), max(self.speeds)]]),
         ]

@@ -471,15 +471,20 @@ def _labels(data: Dataset) -> dict[str, Any]:
         "labels": dict(Counter(sorted(told[~assumed].tolist())).most_common()),
         "assumed": dict(Counter(sorted(told[assumed].tolist())).most_common()),
     }
-    counts = ("total_periods", "full_periods", "computed_points")
-    found |= {name: int(data.attrs[name]) for name in counts if name in data.attrs}
+    found |= {
+        name: int(data.attrs[name])
+        for name in ("total_periods", "full_periods", "computed_points")
+        if name in data.attrs
+    }
     return found | ({"lost_contact": lost_rows(data)} if has_lost(data) else {})
 
 
 def _basin_numbers(data: Dataset) -> dict[str, Any]:
-    names = ("basin_entropy", "boundary_basin_entropy", "unassigned")
     return {
         "points": data["attractor"].size,
         "attractors": [in_full(ATTRACTORS, row) for row in _attractors(data)],
-        **{name: float(data.attrs[name]) for name in names},
+        **{
+            name: float(data.attrs[name])
+            for name in ("basin_entropy", "boundary_basin_entropy", "unassigned")
+        },
     }
