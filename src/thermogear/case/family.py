@@ -243,9 +243,10 @@ class GearFamily:
         """Stored quantities of the mesh cycle of every row, in SI: name -> (row, ...).
 
         ``want`` names them (:func:`~thermogear.mesh.cycle.mesh_cycle`), and "oil_temperature",
-        "tooth_temperature" (the hotter addendum), "pinion_temperature" (its addendum) [K]; only
-        they are computed. ``path_positions`` along the path of contact, where a quantity runs over
-        it.
+        "tooth_temperature" (the hotter addendum), "pinion_temperature" (its addendum) [K], and as
+        objects "hot_pair", the pair of the row alone as hot as it is, and "case", whose gears and
+        flanks it has: what varies in columns stands in the pair; only they are computed.
+        ``path_positions`` along the path of contact, where a quantity runs over it.
         With them ``status``: a row that no case could have ("impossible"), or whose heat or mesh
         does not settle, is nan, and the others do not notice.
         """
@@ -257,7 +258,7 @@ class GearFamily:
             if name == "status":
                 values[place < 0] = STATUS.index("impossible")
             elif np.any(place < 0):
-                values = np.array(values, dtype=float)
+                values = values.astype(np.promote_types(values.dtype, float))
                 values[place < 0] = np.nan
             found[name] = values
         return found

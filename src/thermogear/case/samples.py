@@ -34,7 +34,7 @@ from thermogear.heat.lubrication import grade
 from thermogear.mesh.cycle import Cycle
 from thermogear.mesh.excite import EXCITES, excitations, over_turn
 from thermogear.mesh.model import MeshModel
-from thermogear.mesh.operating import Operating, Varied
+from thermogear.mesh.operating import Varied
 from thermogear.mesh.thermal import HotPair
 
 Columns = Mapping[str, Floats]
@@ -56,11 +56,15 @@ BODIES = ("pinion_bore", "wheel_bore", "housing")
 OF_OIL = ("oil.viscosity_40", "oil.viscosity_100", "oil.density_15")
 OF_MATERIAL = ("youngs_modulus", "thermal_expansion")
 
-BODIES_OF: dict[str, Callable[[Operating], ArrayLike]] = {
-    "oil_temperature": lambda at: at.oil_temperature,
-    "pinion_temperature": lambda at: at.temperatures.pinion_addendum,
-    "tooth_temperature": lambda at: np.maximum(
-        at.temperatures.pinion_addendum, at.temperatures.wheel_addendum
+BODIES_OF: dict[str, Callable[[GearCase, HotPair], Any]] = {
+    "oil_temperature": lambda _, hot: hot.operating.oil_temperature,
+    "pinion_temperature": lambda _, hot: hot.temperatures.pinion_addendum,
+    "tooth_temperature": lambda _, hot: np.maximum(
+        hot.temperatures.pinion_addendum, hot.temperatures.wheel_addendum
+    ),
+    "case": lambda case, hot: np.full(hot.count, case, object),
+    "hot_pair": lambda _, hot: np.array(
+        [replace(hot, operating=hot.operating.part(slice(n, n + 1))) for n in range(hot.count)]
     ),
 }
 """What is wanted of the operating points themselves, no quantity of the mesh cycle."""
@@ -339,7 +343,8 @@ def quasi_static(
         raise refused[0]
     found: dict[str, NDArray[Any]] = {}
     for name, like in parts[0][1].items():
-        found[name] = np.full((count, *like.shape[1:]), np.nan)
+        kind = np.promote_types(like.dtype, float)
+        found[name] = np.full((count, *like.shape[1:]), np.nan, kind)
         for places, values in parts:
             found[name][places] = values[name]
     lost = np.isnan(found["status"])
@@ -384,7 +389,7 @@ def _cycle(
     cyclic = [name for name in want if name not in BODIES_OF]
     found = {name: np.asarray(values) for name, values in cycle.quantities(cyclic).items()}
     found |= {
-        name: np.broadcast_to(BODIES_OF[name](operating), hot.count).copy()
+        name: np.broadcast_to(BODIES_OF[name](case, hot), hot.count).copy()
         for name in want
         if name in BODIES_OF
     }

@@ -44,6 +44,7 @@ from thermogear.dynamics.return_map import ReturnMap
 from thermogear.results.result import Result
 from thermogear.results.work import Report, carry_out
 from thermogear.study.notices import difference_notices, finished, range_notices
+from thermogear.study.series_along import band_notices, over_speeds, parts_taken
 
 DIRECTIONS = (1, -1)
 BLOCK = 32
@@ -92,7 +93,7 @@ JUMP = {
 
 @dataclass(frozen=True, kw_only=True)
 class RunUpPlan:
-    """A run-up over ``speeds`` [rad/s]; see :func:`run_up`."""
+    """A run-up over ``speeds`` [rad/s], ``parts`` of a series behind it; see :func:`run_up`."""
 
     case: GearCase
     speeds: tuple[float, ...]
@@ -103,6 +104,7 @@ class RunUpPlan:
     record: Recording = RECORD
     block: int = BLOCK
     branch_period: int = 2
+    parts: int = 1
     kind: str = "run-up"
     _families: dict[int, GearFamily] = field(
         init=False, repr=False, compare=False, default_factory=dict
@@ -133,7 +135,7 @@ class RunUpPlan:
             "record": asdict(self.record),
             "block": self.block,
             "branch_period": self.branch_period,
-        }
+        } | ({"parts": self.parts} if self.parts > 1 else {})
 
     def family(self, state: int) -> GearFamily:
         """Speed -> lanes in one thermal state."""
@@ -146,18 +148,22 @@ class RunUpPlan:
         dims = ("state", "direction", "pinion_speed")
 
         number = partial(real, dims)
-        found = outcome_variables(dims) | response_variables(dims, lines=True)
-        for name in "xv":
-            found[f"section_{name}"] = number("Poincare section in half backlashes", "1", "section")
-            found[f"end_{name}"] = number("state carried on", "1")
-        found["end_speed"] = number("speed of the state carried on", "rad/s")
-        found["end_period"] = Variable(
-            dims,
-            "int32",
-            0,
-            {"long_name": "periods of the orbit that is followed, 0: none"} | NO_COUNT,
-        )
-        return found | {name: number(*told, "leap") for name, told in LEAP.items()}
+        of_axes = {
+            name: variable
+            for axis in "xv"
+            for name, variable in (
+                (f"section_{axis}", number("Poincare section in half backlashes", "1", "section")),
+                (f"end_{axis}", number("state carried on", "1")),
+            )
+        }
+        words = "periods of the orbit that is followed, 0: none"
+        ends = {
+            "end_speed": number("speed of the state carried on", "rad/s"),
+            "end_period": Variable(dims, "int32", 0, {"long_name": words} | NO_COUNT),
+        }
+        leaps = {name: number(*told, "leap") for name, told in LEAP.items()}
+        felt = outcome_variables(dims) | response_variables(dims, lines=True)
+        return felt | of_axes | ends | leaps
 
     def coordinates(self) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]:
         cold = self.case.stated.temperatures.reference
@@ -196,18 +202,12 @@ class RunUpPlan:
         up = key[1] == 0
         every = np.array(self.speeds)
         mine = np.arange(every.size)[ranges_of(self, key)["pinion_speed"]]
-        speeds = every[mine]
-        order = np.arange(speeds.size) if up else np.arange(speeds.size)[::-1]
+        order = np.arange(mine.size) if up else np.arange(mine.size)[::-1]
         found = empty_arrays(self, key)
         ends = None
         if before is not None:
-            last = 0, 0, -1 if up else 0
-            ends = {name: before[name][last] for name in ENDS}
-        if self.turn > 1:
-            points = self.family(key[0])(speeds[:, None])
-            rows = self._of_turns(points, order, ends, alive)
-        else:
-            rows = self._of_orbits(key, mine, order, ends, alive)
+            ends = {name: before[name][0, 0, -1 if up else 0] for name in ENDS}
+        rows = (self._of_turns if self.turn > 1 else self._of_orbits)(key, mine, order, ends, alive)
         for place, row in rows:
             for name, value in row.items():
                 found[name][0, 0, place] = value
@@ -219,13 +219,13 @@ class RunUpPlan:
         return self.case.period.mesh_periods
 
     def _of_turns(
-        self, points: Points, order: Whole, ends: Arrays | None, alive: Alive
+        self, key: Key, mine: Whole, order: Whole, ends: Arrays | None, alive: Alive
     ) -> Iterator[tuple[int, Arrays]]:
         """What is felt over the turn at each speed, carried on from the speed before."""
-        state = np.array(self.case.simulation.initial_state, dtype=float)
-        if ends is not None:
-            state = np.array([ends["end_x"], ends["end_v"]])
-        carried = ends is not None
+        speeds, carried = np.array(self.speeds)[mine], ends is not None
+        points = self.family(key[0])(speeds[:, None])
+        first = self.case.simulation.initial_state
+        state = np.array(first if ends is None else (ends["end_x"], ends["end_v"]), dtype=float)
         for place in order:
             here = points.take(np.array([place]))
             settled, arrays = settled_response(
@@ -289,6 +289,10 @@ class RunUpPlan:
         }
         data = _with_jumps(self, data)
         told = [*range_notices(self.case, data), *difference_notices(data)]
+        if self.parts > 1:
+            families = [self.family(state) for state in range(len(self.states))]
+            data = data.merge(over_speeds(self.case, self.parts, families, np.array(self.speeds)))
+            told = [*band_notices(self.case, self.parts, data), *told]
         return data.assign_attrs(notices=stored_notices(told))
 
 
@@ -408,9 +412,8 @@ class _Run:
 
     def _size(self, speed: float, state: Floats) -> float:
         """Peak to peak transmission error of the motion at ``state``."""
-        point = self._single(speed)
         record = replace(self.plan.record, periods=LISTED_PERIOD * 4)
-        found = respond(point, state[None], record, lines=False)
+        found = respond(self._single(speed), state[None], record, lines=False)
         return float(found["dte_peak_to_peak"][0])
 
 
@@ -446,9 +449,11 @@ def run_up_plan(
     rule: Rule = RULE,
     branch_period: int = 2,
     block: int = BLOCK,
+    parts: int | None = None,
 ) -> RunUpPlan:
     """The plan of :func:`run_up`; ``block`` speeds are computed, and given out, together."""
-    case = gear_case(case).unless_stated("period", "mesh")
+    whole = gear_case(case)
+    case = whole.unless_stated("period", "mesh")
     axis = np.sort(axis_values("speeds", speeds))
     given = (UNDEFORMED, HOT) if temperatures is None else map(ThermalState.of, temperatures)
     states = tuple(_held(case, state) for state in given)
@@ -468,6 +473,7 @@ def run_up_plan(
         record=RECORD.in_orders_of(case.period.mesh_periods),
         branch_period=branch_period,
         block=block,
+        parts=parts_taken(whole, family, parts, usual=whole.series),
     )
 
 
@@ -492,6 +498,7 @@ def run_up(
     torque: float | None = None,
     rule: Rule = RULE,
     branch_period: int = 2,
+    parts: int | None = None,
     store: str | Path | None = None,
     threads: int | None = None,
     report: Report | None = None,
@@ -512,6 +519,10 @@ def run_up(
     up to ``branch_period`` mesh periods (0: none).
     Of a case whose period is a turn of many mesh periods the motion is followed in fixed steps from
     each of the ``speeds`` to the next, its lines at all orders of the turn; no orbit is located.
+    A case in series has a band of its first ``parts`` behind that motion (default: as many as it
+    states; 1: none), as hot as its first speed is: ``series_dynamic_factor`` (state, quantile,
+    damping, pinion_speed), ``series_parting_share``
+    (:func:`~thermogear.study.series_along.over_speeds`).
     """
     plan = run_up_plan(
         case,
@@ -521,6 +532,7 @@ def run_up(
         torque=torque,
         rule=rule,
         branch_period=branch_period,
+        parts=parts,
     )
     how: dict[str, Any] = {"threads": threads, "report": report}
     return finished(carry_out(plan, store, **how, alive=alive, title=case.title), case.title)

@@ -86,18 +86,13 @@ class RunUpsPlan:
         return outcome_variables(dims) | response_variables(dims, lines=False)
 
     def coordinates(self) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]:
-        table = np.array(self.rows)
-        found: dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]] = {
-            name: (("sample",), table[:, place], {"units": unit})
-            for place, (name, unit) in enumerate(
-                zip(self.family.names, self.family.units, strict=True)
-            )
+        columns = zip(self.family.names, self.family.units, np.array(self.rows).T, strict=True)
+        way = {"long_name": "direction of the run: 1 up, -1 down"}
+        speed = {"units": "rad/s", "long_name": "pinion speed"}
+        return {name: (("sample",), values, {"units": unit}) for name, unit, values in columns} | {
+            "direction": (("direction",), np.array(DIRECTIONS, np.int8), way),
+            "pinion_speed": (("pinion_speed",), np.array(self.speeds), speed),
         }
-        words = {"long_name": "direction of the run: 1 up, -1 down"}
-        found["direction"] = (("direction",), np.array(DIRECTIONS, np.int8), words)
-        told = {"units": "rad/s", "long_name": "pinion speed"}
-        found["pinion_speed"] = (("pinion_speed",), np.array(self.speeds), told)
-        return found
 
     def needs(self, key: Key) -> Key | None:
         return None
@@ -114,8 +109,7 @@ class RunUpsPlan:
         """The run-ups of every ``step``-th sample over every ``step``-th speed."""
         some = every(len(self.rows), step=step), every(len(self.speeds), step=step)
         rows, speeds = tuple(self.rows[i] for i in some[0]), tuple(self.speeds[i] for i in some[1])
-        whole = np.arange(len(DIRECTIONS))
-        places = {"direction": whole, "sample": some[0], "pinion_speed": some[1]}
+        places = dict(zip(self.sizes, (np.arange(len(DIRECTIONS)), *some), strict=True))
         return replace(self, rows=rows, speeds=speeds), places
 
     def compute(self, key: Key, before: Arrays | None, alive: Alive) -> Arrays:

@@ -70,7 +70,8 @@ def series_parts(case: GearCase, count: int) -> tuple[tuple[Deviation, ...], ...
 
     Part n has the n-th drawing of the case's class and seed
     (:func:`~thermogear.gears.population.drawn_pair`), also where the flanks of the case itself are
-    no drawing of whole gears, and what the case states beside it. InputError without a class.
+    no drawing of whole gears or of its mean tooth alone, and what the case states beside it.
+    InputError without a class.
     """
     flanks = case.file.flanks
     if flanks is None or case.accuracy is None:
@@ -78,9 +79,12 @@ def series_parts(case: GearCase, count: int) -> tuple[tuple[Deviation, ...], ...
             "flanks.accuracy", "none", allowed="a class of ISO 1328-1", fix="give the class"
         )
 
+    gears = case.file.gears.model_copy(update={"period": "turn"})
+
     def part(place: int) -> tuple[Deviation, ...]:
         drawn = flanks.model_copy(update={"teeth": "drawn", "drawing": place})
-        return deviations(case.file.model_copy(update={"flanks": drawn}), case.pair, case.charts)
+        file = case.file.model_copy(update={"flanks": drawn, "gears": gears})
+        return deviations(file, case.pair, case.charts)
 
     return tuple(part(place) for place in range(count))
 

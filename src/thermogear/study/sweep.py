@@ -38,19 +38,28 @@ from thermogear.results.result import Result
 from thermogear.results.work import Report, carry_out
 from thermogear.study.answers.points import answer_numbers, answer_variables
 from thermogear.study.notices import finished, range_notices
+from thermogear.study.series_along import (
+    FEW_PARTS,
+    at_points,
+    parts_taken,
+    point_variables,
+    sweep_notice,
+)
 
-CHUNK_POINTS = 128
+CHUNK_POINTS, SERIES_POINTS = 128, 8
+"""Points of a chunk, and of one whose points are of a series each."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class SweepPlan:
-    """A sweep over ``axes``; see :func:`sweep`."""
+    """A sweep over ``axes``, ``parts`` of a series at each point; see :func:`sweep`."""
 
     family: GearFamily
     axes: tuple[tuple[float, ...], ...]
     start: tuple[float, float]
     rule: Rule = RULE
     record: Recording = RECORD
+    parts: int = 1
     kind: str = "sweep"
 
     @property
@@ -61,7 +70,7 @@ class SweepPlan:
     @property
     def cuts(self) -> dict[str, int]:
         """Whole inner axes as long as a chunk stays short."""
-        room = CHUNK_POINTS
+        room = CHUNK_POINTS if self.parts == 1 else SERIES_POINTS
         found: dict[str, int] = {}
         for name, values in reversed(list(zip(self.family.names, self.axes, strict=True))):
             found[name] = max(1, min(len(values), room))
@@ -75,12 +84,13 @@ class SweepPlan:
             "initial_state": list(self.start),
             "rule": asdict(self.rule),
             "record": asdict(self.record),
-        }
+        } | ({"parts": self.parts} if self.parts > 1 else {})
 
     def variables(self) -> dict[str, Variable]:
         dims = self.family.names
-        found = outcome_variables(dims) | response_variables(dims, lines=True)
-        return found | answer_variables(dims)
+        one_pair = outcome_variables(dims) | response_variables(dims, lines=True)
+        of_parts = point_variables(dims) if self.parts > 1 else {}
+        return one_pair | answer_variables(dims) | of_parts
 
     def coordinates(self) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]:
         found = axis_coordinates(self.family.names, self.family.units, self.axes)
@@ -108,7 +118,8 @@ class SweepPlan:
         points = self.family(rows)
         start = np.broadcast_to(np.array(self.start), (len(rows), 2)).copy()
         _, found = settled_response(points, start, self.rule, self.record, lines=True, alive=alive)
-        return found | answer_numbers(self.family, rows)
+        of_parts = at_points(self.family, rows, self.parts, alive) if self.parts > 1 else {}
+        return found | answer_numbers(self.family, rows) | of_parts
 
     def compute(self, key: Key, before: Arrays | None, alive: Alive) -> Arrays:
         ranges = ranges_of(self, key)
@@ -119,10 +130,12 @@ class SweepPlan:
         return {name: a.reshape(*shape, *a.shape[1:]) for name, a in flat.items()}
 
     def finish(self, data: Dataset) -> Dataset:
-        return over_turn(data, self.family.case).assign_attrs(
+        case = self.family.case
+        of_series = [sweep_notice(case, self.parts)] if self.parts > 1 else []
+        return over_turn(data, case).assign_attrs(
             bundle=self.family.bundle,
             state=self.family.state.stored,
-            notices=stored_notices(range_notices(self.family.case, data)),
+            notices=stored_notices([*of_series, *range_notices(case, data)]),
         )
 
 
@@ -145,9 +158,11 @@ def sweep_plan(
     state: StateLike = HOT,
     rule: Rule = RULE,
     record: Recording = RECORD,
+    parts: int | None = None,
 ) -> SweepPlan:
     """The plan of :func:`sweep`."""
-    case = gear_case(case).unless_stated("period", "mesh")
+    whole = gear_case(case)
+    case = whole.unless_stated("period", "mesh")
     if not axes:
         raise InputError("axes", "none", allowed="at least one parameter")
     named = _by_long_names(axes)
@@ -160,6 +175,7 @@ def sweep_plan(
         start=case.simulation.initial_state,
         rule=rule,
         record=record.in_orders_of(case.period.mesh_periods),
+        parts=parts_taken(whole, family, parts, usual=FEW_PARTS),
     )
 
 
@@ -170,6 +186,7 @@ def sweep(
     bundle: str = "",
     state: StateLike = HOT,
     rule: Rule = RULE,
+    parts: int | None = None,
     store: str | Path | None = None,
     threads: int | None = None,
     report: Report | None = None,
@@ -181,9 +198,11 @@ def sweep(
     [K], cold_half_backlash [m], damping_ratio, or a dotted field of the case file. Every point
     starts from the case's initial state. ``bundle`` one of the case's (the first by default),
     ``state`` "hot" or "undeformed" where the temperature is no axis. With a ``store`` directory the
-    same call resumes. Jammed and diverged points are a status.
+    same call resumes. Jammed and diverged points are a status. A case in series has
+    ``series_...`` columns of the first ``parts`` parts (16..1024, default 16; 1: none) of the gears
+    of each point, at its load, speed and damping.
     """
-    plan = sweep_plan(case, axes, bundle=bundle, state=state, rule=rule)
+    plan = sweep_plan(case, axes, bundle=bundle, state=state, rule=rule, parts=parts)
     data = carry_out(
         plan,
         store,

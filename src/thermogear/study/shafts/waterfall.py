@@ -113,20 +113,20 @@ class WaterfallPlan:
 
     @property
     def sizes(self) -> dict[str, int]:
-        count = len(plan_of(self.case).bearings)
+        count, first = len(plan_of(self.case).bearings), self._first
         return {
             "state": len(self.states),
             "direction": len(DIRECTIONS),
             "pinion_speed": len(self.speeds),
             "bearing": count,
             "order": self.orders.size,
-            "coordinate": self._dimension,
+            "coordinate": 1 if first is None else first.model.dimension,
         }
 
     @property
-    def _dimension(self) -> int:
-        first = next((t for t in map(self.train, range(len(self.states))) if t is not None), None)
-        return 1 if first is None else first.model.dimension
+    def _first(self) -> MovingTrain | None:
+        """The train in the first state of heat in which it moves."""
+        return next(filter(None, map(self.train, range(len(self.states)))), None)
 
     @property
     def cuts(self) -> dict[str, int]:
@@ -378,23 +378,24 @@ class WaterfallPlan:
             attributes = {"long_name": words} | ({"units": unit} if unit else {})
             values = np.array([row[name] for row in rows], float if unit else np.int32)
             data[f"apart_{name}"] = (("stretch",), values, attributes)
-        held = sum(int(row["held"]) for row in rows)
-        trains = [self.train(state) for state in kinds]
-        first = next((one for one in trains if one is not None), None)
+        first = self._first
         size = 0 if first is None else first.model.size
         error = (
             float(np.abs(first.reduction.frequency_errors(first.state.linear)).max())
             if first is not None
             else float("nan")
         )
+        of_series = [Notice.of("train_of_one_pair", parts=self.case.series)]
         notices = [
+            *of_series * (self.case.series > 1),
             Notice.of("one_point_all_through", duration=self.duration),
             Notice.of("train_reduced", coordinates=size, error=error),
+            Notice.of(
+                "ways_differ", stretches=len(rows), held=sum(int(row["held"]) for row in rows)
+            )
+            if rows
+            else Notice.of("ways_agree", speeds=[[min(self.speeds), max(self.speeds)]]),
         ]
-        if rows:
-            notices.append(Notice.of("ways_differ", stretches=len(rows), held=held))
-        else:
-            notices.append(Notice.of("ways_agree", speeds=[[min(self.speeds), max(self.speeds)]]))
         return data.assign_attrs(
             state_names=json.dumps([one.kind for one in self.states]),
             bearing_names=json.dumps(list(plan_of(self.case).bearing_names)),

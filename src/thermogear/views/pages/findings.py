@@ -32,7 +32,11 @@ def finding(data: Dataset) -> str:
     else:
         words = _counts(data)
         if kind == "sweep":
-            words += _greatest(data)
+            words += _greatest(data, "dynamic_factor", "the greatest dynamic factor is")
+            if "series_dynamic_factor_bad" in data:
+                words += _greatest(
+                    data, "series_dynamic_factor_bad", "one pair in ten of the series exceeds up to"
+                )
     return f"{words}{_undecided(data)}."
 
 
@@ -122,16 +126,16 @@ def _counts(data: Dataset) -> str:
     )
 
 
-def _greatest(data: Dataset) -> str:
-    values = data["dynamic_factor"].values
+def _greatest(data: Dataset, name: str, words: str) -> str:
+    values = data[name].values
     if not np.isfinite(values).any():
         return "; no point has a dynamic factor"
     place = np.unravel_index(int(np.nanargmax(values)), values.shape)
     at = [
         f"{exactly(float(shown(str(n), data[n][i])))}{_unit(data, str(n))}"
-        for n, i in zip(data["dynamic_factor"].dims, place, strict=True)
+        for n, i in zip(data[name].dims, place, strict=True)
     ]
-    return f"; the greatest dynamic factor is {number(float(values[place]))}, at {', '.join(at)}"
+    return f"; {words} {number(float(values[place]))}, at {', '.join(at)}"
 
 
 def _undecided(data: Dataset) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -60,6 +61,11 @@ EXPLAINED = {
 }
 
 
+OF_SERIES = (
+    " Of the series of the case's class, pairs from rest over their turns: band, median (long "
+    "dashes) and what one pair in ten exceeds. All else is of one pair, the case's own drawing: "
+    "its mean tooth, unless its turn is asked for."
+)
 LOST_MAP = (
     "Teeth: whether the drive flanks part at some moment of the settled motion, and whether the "
     "back flanks are hit then. Bearings: which bear nothing at some of 64 moments a mesh period. A "
@@ -110,63 +116,20 @@ def _rule(data: Dataset) -> str:
 
 
 def _pictures(data: Dataset) -> Section:
-    kind = str(data.attrs["kind"])
-    makers: dict[str, list[tuple[str, str, str | Words, Callable[[Dataset], Picture]]]] = {
-        "diagram": [
-            (
-                "orbits", "Orbit diagram", _diagram_caption, sweeps.orbit_diagram_picture,
-            )
-        ],
-        "map": [
-            (
-                "regimes", "Regimes over two parameters",
-                _map_caption, map_picture,
-            )
-        ],
-        "basins": [
-            (
-                "basins", "Basins", "Which attractor every start ends on; dots are their sections.",
-                sweeps.basins_picture,
-            )
-        ],
-        "sweep": [
-            ("sweep", "Response", _sweep_caption, sweeps.sweep_picture)
-        ],
-        "run-up": [
-            (
-                "runup", "Response over speed", _run_up_caption, sweeps.run_up_picture,
-            ),
-            (
-                "waterfall", "Waterfall",
-                _waterfall_caption,
-                sweeps.waterfall_picture,
-            ),
-        ],
-    }  # fmt: skip
-    if has_lost(data) and kind == "map":
-        makers[kind].insert(0, ("contact", "What loses contact", LOST_MAP, lost_contact_picture))
-    if has_lost(data) and kind == "diagram":
-        makers[kind].append(
-            ("forces", "Forces and losses of contact", LOST_DIAGRAM, forces_picture)
-        )
     pictures = Pictures()
-    for name, heading, caption, make in makers[kind]:
-
-        def drawn(make: Callable[[Dataset], Picture] = make) -> Picture:
-            return make(data)
-
-        said = caption if isinstance(caption, str) else caption(data)
-        pictures.add(name, heading, said, data, (), drawn, wide=True)
+    for kind, of_lost, name, heading, caption, make in PICTURES:
+        if kind == data.attrs["kind"] and (has_lost(data) or not of_lost):
+            words = caption if isinstance(caption, str) else caption(data)
+            pictures.add(name, heading, words, data, (), partial(make, data), wide=True)
     return Section(LEAD, "In pictures", pictures.take(), folded=False)
 
 
 def _map_caption(data: Dataset) -> str:
     words = "What the motion from one start settles on."
-    if not has_lost(data):
-        words += " Beside it whether the drive flanks part, and whether the back flanks are hit."
-    if (data["status"].values == ASSUMED).any():
-        words += " Hatched: assumed, not computed; points computed around it are alike."
-    return words
+    beside = " Beside it whether the drive flanks part, and whether the back flanks are hit."
+    assumed = " Hatched: assumed, not computed; points computed around it are alike."
+    hatched = bool((data["status"].values == ASSUMED).any())
+    return words + beside * (not has_lost(data)) + assumed * hatched
 
 
 def _diagram_caption(data: Dataset) -> str:
@@ -174,16 +137,16 @@ def _diagram_caption(data: Dataset) -> str:
         "Sections at phase 0 of the settled motion, each value starting from the end of the last: "
         "up with rising values, down with falling ones"
     )
-    if data.sizes.get("branch"):
-        words += "; branches from continuation"
+    branches = "; branches from continuation" if data.sizes.get("branch") else ""
     known = np.isfinite(data["lyapunov"].values).any()
-    return words + (
+    return f"{words}{branches}" + (
         "; the largest Lyapunov exponent below, full up, dashed down." if known else "."
     )
 
 
 def _sweep_caption(data: Dataset) -> str:
     words = "Every point from the case's own start."
+    words += OF_SERIES if "series_parts" in data else ""
     rest = [str(name) for name in data["label"].dims[2:]]
     at = [f"{page_words(n, data[n])} {number(float(shown(n, data[n][0])))}" for n in rest]
     return f"{words} Drawn at {', '.join(at)}." if at else words
@@ -196,7 +159,8 @@ def _run_up_caption(data: Dataset) -> str:
         else "Full lines run up, dashed ones down"
     )
     folds = "bifurcation_kind" in data and bool((data["bifurcation_kind"].values == 0).any())
-    return words + ("; thin vertical lines are located folds." if folds else ".")
+    words += "; thin vertical lines are located folds." if folds else "."
+    return words + (OF_SERIES if "series_parts" in data else "")
 
 
 def _waterfall_caption(data: Dataset) -> str:
@@ -210,6 +174,22 @@ def _waterfall_caption(data: Dataset) -> str:
         f"whose turns fill the {of} mesh periods. Order 1 of the pinion is 1/{pinion} of the mesh, "
         f"of the wheel 1/{wheel}."
     )
+
+
+PICTURES: tuple[tuple[str, bool, str, str, str | Words, Callable[[Dataset], Picture]], ...] = (
+    ("diagram", False, "orbits", "Orbit diagram", _diagram_caption, sweeps.orbit_diagram_picture),
+    ("diagram", True, "forces", "Forces and losses of contact", LOST_DIAGRAM, forces_picture),
+    ("map", True, "contact", "What loses contact", LOST_MAP, lost_contact_picture),
+    ("map", False, "regimes", "Regimes over two parameters", _map_caption, map_picture),
+    (
+        "basins", False, "basins", "Basins",
+        "Which attractor every start ends on; dots are their sections.", sweeps.basins_picture,
+    ),
+    ("sweep", False, "sweep", "Response", _sweep_caption, sweeps.sweep_picture),
+    ("run-up", False, "runup", "Response over speed", _run_up_caption, sweeps.run_up_picture),
+    ("run-up", False, "waterfall", "Waterfall", _waterfall_caption, sweeps.waterfall_picture),
+)  # fmt: skip
+"""Of which kind, whether only where losses of contact are told, name, heading, caption, picture."""
 
 
 def _turn_lines(data: Dataset) -> list[dict[str, Any]]:
@@ -242,6 +222,8 @@ def _points(data: Dataset, result: Result) -> Section:
         kinds = {columns[0].figure(row) for row in found}
         blocks.append(Text(" ".join(w for kind, w in EXPLAINED.items() if kind in kinds)))
     jumps = _jumps(data)
+    if "series_dynamic_factor" in data:
+        blocks.append(declared(SERIES_AT_WORST, SERIES, _series(data)))
     if jumps:
         blocks.append(declared("Jumps", JUMPS, jumps))
         blocks.append(Text(JUMPS_EXPLAINED))
@@ -357,6 +339,18 @@ JUMPS = (
     key("return_rpm", "jump_return", SPEED),
     key("into_period", "jump_into"),
 )
+SERIES_AT_WORST = "The series at its worst speed: where one pair in ten exceeds most."
+SERIES = (
+    Column("gears", "gear_temperature", 4, CELSIUS, "gears_degC"),
+    Column("damping", "damping_ratio", 2, PLAIN, "damping"),
+    Column("pairs", "series_parts", key="pairs"),
+    Column("worst at", "series_worst_speed", 4, SPEED, "speed_rpm"),
+    Column("dynamic factor, 5 %", "low", 2, key="low"),
+    Column("median", "median", 2, key="median"),
+    Column("one in ten exceeds", "bad", 2, key="bad"),
+    Column("95 %", "high", 2, key="high"),
+    Column("pairs that part at some speed", "series_parting_parts", key="pairs_that_part"),
+)
 MOST_LINES = 16
 LINES = (
     Column("line", "line", key="line"),
@@ -392,6 +386,13 @@ def _located(data: Dataset, dim: str) -> list[dict[str, Any]]:
 
 def _jumps(data: Dataset) -> list[dict[str, Any]]:
     return _located(data, "jump") if "jump_kind" in data else []
+
+
+def _series(data: Dataset) -> list[dict[str, Any]]:
+    """The series of a run in each state and at each damping, at its worst speed."""
+    worst = data["series_worst_dynamic_factor"].transpose("quantile", ...).drop_vars("quantile")
+    named = dict(zip(("low", "median", "bad", "high"), worst, strict=True))
+    return rows_along(data.assign(named), "state", "damping")
 
 
 def _bifurcations(data: Dataset) -> tuple[list[Column], list[dict[str, Any]]]:
@@ -446,6 +447,8 @@ def numbers(result: Result) -> dict[str, Any]:
         found |= {"parameter": parameter, "ways_apart": apart.tolist()}
     if kind == "run-up":
         found["jumps"] = [in_full(JUMPS, row) for row in _jumps(data)]
+        if "series_dynamic_factor" in data:
+            found["series"] = [in_full(SERIES, row) for row in _series(data)]
         if "mesh_periods" in data.attrs:
             found["lines"] = [in_full(LINES, row) for row in _turn_lines(data)]
             found["mesh_periods"] = int(data.attrs["mesh_periods"])
@@ -468,15 +471,20 @@ def _labels(data: Dataset) -> dict[str, Any]:
         "labels": dict(Counter(sorted(told[~assumed].tolist())).most_common()),
         "assumed": dict(Counter(sorted(told[assumed].tolist())).most_common()),
     }
-    counts = ("total_periods", "full_periods", "computed_points")
-    found |= {name: int(data.attrs[name]) for name in counts if name in data.attrs}
+    found |= {
+        name: int(data.attrs[name])
+        for name in ("total_periods", "full_periods", "computed_points")
+        if name in data.attrs
+    }
     return found | ({"lost_contact": lost_rows(data)} if has_lost(data) else {})
 
 
 def _basin_numbers(data: Dataset) -> dict[str, Any]:
-    names = ("basin_entropy", "boundary_basin_entropy", "unassigned")
     return {
         "points": data["attractor"].size,
         "attractors": [in_full(ATTRACTORS, row) for row in _attractors(data)],
-        **{name: float(data.attrs[name]) for name in names},
+        **{
+            name: float(data.attrs[name])
+            for name in ("basin_entropy", "boundary_basin_entropy", "unassigned")
+        },
     }

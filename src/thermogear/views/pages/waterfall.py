@@ -205,26 +205,17 @@ def critical(data: Dataset) -> list[float]:
 
 def lines(data: Dataset, direction: int) -> Picture:
     """Largest line of any bearing's force over speed and order, one panel a state."""
-    rpm, order = SPEED(data["pinion_speed"].values), data["order"].values
     values = np.nanmax(data["bearing_force_line"].values[:, direction], axis=2)
-    return _field(data, rpm, order, values, "line of bearing force [N]")
+    return _field(data, values, "line of bearing force [N]")
 
 
 def sound(data: Dataset, direction: int) -> Picture:
     """Lines of the housing's acceleration over speed and order, one panel a state."""
+    return _field(data, data["housing_line"].values[:, direction], "acceleration [m/s²]")
+
+
+def _field(data: Dataset, values: Floats, words: str) -> Picture:
     rpm, order = SPEED(data["pinion_speed"].values), data["order"].values
-    return _field(
-        data, rpm, order, data["housing_line"].values[:, direction], "acceleration [m/s²]"
-    )
-
-
-def _field(
-    data: Dataset,
-    rpm: Floats,
-    order: Floats,
-    values: Floats,
-    words: str,
-) -> Picture:
     # halves alone: the shafts' own orders lie too near for cells
     half = np.isclose(2.0 * order, np.round(2.0 * order))
     top = float(np.nanmax(values[..., half], initial=1e-12))

@@ -54,15 +54,12 @@ MARKS = ("square", "diamond", "upright", "thin diamond", "plus", "circle")
 def classes_of(data: Dataset) -> NDArray[np.int64]:
     """Numbers into :data:`CLASSES` from stored label and period."""
     label, period = data["label"].values, data["period"].values
-    found = np.full(label.shape, 9, np.int64)
     periodic = label == 1
-    found[periodic] = np.clip(period[periodic], 1, 6) - 1
-    found[periodic & ((period == 7) | (period == 8))] = 6
-    found[periodic & (period > 8)] = 7
-    found[label == 2] = 8
-    found[label == 3] = 10
-    found[label > 3] = label[label > 3] + 7
-    return found
+    kinds = (
+        (label > 3, label + 7), (label == 3, 10), (label == 2, 8), (periodic & (period > 8), 7),
+        (periodic & (period > 6), 6), (periodic, np.clip(period, 1, 6) - 1),
+    )  # fmt: skip
+    return np.asarray(np.select(*zip(*kinds, strict=True), default=9), np.int64)
 
 
 def class_words(data: Dataset) -> list[str]:
@@ -102,22 +99,31 @@ def _along(data: Dataset, name: str) -> Axis:
 def orbit_diagram_picture(data: Dataset) -> Picture:
     """Sections over the parameter, up and down, with branches and bifurcations; exponent below."""
     name = _parameter(data)
-    p = shown(name, data[name])
     top = Panel(Axis(), Axis("X at phase 0 [–]"))
     low = Panel(_along(data, name), Axis("exponent λ₁ [–]"))
     ways = ((COLD, "up", ()), (HOT, "down", (3, 2)))
     for direction, (colour, word, dash) in enumerate(ways):
-        x = data["section_x"].values[direction]
-        places = np.broadcast_to(p[None, :, None], x.shape)
-        top.points(
-            places.ravel(), x.ravel(), colour=colour, marker="dot", edge_width=0.0, opacity=0.8,
-            size=1.6 if p.size > FEW else 8.0, pixels=True,
-        )  # fmt: skip
-        top.points([], [], marker="dot", colour=colour, label=word)
-        for row in data["lyapunov"].values[direction]:
-            low.curve(p, row, colour=colour, dash=dash, width=0.8, marker=_dot(p))
+        here = data.isel(direction=direction)
+        _sections(top, low, here, colour=colour, label=word, opacity=0.8, dash=dash)
     _branches(top, data, name)
     return _above_exponent(top, low)
+
+
+def _sections(
+    top: Panel, low: Panel, data: Dataset, *, colour: str, label: str, opacity: float,
+    dash: tuple[float, ...] = (),
+) -> None:  # fmt: skip
+    """Sections into ``top`` and exponents into ``low``, those of all starts and ways alike."""
+    name = _parameter(data)
+    p = shown(name, data[name])
+    x = data["section_x"].values
+    top.points(
+        np.broadcast_to(p[:, None], x.shape).ravel(), x.ravel(), colour=colour, marker="dot",
+        edge_width=0.0, opacity=opacity, size=1.6 if p.size > FEW else 8.0, pixels=True,
+    )  # fmt: skip
+    top.points([], [], marker="dot", colour=colour, label=label)
+    for row in data["lyapunov"].values.reshape(-1, p.size):
+        low.curve(p, row, colour=colour, dash=dash, width=0.8, marker=_dot(p))
 
 
 def _above_exponent(top: Panel, low: Panel) -> Picture:
@@ -140,19 +146,11 @@ def over_each_other(each: Sequence[Dataset], states: Sequence[str], matches: Row
     """
     name = _parameter(each[0])
     values = each[0][name]
-    p = shown(name, values)
     top = Panel(Axis(), Axis("X at phase 0 [–]"))
     low = Panel(_along(each[0], name), Axis("exponent λ₁ [–]"))
     colours = (HOT, COLD) if states[-1] == UNDEFORMED else (COLD, HOT, MIXED)
     for here, words, colour in zip(each, states, colours, strict=False):
-        x = here["section_x"].values
-        top.points(
-            np.broadcast_to(p[:, None], x.shape).ravel(), x.ravel(), colour=colour, marker="dot",
-            edge_width=0.0, opacity=0.5, size=1.6 if p.size > FEW else 8.0, pixels=True,
-        )  # fmt: skip
-        top.points([], [], marker="dot", colour=colour, label=words)
-        for row in here["lyapunov"].values.reshape(-1, p.size):
-            low.curve(p, row, colour=colour, width=0.8, marker=_dot(p))
+        _sections(top, low, here, colour=colour, label=words, opacity=0.5)
         _branches(top, here, name, colour)
     for match in matches:
         if match["kind"] in DRAWN and match["drawn"] and match["partner"] == "matched":
@@ -262,7 +260,10 @@ def _state_words(data: Dataset, state: int) -> str:
 
 
 def run_up_picture(data: Dataset) -> Picture:
-    """Transmission error, mesh force and dynamic factor over speed, up and down, by state."""
+    """Transmission error, mesh force and dynamic factor over speed, up and down, by state.
+
+    Of a case in series the band of its parts behind the dynamic factor, and below who parts.
+    """
     n = shown("pinion_speed", data["pinion_speed"])
     count = data.sizes["state"]
     colours = [COLD, HOT, *OKABE_ITO[2:]]
@@ -287,8 +288,38 @@ def run_up_picture(data: Dataset) -> Picture:
                 for value in shown("pinion_speed", data["bifurcation_value"][fold]):
                     panel.line(x=float(value), colour=colour, width=0.7, opacity=0.6)
         panels.append([panel])
+    if "series_parting_share" in data:
+        panels.append([_series(panels[-1][0], data, n, colours)])
     panels[-1][0].x = _along(data, "pinion_speed")
-    return Picture(panels, size=(WIDE, 8.0), above=0.15, share_x="column", legend=4)
+    size = WIDE, 8.0 * len(panels) / 3
+    return Picture(panels, size=size, above=0.15, share_x="column", legend=4)
+
+
+def _series(factor: Panel, data: Dataset, n: Floats, colours: Sequence[str]) -> Panel:
+    """The panel of who parts; the band of the parts of a series is put behind the ``factor``.
+
+    At the first damping; dotted the second, the least one.
+    """
+    parting = Panel(Axis(), Axis("pairs that part [%]", low=0.0))
+    dampings = data["damping_ratio"].values
+    for state in range(data.sizes["state"]):
+        colour, words = colours[state % len(colours)], _state_words(data, state)
+        low, middle, bad, high = data["series_dynamic_factor"].values[state]
+        share = PERCENT(data["series_parting_share"].values[state])
+        factor.band(
+            n, low=low[0], high=high[0], colour=colour, opacity=0.15, label=f"{words} 90 % of pairs"
+        )
+        factor.curve(
+            n, middle[0], colour=colour, width=0.8, dash=(6, 2), label=f"{words} median pair"
+        )
+        parting.curve(n, share[0], colour=colour, width=1.2)
+        if dampings.size > 1:
+            factor.curve(
+                n, bad[1], colour=colour, dash=(1, 2), width=1.2,
+                label=f"{words} one in ten, damping {dampings[1]:.2g}",
+            )  # fmt: skip
+            parting.curve(n, share[1], colour=colour, dash=(1, 2), width=1.2)
+    return parting
 
 
 def waterfall_picture(data: Dataset) -> Picture:
@@ -337,21 +368,40 @@ def _order_axes(data: Dataset) -> list[tuple[str, float, float]]:
 
 
 def sweep_picture(data: Dataset) -> Picture:
-    """Dynamic factor and regime over the first one or two axes of a sweep."""
+    """Dynamic factor and regime over the first one or two axes of a sweep.
+
+    Of a case in series its median and band too, over two axes the factor that one part in ten
+    exceeds.
+    """
     dims = [str(d) for d in data["label"].dims]
     here = data.isel(dict.fromkeys(dims[2:], 0))
     error, factor = "transmission error, p-p [µm]", "dynamic factor $K_{v}$ [–]"
+    series = "series_parts" in here
     if len(dims) == 1:
-        above, below = Panel(Axis(), Axis(error)), Panel(_along(here, dims[0]), Axis(factor))
         p = shown(dims[0], here[dims[0]].values)
-        for panel, values in (
-            (above, MICROMETRE(here["dte_peak_to_peak"].values)),
-            (below, here["dynamic_factor"].values)
+        static = [("static_error", "static error, p-p [µm]", MICROMETRE)] * series
+        panels = []
+        for name, words, unit in (
+            ("dte_peak_to_peak", error, MICROMETRE), ("dynamic_factor", factor, Display("–")),
+            *static,
         ):  # fmt: skip
-            panel.curve(p, values, colour=COLD, marker=_dot(p))
-        return Picture([[above], [below]], size=(WIDE, 5.4), above=0.15, share_x="column")
+            panel = Panel(Axis(), Axis(words))
+            panel.curve(p, unit(here[name].values), colour=COLD, marker=_dot(p), label="one pair")
+            if series and f"series_{name}_low" in here:
+                low, middle, high = (
+                    unit(here[f"series_{name}_{which}"].values)
+                    for which in ("low", "median", "high")
+                )
+                panel.band(p, low=low, high=high, colour=INK, opacity=0.15, label="90 % of pairs")
+                panel.curve(p, middle, colour=INK, dash=(6, 2), marker=_dot(p), label="median pair")
+            panels.append([panel])
+        panels[-1][0].x = _along(here, dims[0])
+        return Picture(panels, size=(WIDE, 2.7 * len(panels)), above=0.15, share_x="column")
+    name = "series_dynamic_factor_bad" if series else "dynamic_factor"
     panel, borders = _over_two(here)
     panel.background = FAINT
-    values = here["dynamic_factor"].values.T
-    panel.field(*borders, values, colours=scale("viridis"), words=factor)
+    panel.field(
+        *borders, here[name].values.T, colours=scale("viridis"),
+        words="dynamic factor that one pair in ten exceeds [–]" if series else factor,
+    )  # fmt: skip
     return Picture([[regimes(here), panel]], size=(WIDE, 4.6), legend=6)
