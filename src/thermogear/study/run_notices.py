@@ -133,6 +133,12 @@ def _deviations(case: GearCase) -> Iterator[Notice]:
         return
     yield Notice.of("flanks_deviate", deviations=len(case.deviations))
     yield from turn_notices(case, alike="pictures over a dial's temperature")
+    if case.series > 1 and case.file.flanks is not None:
+        drawn = case.file.flanks.teeth == "drawn"
+        yield Notice.of(
+            "one_part_run", parts=case.series, seed=case.seed, accuracy=case.accuracy,
+            drawing=case.file.flanks.drawing if drawn else None, alike=None if drawn else "alike",
+        )  # fmt: skip
     if case.transmission_error.harmonics:
         yield Notice.of("kinematic_error_on_top")
     deaf = [m.name for m in case.models if m.stiffness != "loaded"]

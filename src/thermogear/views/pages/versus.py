@@ -12,7 +12,7 @@ import numpy as np
 from markupsafe import Markup
 
 from thermogear.base.arrays import Dataset
-from thermogear.base.display import PERCENT, display, in_words, number, percent
+from thermogear.base.display import PERCENT, display, in_words, percent
 from thermogear.base.vocabulary import UNDEFORMED, label
 from thermogear.results.result import Result
 from thermogear.views.columns import Column, Row, declared, in_full, key, rows_along
@@ -23,7 +23,7 @@ from thermogear.views.plots.curves import along_path
 from thermogear.views.plots.motion import HALF_ORDERS
 from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
 from thermogear.views.style import INK, OKABE_ITO, WIDE, chosen, names_of
-from thermogear.views.tables import jam_words
+from thermogear.views.tables import band, jam_words
 from thermogear.views.typesetting import axis_label, field_name, operating_names, plain, prose
 
 MOST_POINTS = 3
@@ -216,10 +216,7 @@ def _points(data: Dataset) -> list[str]:
 
 
 def _band(row: Row, name: str, scale: float = 1.0) -> str:
-    """Median and band of 90 % of parts, in figures that the band bears."""
-    low, middle, high = (scale * row[f"{name}_{which}"] for which in ("low", "middle", "high"))
-    digits = 3 if high - low < 0.1 * middle else 2
-    return f"{number(middle, digits)} ({number(low, digits)} to {number(high, digits)})"
+    return band(*(scale * row[f"{name}_{which}"] for which in ("low", "middle", "high")))
 
 
 def _better(row: Row, name: str) -> str:
