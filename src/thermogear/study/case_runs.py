@@ -7,7 +7,6 @@ import re
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -59,11 +58,6 @@ class CaseRuns:
             changes |= overrides_of(self.text, self.kept, name, factor)
         return changes
 
-    @cached_property
-    def accuracy(self) -> int | None:
-        """The class that the flanks are drawn from; None where none is."""
-        return self.case({}).accuracy
-
     def sampled(
         self, tolerances: Mapping[str, float], *, count: int, seed: int
     ) -> Iterator[dict[str, str]]:
@@ -87,7 +81,7 @@ class CaseRuns:
         """
         case = self.case({})
         if case.series == 1:
-            count = 0 if self.accuracy is None else DRAWINGS
+            count = 0 if case.accuracy is None else DRAWINGS
             return [{"flanks.seed": str(number + 1)} for number in range(count)]
         part = {"flanks.parts": "1", "flanks.teeth": "drawn"}
         if math.lcm(case.pair.pinion.teeth, case.pair.wheel.teeth) > WHOLE_TURN:
@@ -97,7 +91,8 @@ class CaseRuns:
     def told(self, tolerances: Mapping[str, float], drawings: int) -> Iterator[Notice]:
         """What u_input holds of the case, so many ``drawings`` among it, and what it lacks."""
         if drawings:
-            yield Notice.of("u_input_of_drawings", drawings=drawings, accuracy=self.accuracy)
+            accuracy = self.case({}).accuracy
+            yield Notice.of("u_input_of_drawings", drawings=drawings, accuracy=accuracy)
         if not tolerances:
             yield Notice.of("tolerances_not_stated")
 

@@ -314,8 +314,7 @@ def case_lines(
         spread = float(np.std(scatter, ddof=1)) if len(scatter) > 1 else 0.0
         # the greatest and not a deviation: so no drawing reverses what another decides
         most = max((abs(one[key]) for one in drawn if key in one), default=0.0)
-        most = float(np.hypot(spread, most))
-        u_input[key[1]] = max(u_input.get(key[1], 0.0), most)
+        u_input[key[1]] = max(u_input.get(key[1], 0.0), float(np.hypot(spread, most)))
     if stated.series > 1:
         name, table = list(base.items())[-1]
         bands = [_spread(parts, name, line.speed) for line in table.lines]

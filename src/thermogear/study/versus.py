@@ -294,8 +294,8 @@ def of_series(cases: Sequence[Stored], titles: Sequence[str]) -> Iterator[dict[s
                 "parting": int((here["onset"] <= key[0] * (1.0 + ALIKE))[known].sum()),
             }  # fmt: skip
             for name in LESS_IS_BETTER:
-                spread = vars(Spread.of(here[name]))
-                row |= {f"{name}_{which}": value.value for which, value in spread.items()}
+                for which, estimate in vars(Spread.of(here[name])).items():
+                    row[f"{name}_{which}"] = estimate.value
                 if first and first["seed"] == here["seed"]:
                     ours, theirs = zip(*zip(here[name], first[name], strict=False), strict=True)
                     gain = np.subtract(theirs, ours)

@@ -133,7 +133,7 @@ OF_SERIES = (
 
 def _of_series(series: Dataset) -> dict[tuple[float, float], Row]:
     """The cells of the columns :data:`OF_SERIES` by speed and torque."""
-    found = {}
+    found: dict[tuple[float, float], Row] = {}
     for place in range(series.sizes["operating"]):
         here = series.isel(operating=place, damping=0)
         speed = float(here["own_speed"])
