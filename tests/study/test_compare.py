@@ -7,12 +7,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.stats.mstats import hdquantiles
 
 from coded import coded
 from conftest import Compared
 from said import numbers
 from thermogear.base.errors import InputError
-from thermogear.case.case import load_example
+from thermogear.case.case import load_case, load_example
+from thermogear.gears.turn import mean_tooth
 from thermogear.measured.chain import Chain
 from thermogear.measured.comparison import figures, result_of
 from thermogear.measured.published import (
@@ -26,8 +28,9 @@ from thermogear.measured.record import Channel, Record
 from thermogear.measured.reduction import measure
 from thermogear.measured.verdicts import HEAT, LACKING, Row, heat_of, verdict
 from thermogear.study import compare as study
-from thermogear.study.case_runs import DRAWINGS, CaseRuns, scaled
+from thermogear.study.case_runs import DRAWINGS, PARTS, CaseRuns, scaled
 from thermogear.study.compare import compare
+from thermogear.study.series import series_parts
 from thermogear.views.write import page_of
 
 WITH = HEAT["without heat"]
@@ -186,6 +189,65 @@ def test_no_drawing_of_the_flanks_reverses_the_verdict_of_another(
     row = found[0].row(3000 * RPM, "displacement")
     most = np.abs(swings[1:] / swings[1] - 1.0).max()
     assert row.u_input == pytest.approx(most * max(row.simulated) / row.measured, rel=1e-9)
+
+
+def test_no_part_of_a_series_makes_another_model_the_better_one(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """What is measured is a part of the class under one model: the other is never nearer."""
+    swings = np.random.default_rng(8).lognormal(0.0, 0.5, PARTS)
+    sizes = {"undeformed": 10.0, "hot": 8.0}
+
+    def drawn(runs: CaseRuns, changes: dict[str, str]) -> dict[str, LineTable]:
+        part = swings[int({**runs.kept, **changes}["flanks.drawing"])]
+        return {
+            name: one_line(name, rpm=3000.0, hertz=1250.0, micrometres=size * part)
+            for name, size in sizes.items()
+        }
+
+    monkeypatch.setattr(study, "_tables", drawn)
+    case = load_example("fzg-a", {"flanks.parts": "64", "flanks.accuracy": "6"})
+    for other, size in zip(sizes, reversed(sizes.values()), strict=True):
+        for part in swings:
+            table = one_line("rig", rpm=3000.0, hertz=1250.0, micrometres=size * part)
+            found = compare(case, table, u_num=0.0, u_data=0.001)
+            row = found.row(3000 * RPM, "displacement")
+            assert row.verdict != f"{other} better"
+    # a line that no part shows tells the models apart
+    far = one_line("rig", rpm=3000.0, hertz=1250.0, micrometres=25.0 * swings.max())
+    outside = compare(case, far, u_num=0.0, u_data=0.001).row(3000 * RPM, "displacement")
+    assert abs(outside.errors[0]) > outside.u_input
+    middle = hdquantiles(swings, [0.05, 0.5, 0.95])
+    assert outside.simulated == pytest.approx([1e-6 * size * middle[1] for size in sizes.values()])
+    most = np.abs(swings / middle[1] - 1.0).max()
+    assert row.u_input == pytest.approx(most * max(row.simulated) / row.measured, rel=1e-9)
+    notices = coded(found.notices)
+    (told,) = notices["measured_part_of_class"]
+    assert told["bands"] == [pytest.approx(8e-6 * middle[::2])]
+    assert notices["u_input_of_drawings"] == [{"drawings": PARTS, "accuracy": 6}]
+
+
+PAIR = """[gears]
+module = "3 mm"
+face_width = "30 mm"
+[gears.pinion]
+teeth = 20
+[gears.wheel]
+teeth = {}
+[operating]
+speed = "3000 rpm"
+torque = "80 N m"
+"""
+
+
+@pytest.mark.parametrize(("teeth", "periods"), [(40, 40), (47, 1)])
+def test_the_parts_compared_are_those_of_the_series(teeth: int, periods: int) -> None:
+    """Over the turn of 40 mesh periods; of one of 940 the mean tooth."""
+    runs = CaseRuns.of(load_case(PAIR.format(teeth)))
+    whole, part = runs.case({}), runs.case(runs.drawings()[3])
+    assert (whole.series, part.series, part.period.mesh_periods) == (64, 1, periods)
+    known = series_parts(whole, 4)[3]
+    assert part.deviations == (known if periods > 1 else mean_tooth(part.pair, known))
 
 
 @pytest.mark.parametrize(

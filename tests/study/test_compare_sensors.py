@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,17 +13,20 @@ from coded import coded
 from conftest import Compared
 from own_trains import OWN, PAIR, bare, bearing
 from thermogear.base.errors import InputError
-from thermogear.case.case import gear_case, load_case
-from thermogear.case.thermal_state import HOT
+from thermogear.case.case import GearCase, gear_case, load_case
+from thermogear.case.thermal_state import HOT, ThermalState
 from thermogear.dynamics.ladder import Engine
 from thermogear.measured.record import Channel, Record
 from thermogear.measured.reduction import Measurement, measure
+from thermogear.results.result import Notice
+from thermogear.study import compare_sensors as study
+from thermogear.study.case_runs import PARTS
 from thermogear.study.compare import compare
 from thermogear.study.compare_sensors import compare_sensors
 from thermogear.study.shafts.motion import Moved, moved
 from thermogear.study.shafts.record import SAMPLES
 from thermogear.study.shafts.sensed import accelerometer, sensed
-from thermogear.study.shafts.state import plan_of, settled
+from thermogear.study.shafts.state import STATES, plan_of, settled
 
 Floats = NDArray[np.float64]
 SPRING = 'ring = { load = "1000 N", deflection = "5 um", play = "2 um" }\ndamping = "0 N s/m"'
@@ -107,6 +111,31 @@ def test_a_synthetic_record_comes_back_at_its_places(rig: Rig) -> None:
     sure = [row for row in found.rows if row.u_val < 0.01]
     assert len(sure) >= 3
     assert not [one for one in found.notices if one.level == "important"]
+
+
+def test_of_a_class_a_train_has_the_median_of_its_parts(
+    rig: Rig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Lines of made-up trains: as great as the number of the part makes them."""
+    sizes = np.random.default_rng(4).uniform(0.5, 2.0, PARTS)
+
+    def simulated(
+        case: GearCase, place: int, speed: float, sensors: Sequence[object], *,
+        held: int = 0, only: ThermalState | None = None,
+    ) -> tuple[dict[ThermalState, Floats], list[Notice]]:  # fmt: skip
+        assert case.file.flanks is not None
+        assert case.series == 1
+        line = sizes[case.file.flanks.drawing] * np.ones((len(study.ORDERS), len(sensors)))
+        return dict.fromkeys(STATES if only is None else (only,), line), []
+
+    monkeypatch.setattr(study, "_simulated", simulated)
+    found = compare_sensors(HOUSED.replace(KNOWN, ""), rig.measured, AT, u_num=0.0)
+    middle = float(np.median(sizes))
+    for row in found.rows:
+        assert row.simulated == (middle, middle)
+        most = np.abs(sizes - middle).max()
+        assert row.u_input == pytest.approx(most / row.measured, rel=1e-12)
+    assert coded(found.notices)["u_input_of_drawings"] == [{"drawings": PARTS, "accuracy": 6}]
 
 
 def test_an_exchanged_axis_is_seen_and_said(rig: Rig) -> None:

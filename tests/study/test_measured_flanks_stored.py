@@ -14,9 +14,9 @@ from own_chart import END, START, chart, diameter
 from said import numbers
 from thermogear.case.case import GearCase, load_case
 from thermogear.results.result import Result
-from thermogear.results.versus import stored
 from thermogear.study.measured_flanks import measured_flanks, measured_notices
 from thermogear.study.run import run
+from thermogear.study.versus import stored
 from thermogear.views.page import Gallery, Pictures, Table
 from thermogear.views.pages.background import case_file
 from thermogear.views.pages.gear_sections import measured

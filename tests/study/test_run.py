@@ -12,12 +12,14 @@ import xarray as xr
 from coded import coded
 from thermogear import InputError, run
 from thermogear.base.vocabulary import FLAGS, STATUS
-from thermogear.case.case import load_example
+from thermogear.case.case import gear_case, load_example
 from thermogear.results.files import RESULTS, SUMMARY
 from thermogear.results.result import Result
 from thermogear.study.notices import jam_notices
+from thermogear.study.run_notices import _deviations
 from thermogear.thesis.errata import with_errata
 from thermogear.views.pages.run import page
+from thermogear.views.tables import key_results
 from thermogear.views.write import save_results
 
 SMALL = [
@@ -239,3 +241,36 @@ def test_both_jams_are_those_of_the_points() -> None:
     assert jams([473.0, 473.0], [403.0, 453.0])["jam_in_proportion"] == 403.0
     assert set(jams([473.0, 473.0], [nan, nan])) == {"jam_of_gears_alone", "no_jam_in_proportion"}
     assert jams([nan], [nan]) == {}
+
+
+def test_the_figures_of_a_series_stand_beside_the_part_that_is_run(small: Result) -> None:
+    """At each operating point that it answers, and beside the first bundle alone."""
+    mesh = small.groups["mesh"]
+    speed, torque = (mesh[name].values for name in ("pinion_speed", "pinion_torque"))
+    factor = np.linspace(1.2, 2.0, 16)
+    series = xr.Dataset(
+        {
+            "dynamic_factor": (("operating", "quantile", "damping", "speed"),
+                               np.arange(12.0).reshape(1, 3, 1, 4)),
+            "own_dynamic_factor": (("operating", "damping", "part"), factor[None, None]),
+            "contact_loss_onset": (("operating", "damping", "part"),
+                                   np.where(factor > 1.8, speed[1], np.nan)[None, None]),
+            "own_speed": ("operating", speed[1:]),
+            "pinion_torque": ("operating", torque[1:]),
+            "pinion_speed": ("speed", speed[1] * np.array([0.2, 0.7, 1.0, 1.2])),
+        }
+    )  # fmt: skip
+    table = key_results(mesh, None, None, series)
+    cells = [list(row[-2:]) for row in table.rows]
+    counted = f"{np.count_nonzero(factor > 1.8)} of 16"
+    assert cells == [["–", "–"], ["6.0 (2.0 to 10)", counted], ["–", "–"], ["–", "–"]]
+    assert len(table.head) == len(key_results(mesh, None, None).head) + 2
+
+
+def test_a_run_says_which_part_of_a_series_it_is_of() -> None:
+    for changes, drawing in (({}, None), ({"flanks.teeth": "drawn", "flanks.drawing": "3"}, 3)):
+        case = gear_case(load_example("fzg-a", {"flanks.parts": "64", **changes}))
+        (told,) = coded(list(_deviations(case)))["one_part_run"]
+        assert (told["parts"], told["seed"], told.get("drawing")) == (64, 1, drawing)
+    alone = gear_case(load_example("fzg-a", {"flanks.parts": "1"}))
+    assert "one_part_run" not in coded(list(_deviations(alone)))

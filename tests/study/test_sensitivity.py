@@ -16,7 +16,7 @@ from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.model import MeshModel
 from thermogear.study import sensitivity as study
 from thermogear.study.sensitivity import Plan, evaluate, plain_words
-from thermogear.study.watched import INPUTS, OUTPUTS, inputs_of, outputs_of
+from thermogear.study.watched import INPUTS, OUTPUTS, PART, inputs_of, outputs_of
 
 BY_NAME = {one.name: one for one in INPUTS}
 
@@ -157,7 +157,7 @@ def test_any_gears_are_varied_around_their_own_values() -> None:
     own = gear_case(load_case(OWN))
     inputs = {one.name: one for one in inputs_of(own)}
     # flanks of a class, no cosine: there is no amplitude to vary
-    assert set(inputs) == {one.name for one in INPUTS} - {"error"}
+    assert set(inputs) == {one.name for one in INPUTS} - {"error"} | {PART.name}
     assert inputs["torque"].low == pytest.approx(30.0)
     assert inputs["torque"].high == pytest.approx(120.0)
     assert inputs["face_width"].low == pytest.approx(0.6 * 0.028)
@@ -173,3 +173,27 @@ def test_any_gears_are_varied_around_their_own_values() -> None:
     assert float(left["total"].sel(input="torque")) == pytest.approx(0.0, abs=1e-12)
     assert np.isnan(data.sel(output="swing")["holds"])
     assert not any("thesis" in text for text in data["sentence"].values)
+
+
+HELD = [
+    *(f"temperatures.{gear}_{body}='90 degC'"
+      for gear in ("pinion", "wheel") for body in ("addendum", "bore")),
+    "temperatures.housing='60 degC'", "oil.temperature='80 degC'",
+]  # fmt: skip
+
+
+def test_a_sample_of_a_part_is_that_of_the_case_with_its_drawing() -> None:
+    whole = gear_case(load_case(OWN, HELD))
+    plan = Plan(inputs=(BY_NAME["backlash"], replace(PART, high=4.0)))
+    at = np.array([[0.1, 0.3], [0.9, 0.8], [0.4, 0.3]])
+    together, _ = evaluate(whole, plan, at)
+    for part, rows in ((1, [0, 2]), (3, [1])):
+        mean = ("flanks.parts=1", "flanks.teeth=drawn", "gears.period=mesh")
+        alone = gear_case(load_case(OWN, [*HELD, *mean, f"flanks.drawing={part}"]))
+        assert alone.series == 1
+        known, _ = evaluate(alone, replace(plan, inputs=plan.inputs[:1]), at[rows, :1])
+        for name, values in known.items():
+            np.testing.assert_allclose(together[name][rows], values, rtol=1e-9, err_msg=name)
+    # of one part the input says nothing
+    same, _ = evaluate(alone, plan, at[1:2])
+    np.testing.assert_allclose(same["swing"], together["swing"][1:2], rtol=1e-9)

@@ -12,8 +12,8 @@ import synthetic_results as synthetic
 
 from thermogear.base.errors import InputError, UnsealedWarning
 from thermogear.results.result import Result, open_results, read_results
-from thermogear.results.versus import Stored, versus
-from thermogear.results.versus import stored as stored_result
+from thermogear.study.versus import Stored, versus
+from thermogear.study.versus import stored as stored_result
 from thermogear.views.write import page_of, write
 
 

@@ -29,7 +29,7 @@ def versus(
     ready-made one), which is run first, as the options say, into a directory of its own below
     DIR. Writes versus.html, versus.nc and CSV tables.
     """
-    from thermogear.results import versus as study
+    from thermogear.study import versus as study
 
     study.require_number(len(results))
     directory = Path(output)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -27,6 +28,7 @@ from thermogear.measured.record import Record
 from thermogear.measured.reduction import Measurement, measure
 from thermogear.results.result import Notice, Result
 from thermogear.study.case_runs import CaseRuns
+from thermogear.study.series import Spread
 
 Simulated: TypeAlias = str | Path | Case | Result | Mapping[str, LineTable]
 Measured: TypeAlias = str | Path | LineTable | Printed | Measurement | Record
@@ -253,6 +255,26 @@ def _tables(runs: CaseRuns, changes: Mapping[str, str]) -> dict[str, LineTable]:
     return _motion_lines(gear_motion(runs.case(changes)))
 
 
+def _spread(parts: Sequence[Mapping[str, LineTable]], name: str, speed: float) -> Spread:
+    """How the lines [m] of ``parts`` differ at a speed, by the model ``name``."""
+    near = [part[name].near(speed) for part in parts if name in part]
+    return Spread.of(np.array([line.displacement for line in near if line is not None]))
+
+
+def _median(parts: Sequence[Mapping[str, LineTable]]) -> dict[str, LineTable]:
+    """The median line of ``parts`` at each speed of the first, by model."""
+    return {
+        name: replace(
+            table,
+            lines=tuple(
+                replace(line, displacement=_spread(parts, name, line.speed).middle.value)
+                for line in table.lines
+            ),
+        )
+        for name, table in parts[0].items()
+    }
+
+
 def case_lines(
     case: Case | str | Path,
     tolerances: Mapping[str, float],
@@ -263,28 +285,50 @@ def case_lines(
     speeds: Sequence[float],
 ) -> dict[str, Any]:
     """The case simulated at ``speeds`` [rad/s] of the pinion, its step doubled for u_num, and
-    sampled within its tolerances: its models, u_num, u_input by speed, and notices."""
+    sampled within its tolerances: its models, u_num, u_input by speed, and notices.
+
+    Of a series the models are the median of its parts, u_input the greatest change that one makes.
+    """
     runs = CaseRuns.of(case).at_speeds(speeds)
     notices: list[Notice] = []
-    base = _tables(runs, {})
+    stated, drawings = runs.case({}), runs.drawings()
+    if stated.series > 1:  # steps and tolerances are tried on one part
+        runs = replace(runs, kept={**runs.kept, **drawings[0]})
+    alone = _tables(runs, {})
     if u_num is None:
-        steps = runs.case({}).simulation.steps_per_period
+        steps = stated.simulation.steps_per_period
         coarse = _tables(runs, {"simulation.steps_per_period": str(steps // 2)})
         # fourth order: the coarse run's error is 16/15 of the difference, the fine one's 1/15
-        u_num = max(map(abs, _relative(base, coarse).values()), default=0.0) / 15.0
+        u_num = max(map(abs, _relative(alone, coarse).values()), default=0.0) / 15.0
         notices.append(Notice.of("u_num_of_steps", u_num=u_num, steps=[steps, steps // 2]))
-    changed = [
-        [_relative(base, _tables(runs, one)) for one in several]
-        for several in (runs.sampled(tolerances, count=samples, seed=seed), runs.drawings())
+    sampled = [
+        _relative(alone, _tables(runs, one))
+        for one in runs.sampled(tolerances, count=samples, seed=seed)
     ]
+    parts = [_tables(runs, one) for one in drawings]
+    base = _median(parts) if stated.series > 1 else alone
+    drawn = [_relative(base, part) for part in parts]
     u_input: dict[float, float] = {}
-    for key in dict.fromkeys(key for several in changed for one in several for key in one):
-        sampled, drawn = ([one[key] for one in several if key in one] for several in changed)
-        spread = float(np.std(sampled, ddof=1)) if len(sampled) > 1 else 0.0
+    for key in dict.fromkeys(key for one in (*sampled, *drawn) for key in one):
+        scatter = [one[key] for one in sampled if key in one]
+        spread = float(np.std(scatter, ddof=1)) if len(scatter) > 1 else 0.0
         # the greatest and not a deviation: so no drawing reverses what another decides
-        most = float(np.hypot(spread, max(map(abs, drawn), default=0.0)))
-        u_input[key[1]] = max(u_input.get(key[1], 0.0), most)
-    notices += runs.told(tolerances)
+        most = max((abs(one[key]) for one in drawn if key in one), default=0.0)
+        u_input[key[1]] = max(u_input.get(key[1], 0.0), float(np.hypot(spread, most)))
+    if stated.series > 1:
+        name, table = list(base.items())[-1]
+        bands = [_spread(parts, name, line.speed) for line in table.lines]
+        notices.append(
+            Notice.of(
+                "measured_part_of_class",
+                parts=len(parts),
+                accuracy=stated.accuracy,
+                model=name,
+                bands=[[band.low.value, band.high.value] for band in bands],
+                speeds=[line.speed for line in table.lines],
+            )
+        )
+    notices += runs.told(tolerances, len(drawings))
     return {"models": base, "u_num": u_num, "u_input": u_input, "notices": notices}
 
 

@@ -67,7 +67,11 @@ def compare_sensors(
     that cannot move, and a speed that the case does not have.
     """
     runs = CaseRuns.of(case)
-    base = runs.case({})
+    base, drawings = runs.case({}), runs.drawings()
+    series = base.series > 1
+    if series:  # modes and tolerances are tried on one part
+        runs = replace(runs, kept={**runs.kept, **drawings[0]})
+        base = runs.case({})
     bearings = plan_of(base).bearing_names
     rows = _rows(
         measured,
@@ -78,28 +82,39 @@ def compare_sensors(
     own = tuple(dict.fromkeys(row.sensor for row in rows))
     sensors = own + tuple(_turned(one) for one in own)
     found, notices = _simulated(base, place, speed, sensors)
+    last = list(found)[-1]
+    alone = _picked(found[last], rows, sensors)
+    parts = [
+        _simulated(runs.case(each), place, speed, sensors, only=None if series else last)[0]
+        for each in drawings
+    ]
+    if series:
+        found = {
+            state: np.median([part[state] for part in parts if state in part], axis=0)
+            for state in found
+        }
     real = np.array([row.found.acceleration for row in rows])
     told = {state.words: _picked(table, rows, sensors) for state, table in found.items()}
     numeric = np.full(real.size, u_num or 0.0)
-    last = list(found)[-1]
     if u_num is None:
         finer, _ = _simulated(base, place, speed, sensors, held=2 * HELD_MODES, only=last)
-        change = _picked(finer[last], rows, sensors) - told[last.words]
-        numeric = np.abs(change) / real
+        numeric = np.abs(_picked(finer[last], rows, sensors) - alone) / real
         notices.append(Notice.of("u_num_of_modes", modes=HELD_MODES, more=2 * HELD_MODES))
 
-    def changed(several: Iterable[Mapping[str, str]]) -> Floats:
+    def changed(tables: Iterable[Mapping[ThermalState, Floats]], middle: Floats) -> Floats:
         """Changes of every line, (run, line), relative to what is measured."""
-        cases = (runs.case(one) for one in several)
-        tables = [_simulated(one, place, speed, sensors, only=last)[0][last] for one in cases]
-        moved = [_picked(one, rows, sensors) - told[last.words] for one in tables]
+        moved = [_picked(table[last], rows, sensors) - middle for table in tables if last in table]
         return np.asarray(np.reshape(moved, (-1, real.size)) / real)
 
-    sampled = changed(runs.sampled(tolerances or {}, count=samples, seed=seed))
+    within = (
+        _simulated(runs.case(each), place, speed, sensors, only=last)[0]
+        for each in runs.sampled(tolerances or {}, count=samples, seed=seed)
+    )
+    sampled = changed(within, alone)
     spread = np.std(sampled, axis=0, ddof=1) if len(sampled) else 0.0
-    drawn = np.abs(changed(runs.drawings())).max(axis=0, initial=0.0)
+    drawn = np.abs(changed(parts, told[last.words])).max(axis=0, initial=0.0)
     entered = np.hypot(spread, drawn)
-    notices += runs.told(tolerances or {})
+    notices += runs.told(tolerances or {}, len(drawings))
     names = tuple(told)
     made = []
     for number, row in enumerate(rows):

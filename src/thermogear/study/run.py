@@ -43,6 +43,7 @@ from thermogear.heat.film import regime
 from thermogear.mesh.balance_table import balance_dataset
 from thermogear.mesh.clearance import Clearance
 from thermogear.mesh.elastic import TURN_POSITIONS
+from thermogear.mesh.model import CHOICES
 from thermogear.mesh.profile import profiles
 from thermogear.mesh.thermal import HotPair
 from thermogear.results.result import Notice, Result, now
@@ -89,7 +90,7 @@ def run(case: Case, *, progress: Progress = silent, alive: Alive = keep_going) -
         own = {
             "facts": run_notices.facts(case, groups),
             "bundles": {model.name: model.choices() for model in case.models},
-            "choices": run_notices.choice_meanings(),
+            "choices": {field: dict(names) for field, names in CHOICES.items()},
             "answers": [one.row for one in found],
         }
         if case.train is not None:

@@ -21,7 +21,6 @@ from thermogear.case.derived import Fact
 from thermogear.case.derived import facts as case_facts
 from thermogear.case.thesis_cases import of_the_thesis
 from thermogear.gears.iso6336 import iso6336_stiffness
-from thermogear.mesh.model import CHOICES
 from thermogear.results.beside import from_data
 from thermogear.results.result import Notice
 from thermogear.results.tables import rows_along
@@ -133,6 +132,12 @@ def _deviations(case: GearCase) -> Iterator[Notice]:
         return
     yield Notice.of("flanks_deviate", deviations=len(case.deviations))
     yield from turn_notices(case, alike="pictures over a dial's temperature")
+    if case.series > 1 and case.file.flanks is not None:
+        number = case.file.flanks.drawing if case.file.flanks.teeth == "drawn" else None
+        yield Notice.of(
+            "one_part_run", parts=case.series, seed=case.seed, accuracy=case.accuracy,
+            drawing=number, alike="alike" if number is None else None,
+        )  # fmt: skip
     if case.transmission_error.harmonics:
         yield Notice.of("kinematic_error_on_top")
     deaf = [m.name for m in case.models if m.stiffness != "loaded"]
@@ -300,14 +305,7 @@ def _balance_of(here: Dataset) -> Iterator[Fact]:
     yield Fact(group, "residual", float(here["residual"]), "K")
 
 
-def choice_meanings() -> dict[str, dict[str, str]]:
-    """What every choice of the mesh model means, for the page's table."""
-    return {field: dict(names) for field, names in CHOICES.items()}
-
-
 def environment(python: str) -> dict[str, str]:
     """Versions that a result depends on."""
-    found = {"thermogear": thermogear.__version__, "python": python}
-    for name in LIBRARIES:
-        found[name] = importlib.metadata.version(name)
-    return found
+    versions = {name: importlib.metadata.version(name) for name in LIBRARIES}
+    return {"thermogear": thermogear.__version__, "python": python, **versions}

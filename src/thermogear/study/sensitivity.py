@@ -28,14 +28,17 @@ from thermogear.case.points import Points, points_of
 from thermogear.case.samples import fields_of, quasi_static, sampled
 from thermogear.case.thermal_state import HOT, UNDEFORMED, ThermalState
 from thermogear.dynamics.integrate import simulate
+from thermogear.gears.turn import mean_tooth
 from thermogear.mesh.excite import EXCITES
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Temperatures
 from thermogear.results.result import Result, now
 from thermogear.study.declared import Sensitivity, declared
+from thermogear.study.series import series_parts
 from thermogear.study.watched import (
     INPUTS,
     OUTPUTS,
+    PART,
     Input,
     Output,
     first,
@@ -56,7 +59,8 @@ OF_THE_PATH = (
 
 
 FIELDS: dict[str, tuple[str, ...]] = {one.name: fields_of(one.parameter.name) for one in INPUTS} | {
-    "gear": ("temperatures.pinion_addendum", "temperatures.wheel_addendum")
+    "gear": ("temperatures.pinion_addendum", "temperatures.wheel_addendum"),
+    PART.name: (PART.name,),
 }
 """The columns that an input stands for."""
 
@@ -86,7 +90,7 @@ class Plan:
             raise InputError("speed", f"{self.speed / RPM:g} rpm", allowed="> 0 rpm")
         if not 0.0 < self.confidence < 1.0:
             raise InputError("confidence", self.confidence, allowed="0 < confidence < 1")
-        known = [one.name for one in INPUTS]
+        known = [*FIELDS]
         for one in self.inputs:
             if one.name not in known:
                 raise InputError("inputs", repr(one.name), fix=nearest(one.name, known))
@@ -198,7 +202,14 @@ def _dataset(
             "mean": (one, [float(y.mean()) for y in shown]),
             "low": (one, [float(np.quantile(y, 0.05)) for y in shown]),
             "high": (one, [float(np.quantile(y, 0.95)) for y in shown]),
-            "holds": (one, [_holds(o, values[o.name]) for o in outputs], share),
+            "holds": (
+                one,
+                [
+                    float(o.holds(values[o.name]).mean()) if o.conclusion else np.nan
+                    for o in outputs
+                ],
+                share,
+            ),
             "output_words": (one, [o.words for o in outputs]),
             "output_unit": (one, [o.unit for o in outputs]),
             "conclusion": (one, [o.conclusion for o in outputs]),
@@ -224,11 +235,6 @@ def _dataset(
     )
 
 
-def _holds(output: Output, y: Floats) -> float:
-    """Share of samples in which the conclusion holds; nan without one."""
-    return float(output.holds(y).mean()) if output.conclusion else float("nan")
-
-
 def _speed(case: GearCase, plan: Plan) -> float:
     return float(case.speeds[len(case.speeds) // 2]) if plan.speed is None else float(plan.speed)
 
@@ -238,7 +244,7 @@ def evaluate(
 ) -> tuple[dict[str, Floats], int]:
     """Every output at ``places`` (sample, input) of the unit cube, and how many pairs jam.
 
-    One mesh cycle takes all samples at once (:mod:`thermogear.case.samples`).
+    One mesh cycle takes all samples of a part at once (:mod:`thermogear.case.samples`).
     """
     count = len(places)
     columns = {
@@ -247,12 +253,25 @@ def evaluate(
         for field in FIELDS[one.name]
     }
     columns["operating.speed"] = np.full(count, _speed(case, plan))
-    held = _held(case)
+    held, number = _held(case), columns.pop(PART.name, np.zeros(count)).astype(int)
+    number *= case.series > 1
+    drawn = series_parts(case, int(number.max()) + 1) if case.series > 1 else [held.deviations]
+    parts = [mean_tooth(case.pair, part) for part in drawn]
     consistent, thesis = MeshModel.consistent(), MeshModel.thesis()
     stiffness = (*EXCITES, "mean_stiffness")
 
     def cycle(model: MeshModel, state: ThermalState, want: Sequence[str]) -> dict[str, Floats]:
-        found = quasi_static(held, columns, count, model, state, want, path_positions=PATH)
+        found: dict[str, NDArray[Any]] = {}
+        # textbook springs know of no part
+        group = number if model.stiffness == "loaded" else np.zeros(count, int)
+        for part in np.unique(group):
+            rows = np.flatnonzero(group == part)
+            some = {name: values[rows] for name, values in columns.items()}
+            made = replace(held, deviations=parts[part])
+            here = quasi_static(made, some, rows.size, model, state, want, path_positions=PATH)
+            for name, values in here.items():
+                found.setdefault(name, np.empty((count, *values.shape[1:]), values.dtype))
+                found[name][rows] = values
         done.append(state)
         progress("sensitivity", len(done), 5)
         return found
@@ -360,7 +379,8 @@ def plain_words(data: xr.Dataset) -> list[str]:
         here = data.isel(output=place)
         rows = ranking(data, str(output))
         deciding = [row for row in rows if row[1] - row[2] > 0.05][:4]
-        span = f"{_short(here['low'])} to {_short(here['high'])} {here['output_unit'].item()}"
+        low, high = (f"{here[end].item():.3g}" for end in ("low", "high"))
+        span = f"{low} to {high} {here['output_unit'].item()}"
         span = span.removesuffix(" –")
         if not deciding:
             still = float(here["total"].max()) == 0.0
@@ -376,7 +396,3 @@ def plain_words(data: xr.Dataset) -> list[str]:
             text += f" That {here['conclusion'].item()} holds in {holds:.0f} % of cases."
         found.append(text)
     return found
-
-
-def _short(value: object) -> str:
-    return f"{float(np.asarray(value)):.3g}"

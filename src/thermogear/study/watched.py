@@ -59,6 +59,14 @@ INPUTS: tuple[Input, ...] = (
     Input("oil", PARAMETERS["oil_below_gears"], low=0.0, high=60.0),
 )
 """Every range is ours, as wide as rigs of this kind are; only the gear temperature's is stated."""
+MOST_PARTS = 64
+"""Parts of a series among which one is drawn: each asks for mesh cycles of its own (chosen)."""
+PART = Input(
+    "part",
+    Parameter(name="part", words="part of the class, by its mean tooth"),
+    low=0.0, high=float(MOST_PARTS),
+)  # fmt: skip
+"""Which part of a series the gears are: its drawing is the number without its fraction."""
 
 
 @dataclass(frozen=True)
@@ -117,7 +125,7 @@ BESIDE_OWN = (40.0, 20.0)
 def inputs_of(case: GearCase) -> tuple[Input, ...]:
     """The inputs of a study of ``case``: the rig's ranges for the rig, else around its own values.
 
-    A case without a kinematic error of its own has no such input.
+    A case without a kinematic error of its own has no such input; of a series the part is one.
     """
     if of_the_thesis(case):
         return INPUTS
@@ -148,7 +156,10 @@ def inputs_of(case: GearCase) -> tuple[Input, ...]:
             low, high = min(low, 1.5 * below[one.name]), max(high, 1.5 * below[one.name])
         if low < high:
             found.append(replace(one, low=low, high=high))
-    return tuple(found)
+    return (
+        *found,
+        *([replace(PART, high=float(min(case.series, MOST_PARTS)))] if case.series > 1 else ()),
+    )
 
 
 def outputs_of(case: GearCase) -> tuple[Output, ...]:

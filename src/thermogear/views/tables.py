@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from typing import Any
 
+import numpy as np
 from markupsafe import Markup
 
 from thermogear.base.arrays import Dataset
@@ -118,19 +119,61 @@ KEY_RESULTS = (
 )
 
 
-def key_results(mesh: Dataset, path: Dataset | None, motion: Dataset | None) -> Table:
-    """Undeformed and hot side by side, a row for every bundle and operating point."""
+def band(low: float, middle: float, high: float) -> str:
+    """Median and band of 90 % of parts, in no more figures than the band bears."""
+    digits = 3 if high - low < 0.1 * middle else 2
+    return f"{number(middle, digits)} ({number(low, digits)} to {number(high, digits)})"
+
+
+OF_SERIES = (
+    Column("dynamic factor of the series", "of_series"),
+    Column("parts that lose contact", "parting"),
+)
+
+
+def _of_series(series: Dataset) -> dict[tuple[float, float], Row]:
+    """The cells of the columns :data:`OF_SERIES` by speed and torque."""
+    found: dict[tuple[float, float], Row] = {}
+    for place in range(series.sizes["operating"]):
+        here = series.isel(operating=place, damping=0)
+        speed = float(here["own_speed"])
+        own = np.argmin(np.abs(here["pinion_speed"].values - speed))
+        parts = np.isfinite(here["own_dynamic_factor"].values).sum()
+        parted = (here["contact_loss_onset"].values <= speed * (1.0 + 1e-9)).sum()
+        found[speed, float(here["pinion_torque"])] = {
+            "of_series": band(*here["dynamic_factor"].values[:, own]),
+            "parting": f"{parted} of {parts}",
+        }
+    return found
+
+
+def key_results(
+    mesh: Dataset, path: Dataset | None, motion: Dataset | None, series: Dataset | None = None
+) -> Table:
+    """Undeformed and hot side by side, a row for every bundle and operating point.
+
+    Beside the first bundle, of one part, what the ``series`` has at each point that it answers.
+    """
     if motion is not None:
         moved = labelled(motion)
         mesh = mesh.assign({n: moved[n] for n in ("motion", "dte_peak_to_peak") if n in moved})
     if path is not None and "flash_temperature" in path:
         mesh = mesh.assign(greatest_flash=path["flash_temperature"].max("path_position"))
     cold, hot = (rows_along(mesh.isel(state=end), "bundle", "operating") for end in (0, -1))
+    beside = {} if series is None else _of_series(series)
+    for row in hot[: mesh.sizes["operating"]]:
+        row |= beside.get((row["pinion_speed"], row["pinion_torque"]), {})
+    more = (
+        " The dynamic factor of the series is its median and what 90 % of parts have; parts lose "
+        "contact up to the speed of the point; all else is of the one part that is run."
+    )
     return declared(
         "Undeformed and hot differ in the growth of gears and housing alone. b′ is the mean "
         "over a mesh period, Δk the peak to peak mesh stiffness, flash the highest rise along the "
-        "path, swing the peak to peak movement of one base circle against the other.",
-        KEY_RESULTS,
+        "path, swing the peak to peak movement of one base circle against the other."
+        + more
+        * bool(beside),
+        (*KEY_RESULTS, *(OF_SERIES if beside else ())),
         [row | {"cold": undeformed} for row, undeformed in zip(hot, cold, strict=True)],
         names=2,
         marked=lambda row: "jammed" in (row.get("status"), row["cold"].get("status")),

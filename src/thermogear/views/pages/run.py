@@ -45,7 +45,7 @@ def numbers(result: Result) -> dict[str, Any]:
         for name, data in groups.items()
         if name.split("/")[0] in ("points", "base_sets")
     }
-    return found | ({"points": sets} if sets else {})
+    return found | ({"points": sets} if sets else {}) | answers.of_series(result)
 
 
 def _rows(data: Dataset, columns: Sequence[Column], *dims: str) -> list[dict[str, Any]]:
@@ -168,7 +168,8 @@ def _sections(results: Result) -> list[Section]:
     found = answers.sections(results, pictures)
     mesh = results.group("mesh")
     if mesh is not None:
-        table = tables.key_results(mesh, results.group("path"), results.group("motion"))
+        beside = (results.group(name) for name in ("path", "motion", "series"))
+        table = tables.key_results(mesh, *beside)
         found.append(Section("results", "Key results", [table]))
     for make in ORDER:
         section = make(results, pictures)

@@ -45,7 +45,9 @@ def _study_words(results: Result) -> str:
 def sensitivity_section(results: Result, pictures: Pictures) -> Section:
     data = results.groups["sensitivity"]
     blocks: list[Block] = [Text(_study_words(results))]
-    blocks += [Text(prose(_capital(str(text)))) for text in data["sentence"].values]
+    blocks += [
+        Text(prose(f"{text[:1].upper()}{text[1:]}")) for text in data["sentence"].values.tolist()
+    ]
     pictures.add(
         "sensitivity", "What decides what",
         "Total index [%] with its confidence interval: the share of a result's variance that goes "
@@ -57,10 +59,6 @@ def sensitivity_section(results: Result, pictures: Pictures) -> Section:
     caption = "The strongest inputs of every result, at most four, as indices between 0 and 1."
     blocks.append(declared(caption, INDICES, _strongest(data), names=2))
     return Section("sensitivity", "Which unstated inputs decide", blocks)
-
-
-def _capital(text: str) -> str:
-    return text[:1].upper() + text[1:]
 
 
 RANGES = (
@@ -127,9 +125,4 @@ def _numbers(data: Dataset) -> dict[str, Any]:
         }
         for k, row in enumerate(rows_along(data, "output"))
     ]
-    return {**{name: _number(data.attrs[name]) for name in SETTINGS}, "outputs": outputs}
-
-
-def _number(value: object) -> float | int:
-    number = float(np.asarray(value))
-    return int(number) if number.is_integer() else number
+    return {**{name: np.asarray(data.attrs[name]).item() for name in SETTINGS}, "outputs": outputs}

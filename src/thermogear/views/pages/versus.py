@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Sequence
 from functools import partial
 from typing import Any
@@ -11,7 +12,7 @@ import numpy as np
 from markupsafe import Markup
 
 from thermogear.base.arrays import Dataset
-from thermogear.base.display import display, in_words, percent
+from thermogear.base.display import PERCENT, display, in_words, percent
 from thermogear.base.vocabulary import UNDEFORMED, label
 from thermogear.results.result import Result
 from thermogear.views.columns import Column, Row, declared, in_full, key, rows_along
@@ -22,7 +23,7 @@ from thermogear.views.plots.curves import along_path
 from thermogear.views.plots.motion import HALF_ORDERS
 from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
 from thermogear.views.style import INK, OKABE_ITO, WIDE, chosen, names_of
-from thermogear.views.tables import jam_words
+from thermogear.views.tables import band, jam_words
 from thermogear.views.typesetting import axis_label, field_name, operating_names, plain, prose
 
 MOST_POINTS = 3
@@ -65,11 +66,11 @@ KINDS = ("versus",)
 
 def page(result: Result) -> Page:
     """What differs, key figures, curves over each other, the cases themselves."""
-    data = result.data.assign_attrs(result.attrs)
+    data, rows = result.data.assign_attrs(result.attrs), result.rows("series")
     return Page(
         result,
         _summary(data),
-        [_differences(data), _figures(data), *_pictures(data), _cases(data)],
+        [_differences(data), _figures(data), *_series(rows), *_pictures(data), _cases(data)],
         numbers=lambda: {
             "kind": result.text("of"),
             "cases": names_of(data, "case"),
@@ -77,8 +78,9 @@ def page(result: Result) -> Page:
             "choices": result.rows("choices"),
             "units": _numbers_there(data),
             "figures": _rows(data),
+            "series": rows,
         },
-        told=lambda: [Text(_summary(data))],
+        told=lambda: [Text(_summary(data)), *(b for one in _series(rows) for b in one.blocks)],
         tables=lambda: {
             f"versus_{name}.csv": table_text(head, rows)
             for name, (head, rows) in _csv_tables(data).items()
@@ -213,6 +215,44 @@ def _points(data: Dataset) -> list[str]:
     return [str(name) for name in data["point"].values] if twice else names
 
 
+def _band(row: Row, name: str, scale: float = 1.0) -> str:
+    return band(*(scale * row[f"{name}_{which}"] for which in ("low", "middle", "high")))
+
+
+def _better(row: Row, name: str) -> str:
+    """In how many parts a figure is less than in the first case, and what that decides."""
+    if not row.get(f"{name}_pairs"):
+        return "–" if f"{name}_pairs" not in row else "all alike"
+    low, high = row[f"{name}_least_share"], row[f"{name}_greatest_share"]
+    word = "better" if low > 0.5 else "worse" if high < 0.5 else "not decided"
+    count = f"{row[f'{name}_better']} of {row[f'{name}_pairs']}"
+    return f"{word}: less in {count} parts ({PERCENT(low):.0f} to {PERCENT(high):.0f} %)"
+
+
+SERIES = (
+    Column("operating point", "point"),
+    Column("case", "case"),
+    Column("dynamic factor", partial(_band, name="dynamic_factor")),
+    Column("against the first case", partial(_better, name="dynamic_factor")),
+    Column("parts that lose contact", lambda row: f"{row['parting']} of {row['parts']}"),
+    Column("error of the turn [µm]", partial(_band, name="turn_error", scale=1e6)),
+    Column("error that repeats with the mesh [µm]", partial(_band, name="mesh_error", scale=1e6)),
+    Column("against the first case", partial(_better, name="mesh_error")),
+)
+
+
+def _series(rows: Sequence[Row]) -> list[Section]:
+    """Cases that are answered as series, as such."""
+    caption = (
+        "Cases answered as series: the median of the parts and what 90 % of them have. Against the "
+        "first case parts of one number and seed are compared; the ends of the share of all parts "
+        "hold with 95 %, and decide where both are on one side of a half. Parts lose contact up to "
+        "the own speed."
+    )
+    table = declared(caption, SERIES, rows, names=8)
+    return [Section("series", "Series against series", [table], folded=False)] if rows else []
+
+
 def _pictures(data: Dataset) -> list[Section]:
     """One section for each bundle; points that several cases share come before others."""
     found = []
@@ -301,7 +341,13 @@ def _csv_tables(data: Dataset) -> dict[str, tuple[list[str], list[list[Any]]]]:
     ]
     units = [f"{name} [{unit}]" for name, unit in _numbers_there(data).items()]
     rows = [[*row.values()] for row in _rows(data)]
-    return {
+    series = json.loads(data.attrs.get("series", "[]"))
+    names = list(dict.fromkeys(name for row in series for name in row))
+    heads = [
+        f"{name} [m]" if re.search("error_(low|mid|high|bad)", name) else name for name in names
+    ]
+    tables = {"series": (heads, [[row.get(name, "") for name in names] for row in series])}
+    return (tables if series else {}) | {
         "differences": (["field", *titles], fields),
         "choices": (["bundle", "choice", *titles], made),
         "figures": (["case", "bundle", "point", "state", "label", *units], rows),

@@ -1,7 +1,8 @@
 """Case against case: stored results of several cases joined into one labelled Dataset.
 
 Operating points are matched by speed and torque (dimensionless points by row, parameter and
-value), bundles by name. What one case has and another has not is NaN there, and said.
+value), bundles by name. What one case has and another has not is NaN there, and said. Cases that
+are answered as a series are compared as series, and part by part where they are of one seed.
 """
 
 from __future__ import annotations
@@ -16,12 +17,14 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from thermogear.analysis.order_statistics import proportion
 from thermogear.base.enclosed import folded, with_digests
 from thermogear.base.errors import InputError
 from thermogear.base.toml import overridden, tables, told
 from thermogear.base.units import RPM
 from thermogear.base.vocabulary import STATUS, attributes, label, told_labels
 from thermogear.results.result import Notice, Result
+from thermogear.study.series import Spread
 
 MOST_CASES = 6
 """As many as colours that a reader tells apart."""
@@ -49,6 +52,12 @@ ALONG = dict.fromkeys(FIGURES, "") | {name: c for c, names in CURVES.items() for
 """Every figure and curve that is compared, and what it runs along."""
 ABSENT = {"status": len(STATUS), "label": "", "present": 0}
 """What stands for texts and whole numbers where a case has no such point."""
+
+
+LESS_IS_BETTER = ("dynamic_factor", "turn_error", "mesh_error")
+"""What of the parts of a series is compared."""
+ALIKE = 1e-9
+"""Relative difference up to which two numbers of a part are the same: rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,7 +163,8 @@ def versus(cases: Sequence[Stored]) -> Result:
     ``phase_place`` or ``line``, whose positions are the variables ``path_position``,
     ``mesh_phase`` and ``order`` of each case. Where a case lacks a point, a bundle or a figure
     the numbers are NaN and texts empty; ``present`` (case, bundle, operating) tells. The
-    attributes ``differences``, ``choices`` and ``notices`` hold JSON lists.
+    attributes ``differences``, ``choices`` and ``notices`` hold JSON lists, and
+    ``series`` that of :func:`of_series`.
     Raises InputError for a wrong number of cases, kinds that differ, and damaged results.
     """
     require_number(len(cases))
@@ -185,6 +195,7 @@ def versus(cases: Sequence[Stored]) -> Result:
         of=cases[0].kind,
         differences=differences(cases),
         choices=choices(cases, bundles),
+        series=list(of_series(cases, titles)),
         cases=[_text(case) for case in cases],
         path_points=[_path_points(case) for case in cases],
     )
@@ -259,6 +270,62 @@ def choices(
                                for v, each in zip(values, having, strict=True)],
                 })  # fmt: skip
     return found
+
+
+def of_series(cases: Sequence[Stored], titles: Sequence[str]) -> Iterator[dict[str, Any]]:
+    """What cases answered as series have of their parts, a row for each case and operating point.
+
+    SI, at the first damping ratio. ``dynamic_factor``, ``turn_error`` and ``mesh_error`` [m] with
+    ``_low``, ``_middle``, ``_high`` and ``_bad`` are the quantiles of
+    :class:`~thermogear.study.series.Spread`; of ``parts`` that move ``parting`` lose contact up to
+    the own speed. Against the first case at this point, where both are of one seed, part by part:
+    ``FIGURE_pairs`` differ, ``FIGURE_better`` of them have less of it here, of all parts a share
+    between ``FIGURE_least_share`` and ``FIGURE_greatest_share`` with 95 %.
+    """
+    every = [_parts(case) for case in cases]
+    for key in sorted(set().union(*every)):
+        first: dict[str, Any] = {}
+        for title, by_point in zip(titles, every, strict=True):
+            if not (here := by_point.get(key)):
+                continue
+            known = np.isfinite(here["dynamic_factor"])
+            row: dict[str, Any] = {
+                "case": title, "point": _point_name("gear", (*key, 1)), "parts": int(known.sum()),
+                "parting": int((here["onset"] <= key[0] * (1.0 + ALIKE))[known].sum()),
+            }  # fmt: skip
+            for name in LESS_IS_BETTER:
+                for which, estimate in vars(Spread.of(here[name])).items():
+                    row[f"{name}_{which}"] = estimate.value
+                if first and first["seed"] == here["seed"]:
+                    ours, theirs = zip(*zip(here[name], first[name], strict=False), strict=True)
+                    gain = np.subtract(theirs, ours)
+                    gain = gain[np.abs(gain) > ALIKE * np.abs(theirs)]
+                    pairs, better = gain.size, int(np.count_nonzero(gain > 0.0))
+                    row |= {f"{name}_pairs": pairs, f"{name}_better": better}
+                    if pairs:
+                        _, low, high = proportion(better, of=pairs)
+                        row |= {f"{name}_least_share": low, f"{name}_greatest_share": high}
+            first = first or here
+            yield row
+
+
+def _parts(case: Stored) -> dict[tuple[float, ...], dict[str, Any]]:
+    """What of each part of a ``case`` is compared, (part,), by speed and torque."""
+    data = case.groups.get("series")
+    if data is None:
+        return {}
+    columns = [_rounded(data[name]) for name in ("own_speed", "pinion_torque")]
+    keys = zip(*columns, strict=True)
+    return {
+        key: {
+            "dynamic_factor": data["own_dynamic_factor"].values[place, 0],
+            "turn_error": data["turn_error"].values[place],
+            "mesh_error": data["mesh_error"].values[place],
+            "onset": data["contact_loss_onset"].values[place, 0],
+            "seed": int(data.attrs["seed"]),
+        }
+        for place, key in enumerate(keys)
+    }
 
 
 def unique_titles(cases: Sequence[Stored]) -> list[str]:

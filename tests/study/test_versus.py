@@ -7,17 +7,21 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import xarray as xr
+from scipy.stats import binomtest
+from scipy.stats.mstats import hdquantiles
 
 from coded import coded
 from said import numbers
 from thermogear import InputError, run
 from thermogear.base.vocabulary import STATUS
 from thermogear.case.case import load_example
-from thermogear.results.versus import (
+from thermogear.study.versus import (
     MOST_CASES,
     OWN,
     Stored,
     flat,
+    of_series,
     stored,
     unique_titles,
     versus,
@@ -199,3 +203,64 @@ def test_the_command_line_of_a_stored_case_counts_as_its_own() -> None:
     text = load_example("rig").text
     one = Stored("x", {"case": text, "overrides": '[["gears.pinion.teeth", "30"]]'}, {})
     assert one.table()["gears.pinion.teeth"] == 30
+
+
+def in_series(name: str, factor: np.ndarray, *, seed: int = 1) -> Stored:
+    """A case of one operating point whose parts have a dynamic factor; some lose contact."""
+    count = factor.size
+    onset = np.where(np.arange(count) < 5, 100.0, np.where(np.arange(count) < 9, 400.0, np.nan))
+    along, each = ("operating", "part"), ("operating", "damping", "part")
+    data = xr.Dataset(
+        {
+            "own_dynamic_factor": (each, np.stack([factor, 9.0 * factor])[None]),
+            "contact_loss_onset": (each, np.stack([onset, np.zeros(count)])[None]),
+            "turn_error": (along, 1e-5 * factor[None]),
+            "mesh_error": (along, 1e-6 * factor[None]),
+            "own_speed": ("operating", [314.159265359]),
+            "pinion_torque": ("operating", [80.0]),
+        },
+        attrs={"seed": seed},
+    )
+    return Stored(name, {}, {"series": data})
+
+
+def test_series_are_compared_part_by_part_by_the_binomial_interval() -> None:
+    rng = np.random.default_rng(11)
+    parts = rng.uniform(1.2, 2.0, 64)
+    other = parts * np.where(rng.random(64) < 0.8, 0.95, 1.05)
+    other[:3] = parts[:3]
+    cases = [in_series("a", parts), in_series("b", other), in_series("c", other, seed=2)]
+    first, second, third = of_series([*cases, Stored("d", {}, {})], ["A", "B", "C", "D"])
+    assert (first["point"], first["parts"], first["parting"]) == ("3000 rpm, 80 N m", 64, 5)
+    for name, share in (("low", 0.05), ("middle", 0.5), ("high", 0.95)):
+        assert first[f"dynamic_factor_{name}"] == pytest.approx(hdquantiles(parts, [share])[0])
+    assert first["mesh_error_bad"] == pytest.approx(1e-6 * first["dynamic_factor_bad"])
+    better = int((other < parts).sum())
+    assert (second["dynamic_factor_pairs"], second["dynamic_factor_better"]) == (61, better)
+    known = binomtest(better, 61).proportion_ci(0.95, "exact")
+    ends = [second[f"dynamic_factor_{end}_share"] for end in ("least", "greatest")]
+    assert ends == pytest.approx([known.low, known.high])
+    # neither the first nor a series of another seed is compared part by part
+    assert "dynamic_factor_pairs" not in first.keys() | third.keys()
+    alike = list(of_series(cases[:1] * 2, ["A", "A"]))[1]
+    assert (alike["dynamic_factor_pairs"], alike["dynamic_factor_better"]) == (0, 0)
+
+
+def test_the_page_says_what_decides_between_series(first: Stored) -> None:
+    factor = np.linspace(1.2, 2.0, 64)
+    signs = np.where(np.arange(64) % 2, 1.0, -1.0)
+    cases = [
+        in_series(str(k), f) for k, f in enumerate([factor, factor - 0.1, factor + 0.1 * signs])
+    ]
+    rows = list(of_series(cases, ["A", "B", "C"]))
+    found = versus([first, replace(first, name="again")])
+    assert found.rows("series") == []
+    whole = page(found.with_(series=rows))
+    (section,) = [one for one in whole.sections if one.name == "series"]
+    cells = [row[3] for row in section.blocks[0].rows]
+    assert len({cell.partition(":")[0] for cell in cells}) == 3
+    assert [numbers(cell)[:2] for cell in cells[1:]] == [[64.0, 64.0], [32.0, 64.0]]
+    assert whole.figures["series"] == rows
+    head, *lines = whole.tables()["versus_series.csv"].splitlines()
+    assert len(lines) == 3
+    assert "mesh_error_middle [m]" in head
