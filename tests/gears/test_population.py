@@ -261,3 +261,10 @@ def test_the_coarsest_gears_stay_within_the_bounds_of_a_deviation() -> None:
         limits = flank_tolerances(1000, 15e-3, grade=11)
         assert 0.0 < 2.0 * centre.amount < limits.cumulative_pitch
         assert np.ptp(index.errors) < limits.cumulative_pitch
+
+
+def test_a_population_whose_parts_do_not_differ_is_refused() -> None:
+    none = {"eccentricity": 0.0, "index": 0.0, "slope": 0.0, "slope_scatter": 0.0, "wave": 0.0}
+    with pytest.raises(InputError, match="all shares 0"):
+        Population(**none, orders=(), barrel=(0.0, 0.0))
+    assert Population(**{**none, "wave": 0.1}, order=0.0, barrel=(0.0, 0.0)).wave == 0.1

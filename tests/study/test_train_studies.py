@@ -9,6 +9,7 @@ from functools import cache
 import numpy as np
 import pytest
 import xarray as xr
+from thermogear.results.workers import compute_chunk
 
 from conftest import Compared
 from thermogear.analysis.maps import MapPlan
@@ -17,7 +18,6 @@ from thermogear.base.plan import gather, keys_of, region_of
 from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import ASSUMED
 from thermogear.case.case import GearCase, gear_case, load_case
-from thermogear.results.workers import compute_chunk
 from thermogear.study.diagrams import Train, case_basins, case_diagram, case_map, train_maps
 from thermogear.study.notices import finished
 from thermogear.study.shafts.motion import train_motion

@@ -83,6 +83,10 @@ class Population:
         if min(self.orders, default=1) < 1 or self.least > 1.0:
             got = f"orders {self.orders}, least {self.least:g}"
             raise InputError("population", got, allowed="orders from 1 on, least 0..1")
+        waves = (self.order if self.orders else 0.0, self.wave, *self.barrel)
+        if not any((*waves, self.eccentricity, self.index, self.slope, self.slope_scatter)):
+            why = "what differs is scaled to the class"
+            raise InputError("population", "all shares 0", allowed="one above 0", why=why)
 
 
 @dataclass(frozen=True)
