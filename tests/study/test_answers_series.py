@@ -14,10 +14,12 @@ from said import numbers
 from thermogear.base.limits import FINE, LOOK, OPEN
 from thermogear.base.units import RPM
 from thermogear.case.case import gear_case, load_case
+from thermogear.case.family import GearFamily
 from thermogear.results.answer import Answer
 from thermogear.results.result import Result
 from thermogear.study.answers.series import Spread, _by_damping
 from thermogear.study.answers.survey import answers
+from thermogear.study.series_along import over_speeds
 from thermogear.views.write import page_of
 
 pytestmark = pytest.mark.filterwarnings("ignore::thermogear.base.errors.ValidityWarning")
@@ -53,6 +55,18 @@ def result_of(*changes: str) -> Result:
 @pytest.fixture(scope="module")
 def series() -> Result:
     return result_of()
+
+
+def test_the_band_of_a_run_is_that_of_the_answers(series: Result) -> None:
+    """At the same state, over the same speeds, to the last bit."""
+    stored, case = series.group("series"), gear_case(load_case(CASE, SMALL))
+    assert stored is not None
+    speeds = stored["pinion_speed"].values[::9]
+    band = over_speeds(case, case.series, [GearFamily(case, ("pinion_speed",))], speeds)
+    factor = band["series_dynamic_factor"].values[0][[0, 1, 3]]
+    assert np.array_equal(factor, stored["dynamic_factor"].values[0][..., ::9], equal_nan=True)
+    share = band["series_parting_share"].values[0]
+    assert np.array_equal(share, stored["parting_share"].values[0][:, ::9], equal_nan=True)
 
 
 @pytest.fixture(scope="module")

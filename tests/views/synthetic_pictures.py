@@ -104,10 +104,23 @@ def of_sweeps() -> dict[str, Picture]:
         pinion_speed=rising("pinion_speed"), order=rising("order"),
         dte_line=rising(*run.split(), "order"), gear_temperature=rising("state", high=400.0),
     )  # fmt: skip
+    band = rising("quantile", "damping", "pinion_speed")[1]
+    of_parts = made("state damping pinion_speed", "series_parting_share").assign(
+        series_dynamic_factor=(
+            ("state", "share", "damping", "pinion_speed"), np.resize(band, (2, 4, *band.shape[1:]))
+        ),
+        damping_ratio=rising("damping"),
+    )  # fmt: skip
     width = "gears.pinion.face_width"
     line = made(width, "dte_peak_to_peak", "dynamic_factor", "label", "status")
     line = line.assign_coords({width: (width, rising(width)[1], {"units": "m"})})
+    columns = [
+        f"series_{figure}_{name}" for figure in ("dynamic_factor", "static_error")
+        for name in ("low", "median", "high")
+    ]  # fmt: skip
+    lines = line.merge(made(width, "static_error", "series_parts", *columns))
     both = grid.assign(dynamic_factor=rising("damping_ratio", "frequency"))
+    bad = made("damping_ratio frequency", "series_dynamic_factor_bad", "series_parts")
     look = made("pinion_speed", "dynamic_factor").assign(
         pinion_speed=rising("pinion_speed"),
         contact_loss_share=("pinion_speed", np.array([0.0, 0.0, 0.1, 0.2, 0.0])),
@@ -128,6 +141,9 @@ def of_sweeps() -> dict[str, Picture]:
         "waterfall": sweeps.waterfall_picture(run_up),
         "sweep-1": sweeps.sweep_picture(line),
         "sweep-2": sweeps.sweep_picture(both),
+        "runup-series": sweeps.run_up_picture(run_up.merge(of_parts)),
+        "sweep-series-1": sweeps.sweep_picture(lines),
+        "sweep-series-2": sweeps.sweep_picture(both.merge(bad)),
         "look": speeds_picture(look),
         "series": series_picture(series),
     }
