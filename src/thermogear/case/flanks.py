@@ -379,8 +379,8 @@ def population(file: GearFile) -> Population:
 def series(file: GearFile, grade: int | None, *, loaded: bool) -> int:
     """How many parts of the class ``grade`` the answers are of; 1: the part of the case alone.
 
-    One where a seed is stated, flanks or pitches are given, all teeth are taken alike, or the
-    springs do not feel the flanks (not ``loaded``).
+    One where a seed or a drawing is stated, flanks or pitches are given, all teeth are taken alike,
+    or the springs do not feel the flanks (not ``loaded``).
     """
     table = file.flanks
     if table is None or grade is None or file.gears.period == "mesh":
@@ -388,6 +388,8 @@ def series(file: GearFile, grade: int | None, *, loaded: bool) -> int:
     error = file.transmission_error
     given = [gear for gear in GEARS if _differing(getattr(file.gears, gear))]
     drawn = loaded and len(unmeasured(file)) == 2 and not given and not (error and error.harmonics)
+    if "drawing" in table.model_fields_set and table.teeth == "drawn":
+        return 1
     if table.parts is None:
         return PARTS if drawn and not {"seed", "drawing"} & table.model_fields_set else 1
     if table.parts > 1 and not drawn:

@@ -65,6 +65,16 @@ class Spread:
         return figures | {"held": 100.0 * (BAND[2] - BAND[0])}
 
 
+def middle_and_worst(values: Floats) -> tuple[int, int] | None:
+    """Places of the median and the greatest of what is known of the parts; None where nothing is.
+
+    >>> middle_and_worst(np.array([3.0, np.nan, 1.0, 2.0]))
+    (3, 0)
+    """
+    order = np.argsort(values)[: np.count_nonzero(np.isfinite(values))]
+    return (int(order[(order.size - 1) // 2]), int(order[-1])) if order.size else None
+
+
 def series_parts(case: GearCase, count: int) -> tuple[tuple[Deviation, ...], ...]:
     """Deviations of the first ``count`` parts of the series of ``case``.
 
@@ -214,9 +224,9 @@ class Series:
         start = np.random.default_rng(case.seed).integers(turn, size=len(parts))
         return cls(case, parts, periods, tuple(start.tolist()))
 
-    def first(self, count: int) -> Series:
-        """The first ``count`` of the parts."""
-        return replace(self, parts=self.parts[:count], start=self.start and self.start[:count])
+    def some(self, which: slice) -> Series:
+        """Some of the parts."""
+        return replace(self, parts=self.parts[which], start=self.start and self.start[which])
 
     def mesh(self, hot: HotPair) -> SeriesMesh:
         """The loaded mesh of every part at the one operating point of ``hot``."""

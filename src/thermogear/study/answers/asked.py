@@ -292,7 +292,7 @@ class Asked:
         if found is None or not found.settled[point]:
             return None
         at = replace(found.operating.part(slice(point, point + 1)), housing=case.housing)
-        mesh = self._parts.first(LEAST_PARTS).mesh(HotPair(case.pair, at, self.model))
+        mesh = self._parts.some(slice(LEAST_PARTS)).mesh(HotPair(case.pair, at, self.model))
         speed, damping = case.stated.speed[[point]], np.array(case.dampings[:1])
         motion = series_motion(mesh, excitations(case, self._part([point])), speed, damping)
         return motion.dynamic_factor[0, :, 0]

@@ -27,7 +27,7 @@ from thermogear.study.answers.moving import (
     relief,
     resonance,
 )
-from thermogear.study.series import BAND, SeriesPoint, Spread
+from thermogear.study.series import BAND, SeriesPoint, Spread, middle_and_worst
 from thermogear.study.speeds import LOST, peaks
 
 # --- speeds -------------------------------------------------------------------------------------
@@ -314,8 +314,7 @@ def notice(asked: Asked) -> Notice:
     """What the series is, what of it is assumed, and which parts are its median and worst."""
     point = gravest(asked)
     parts = asked.series[point]
-    factor = parts.motion.dynamic_factor[0, :, parts.place]
-    order = np.argsort(factor)[: np.count_nonzero(np.isfinite(factor))]
+    median, worst = middle_and_worst(parts.motion.dynamic_factor[0, :, parts.place]) or (None, None)
     several = asked.count > 1
     answered = len(asked.points_of_series)
     return Notice.of(
@@ -324,8 +323,8 @@ def notice(asked: Asked) -> Notice:
         still=asked.case.series - int(parts.counts[0]) or None,
         accuracy=asked.case.accuracy,
         seed=asked.case.seed,
-        median=int(order[(order.size - 1) // 2]) if order.size else None,
-        worst=int(order[-1]) if order.size else None,
+        median=median,
+        worst=worst,
         speed=float(asked.case.stated.speed[point]) if several else None,
         torque=float(asked.case.stated.torque[point]) if several else None,
         answered=None if answered == asked.count else answered,

@@ -279,6 +279,11 @@ const part = (message) => {
     return made;
   }));
   if (text) text.textContent = message.rows.map((row) => row[0]).join("\n");
+  if (message.pairs.length) by("pairs").replaceChildren(...message.pairs.map(([words, place]) => {
+    const button = element("button", null, {type: "button", text: words});
+    button.addEventListener("click", () => { set.dials.set("part", place); ask(); });
+    return button;
+  }));
   const gallery = box.querySelector(".pictures");
   message.pictures.forEach(([words, picture], i) => {
     const name = `${message.name} ${i}`;
@@ -342,6 +347,7 @@ const heard = (message) => {
     form(message.form);
     for (const name of ["low", "high", "count"]) if (!by(name).value) by(name).value = message.speeds[name];
     document.querySelector('[data-part="shafts"]').hidden = !message.shafts;
+    document.querySelector('[data-part="series"]').hidden = !message.series;
     document.querySelector('[data-part="record"]').hidden = !message.record;
     ready = true;
     ask();
