@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from functools import partial
+from functools import lru_cache, partial
 
 import numpy as np
 
@@ -43,6 +43,8 @@ PLASTIC = 30e9
 """Young's modulus [Pa] below which a gear is one of plastic."""
 
 
+_drawn_pair = lru_cache(maxsize=256)(drawn_pair)
+"""Remembered: a dial, a sweep, a run-up ask for the same parts at each of their points."""
 CLOSED = 0.5e-6
 """What single pitch deviations may add up to, for each tooth [m]: they are rounded (ours)."""
 
@@ -345,7 +347,7 @@ def _graded(file: GearFile, pair: GearPair) -> tuple[Deviation, ...]:
                 )
     try:
         profiles: tuple[Deviation, ...] = (
-            drawn_pair(
+            _drawn_pair(
                 pair,
                 grade,
                 seed=table.seed,

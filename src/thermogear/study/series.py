@@ -146,20 +146,14 @@ def series_motion(
     )  # fmt: skip
     rate = 2.0 * np.pi * natural[:, None] / (mesh.pair.pinion.teeth * speed)
     backlash, deep = mesh.half_backlash.mean(axis=1), load / mean
-    first, few = np.flatnonzero(moves), np.flatnonzero(moves[:AT_BOUNDS])
-    bounds = np.arange(1, damping_ratio.size)
-    for number, part, count in (
-        (np.zeros(first.size, int), first, speed.size),
-        (
-            np.repeat(bounds, few.size),
-            np.tile(few, bounds.size),
-            int(np.count_nonzero(speed <= bounds_to * (1.0 + 1e-9))),
-        ),
-    ):
+    within = int(np.count_nonzero(speed <= bounds_to * (1.0 + 1e-9)))
+    for number, ratio in enumerate(damping_ratio):
+        part = np.flatnonzero(moves[:AT_BOUNDS] if number else moves)
+        count = within if number else speed.size
         if not part.size or not count or load <= 0.0:
             continue
         motions = follow_parts(
-            tables.take(part), rate=rate[part, :count], damping_ratio=damping_ratio[number],
+            tables.take(part), rate=rate[part, :count], damping_ratio=np.full(part.size, ratio),
             backlash=backlash[part], load=deep[part],
         )  # fmt: skip
         at, newton = (number, part, slice(count)), mean[part, None]
