@@ -305,6 +305,12 @@ const now = (message) => {
     if (!knobs.has(said.name)) knobs.set(said.name, knob(said));
     follow(knobs.get(said.name), said);
   }
+  // gears whose errors are stated are no drawings of a class
+  for (const [name, one] of knobs) {
+    const gone = !message.dials.some((said) => said.name === name);
+    one.range.closest(".knob").hidden = gone;
+    if (gone) set.dials.delete(name);
+  }
   by("heat").checked = message.computed;
   for (const [path, one] of fields) {
     one.given = message.fields[path] ?? "";
