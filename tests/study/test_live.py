@@ -20,6 +20,7 @@ from thermogear.case.one_point import of_case
 from thermogear.study import live
 from thermogear.study.orbit import orbit_results
 from thermogear.study.run_up import run_up
+from thermogear.study.series import series_parts
 
 pytestmark = pytest.mark.filterwarnings("ignore::thermogear.base.errors.ValidityWarning")
 RNG = np.random.default_rng(2041)
@@ -233,8 +234,8 @@ def test_a_series_comes_some_parts_first_and_the_pair_of_the_dial_is_one_of_it()
     case = case_of(CLASSED, "grid.mesh_positions=48", "grid.harmonics=12")
     (dial,) = (one for one in dials(case) if one.name == "part")
     assert (dial.value, dial.low, dial.high, dial.step) == (-1.0, -1.0, 19.0, 1.0)
-    speeds, drawn = RPM * np.linspace(2000.0, 6000.0, 5), {}
-    first, whole = live.series(case, speeds, drawn)
+    speeds = RPM * np.linspace(2000.0, 6000.0, 5)
+    first, whole = live.series(case, speeds)
     assert (first.sizes["part"], whole.sizes["part"], whole.attrs["parts"]) == (16, 20, 20)
     factor = whole["dynamic_factor"].values
     np.testing.assert_array_equal(factor[:16], first["dynamic_factor"].values)
@@ -244,9 +245,8 @@ def test_a_series_comes_some_parts_first_and_the_pair_of_the_dial_is_one_of_it()
     np.testing.assert_array_equal(own, factor[:, place])
     with_part = again(case, *("=".join(change) for change in turned(case, {"part": 7.0})))
     assert (with_part.series, whole.attrs["shown"]) == (1, -1)
-    (parts,) = (each.parts for each in drawn.values())
-    assert with_part.deviations == parts[7]
-    of_part = next(live.series(with_part, speeds, drawn))
+    assert with_part.deviations == series_parts(case, 8)[7]
+    of_part = next(live.series(with_part, speeds))
     assert of_part.attrs["shown"] == 7
     # its own losses make other temperatures
     np.testing.assert_allclose(of_part["own_dynamic_factor"].values, own[:16], rtol=0.05)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -149,8 +149,8 @@ def dials(case: GearCase) -> list[Dial]:
         values[f"{gear}_eccentricity"] = (amount, (0.0, max(40.0, 2.0 * amount)))
     every = [_dial(kinds[name], value, ends) for name, (value, ends) in values.items()]
     if (place := drawing(case)) is not None:
-        ends = (-1.0, max(parts_of(case) - 1.0, place))
-        every.append(replace(_dial(kinds["part"], place, ends), low=-1.0, high=ends[1], step=1.0))
+        high = float(max(parts_of(case) - 1, place))
+        every.append(Dial(**vars(kinds["part"]), value=float(place), low=-1.0, high=high, step=1.0))
     return every
 
 

@@ -152,23 +152,17 @@ SPEEDS = 45
 
 
 def series(
-    case: GearCase, speeds: NDArray[np.float64], drawn: dict[str, Series], alive: Alive = keep_going
+    case: GearCase, speeds: NDArray[np.float64], alive: Alive = keep_going
 ) -> Iterator[xr.Dataset]:
     """Dynamic factor of the pairs of a class between the ends of ``speeds`` [rad/s], some first.
 
     At the first operating point, hot, and the first damping of the case, which is the series or a
     part of it: ``dynamic_factor`` (part, speed), of more parts each time, its quantiles ``band``
     (quantile, speed), and the figure of each part at the own speed, ``own_dynamic_factor``.
-    ``drawn`` keeps the parts of the gears looked at last, by their fields. Attributes: ``parts`` of
-    the series, ``own_speed`` [rad/s], ``shown``, the part that the case is (-1: the series).
+    Attributes: ``parts`` of the series, ``own_speed`` [rad/s], ``shown``, the part that the case is
+    (-1: the series).
     """
-    count, model, mean = parts_of(case), case.models[0], case.mean_tooth()
-    # which of the drawings the case is decides for no part
-    flanks = {**case.data.get("flanks", {}), "drawing": 0, "teeth": "drawn"}
-    key = repr((case.data["gears"], flanks, case.data.get("files")))
-    if key not in drawn:
-        drawn.clear()
-        drawn[key] = Series.of(case, count)
+    model, mean = case.models[0], case.mean_tooth()
     HOT.require_settled(case, model)
     at = HOT.operating(case, model).part(slice(1))
     hot = HotPair(case.pair, replace(at, housing=case.housing), model)
@@ -176,9 +170,10 @@ def series(
     own = float(case.speeds[0])
     grid = np.unique(np.append(np.linspace(speeds[0], speeds[-1], SPEEDS), own))
     rows: list[NDArray[np.float64]] = []
-    for first in range(0, count, SOME):
+    whole = Series.of(case, parts_of(case))
+    for first in range(0, len(whole.parts), SOME):
         alive()
-        some = drawn[key].some(slice(first, first + SOME)).mesh(hot)
+        some = whole.some(slice(first, first + SOME)).mesh(hot)
         motion = series_motion(some, excited, grid, np.array(case.dampings[:1]))
         rows.extend(motion.dynamic_factor[0])
         factor = np.array(rows)
@@ -196,7 +191,7 @@ def series(
                 "pinion_speed": ("speed", grid, "rad/s", "pinion speed"),
                 "quantile": ("quantile", np.array(BAND), "1", "share of pairs"),
             },
-            {"parts": count, "own_speed": own, "shown": drawing(case)},
+            {"parts": len(whole.parts), "own_speed": own, "shown": drawing(case)},
         )
 
 

@@ -21,7 +21,7 @@ from thermogear.front.app.given import Given
 from thermogear.front.app.wire import Show
 from thermogear.study import live
 from thermogear.study.notices import contact_notices, difference_notices
-from thermogear.study.series import Series, middle_and_worst
+from thermogear.study.series import middle_and_worst
 from thermogear.views.moving import moving
 from thermogear.views.picture import Picture
 from thermogear.views.plots import live as plot
@@ -78,7 +78,6 @@ class Kept:
     keys: dict[str, object] = field(default_factory=dict)
     runs: dict[str, live.LiveRunUp] = field(default_factory=dict)
     motions: dict[str, live.Motion] = field(default_factory=dict)
-    drawn: dict[str, Series] = field(default_factory=dict)
 
     def fresh(self, name: str, key: object) -> bool:
         """Whether a part shows something else with this key than it does now."""
@@ -235,12 +234,9 @@ def series(look: Look) -> Iterator[Part]:
     if drawing(look.whole) is None or not look.kept.fresh("series", key):
         return
     look.kept.forget("series")
-    for data in live.series(look.whole, look.speeds, look.kept.drawn, look.alive):
-        pairs = [("all pairs", -1)]
-        if places := middle_and_worst(data["own_dynamic_factor"].values):
-            pairs += [
-                (f"{w}: pair {n}", n) for w, n in zip(("median", "worst"), places, strict=True)
-            ]
+    for data in live.series(look.whole, look.speeds, look.alive):
+        places = middle_and_worst(data["own_dynamic_factor"].values) or ()
+        pairs = [("all pairs", -1), *zip(("median pair", "worst pair"), places, strict=False)]
         yield Part(
             name="series", picture=plot.series(data), lines=plot.told_series(data), pairs=pairs,
             done=data.sizes["part"], total=data.attrs["parts"],

@@ -167,6 +167,13 @@ def loads(asked: Asked) -> Iterator[Answer]:
         )  # fmt: skip
 
 
+MOVES_IT = {
+    "by_part": "the part, in 90 % of pairs", "by_damping": "the damping",
+    "by_temperature": "the heat of half-wetted gears",
+}  # fmt: skip
+"""What moves the dynamic factor, in words."""
+
+
 def _what_moves(asked: Asked, point: int, form: str) -> tuple[str, dict[str, float]]:
     """What part, damping and temperature move the dynamic factor by, in words with figures.
 
@@ -175,22 +182,18 @@ def _what_moves(asked: Asked, point: int, form: str) -> tuple[str, dict[str, flo
     """
     parts = asked.series[point]
     first, *others = parts.motion.dynamic_factor[:, :, parts.place]
-    band = Spread.of(first)
-    sizes = {"by_part": band.high.value - band.low.value}
-    words = {"by_part": f"{{by_part:{form}}} with the part, in 90 % of pairs"}
-    if others:
-        sizes["by_damping"] = max(_median_moves(first, other) for other in others)
-        words["by_damping"] = f"{{by_damping:{form}}} with the damping"
-    warmer = asked.wetter_factors(point)
-    if warmer is not None:
-        sizes["by_temperature"] = _median_moves(first, warmer)
-        words["by_temperature"] = f"{{by_temperature:{form}}} with the heat of half-wetted gears"
+    band, warmer = Spread.of(first), asked.wetter_factors(point)
+    sizes = {
+        "by_part": band.high.value - band.low.value,
+        "by_damping": max([_median_moves(first, other) for other in others], default=np.nan),
+        "by_temperature": np.nan if warmer is None else _median_moves(first, warmer),
+    }
     sizes = {name: size for name, size in sizes.items() if np.isfinite(size)}
     if len(sizes) < 2:
         return "", sizes
     decides = max(sizes, key=lambda name: sizes[name]).removeprefix("by_")
     narrows = ", which a measured one narrows" if decides == "damping" else ""
-    each = ", ".join(words[name] for name in sizes)
+    each = ", ".join(f"{{{name}:{form}}} with {MOVES_IT[name]}" for name in sizes)
     return f"; it moves by {each}: the {decides} decides{narrows}", sizes
 
 

@@ -92,10 +92,10 @@ def series(data: Dataset) -> Picture:
     rpm, (low, middle, high) = SPEED(data["pinion_speed"].values), data["band"].values
     panel.band(rpm, low=low, high=high, colour=INK, opacity=0.2, label="90 % of pairs")
     panel.curve(rpm, middle, colour=INK, width=1.3, label="median")
-    shown_part, parts = data.attrs["shown"], data["own_dynamic_factor"].values
-    if 0 <= shown_part < parts.size:
-        curve = data["dynamic_factor"].values[shown_part]
-        panel.curve(rpm, curve, colour=HOT, width=1.5, label=f"pair {shown_part}")
+    pair, parts = data.attrs["shown"], data["own_dynamic_factor"].values
+    if 0 <= pair < parts.size:
+        curve = data["dynamic_factor"].values[pair]
+        panel.curve(rpm, curve, colour=HOT, width=1.5, label=f"pair {pair}")
     speed = float(SPEED(data.attrs["own_speed"]))
     panel.points(np.full(parts.size, speed), parts, colour=HOT, size=3.0, open=True, label="pairs")
     panel.line(x=speed, colour=QUIET, width=1.2, dash=(1, 2))
@@ -104,16 +104,14 @@ def series(data: Dataset) -> Picture:
 
 def told_series(data: Dataset) -> list[str]:
     """The band at the own speed in words, with how many pairs it is of."""
-    own = data["own_dynamic_factor"].values
-    known, place = int(np.isfinite(own).sum()), int(np.argmin(
-        np.abs(data["pinion_speed"].values - data.attrs["own_speed"])
-    ))  # fmt: skip
-    if not known:
+    rpm, known = SPEED(data.attrs["own_speed"]), np.isfinite(data["own_dynamic_factor"].values)
+    if not known.any():
         return ["no pair moves at this speed: jammed, without load, or too slow to vibrate"]
+    place = np.searchsorted(data["pinion_speed"].values, data.attrs["own_speed"])
     low, middle, high = data["band"].values[:, place]
     return [
-        f"at {SPEED(data.attrs['own_speed']):.6g} rpm the dynamic factor is {middle:.2g} in the "
-        f"median of {known} pairs, {low:.2g} to {high:.2g} in 90 % of them"
+        f"at {rpm:.6g} rpm the dynamic factor is {middle:.2g} in the "
+        f"median of {known.sum()} pairs, {low:.2g} to {high:.2g} in 90 % of them"
     ]
 
 
