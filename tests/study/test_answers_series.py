@@ -11,13 +11,13 @@ from scripts import script
 
 from coded import coded
 from said import numbers
-from thermogear.base.limits import FINE, LOOK, OPEN
+from thermogear.base.limits import LOOK, OPEN
 from thermogear.base.units import RPM
 from thermogear.case.case import gear_case, load_case
 from thermogear.case.family import GearFamily
 from thermogear.results.answer import Answer
 from thermogear.results.result import Result
-from thermogear.study.answers.series import Spread, _by_damping
+from thermogear.study.answers.series import Spread, _by_damping, _unsure
 from thermogear.study.answers.survey import answers
 from thermogear.study.series_along import over_speeds
 from thermogear.views.write import page_of
@@ -125,7 +125,9 @@ def test_pairs_that_part_are_counted(series: Result, told: dict[str, Answer]) ->
     assert lost.figures["first"] == np.nanmin(onset[0])
     assert {float(hits[0]), 16.0, 7000.0} <= set(numbers(lost.sentence))
     back = told["back_contact"]
-    assert (back.verdict, back.value, back.figures["pairs"]) == (FINE, 0.0, 0)
+    # none of 16 does not exclude that more than one pair in ten does: 1 - 0.05^(1/16)
+    assert (back.verdict, back.value, back.figures["pairs"]) == (OPEN, 0.0, 0)
+    assert back.figures["possible"] == pytest.approx(100.0 * (1.0 - 0.05 ** (1.0 / 16.0)))
 
 
 def test_what_is_assumed_is_told_once_with_the_median_and_the_worst_part(series: Result) -> None:
@@ -174,6 +176,26 @@ def test_a_bound_is_met_between_two_dampings_that_were_computed() -> None:
     assert words
     for values in ([8.0, 9.0, 8.5], [80.0, 60.0, 30.0]):
         assert _by_damping(np.array([0.07, 0.02, 0.04]), np.array(values), 10.0) == ("", {})
+
+
+def test_no_verdict_is_fine_where_the_interval_reaches_beyond_the_bound() -> None:
+    verdicts = [_unsure(0.0, high, 10.0) for high in (9.0, 10.0, 17.1, math.inf)]
+    assert verdicts == ["", "", OPEN, OPEN]
+    assert _unsure(12.5, 30.0, 10.0) == ""  # which is no less beyond it
+
+
+def test_what_moves_the_factor_most_is_told(series: Result, told: dict[str, Answer]) -> None:
+    """The part by the band, the damping and the temperatures by the medians of the same parts."""
+    figures = told["dynamic_factor"].figures
+    own = series["series"]["own_dynamic_factor"].values[0]
+    low, *medians, high = hdquantiles(own[0], [0.05, 0.5, 0.95])
+    assert figures["by_part"] == pytest.approx(high - low, rel=1e-9)
+    other = max(abs(hdquantiles(row, [0.5])[0] - medians[0]) for row in own[1:])
+    assert figures["by_damping"] == pytest.approx(other, rel=1e-9)
+    assert 0.0 < figures["by_temperature"] < 0.1 * other  # some kelvins
+    assert told["dynamic_factor"].sentence.count(": the damping decides") == (
+        figures["by_damping"] > figures["by_part"]
+    )
 
 
 def test_a_band_is_told_with_no_more_digits_than_it_has() -> None:

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.stats.mstats import hdquantiles
 
 from own_pair import OWN_PAIR
 from thermogear.base.errors import ThermogearError
@@ -19,6 +20,7 @@ from thermogear.case.one_point import of_case
 from thermogear.study import live
 from thermogear.study.orbit import orbit_results
 from thermogear.study.run_up import run_up
+from thermogear.study.series import series_parts
 
 pytestmark = pytest.mark.filterwarnings("ignore::thermogear.base.errors.ValidityWarning")
 RNG = np.random.default_rng(2041)
@@ -206,3 +208,47 @@ def test_jammed_gears_are_told_and_do_not_move(own: GearCase) -> None:
     assert [STATUS[int(one)] for one in found["status"].values] == ["ok", "jammed"]
     with pytest.raises(ThermogearError):
         live.motion(live.point_of(jammed))
+
+
+CLASSED = """[gears]
+module = "3 mm"
+face_width = "20 mm"
+[gears.pinion]
+teeth = 18
+[gears.wheel]
+teeth = 18
+[oil]
+name = "ISO VG 100"
+temperature = "80 degC"
+[flanks]
+accuracy = 6
+parts = 20
+[operating]
+speed = "4000 rpm"
+torque = "90 N m"
+"""
+
+
+def test_a_series_comes_some_parts_first_and_the_pair_of_the_dial_is_one_of_it() -> None:
+    """Of 20 parts first 16; the band is theirs; the case turned to a drawing has the same band."""
+    case = case_of(CLASSED, "grid.mesh_positions=48", "grid.harmonics=12")
+    (dial,) = (one for one in dials(case) if one.name == "part")
+    assert (dial.value, dial.low, dial.high, dial.step) == (-1.0, -1.0, 19.0, 1.0)
+    speeds = RPM * np.linspace(2000.0, 6000.0, 5)
+    first, whole = live.series(case, speeds)
+    assert (first.sizes["part"], whole.sizes["part"], whole.attrs["parts"]) == (16, 20, 20)
+    factor = whole["dynamic_factor"].values
+    np.testing.assert_array_equal(factor[:16], first["dynamic_factor"].values)
+    np.testing.assert_allclose(whole["band"].values, hdquantiles(factor, [0.05, 0.5, 0.95], axis=0))
+    own = whole["own_dynamic_factor"].values
+    place = int(np.argmin(np.abs(whole["pinion_speed"].values - whole.attrs["own_speed"])))
+    np.testing.assert_array_equal(own, factor[:, place])
+    with_part = again(case, *("=".join(change) for change in turned(case, {"part": 7.0})))
+    assert (with_part.series, whole.attrs["shown"]) == (1, -1)
+    assert with_part.deviations == series_parts(case, 8)[7]
+    of_part = next(live.series(with_part, speeds))
+    assert of_part.attrs["shown"] == 7
+    # its own losses make other temperatures
+    np.testing.assert_allclose(of_part["own_dynamic_factor"].values, own[:16], rtol=0.05)
+    back = dict(turned(with_part, {"part": -1.0}))
+    assert back == {"flanks.drawing": "", "flanks.teeth": "", "flanks.parts": "20"}

@@ -16,6 +16,7 @@ from thermogear.gears.deviations import GEARS, Relief
 from thermogear.mesh.series import series_mesh
 from thermogear.mesh.thermal import HotPair
 from thermogear.results.result import Result
+from thermogear.study import relief_series
 from thermogear.study.declared import _torques
 from thermogear.study.relief import one_point, relief_survey
 from thermogear.study.relief_series import (
@@ -137,6 +138,16 @@ def test_a_relief_that_the_case_has_is_judged_beside() -> None:
     assert gains["case"]["worse"] == 64
     assert gains["case"]["worse_high"] == 1.0
     assert gains["series"]["gain"] >= gains["perfect"]["gain"] - 0.02
+
+
+def test_a_relief_that_gains_next_to_nothing_is_not_proposed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(relief_series, "LEAST_GAIN", 0.999)
+    result = relief_survey(case_of("flanks.seed=3"), torque=TORQUES)
+    assert [row["amount_m"] for row in result.table("reliefs").values()] == [0.0, 0.0]
+    assert result.table("gains")["series"]["gain"] == 0.0
+    assert said.numbers(page(result).summary)[-1] == 99.9
 
 
 def test_several_loads_of_one_part_are_judged_by_it() -> None:

@@ -562,8 +562,16 @@ def of_dials() -> dict[str, Picture]:
     )  # fmt: skip
     lines = {"order": np.array([1.0, 2.0]), "amplitude": np.array([4e-6, 1e-6]),
              "half": np.array([1e-6, np.nan])}  # fmt: skip
+    factor = 1.5 + 0.1 * np.arange(6)[:, None] + 0.01 * speeds
+    pairs = xr.Dataset(
+        {"dynamic_factor": (("part", "speed"), factor),
+         "band": (("quantile", "speed"), factor[[0, 2, 5]]),
+         "own_dynamic_factor": ("part", factor[:, 1])},
+        {"pinion_speed": ("speed", speeds)},
+    ).assign_attrs(parts=6, own_speed=float(speeds[1]), shown=3)  # fmt: skip
     return {
         "dial-stiffness": live.stiffness(mesh),
+        "dial-series": live.series(pairs),
         "dial-gap": live.gap(gap),
         "dial-run-up": live.run_up({"hot": ran, "undeformed": ran}, 300.0),
         "dial-orbits": live.orbits(motions),

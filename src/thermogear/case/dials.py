@@ -19,6 +19,7 @@ from thermogear.base.toml import held, literal
 from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import STILL
 from thermogear.case.case import GearCase
+from thermogear.case.flank_schema import PARTS
 from thermogear.case.thermal_state import HOT
 from thermogear.gears.deviations import GEARS
 
@@ -94,7 +95,23 @@ def _kinds(case: GearCase) -> dict[str, _Kind]:
             for gear in GEARS
         ),
     )  # fmt: skip
-    return {one.name: one for one in found}
+    kinds = {one.name: one for one in found}
+    if drawing(case) is not None:
+        title = "pair of the class, its drawing (-1: all of them)"
+        kinds["part"] = _Kind("part", title, "", ("flanks.drawing", "flanks.teeth"))
+    return kinds
+
+
+def drawing(case: GearCase) -> int | None:
+    """Which drawing of its class a ``case`` is: -1 of a series, which is many; None of no drawing.
+
+    None too where flanks are measured.
+    """
+    table = case.file.flanks
+    if case.series > 1:
+        return -1
+    drawn = table is not None and table.teeth == "drawn" and not case.charts
+    return table.drawing if table is not None and drawn else None
 
 
 def dials(case: GearCase) -> list[Dial]:
@@ -130,7 +147,17 @@ def dials(case: GearCase) -> list[Dial]:
     for gear in GEARS:
         amount, _ = _eccentricity(case, gear)
         values[f"{gear}_eccentricity"] = (amount, (0.0, max(40.0, 2.0 * amount)))
-    return [_dial(kinds[name], value, ends) for name, (value, ends) in values.items()]
+    every = [_dial(kinds[name], value, ends) for name, (value, ends) in values.items()]
+    if (place := drawing(case)) is not None:
+        high = float(max(parts_of(case) - 1, place))
+        every.append(Dial(**vars(kinds["part"]), value=float(place), low=-1.0, high=high, step=1.0))
+    return every
+
+
+def parts_of(case: GearCase) -> int:
+    """How many pairs its series has, also of a case that is one of them."""
+    stated = None if case.file.flanks is None else case.file.flanks.parts
+    return stated if stated and stated > 1 else PARTS
 
 
 def turned(case: GearCase, values: Mapping[str, float]) -> Changes:
@@ -153,7 +180,13 @@ def turned(case: GearCase, values: Mapping[str, float]) -> Changes:
                 fix="switch the heat balance off to turn it",
             )  # fmt: skip
         text = f"{_text(value)} {dial.unit}".strip()
-        if name == "error":
+        if name == "part":
+            if value >= 0.0:
+                found += [(dial.fields[0], text), (dial.fields[1], "drawn")]
+            elif case.series == 1:
+                left = [(field, "") for field in dial.fields]
+                found += [*left, ("flanks.parts", f"{parts_of(case)}")]
+        elif name == "error":
             found.append((dial.fields[0], _harmonics(case, value)))
         elif name.endswith("eccentricity"):
             _, angle = _eccentricity(case, name.partition("_")[0])

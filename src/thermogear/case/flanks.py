@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from functools import partial
+from functools import lru_cache, partial
 
 import numpy as np
 
@@ -43,6 +43,8 @@ PLASTIC = 30e9
 """Young's modulus [Pa] below which a gear is one of plastic."""
 
 
+_drawn_pair = lru_cache(maxsize=256)(drawn_pair)
+"""Remembered: a dial, a sweep, a run-up ask for the same parts at each of their points."""
 CLOSED = 0.5e-6
 """What single pitch deviations may add up to, for each tooth [m]: they are rounded (ours)."""
 
@@ -345,7 +347,7 @@ def _graded(file: GearFile, pair: GearPair) -> tuple[Deviation, ...]:
                 )
     try:
         profiles: tuple[Deviation, ...] = (
-            drawn_pair(
+            _drawn_pair(
                 pair,
                 grade,
                 seed=table.seed,
@@ -379,8 +381,8 @@ def population(file: GearFile) -> Population:
 def series(file: GearFile, grade: int | None, *, loaded: bool) -> int:
     """How many parts of the class ``grade`` the answers are of; 1: the part of the case alone.
 
-    One where a seed is stated, flanks or pitches are given, all teeth are taken alike, or the
-    springs do not feel the flanks (not ``loaded``).
+    One where a seed or a drawing is stated, flanks or pitches are given, all teeth are taken alike,
+    or the springs do not feel the flanks (not ``loaded``).
     """
     table = file.flanks
     if table is None or grade is None or file.gears.period == "mesh":
@@ -388,6 +390,8 @@ def series(file: GearFile, grade: int | None, *, loaded: bool) -> int:
     error = file.transmission_error
     given = [gear for gear in GEARS if _differing(getattr(file.gears, gear))]
     drawn = loaded and len(unmeasured(file)) == 2 and not given and not (error and error.harmonics)
+    if "drawing" in table.model_fields_set and table.teeth == "drawn":
+        return 1
     if table.parts is None:
         return PARTS if drawn and not {"seed", "drawing"} & table.model_fields_set else 1
     if table.parts > 1 and not drawn:

@@ -303,21 +303,21 @@ class PartTables:
             rise = (rise - error[:, :size].mean(axis=1)[:, None]) / max(every - 1, 1)
         straight = error - rise * np.arange(error.shape[1]) / size
         orders = np.arange(1 + min(harmonics * every, (stiffness.shape[1] - 1) // 2))
-        rows = []
-        for samples, slope in ((stiffness, 0), (straight, 0), (straight, 1)):
+        table = np.empty((steps + 1, 3, len(error)))
+        for row, samples, slope in ((0, stiffness, 0), (1, straight, 0), (2, straight, 1)):
             kept = np.fft.rfft(samples, axis=1)[:, : orders.size] / samples.shape[1]
             kept *= (2j * np.pi * orders / every) ** slope
-            rows.append(np.fft.irfft(kept, steps, axis=1) * steps)
-        rows[1] += rise * np.arange(steps) / (2 * PART_STEPS)
-        rows[2] += rise
-        table = np.empty((steps + 1, 3, len(error)))
-        table[:-1], table[-1] = np.transpose(rows, (2, 0, 1)), np.array(rows)[:, :, 0]
-        if not periodic:
-            table[-1] = table[-2]
+            table[:-1, row] = (np.fft.irfft(kept, steps, axis=1) * steps).T
+        table[:-1, 1] += (rise * np.arange(steps) / (2 * PART_STEPS)).T
+        table[:-1, 2] += rise.T
+        table[-1] = table[0] if periodic else table[-2]
         return cls(table=table, mesh_periods=mesh_periods, ahead=ahead, periodic=periodic)
 
     def take(self, index: slice | NDArray[np.intp]) -> PartTables:
         """Some of the parts."""
+        whole = np.arange(self.table.shape[2])
+        if np.array_equal(whole[index], whole):
+            return self
         return replace(self, table=np.ascontiguousarray(self.table[:, :, index]))
 
 

@@ -21,7 +21,7 @@ from thermogear.gears.loaded import LEAST_LINE_LOAD
 from thermogear.gears.mesh_system import MeshSystem, pressed_spread
 from thermogear.gears.pair import GearPair
 from thermogear.gears.stiffness import Moduli
-from thermogear.gears.touch import touch_of_parts
+from thermogear.gears.touch import Touch, touch_of_parts
 from thermogear.gears.turn import numbered_from, turn_period
 from thermogear.mesh.clearance import Clearance
 from thermogear.mesh.elastic import TURN_POSITIONS, elastic_pair, turn_phases
@@ -33,6 +33,9 @@ dynamic factor of a part is 0 to 12 % lower then, 5 % in the mean of twelve hunt
 8."""
 BLOCK = 200_000
 """Positions of all parts that are solved at once: about 100 MB."""
+SELDOM = 4
+"""Every so many-th position has its backlash: how far a flank stands off changes slowly, and a
+motion meets it as a mean."""
 AHEAD = 24
 """Mesh periods ahead of those of a longer turn: at a mesh over a natural frequency of 1.1 and a
 damping ratio of .07 a vibration falls to 1e-4 of itself in 23 of them."""
@@ -42,11 +45,11 @@ damping ratio of .07 a vibration falls to 1e-4 of itself in 23 of them."""
 class SeriesMesh:
     """The mesh of every part over ``mesh_periods`` mesh periods, (part, phase), one after another.
 
-    ``transmission_error`` [m] static, under load, as the mesh cycle's; ``half_backlash`` [m];
-    ``spring_error`` [m] and ``stiffness`` [N/m] as :class:`~thermogear.mesh.elastic.MeshCurves`
-    has them, with ``ahead`` mesh periods more before the others. ``whole``: whether it is the whole
-    turn of the pair, with none ahead; else so many consecutive periods of it. nan where a contact
-    does not settle.
+    ``transmission_error`` [m] static, under load, about its mean; ``half_backlash`` [m] at every
+    :data:`SELDOM`-th phase; ``spring_error`` [m] and ``stiffness`` [N/m] as
+    :class:`~thermogear.mesh.elastic.MeshCurves` has them, with ``ahead`` mesh periods more before
+    the others. ``whole``: whether it is the whole turn of the pair, with none ahead; else so many
+    consecutive periods of it. nan where a contact does not settle.
     """
 
     pair: GearPair
@@ -116,7 +119,8 @@ def series_mesh(
 ) -> SeriesMesh:
     """Loaded contact of every part, its deviations in ``parts``, at the one point of ``hot``.
 
-    ``periods`` mesh periods are followed, each of so many ``positions``: from mesh period ``start``
+    ``periods`` mesh periods are followed, each of so many ``positions``, a multiple of
+    :data:`SELDOM`: from mesh period ``start``
     of each part on, 0 by default. Where they are not the whole turn the springs have
     :data:`AHEAD` more before them, from which a motion can settle. Parts hang on each other in no
     digit. Textbook springs do not
@@ -141,10 +145,10 @@ def series_mesh(
         blocks = [_alone(hot, part, phase, periods + ahead) for part in numbered]
     curves = [np.concatenate(several) for several in zip(*blocks, strict=True)]
     transmission, error, stiffness, backlash = curves
-    seen = slice(ahead * positions, None)
+    seen, seldom = (slice(ahead * positions // step, None) for step in (1, SELDOM))
     return SeriesMesh(
         pair=pair, transmission_error=transmission[:, seen], spring_error=error,
-        stiffness=stiffness, half_backlash=backlash[:, seen], mesh_periods=periods, whole=whole,
+        stiffness=stiffness, half_backlash=backlash[:, seldom], mesh_periods=periods, whole=whole,
         ahead=ahead,
     )  # fmt: skip
 
@@ -164,13 +168,14 @@ def _curves(
     elastic = elastic_pair(hot)
     force, wider = float(elastic.force[0]), float(np.ravel(hot.widened)[0])
     load = force / wider
-    drive, back = (mesh_points(pair, phase, flank) for flank in ("drive", "back"))
+    drive, *seldom = (
+        mesh_points(pair, at, flank)
+        for at, flank in ((phase, "drive"), (phase[::SELDOM], "drive"), (phase[::SELDOM], "back"))
+    )
     spread = float(np.sqrt(pressed_spread(pair, load))) ** 2
-    pressed, free = touch_of_parts(drive, warm, spread, 0.0)
-    (behind,) = touch_of_parts(back, warm, 0.0)
-    # pair by pair, which is faster than along an axis so short
-    unloaded, back_gap = (reduce(np.minimum, np.moveaxis(t.gap, -1, 0)) for t in (free, behind))
-    backlash = hot.half_backlash[0] + 0.5 * (unloaded + back_gap)
+    (pressed,) = touch_of_parts(drive, warm, spread)
+    free, behind = (_nearest(touch_of_parts(points, warm, 0.0)[0]) for points in seldom)
+    backlash = hot.half_backlash[0] + 0.5 * (free + behind)
     system = MeshSystem.of(
         pair,
         shape=(len(parts),),
@@ -183,18 +188,24 @@ def _curves(
     )
     carried = load or LEAST_LINE_LOAD * pair.face_width
     _, delta, tangent, _ = system.solve(np.full(len(parts), carried), by_load=True)
+    unloaded, stiffness = delta, tangent * wider
+    if hot.model.spring == "secant" or not load:
+        unloaded = _nearest(touch_of_parts(drive, warm, 0.0)[0])
     deflection = delta if load else unloaded
+    error = deflection - force / stiffness
     if hot.model.spring == "secant":
         stiffness, error = carried * wider / (delta - unloaded), unloaded
-    else:
-        stiffness = tangent * wider
-        error = deflection - force / stiffness
-    return (
-        deflection - unloaded.mean(axis=-1, keepdims=True),
-        error - error.mean(axis=-1, keepdims=True),
-        stiffness,
-        backlash,
-    )
+    return _about_mean(deflection), _about_mean(error), stiffness, backlash
+
+
+def _nearest(touch: Touch) -> Floats:
+    """The least gap [m] of the tooth pairs, (part, position)."""
+    # pair by pair, which is faster than along an axis so short
+    return reduce(np.minimum, np.moveaxis(touch.gap, -1, 0))
+
+
+def _about_mean(curves: Floats) -> Floats:
+    return np.asarray(curves - curves.mean(axis=-1, keepdims=True))
 
 
 def _alone(
@@ -206,7 +217,7 @@ def _alone(
     transmission, error, stiffness, backlash = (
         np.resize(curve[0], (1, periods * phase.size)) for curve in every
     )
-    return transmission, error, stiffness, backlash
+    return _about_mean(transmission), error, stiffness, backlash[:, ::SELDOM]
 
 
 def _flat(moduli: Moduli) -> Moduli:

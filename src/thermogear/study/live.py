@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -14,13 +14,18 @@ from thermogear.base.errors import ThermogearError
 from thermogear.base.plan import Alive, Arrays, every, keep_going, region_of, slices
 from thermogear.base.vocabulary import STATES, STATUS, attributes, label
 from thermogear.case.case import GearCase
+from thermogear.case.dials import drawing, parts_of
 from thermogear.case.family import GearFamily
 from thermogear.case.one_point import OnePoint, of_case
+from thermogear.case.points import excitations
 from thermogear.case.thermal_state import HOT, StateLike, ThermalState
 from thermogear.dynamics.integrate import simulate
+from thermogear.mesh.excite import EXCITES
+from thermogear.mesh.thermal import HotPair
 from thermogear.study.dial import stops
 from thermogear.study.orbit import settled, told_orbit
 from thermogear.study.run_up import RunUpPlan, run_up_plan
+from thermogear.study.series import BAND, Series, Spread, series_motion
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -135,6 +140,59 @@ def motion(point: OnePoint) -> Motion:
         "half_backlash": ((), float(points.flat.half_backlash[0]) * length),
     }
     return Motion(label(variables), words)
+
+
+# --- a series -----------------------------------------------------------------------------
+
+
+SOME = 16
+"""Parts of a series that are followed at once."""
+SPEEDS = 45
+"""Speeds at which a series is followed."""
+
+
+def series(
+    case: GearCase, speeds: NDArray[np.float64], alive: Alive = keep_going
+) -> Iterator[xr.Dataset]:
+    """Dynamic factor of the pairs of a class between the ends of ``speeds`` [rad/s], some first.
+
+    At the first operating point, hot, and the first damping of the case, which is the series or a
+    part of it: ``dynamic_factor`` (part, speed), of more parts each time, its quantiles ``band``
+    (quantile, speed), and the figure of each part at the own speed, ``own_dynamic_factor``.
+    Attributes: ``parts`` of the series, ``own_speed`` [rad/s], ``shown``, the part that the case is
+    (-1: the series).
+    """
+    model, mean = case.models[0], case.mean_tooth()
+    HOT.require_settled(case, model)
+    at = HOT.operating(case, model).part(slice(1))
+    hot = HotPair(case.pair, replace(at, housing=case.housing), model)
+    excited = excitations(mean, HOT.quantities(mean, model, EXCITES)).take(np.zeros(1, int))
+    own = float(case.speeds[0])
+    grid = np.unique(np.append(np.linspace(speeds[0], speeds[-1], SPEEDS), own))
+    rows: list[NDArray[np.float64]] = []
+    whole = Series.of(case, parts_of(case))
+    for first in range(0, len(whole.parts), SOME):
+        alive()
+        some = whole.some(slice(first, first + SOME)).mesh(hot)
+        motion = series_motion(some, excited, grid, np.array(case.dampings[:1]))
+        rows.extend(motion.dynamic_factor[0])
+        factor = np.array(rows)
+        spread = [Spread.of(values) for values in factor.T]
+        band = [
+            [getattr(one, which).value for one in spread] for which in ("low", "middle", "high")
+        ]
+        yield label(
+            {
+                "dynamic_factor": (("part", "speed"), factor, "1", "dynamic factor of each pair"),
+                "band": (("quantile", "speed"), band, "1", "quantiles of it"),
+                "own_dynamic_factor": (("part",), factor[:, np.searchsorted(grid, own)], "1", ""),
+            },
+            {
+                "pinion_speed": ("speed", grid, "rad/s", "pinion speed"),
+                "quantile": ("quantile", np.array(BAND), "1", "share of pairs"),
+            },
+            {"parts": len(whole.parts), "own_speed": own, "shown": drawing(case)},
+        )
 
 
 # --- run-ups ------------------------------------------------------------------------------

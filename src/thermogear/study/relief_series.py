@@ -42,6 +42,9 @@ MOST_EVALUATIONS = 400
 """Reliefs tried in both searches together, about; told as progress."""
 MOST_WORSE = 1 / 8
 """Share of the parts designed on that a relief may make worse: one of more is not taken (ours)."""
+LEAST_GAIN = 0.01
+"""Gain over the parts designed on below which no relief is proposed: chosen, of the order of the
+standard error of a gain judged by :data:`JUDGED_PARTS`."""
 GRIND = 1e-6
 """Step of the amounts [m]: what is usually written on a drawing (ours)."""
 _SHORTEST = 0.05  # base pitches
@@ -266,8 +269,8 @@ def series_relief(
     seed; beside it the relief designed on perfect flanks, and that of the case, if it has any. Of a
     case of one part that part is what all are designed on and judged by. The figure of a part is
     that of :class:`PartErrors`, its ratio that of :func:`ratios`, of which the mean over the parts
-    is least. A relief that makes more than :data:`MOST_WORSE` of the parts designed on worse is not
-    taken.
+    is least. A relief that makes more than :data:`MOST_WORSE` of the parts designed on worse, or
+    gains less than :data:`LEAST_GAIN` over them, is not taken.
 
     Groups: ``parts`` over (relief, load, part): figures and, over (relief, part), ratios;
     ``profile`` over (gear, place): what the relief takes off along the profile. Attributes:
@@ -310,12 +313,10 @@ def series_relief(
     ground = Ground(pair, shape=task.shape, largest=largest, symmetric=task.symmetric)
     screen = figure(perfect)
     on_perfect = search(ground, screen, screen)
-    place = search(
-        ground,
-        figure(errors(parts[:SCREENED_PARTS], 0)),
-        figure(errors(parts[:DESIGN_PARTS], 0)),
-        [on_perfect],
-    )
+    of_design = figure(errors(parts[:DESIGN_PARTS], 0))
+    place = search(ground, figure(errors(parts[:SCREENED_PARTS], 0)), of_design, [on_perfect])
+    if of_design(ground.reliefs(place)) > 1.0 - LEAST_GAIN:
+        place = (0, 0, *place[2:])
     reliefs = ground.reliefs(place)
     candidates: dict[str, tuple[Relief, ...]] = {
         "none": (), "series": reliefs, "perfect": ground.reliefs(on_perfect),
@@ -353,6 +354,7 @@ def series_relief(
         symmetric=task.symmetric,
         evaluations=evaluations,
         designed_on=min(DESIGN_PARTS, len(parts)),
+        least_gain=LEAST_GAIN,
         mesh_periods=len(periods),
         turn=lcm(pair.pinion.teeth, pair.wheel.teeth),
         gains={

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -20,9 +20,9 @@ from thermogear.gears.turn import turn_period
 from thermogear.mesh.series import SeriesMesh, followed_periods, series_mesh
 from thermogear.mesh.thermal import HotPair
 
-AT_BOUNDS = 16
-"""Parts of a series whose motions are followed at the bounds of the damping."""
-
+AT_BOUNDS = 32
+"""Parts of a series whose motions are followed at the bounds of the damping: what happens in none
+of 29 happens in less than 10 % of all, with a confidence of 95 %."""
 
 BAND = (0.05, 0.5, 0.95)
 """Quantiles that are told: the middle, and the ends of what holds 90 % of parts."""
@@ -63,6 +63,16 @@ class Spread:
             if np.isfinite(ends).all():  # few parts do not bound a far quantile
                 figures[f"{name}_{which}_interval"] = ends
         return figures | {"held": 100.0 * (BAND[2] - BAND[0])}
+
+
+def middle_and_worst(values: Floats) -> tuple[int, int] | None:
+    """Places of the median and the greatest of what is known of the parts; None where nothing is.
+
+    >>> middle_and_worst(np.array([3.0, np.nan, 1.0, 2.0]))
+    (3, 0)
+    """
+    order = np.argsort(values)[: np.count_nonzero(np.isfinite(values))]
+    return (int(order[(order.size - 1) // 2]), int(order[-1])) if order.size else None
 
 
 def series_parts(case: GearCase, count: int) -> tuple[tuple[Deviation, ...], ...]:
@@ -109,9 +119,16 @@ class SeriesMotion:
 
 
 def series_motion(
-    mesh: SeriesMesh, point: Excitations, speed: Floats, damping_ratio: Floats
+    mesh: SeriesMesh,
+    point: Excitations,
+    speed: Floats,
+    damping_ratio: Floats,
+    *,
+    bounds_to: float = np.inf,
 ) -> SeriesMotion:
     """Motions of every part of ``mesh`` at each ``speed`` [rad/s] of the pinion.
+
+    At the dampings after the first up to the speed ``bounds_to`` [rad/s] alone.
 
     ``point``: excitation of one operating point, of any part at any speed: inertias, base radii
     and mean force are taken from it, and how many harmonics of the mesh frequency are kept;
@@ -133,19 +150,17 @@ def series_motion(
     )  # fmt: skip
     rate = 2.0 * np.pi * natural[:, None] / (mesh.pair.pinion.teeth * speed)
     backlash, deep = mesh.half_backlash.mean(axis=1), load / mean
-    first, few = np.flatnonzero(moves), np.flatnonzero(moves[:AT_BOUNDS])
-    bounds = np.arange(1, damping_ratio.size)
-    for number, part in (
-        (np.zeros(first.size, int), first),
-        (np.repeat(bounds, few.size), np.tile(few, bounds.size)),
-    ):
-        if not part.size or load <= 0.0:
+    within = int(np.count_nonzero(speed <= bounds_to * (1.0 + 1e-9)))
+    for number, ratio in enumerate(damping_ratio):
+        part = np.flatnonzero(moves[:AT_BOUNDS] if number else moves)
+        count = within if number else speed.size
+        if not part.size or not count or load <= 0.0:
             continue
         motions = follow_parts(
-            tables.take(part), rate=rate[part], damping_ratio=damping_ratio[number],
+            tables.take(part), rate=rate[part, :count], damping_ratio=np.full(part.size, ratio),
             backlash=backlash[part], load=deep[part],
         )  # fmt: skip
-        at, newton = (number, part), mean[part, None]
+        at, newton = (number, part, slice(count)), mean[part, None]
         most = newton * np.maximum(motions.greatest, -motions.least)
         factor[at], least[at] = most / load, newton * motions.least
         lost[at], repeats[at] = motions.lost, motions.repeats
@@ -207,17 +222,28 @@ class Series:
         start = np.random.default_rng(case.seed).integers(turn, size=len(parts))
         return cls(case, parts, periods, tuple(start.tolist()))
 
+    def some(self, which: slice) -> Series:
+        """Some of the parts."""
+        return replace(self, parts=self.parts[which], start=self.start and self.start[which])
+
     def mesh(self, hot: HotPair) -> SeriesMesh:
         """The loaded mesh of every part at the one operating point of ``hot``."""
         return series_mesh(hot, self.parts, self.periods, start=self.start)
 
     def followed(
-        self, hot: HotPair, excited: Excitations, speed: Floats, *, own_speed: float
+        self,
+        hot: HotPair,
+        excited: Excitations,
+        speed: Floats,
+        *,
+        own_speed: float,
+        bounds_to: float = np.inf,
     ) -> SeriesPoint:
         """Mesh and motions at ``hot``, whose mean tooth is ``excited``, at the case's dampings.
 
-        ``speed`` (speed,) [rad/s] of the pinion, ``own_speed`` the one of the operating point.
+        ``speed`` (speed,) [rad/s] of the pinion, rising, ``own_speed`` the one of the operating
+        point; ``bounds_to`` as of :func:`series_motion`.
         """
-        mesh = self.mesh(hot)
-        motion = series_motion(mesh, excited, speed, np.array(self.case.dampings))
+        mesh, dampings = self.mesh(hot), np.array(self.case.dampings)
+        motion = series_motion(mesh, excited, speed, dampings, bounds_to=bounds_to)
         return SeriesPoint(mesh, motion, int(np.argmin(np.abs(speed - own_speed))))

@@ -13,7 +13,7 @@ from thermogear.base.display import CELSIUS, MILLISECOND, SPEED
 from thermogear.base.errors import ValidityWarning
 from thermogear.base.plan import Alive
 from thermogear.base.progress import asking
-from thermogear.case.dials import dials
+from thermogear.case.dials import dials, drawing
 from thermogear.case.thermal_state import HOT
 from thermogear.front.app.given import Given
 from thermogear.front.app.wire import PARTS, Export, Post, Show
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from thermogear.case.case import GearCase
 
 
-LONG = ("run-up", "answers", "shafts", "map")
+LONG = ("series", "run-up", "answers", "shafts", "map")
 MOST_LIVE = 60
 """Mesh periods of a turn that are shown while a dial moves; of more the mean tooth is."""
 CALM = 0.08
@@ -39,7 +39,7 @@ class Desk:
 
     def show(self, show: Show, alive: Alive) -> Generator[None, None, None]:
         """Tell the page everything of a state, the quick parts first; a step each time."""
-        from thermogear.front.app.parts import Look, made
+        from thermogear.front.app.parts import Look, Part, made
 
         start, came = time.process_time(), time.monotonic()
         with warnings.catch_warnings(
@@ -53,7 +53,12 @@ class Desk:
             seen = case.mean_tooth()
             told.append(f"The teeth differ over {of} mesh periods: here is their mean tooth alone")
         self.post("now", self._now(case, show, told))
-        look = Look(self.given, seen, show, alive, self.kept)
+        look = Look(self.given, seen, show, alive, self.kept, case)
+        # what takes long is emptied, so that nothing old stands beside new dials
+        for name in ("series", "answers"):
+            if name in show.parts and self.kept.fresh(name, look.key_of(name)):
+                empty = Part(name=name, lines=["computing"])
+                self.post(f"part {name}", empty.message(number=show.number, milliseconds=0.0))
         for name in (one for one in PARTS if one in show.parts):
             alive()
             while name in LONG and time.monotonic() - came < CALM:
@@ -147,6 +152,7 @@ def hello(given: Given) -> dict[str, object]:
         "form": [one.row for one in form(case.data)],
         "speeds": speeds(case),
         "shafts": case.train is not None,
+        "series": drawing(case) is not None,
         "record": given.record_name,
     }
 

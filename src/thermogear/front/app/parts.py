@@ -16,10 +16,12 @@ from thermogear.base.errors import ThermogearError
 from thermogear.base.plan import Alive, slices
 from thermogear.base.vocabulary import STILL
 from thermogear.case.case import GearCase
+from thermogear.case.dials import drawing
 from thermogear.front.app.given import Given
 from thermogear.front.app.wire import Show
 from thermogear.study import live
 from thermogear.study.notices import contact_notices, difference_notices
+from thermogear.study.series import middle_and_worst
 from thermogear.views.moving import moving
 from thermogear.views.picture import Picture
 from thermogear.views.plots import live as plot
@@ -37,7 +39,8 @@ COLDEST, HOTTEST = 20.0, 180.0
 class Part:
     """What a part of the page shows: a picture, drawn gears, a table of rows, lines of words.
 
-    ``done`` of ``total`` where it fills in.
+    ``pairs`` of a series to turn to, in words and as their dial. ``done`` of ``total`` where it
+    fills in.
     """
 
     name: str
@@ -46,6 +49,7 @@ class Part:
     lines: list[str] = field(default_factory=list)
     rows: list[list[str]] = field(default_factory=list)
     pictures: list[tuple[str, Picture]] = field(default_factory=list)
+    pairs: list[tuple[str, int]] = field(default_factory=list)
     done: int = 1
     total: int = 1
 
@@ -56,6 +60,7 @@ class Part:
             "number": number,
             "name": self.name,
             "picture": "" if self.picture is None else moving(self.picture),
+            "pairs": self.pairs,
             "pictures": [[words, moving(one)] for words, one in self.pictures],
             "gears": "" if self.gears is None else json.dumps(self.gears),
             "lines": self.lines,
@@ -84,13 +89,17 @@ class Kept:
 
 @dataclass(frozen=True, eq=False)
 class Look:
-    """One state looked at: the ``case`` of it, and whether anybody still wants to see it."""
+    """One state looked at: the ``case`` of it, and whether anybody still wants to see it.
+
+    ``whole``: the case over its turn where ``case`` is its mean tooth.
+    """
 
     given: Given
     case: GearCase
     show: Show
     alive: Alive
     kept: Kept
+    whole: GearCase
 
     @property
     def speed(self) -> float:
@@ -105,7 +114,11 @@ class Look:
     @property
     def key(self) -> str:
         """The case as one text: what shows all of it is made anew when any field changes."""
-        return json.dumps(self.case.data, sort_keys=True, default=str)
+        return json.dumps(self.whole.data, sort_keys=True, default=str)
+
+    def key_of(self, name: str) -> str:
+        """What a part hangs on that is made of all of the case."""
+        return self.key + str(self.show.speeds) * (name == "series")
 
     def told(self, stage: str, done: int, total: int) -> None:
         """A study's progress: it asks whether anybody still waits, and says nothing."""
@@ -213,6 +226,22 @@ def run_up(look: Look) -> Iterator[Part]:
         inside = speeds[0] <= look.speed <= speeds[-1]
         if inside and state == "hot" and "orbit" in look.show.parts:
             yield _orbit(whole, dict(live.ends_at(kept.runs["hot"], look.speed)))
+
+
+def series(look: Look) -> Iterator[Part]:
+    """The band of the series, of some pairs at first; of a case that is a part of it, too."""
+    key = look.key_of("series")
+    if drawing(look.whole) is None or not look.kept.fresh("series", key):
+        return
+    look.kept.forget("series")
+    for data in live.series(look.whole, look.speeds, look.alive):
+        places = middle_and_worst(data["own_dynamic_factor"].values) or ()
+        pairs = [("all pairs", -1), *zip(("median pair", "worst pair"), places, strict=False)]
+        yield Part(
+            name="series", picture=plot.series(data), lines=plot.told_series(data), pairs=pairs,
+            done=data.sizes["part"], total=data.attrs["parts"],
+        )  # fmt: skip
+    look.kept.keys["series"] = key
 
 
 def _jammed(look: Look, state: str) -> list[str]:
@@ -360,6 +389,7 @@ MAKERS: dict[str, Callable[[Look], Iterator[Part]]] = {
     "orbit": orbit,
     "gears": gears,
     "gap": gap,
+    "series": series,
     "run-up": run_up,
     "answers": answers,
     "record": record,

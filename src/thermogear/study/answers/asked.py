@@ -22,6 +22,7 @@ from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import HEAT_NOT_SETTLED, STATUS, STILL, is_known
 from thermogear.case.case import GearCase
 from thermogear.case.duty import chosen_point, point_duty
+from thermogear.case.flank_schema import LEAST_PARTS
 from thermogear.case.points import excitations, points_of
 from thermogear.case.response import VALUES
 from thermogear.case.thermal_state import HOT, ThermalState
@@ -37,7 +38,7 @@ from thermogear.mesh.model import MeshModel
 from thermogear.mesh.thermal import HotPair
 from thermogear.mesh.warm_up import WarmUp, warm_up
 from thermogear.results.answer import Answer
-from thermogear.study.series import Series, SeriesPoint
+from thermogear.study.series import Series, SeriesPoint, series_motion
 from thermogear.study.speeds import FARTHEST, Speeds, look, motions_of, starts_of
 
 Cycle = Mapping[str, NDArray[Any]]
@@ -213,8 +214,8 @@ class Asked:
         return made, made - found.steady.heat_out["oil"]
 
     @cached_property
-    def wetter(self) -> tuple[Floats, Floats] | None:
-        """(oil, hotter teeth) [K] with half of the gears wetted, nan where nothing settles.
+    def _wetted(self) -> HeatBalance | None:
+        """The heat balance with half of the gears wetted.
 
         None where the share is given, or nothing is computed with it.
         """
@@ -222,7 +223,17 @@ class Asked:
         if not self.case.computed or "gearbox.wetted_share" not in left_out:
             return None
         around = replace(self.case.gearbox.surroundings, wetted_share=(MOST_WETTED, MOST_WETTED))
-        found = self._balance(replace(self.case.gearbox, surroundings=around))
+        return self._balance(replace(self.case.gearbox, surroundings=around))
+
+    @cached_property
+    def wetter(self) -> tuple[Floats, Floats] | None:
+        """(oil, hotter teeth) [K] with half of the gears wetted, nan where nothing settles.
+
+        None where the share is given, or nothing is computed with it.
+        """
+        found = self._wetted
+        if found is None:
+            return None
         oil, first, second = (
             np.where(found.settled, found.steady[name], np.nan)
             for name in ("oil", "pinion_tooth", "wheel_tooth")
@@ -249,7 +260,6 @@ class Asked:
         case = self.case
         if not self.in_series:
             return {}
-        series = Series.of(case)
         by_point = {}
         points = [
             point
@@ -258,13 +268,34 @@ class Asked:
         ]
         for number, point in enumerate(points):
             self.progress("series", number, len(points))
-            by_point[point] = series.followed(
+            speed = float(case.stated.speed[point])
+            by_point[point] = self._parts.followed(
                 self.hot_pair(HOT, point),
                 excitations(case, self._part([point])),
                 self._speeds_of_series,
-                own_speed=float(case.stated.speed[point]),
+                own_speed=speed,
+                bounds_to=speed,
             )
         return by_point
+
+    @cached_property
+    def _parts(self) -> Series:
+        return Series.of(self.case)
+
+    def wetter_factors(self, point: int) -> Floats | None:
+        """Dynamic factors of the first parts of the series with half of the gears wetted, (part,).
+
+        Of the least number of parts, at the first damping and the own speed; None as of
+        :attr:`wetter`, and where the heat does not settle.
+        """
+        found, case = self._wetted, self.case
+        if found is None or not found.settled[point]:
+            return None
+        at = replace(found.operating.part(slice(point, point + 1)), housing=case.housing)
+        mesh = self._parts.some(slice(LEAST_PARTS)).mesh(HotPair(case.pair, at, self.model))
+        speed, damping = case.stated.speed[[point]], np.array(case.dampings[:1])
+        motion = series_motion(mesh, excitations(case, self._part([point])), speed, damping)
+        return motion.dynamic_factor[0, :, 0]
 
     @cached_property
     def _speeds_of_series(self) -> Floats:

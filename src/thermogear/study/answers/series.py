@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from thermogear.analysis.order_statistics import proportion
 from thermogear.base.arrays import Dataset, Floats
-from thermogear.base.limits import LIMITS, PARTING
+from thermogear.base.limits import LIMITS, OPEN, PARTING
 from thermogear.base.units import RPM
 from thermogear.base.vocabulary import label
 from thermogear.results.answer import Answer
@@ -27,7 +27,7 @@ from thermogear.study.answers.moving import (
     relief,
     resonance,
 )
-from thermogear.study.series import BAND, SeriesPoint, Spread
+from thermogear.study.series import BAND, SeriesPoint, Spread, middle_and_worst
 from thermogear.study.speeds import LOST, peaks
 
 # --- speeds -------------------------------------------------------------------------------------
@@ -50,7 +50,9 @@ def speeds(asked: Asked) -> Iterator[Answer]:
         lost, struck = motion.contact_loss_share > LOST, motion.mesh_force_min < 0.0
         yield _parting(parts, "contact_loss", lost, "Flanks part", at)
         yield _parting(parts, "back_contact", struck, "Teeth hit the back side", at)
-    why = "each pair of a series is followed from rest alone; ask for one part by flanks.parts"
+    why = (
+        "of a series the worse of two starts of each pair counts; ask for one part by flanks.parts"
+    )
     yield undecided(SPEEDS, "coexisting", why)
 
 
@@ -67,10 +69,13 @@ def _parting(
     onset = np.where(happens[0].any(axis=1), speed[happens[0].argmax(axis=1)], np.inf)[: counts[0]]
     # onsets jump: the value of a rank, no mean of several
     middle, first = float(np.sort(onset)[(onset.size - 1) // 2]), float(onset.min())
-    of_all = proportion(int(hits[0]), of=int(counts[0]))
+    bounds = [
+        proportion(int(hit), of=max(int(of), 1)) for hit, of in zip(hits, counts, strict=True)
+    ]
+    possible = np.array([100.0 * bound.high for bound in bounds])
     figures: dict[str, Any] = {
         "pairs": int(hits[0]), "parts": int(counts[0]), "top": top / RPM,
-        "share_interval": [100.0 * of_all.low, 100.0 * of_all.high],
+        "share_interval": [100.0 * bounds[0].low, float(possible[0])],
         "dampings": dampings.tolist(), "shares": shares.tolist(), "beyond": float(speed[-1]) / RPM,
     }  # fmt: skip
     sentence = f"{words} in {{pairs}} of {{parts}} pairs of the class up to {{top:~3 rpm}}"
@@ -82,15 +87,28 @@ def _parting(
     if math.isfinite(middle):
         figures["half"] = middle / RPM
         sentence += ", in half of them by {half:~2 rpm}"
-    more, beside = _by_damping(dampings, shares, LIMITS["parting_pairs"].most)
+    most = LIMITS["parting_pairs"].most
+    more, beside = _by_damping(dampings, shares, most)
     if dampings.size > 1:
         figures |= {"least": float(dampings[1]), "pairs_there": int(hits[1]), "of": int(counts[1])}
         sentence += "; with a damping of {least:~2} in {pairs_there} of {of}"
+    verdict = _unsure(shares.max(), possible.max(), most)
+    if verdict:
+        figures["possible"] = float(possible.max())
+        more += "; not decided, as so few pairs do not exclude {possible:.0f %}"
     return answer(
         SPEEDS, name, f"{sentence}{more}.", float(shares.max()), limit="parting_pairs", at=at,
-        figures=figures | beside,
+        figures=figures | beside, verdict=verdict,
         units=OF_SPEEDS | {"shares": "%", "share_interval": "%", "beyond": "rpm"},
     )  # fmt: skip
+
+
+def _unsure(value: float, high: float, most: float) -> str:
+    """The verdict "not decided" where a ``value`` within its bound has an interval that is not.
+
+    ``high``: upper end of its 95 % interval. Empty where the bound decides.
+    """
+    return OPEN if value <= most < high else ""
 
 
 def _by_damping(dampings: Floats, values: Floats, most: float) -> tuple[str, dict[str, Any]]:
@@ -135,15 +153,54 @@ def loads(asked: Asked) -> Iterator[Answer]:
         )
         if dampings.size > 1:
             gives += f", or {{bad[1]:{form}}} with a damping of {{dampings[1]:~2}}"
-            moved = abs(each[1].middle.value - each[0].middle.value)
-            apart = each[0].high.value - each[0].low.value
-            gives += "; damping moves it more than the part does" if moved > apart else (
-                "; the part moves it more than damping does"
-            )  # fmt: skip
+        words_of, sizes = _what_moves(asked, point, form)
+        figures |= sizes
         more, beside = _by_damping(dampings, values, about["most"])
-        sentence = f"The vibration computed gives {gives}{more}; ISO 6336-1 {words}."
-        worst = float(values.max())
-        yield answer(LOADS, "dynamic_factor", sentence, worst, figures=figures | beside, **about)
+        worst, high = float(values.max()), max(spread.bad.high for spread in each)
+        verdict = _unsure(worst, high, about["most"])
+        if verdict:
+            more += "; not decided, as so few pairs do not exclude more"
+        sentence = f"The vibration computed gives {gives}{words_of}{more}; ISO 6336-1 {words}."
+        yield answer(
+            LOADS, "dynamic_factor", sentence, worst, figures=figures | beside, verdict=verdict,
+            **about,
+        )  # fmt: skip
+
+
+MOVES_IT = {
+    "by_part": "the part, in 90 % of pairs", "by_damping": "the damping",
+    "by_temperature": "the heat of half-wetted gears",
+}  # fmt: skip
+"""What moves the dynamic factor, in words."""
+
+
+def _what_moves(asked: Asked, point: int, form: str) -> tuple[str, dict[str, float]]:
+    """What part, damping and temperature move the dynamic factor by, in words with figures.
+
+    The part: width of the band of 90 % of pairs; the others: how far the median of the same parts
+    moves from the first damping to another, and to the temperatures with half of the gears wetted.
+    """
+    parts = asked.series[point]
+    first, *others = parts.motion.dynamic_factor[:, :, parts.place]
+    band, warmer = Spread.of(first), asked.wetter_factors(point)
+    sizes = {
+        "by_part": band.high.value - band.low.value,
+        "by_damping": max([_median_moves(first, other) for other in others], default=np.nan),
+        "by_temperature": np.nan if warmer is None else _median_moves(first, warmer),
+    }
+    sizes = {name: size for name, size in sizes.items() if np.isfinite(size)}
+    if len(sizes) < 2:
+        return "", sizes
+    decides = max(sizes, key=lambda name: sizes[name]).removeprefix("by_")
+    narrows = ", which a measured one narrows" if decides == "damping" else ""
+    each = ", ".join(f"{{{name}:{form}}} with {MOVES_IT[name]}" for name in sizes)
+    return f"; it moves by {each}: the {decides} decides{narrows}", sizes
+
+
+def _median_moves(before: Floats, after: Floats) -> float:
+    """How far the median moves of the parts that both know; (part,), ``after`` of the first few."""
+    known = np.flatnonzero(np.isfinite(after) & np.isfinite(before[: after.size]))
+    return abs(Spread.of(after[known]).middle.value - Spread.of(before[known]).middle.value)
 
 
 def errors(asked: Asked) -> Iterator[Answer]:
@@ -194,8 +251,9 @@ def gravest(asked: Asked) -> int:
 def data(asked: Asked) -> Dataset:
     """Each operating point over speed and damping as quantiles of parts, every part at its own.
 
-    SI; ``contact_loss_onset`` is nan of a part that keeps contact at every speed. Attribute
-    ``gravest``: place along ``operating`` of the point of :func:`gravest`.
+    SI; at dampings after the first nan above the own speed. ``contact_loss_onset`` is nan of a part
+    that keeps contact at every speed followed. Attribute ``gravest``: place along ``operating`` of
+    the point of :func:`gravest`.
     """
     points = list(asked.series)
     every = [_of_point(asked.series[point]) for point in points]
@@ -243,7 +301,9 @@ def _of_point(parts: SeriesPoint) -> dict[str, Floats]:
             [[getattr(spread, which).value for spread in row] for row in over]
             for which in ("low", "middle", "high")
         ]),
-        "parting_share": lost.sum(axis=1) / parts.counts[:, None],
+        "parting_share": np.where(
+            np.isfinite(factor).any(axis=1), lost.sum(axis=1) / parts.counts[:, None], np.nan
+        ),
         "own_dynamic_factor": factor[:, :, parts.place],
         "contact_loss_onset": np.where(
             lost.any(axis=2), motion.speed[lost.argmax(axis=2)], np.nan
@@ -257,8 +317,7 @@ def notice(asked: Asked) -> Notice:
     """What the series is, what of it is assumed, and which parts are its median and worst."""
     point = gravest(asked)
     parts = asked.series[point]
-    factor = parts.motion.dynamic_factor[0, :, parts.place]
-    order = np.argsort(factor)[: np.count_nonzero(np.isfinite(factor))]
+    median, worst = middle_and_worst(parts.motion.dynamic_factor[0, :, parts.place]) or (None, None)
     several = asked.count > 1
     answered = len(asked.points_of_series)
     return Notice.of(
@@ -267,8 +326,8 @@ def notice(asked: Asked) -> Notice:
         still=asked.case.series - int(parts.counts[0]) or None,
         accuracy=asked.case.accuracy,
         seed=asked.case.seed,
-        median=int(order[(order.size - 1) // 2]) if order.size else None,
-        worst=int(order[-1]) if order.size else None,
+        median=median,
+        worst=worst,
         speed=float(asked.case.stated.speed[point]) if several else None,
         torque=float(asked.case.stated.torque[point]) if several else None,
         answered=None if answered == asked.count else answered,

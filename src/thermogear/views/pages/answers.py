@@ -86,8 +86,8 @@ def sections(result: Result, pictures: Pictures) -> list[Section]:
             "dynamic-factor",
             "Dynamic factor of the series over speed",
             "Of the operating point with the greatest dynamic factor. Above: the median pair and "
-            "the band of 90 % of pairs; dashed: the median with other dampings; dots: every pair "
-            "at the own speed. Below: the share of pairs that lose contact.",
+            "the band of 90 % of pairs; dashed: the median with other dampings, up to the own "
+            "speed; dots: every pair at it. Below: the share of pairs that lose contact.",
             series,
             ("dynamic_factor", "parting_share"),
             lambda: series_picture(series),

@@ -112,8 +112,10 @@ def of_parts(result: Result) -> Page:
     helps = any(row["amount_m"] > 0.0 for row in rows)
     summary = _judged(gains["series"], judged, designed, ", ".join(map(exactly, torques)))
     if not helps:
+        least = PERCENT(float(result.text("least_gain")))
         summary = (
-            f"No tip relief makes the {designed} parts more even in the mean: none is proposed."
+            f"No tip relief makes the {designed} parts more even by {least:g} % in the mean: none "
+            "is proposed."
         )
     ground = declared(
         "Tip relief as it can be ground; lengths along the line of action.",

@@ -86,6 +86,35 @@ def run_up(states: Mapping[str, Dataset], speed: float) -> Picture:
     return Picture([[above], [below]], size=(10.0, 5.2), share_x="column", heights=(3, 2), legend=5)
 
 
+def series(data: Dataset) -> Picture:
+    """Band of the dynamic factor over speed, the median, the pair shown, every pair's own."""
+    panel = Panel(Axis("pinion speed [rpm]"), Axis("dynamic factor [–]", low=0.0))
+    rpm, (low, middle, high) = SPEED(data["pinion_speed"].values), data["band"].values
+    panel.band(rpm, low=low, high=high, colour=INK, opacity=0.2, label="90 % of pairs")
+    panel.curve(rpm, middle, colour=INK, width=1.3, label="median")
+    pair, parts = data.attrs["shown"], data["own_dynamic_factor"].values
+    if 0 <= pair < parts.size:
+        curve = data["dynamic_factor"].values[pair]
+        panel.curve(rpm, curve, colour=HOT, width=1.5, label=f"pair {pair}")
+    speed = float(SPEED(data.attrs["own_speed"]))
+    panel.points(np.full(parts.size, speed), parts, colour=HOT, size=3.0, open=True, label="pairs")
+    panel.line(x=speed, colour=QUIET, width=1.2, dash=(1, 2))
+    return Picture([[panel]], size=(10.0, 3.2), legend=4)
+
+
+def told_series(data: Dataset) -> list[str]:
+    """The band at the own speed in words, with how many pairs it is of."""
+    rpm, known = SPEED(data.attrs["own_speed"]), np.isfinite(data["own_dynamic_factor"].values)
+    if not known.any():
+        return ["no pair moves at this speed: jammed, without load, or too slow to vibrate"]
+    place = np.searchsorted(data["pinion_speed"].values, data.attrs["own_speed"])
+    low, middle, high = data["band"].values[:, place]
+    return [
+        f"at {rpm:.6g} rpm the dynamic factor is {middle:.2g} in the "
+        f"median of {known.sum()} pairs, {low:.2g} to {high:.2g} in 90 % of them"
+    ]
+
+
 def _section(panel: Panel, data: Dataset) -> None:
     """Sections of the hot run over speed, blue up and red down."""
     n = SPEED(data["pinion_speed"].values)

@@ -279,6 +279,11 @@ const part = (message) => {
     return made;
   }));
   if (text) text.textContent = message.rows.map((row) => row[0]).join("\n");
+  if (message.pairs.length) by("pairs").replaceChildren(...message.pairs.map(([words, place]) => {
+    const button = element("button", null, {type: "button", text: words});
+    button.addEventListener("click", () => { set.dials.set("part", place); ask(); });
+    return button;
+  }));
   const gallery = box.querySelector(".pictures");
   message.pictures.forEach(([words, picture], i) => {
     const name = `${message.name} ${i}`;
@@ -299,6 +304,12 @@ const now = (message) => {
   for (const said of message.dials) {
     if (!knobs.has(said.name)) knobs.set(said.name, knob(said));
     follow(knobs.get(said.name), said);
+  }
+  // gears whose errors are stated are no drawings of a class
+  for (const [name, one] of knobs) {
+    const gone = !message.dials.some((said) => said.name === name);
+    one.range.closest(".knob").hidden = gone;
+    if (gone) set.dials.delete(name);
   }
   by("heat").checked = message.computed;
   for (const [path, one] of fields) {
@@ -342,6 +353,7 @@ const heard = (message) => {
     form(message.form);
     for (const name of ["low", "high", "count"]) if (!by(name).value) by(name).value = message.speeds[name];
     document.querySelector('[data-part="shafts"]').hidden = !message.shafts;
+    document.querySelector('[data-part="series"]').hidden = !message.series;
     document.querySelector('[data-part="record"]').hidden = !message.record;
     ready = true;
     ask();
