@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from thermogear.analysis.orbits import periodic_orbit
 from thermogear.base.excitation import Periodic
@@ -120,3 +121,34 @@ def test_a_stretch_that_goes_on_and_on_is_a_turn() -> None:
     assert (one.repeats & other.repeats).all()
     for name in ("greatest", "least", "lost"):
         assert getattr(other, name) == pytest.approx(getattr(one, name), abs=2e-4)
+
+
+def test_starts_that_end_on_two_motions_are_told() -> None:
+    """A loaded pair whose flanks part: two motions below its resonance, one beside them."""
+    load, amplitude, damping = 0.05, 0.02, 0.05
+    error = amplitude * np.sin(2.0 * np.pi * np.arange(96) / 96)[None]
+    tables = PartTables.of(stiffness=np.ones_like(error), error=error, mesh_periods=1, harmonics=3)
+    ratios = np.array([0.6, 0.825, 1.0])
+    motions = follow_parts(
+        tables, rate=2.0 * np.pi / ratios[None], damping_ratio=np.array([damping]),
+        backlash=np.ones(1), load=np.array([load]),
+    )  # fmt: skip
+    assert motions.alike.tolist() == [[True, False, True]]
+    assert motions.repeats.all()
+
+    def greatest(ratio: float, throw: float) -> float:
+        def slope(time: float, state: list[float]) -> list[float]:
+            x, v = state
+            gap = np.sign(x) * max(abs(x) - 1.0, 0.0)
+            bend = -amplitude * ratio**2 * np.sin(ratio * time)
+            return [v, load - bend - gap - 2.0 * damping * v]
+
+        # at rest against flanks that move as the error does
+        start, period = [1.0 + throw * load, 0.0], 2.0 * np.pi / ratio
+        run = solve_ivp(slope, (0.0, 30 * period), start, max_step=period / 30)
+        return float(np.abs(run.y[0, run.t > 27 * period]).max()) - 1.0
+
+    for place, ratio in enumerate(ratios):
+        ends = [greatest(ratio, throw) for throw in (1.0, 3.0)]
+        assert motions.alike[0, place] == (abs(ends[0] - ends[1]) < 0.01 * max(ends))
+        assert motions.greatest[0, place] == pytest.approx(max(ends), rel=5e-3)

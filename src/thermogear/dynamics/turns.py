@@ -267,6 +267,9 @@ dynamic factor."""
 MOST_PART_PERIODS = 192
 """Mesh periods of a part that does not repeat itself, up to :data:`LONGEST_CYCLE` turns and two at
 least."""
+ALIKE = 0.01
+"""Relative difference of greatest forces up to which the motions of two starts are one (chosen: ten
+times what :data:`REPEATED` leaves; a second motion differs by tens of percent)."""
 FAR_THROW = 3.0
 """Static deflections from which the second run of a part begins, the first from one."""
 _WIDTH = 32  # parts are filled up to a multiple of it: the same code, and digits, for each
@@ -327,12 +330,14 @@ class PartMotions:
     time out of drive-side contact, and whether the motion repeats itself.
 
     The worse of what two starts lead to: static contact, and :data:`FAR_THROW` times as deep.
+    ``alike``: both end on one motion, which repeats itself.
     """
 
     greatest: Floats
     least: Floats
     lost: Floats
     repeats: NDArray[np.bool_]
+    alike: NDArray[np.bool_]
 
 
 def follow_parts(
@@ -371,7 +376,10 @@ def follow_parts(
     from_shallow, from_far = np.split(felt[back][..., :parts], 2)
     worst, least = np.maximum(from_shallow, from_far), np.minimum(from_shallow, from_far)[:, 1]
     both = np.logical_and(*np.split(repeats[back][..., :parts], 2))
-    return PartMotions(greatest=worst[:, 0].T, least=least.T, lost=worst[:, 2].T, repeats=both.T)
+    alike = both & np.isclose(from_shallow[:, 0], from_far[:, 0], rtol=ALIKE, atol=0.0)
+    return PartMotions(
+        greatest=worst[:, 0].T, least=least.T, lost=worst[:, 2].T, repeats=both.T, alike=alike.T
+    )
 
 
 def _apart(state: Floats, another: Floats, lanes: Floats) -> Floats:

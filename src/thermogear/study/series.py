@@ -106,8 +106,9 @@ class SeriesMotion:
     ``speed`` (speed,) [rad/s] of the pinion, ``damping_ratio`` (damping,). ``dynamic_factor``:
     greatest mesh force over its mean; ``contact_loss_share``: of time, out of drive-side contact;
     ``mesh_force_min`` [N], < 0 on the back flanks; each over the last turn that was followed, also
-    where that does not repeat another: ``repeats``. All parts at the first damping ratio, the
-    first :data:`AT_BOUNDS` at the others: nan for the rest, which does not repeat.
+    where that does not repeat another: ``repeats``. ``alike``: both starts of a part end on one
+    motion that repeats. All parts at the first damping ratio, the first :data:`AT_BOUNDS` at the
+    others: nan for the rest, which does not repeat.
     """
 
     speed: Floats
@@ -116,6 +117,7 @@ class SeriesMotion:
     contact_loss_share: Floats
     mesh_force_min: Floats
     repeats: NDArray[np.bool_]
+    alike: NDArray[np.bool_]
 
 
 def series_motion(
@@ -140,7 +142,7 @@ def series_motion(
     moves = np.isfinite(mesh.stiffness).all(axis=1) & (mesh.half_backlash.min(axis=1) > 0.0)
     shape = (damping_ratio.size, count, speed.size)
     factor, lost, least = np.full((3, *shape), np.nan)
-    repeats = np.zeros(shape, bool)
+    repeats, alike = np.zeros((2, *shape), bool)
     mean = mesh.stiffness.mean(axis=1)
     natural = np.sqrt(mean / mass)
     harmonics = (point.stiffness.shape[1] - 1) // point.mesh_periods
@@ -149,7 +151,8 @@ def series_motion(
         mesh_periods=mesh.mesh_periods, harmonics=harmonics, ahead=mesh.ahead, periodic=mesh.whole,
     )  # fmt: skip
     rate = 2.0 * np.pi * natural[:, None] / (mesh.pair.pinion.teeth * speed)
-    backlash, deep = mesh.half_backlash.mean(axis=1), load / mean
+    # the least of the turn: a hit is told rather than missed, contact kept is the same with any
+    backlash, deep = mesh.half_backlash.min(axis=1), load / mean
     within = int(np.count_nonzero(speed <= bounds_to * (1.0 + 1e-9)))
     for number, ratio in enumerate(damping_ratio):
         part = np.flatnonzero(moves[:AT_BOUNDS] if number else moves)
@@ -163,14 +166,14 @@ def series_motion(
         at, newton = (number, part, slice(count)), mean[part, None]
         most = newton * np.maximum(motions.greatest, -motions.least)
         factor[at], least[at] = most / load, newton * motions.least
-        lost[at], repeats[at] = motions.lost, motions.repeats
+        lost[at], repeats[at], alike[at] = motions.lost, motions.repeats, motions.alike
     slow = rate > 2.0 * np.pi / SLOWEST_PART
     for figure in (factor, lost, least):
         figure[:, slow] = np.nan
-    repeats[:, slow] = False
+    repeats[:, slow] = alike[:, slow] = False
     return SeriesMotion(
         speed=speed, damping_ratio=damping_ratio, dynamic_factor=factor, contact_loss_share=lost,
-        mesh_force_min=least, repeats=repeats,
+        mesh_force_min=least, repeats=repeats, alike=alike,
     )  # fmt: skip
 
 

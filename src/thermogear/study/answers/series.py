@@ -38,7 +38,7 @@ def speeds(asked: Asked) -> Iterator[Answer]:
         at, parts = asked.at(point), asked.series.get(point)
         if parts is None or asked.slow(point):
             why = asked.still(point) or asked.motionless(point)
-            for name in ("resonance", "contact_loss", "back_contact"):
+            for name in ("resonance", "contact_loss", "back_contact", "coexisting"):
                 yield undecided(SPEEDS, name, why, at=at)
             continue
         motion = parts.motion
@@ -50,10 +50,8 @@ def speeds(asked: Asked) -> Iterator[Answer]:
         lost, struck = motion.contact_loss_share > LOST, motion.mesh_force_min < 0.0
         yield _parting(parts, "contact_loss", lost, "Flanks part", at)
         yield _parting(parts, "back_contact", struck, "Teeth hit the back side", at)
-    why = (
-        "of a series the worse of two starts of each pair counts; ask for one part by flanks.parts"
-    )
-    yield undecided(SPEEDS, "coexisting", why)
+        unlike = np.isfinite(motion.dynamic_factor) & ~motion.alike
+        yield _parting(parts, "coexisting", unlike, "Two starts of a pair stay apart", at)
 
 
 def _parting(
