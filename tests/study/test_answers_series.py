@@ -63,10 +63,14 @@ def test_the_band_of_a_run_is_that_of_the_answers(series: Result) -> None:
     assert stored is not None
     speeds = stored["pinion_speed"].values[::9]
     band = over_speeds(case, case.series, [GearFamily(case, ("pinion_speed",))], speeds)
-    factor = band["series_dynamic_factor"].values[0][[0, 1, 3]]
-    assert np.array_equal(factor, stored["dynamic_factor"].values[0][..., ::9], equal_nan=True)
-    share = band["series_parting_share"].values[0]
-    assert np.array_equal(share, stored["parting_share"].values[0][:, ::9], equal_nan=True)
+    # at the bounds of the damping the answers go up to the own speed alone
+    up_to = speeds <= stored["own_speed"].values[0]
+    for place, some in enumerate([np.ones_like(up_to), *[up_to] * (len(case.dampings) - 1)]):
+        factor = band["series_dynamic_factor"].values[0][[0, 1, 3]][:, place, some]
+        answered = stored["dynamic_factor"].values[0][:, place, ::9][:, some]
+        assert np.array_equal(factor, answered, equal_nan=True)
+        share = band["series_parting_share"].values[0][place, some]
+        assert np.array_equal(share, stored["parting_share"].values[0][place, ::9][some])
 
 
 @pytest.fixture(scope="module")
@@ -111,7 +115,9 @@ def test_a_verdict_rests_on_the_bad_end_at_the_worst_damping(told: dict[str, Ans
     error = told["transmission_error"]
     assert error.value == error.figures["mesh_bad"] > error.figures["mesh_middle"]
     assert error.figures["turn_middle"] > 2.0 * error.figures["mesh_middle"]
-    assert told["coexisting"].verdict == OPEN
+    apart = told["coexisting"]  # 7000 rpm: contact is lost
+    assert apart.figures["parts"] == 16
+    assert apart.value == max(apart.figures["shares"])
 
 
 def test_pairs_that_part_are_counted(series: Result, told: dict[str, Answer]) -> None:
