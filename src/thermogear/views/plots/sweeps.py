@@ -56,8 +56,13 @@ def classes_of(data: Dataset) -> NDArray[np.int64]:
     label, period = data["label"].values, data["period"].values
     periodic = label == 1
     conditions = [
-        label > 3, label == 3, label == 2, periodic & (period > 8), periodic & (period > 6), periodic
-    ]  # fmt: skip
+        label > 3,
+        label == 3,
+        label == 2,
+        periodic & (period > 8),
+        periodic & (period > 6),
+        periodic,
+    ]
     numbers = [label + 7, 10, 8, 7, 6, np.clip(period, 1, 6) - 1]
     return np.asarray(np.select(conditions, numbers, default=9), np.int64)
 
