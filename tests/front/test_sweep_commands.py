@@ -179,26 +179,18 @@ torque = "80 N m"
 
 
 @pytest.mark.filterwarnings("ignore::thermogear.base.errors.ValidityWarning")
-def test_a_series_stands_behind_a_run_up_and_a_sweep(tmp_path):
+def test_a_sweep_has_columns_of_a_series(tmp_path):
     case = tmp_path / "series.toml"
     case.write_text(SERIES, encoding="utf-8")
-    rows = call(
-        "runup", case, "--rpm", "4000:4000:1", "--branch-period", 0, "--parts", 16,
-        "--state", "undeformed", "-o", tmp_path / "r", "--json",
-    )["series"]  # fmt: skip
-    assert [row["pairs"] for row in rows] == [16] * 3
-    assert all(row["low"] < row["median"] < row["bad"] < row["high"] for row in rows)
-    call(
-        "sweep", case, "--over", "damping=0.02:0.07:2", "-o", tmp_path / "s",
-        "--csv", tmp_path / "s.csv",
-    )  # fmt: skip
+    words = ("sweep", case, "--over", "damping=0.02:0.07:2", "--state", "undeformed")
+    call(*words, "-o", tmp_path / "s", "--csv", tmp_path / "s.csv")
     table = pd.read_csv(tmp_path / "s.csv")
     assert table["series_parts [–]"].tolist() == [16.0] * 2
     # the static error knows no damping
     assert table["series_static_error_bad [µm]"].nunique() == 1
     assert table["series_dynamic_factor_bad [–]"].nunique() == 2
     with pytest.raises(InputError, match=r"^parts: got 3; allowed 1 \| 16..1024$"):
-        call("sweep", case, "--over", "torque=60:80:2", "--parts", 3, "-o", tmp_path / "w")
+        call(*words, "--parts", 3, "-o", tmp_path / "w")
 
 
 def test_a_run_up_is_run_in_the_state_it_is_given(cases, tmp_path):

@@ -55,11 +55,12 @@ def classes_of(data: Dataset) -> NDArray[np.int64]:
     """Numbers into :data:`CLASSES` from stored label and period."""
     label, period = data["label"].values, data["period"].values
     periodic = label == 1
-    kinds = (
-        (label > 3, label + 7), (label == 3, 10), (label == 2, 8), (periodic & (period > 8), 7),
-        (periodic & (period > 6), 6), (periodic, np.clip(period, 1, 6) - 1),
-    )  # fmt: skip
-    return np.asarray(np.select(*zip(*kinds, strict=True), default=9), np.int64)
+    long, longer = periodic & (period > 6), periodic & (period > 8)
+    return np.select(
+        [label > 3, label == 3, label == 2, longer, long, periodic],
+        [label.astype(np.int64) + 7, 10, 8, 7, 6, np.clip(period, 1, 6) - 1],
+        default=9,
+    )
 
 
 def class_words(data: Dataset) -> list[str]:
