@@ -155,6 +155,44 @@ def test_run_up_and_sweep_of_the_rig(cases, tmp_path):
     assert (tmp_path / "s" / "report.html").exists()
 
 
+SERIES = """[gears]
+module = "3 mm"
+face_width = "30 mm"
+pinion = { teeth = 20 }
+wheel = { teeth = 20 }
+[oil]
+name = "ISO VG 100"
+temperature = "80 degC"
+[temperatures]
+pinion_addendum = "90 degC"
+wheel_addendum = "90 degC"
+pinion_bore = "80 degC"
+wheel_bore = "80 degC"
+housing = "60 degC"
+[grid]
+mesh_positions = 32
+harmonics = 6
+[operating]
+speed = "4000 rpm"
+torque = "80 N m"
+"""
+
+
+@pytest.mark.filterwarnings("ignore::thermogear.base.errors.ValidityWarning")
+def test_a_sweep_has_columns_of_a_series(tmp_path):
+    case = tmp_path / "series.toml"
+    case.write_text(SERIES, encoding="utf-8")
+    words = ("sweep", case, "--over", "damping=0.02:0.07:2", "--state", "undeformed")
+    call(*words, "-o", tmp_path / "s", "--csv", tmp_path / "s.csv")
+    table = pd.read_csv(tmp_path / "s.csv")
+    assert table["series_parts [–]"].tolist() == [16.0] * 2
+    # the static error knows no damping
+    assert table["series_static_error_bad [µm]"].nunique() == 1
+    assert table["series_dynamic_factor_bad [–]"].nunique() == 2
+    with pytest.raises(InputError, match=r"^parts: got 3; allowed 1 \| 16..1024$"):
+        call(*words, "--parts", 3, "-o", tmp_path / "w")
+
+
 def test_a_run_up_is_run_in_the_state_it_is_given(cases, tmp_path):
     words = [cases / "rig.toml", "--rpm", "4200:4400:2", "--branch-period", 0]
     states = {"hot": [20.0, 140.0], "60": [20.0, 60.0], "undeformed": [20.0]}

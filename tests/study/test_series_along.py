@@ -15,6 +15,7 @@ from thermogear.study.run_up import run_up, run_up_plan
 from thermogear.study.series import Series, Spread
 from thermogear.study.series_along import at_points, over_speeds
 from thermogear.study.sweep import sweep_plan
+from thermogear.views.pages.sweeps import numbers
 
 pytestmark = pytest.mark.filterwarnings("ignore::thermogear.base.errors.ValidityWarning")
 CASE = """[gears]
@@ -59,7 +60,8 @@ def case() -> GearCase:
 def test_a_run_of_a_part_is_inside_the_band_where_the_series_has_it(case: GearCase) -> None:
     """Each part as a case of its own, followed over its turn by the other integrator."""
     speeds = SPEEDS[2:]
-    data = run_up(case, speeds, temperatures=[None], branch_period=0).data
+    result = run_up(case, speeds, temperatures=[None], branch_period=0)
+    data = result.data
     assert data["series_dynamic_factor"].dims == ("state", "quantile", "damping", "pinion_speed")
     low, median, bad, high = data["series_dynamic_factor"].values[0, :, 0, 0]
     assert low < median < bad < high
@@ -79,6 +81,9 @@ def test_a_run_of_a_part_is_inside_the_band_where_the_series_has_it(case: GearCa
     drawn = case_of("flanks.parts=1", "flanks.teeth=drawn", "flanks.drawing=5", "gears.period=turn")
     own = run_up(drawn, speeds, temperatures=[None], branch_period=0).data
     assert own["dynamic_factor"].values[0, 0, 0] == pytest.approx(factor[5], rel=0.01)
+    row = numbers(result)["series"][0]
+    assert [row[name] for name in ("low", "median", "bad", "high")] == [low, median, bad, high]
+    assert (row["pairs"], row["speed_rpm"]) == (16, pytest.approx(4000.0))
     (notice,) = coded(data.attrs["notices"])["run_of_a_series"]
     assert (notice["parts"], notice["own"], notice["periods"]) == (16, 1, None)
     assert (notice["slow"], notice["bad"], notice["speed"]) == (None, bad, speeds[0])

@@ -86,8 +86,7 @@ def _over(words: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
 _parts = click.option(
     "--parts", type=int, metavar="N",
     help="Pairs of the series of a case with a class: 16 to 1024, 1: none. Default: of a run-up as "
-    "many as the case states, at each point of a sweep 16, which cost some 0.2 s of processor time "
-    "there (a turn of up to 200 mesh periods).",
+    "many as the case states, at each point of a sweep 16, which cost 0.1 to 0.9 s there.",
 )  # fmt: skip
 
 

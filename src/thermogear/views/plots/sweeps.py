@@ -55,16 +55,12 @@ def classes_of(data: Dataset) -> NDArray[np.int64]:
     """Numbers into :data:`CLASSES` from stored label and period."""
     label, period = data["label"].values, data["period"].values
     periodic = label == 1
-    conditions = [
-        label > 3,
-        label == 3,
-        label == 2,
-        periodic & (period > 8),
-        periodic & (period > 6),
-        periodic,
-    ]
-    numbers = [label + 7, 10, 8, 7, 6, np.clip(period, 1, 6) - 1]
-    return np.asarray(np.select(conditions, numbers, default=9), np.int64)
+    long, longer = periodic & (period > 6), periodic & (period > 8)
+    return np.select(
+        [label > 3, label == 3, label == 2, longer, long, periodic],
+        [label.astype(np.int64) + 7, 10, 8, 7, 6, np.clip(period, 1, 6) - 1],
+        default=9,
+    )
 
 
 def class_words(data: Dataset) -> list[str]:
