@@ -270,10 +270,12 @@ def test_a_motion_goes_through_the_records_own_chain() -> None:
 
 
 def made_record(name: str, rpm: float, micrometres: float) -> Record:
-    """A shaft of 25 teeth at ``rpm``, its mesh line and its own."""
+    """A shaft of 25 teeth at ``rpm``, its mesh line with sidebands and its own."""
     rate, mesh = 12_800.0, 25 * rpm / 60.0
     turn = 2.0 * np.pi * mesh * np.arange(1 << 13) / rate
-    swing = micrometres * (np.cos(turn + 0.4) + 0.5 * np.cos(turn / 25.0))
+    swell = 1.0 + 0.1 * np.cos(turn / 25.0)
+    waves = np.cos(turn + 0.4) + 0.1 * np.cos(3.0 * turn)
+    swing = micrometres * (swell * waves + 0.5 * np.cos(turn / 25.0))
     noise = np.random.default_rng(3).normal(0.0, 0.5, turn.size)
     readings = -((2.0 * np.pi * mesh) ** 2) * 1e-6 * swing + noise
     return Record((Channel("a", readings, "m/s^2"),), name, rate, "made")
