@@ -92,7 +92,6 @@ def _settings(found: Measurement) -> dict[str, Any]:
         f"bin_width_{'Hz' if rate else 'cycles_per_sample'}": (rate or 1.0) / found.samples,
         f"band_{'Hz' if rate else 'cycles_per_sample'}": chain.band,
         "taps": chain.taps,
-        f"low_cut_{'Hz' if rate else 'cycles_per_sample'}": chain.low_cut,
     }
 
 

@@ -12,7 +12,7 @@ from functools import cached_property
 from math import ceil
 
 import numpy as np
-from scipy import stats
+from scipy import special
 
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
@@ -54,6 +54,7 @@ _OVER, _FEWER_OVER = (
 _TRIED_LINES = 8
 _WRONG = (2.0, 0.5, 10.0, 0.1, 2.56, 1.0 / 2.56)  # times a rate that is stated wrong
 _WHOLE = 0.02  # of a turn
+_STEADY = 0.02  # cycles: a thirtieth of its height beside the third harmonic
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -290,6 +291,8 @@ class _Search:
         angle = _angle(self.table, mesh)
         if angle is not None:
             cycles, dropped, mesh = angle
+            sharp = replace(sharp, per_unit=self.raw.per_unit * mesh)
+        if angle is not None and _wanders(cycles, mesh):
             per_cycle = samples_per_cycle(mesh)
             kept = self.table[:, dropped : dropped + cycles.size]
             straight = resample_by_angle(kept, cycles, samples_per_turn=per_cycle)
@@ -354,7 +357,7 @@ def _is_confirmed(sharp: Prominence, ranks: Sequence[int], distance: float) -> b
     anywhere = np.linspace(*_ANYWHERE, _TRIED)
     share = np.mean([clear for away in anywhere for clear in _clear(sharp, [top], away)] or [True])
     chances = [
-        stats.binom.sf(sum(sides) - 1, len(sides), max(float(share), 1.0 / _TRIED))
+        special.bdtrc(sum(sides) - 1, len(sides), max(float(share), 1.0 / _TRIED))
         for about in ([top], ranks)
         if (sides := _clear(sharp, about, distance))
     ]
@@ -441,6 +444,12 @@ def _angle(table: Floats, mesh: float) -> tuple[Floats, int, float] | None:
     if np.any(np.diff(cycles) <= 0):
         return None
     return cycles, dropped, float(np.polyfit(np.arange(cycles.size), cycles, 1)[0])
+
+
+def _wanders(cycles: Floats, mesh: float) -> bool:
+    """Whether a line's cycles leave an even turning by what three times as many would show."""
+    off = cycles - mesh * np.arange(cycles.size)
+    return bool(np.ptp(off) > _STEADY)
 
 
 def _near(count: int, frequency: float) -> slice:

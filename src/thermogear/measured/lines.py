@@ -242,13 +242,7 @@ def channel_lines(
     factor = channel.si_factor if known else 1.0
     accelerates = known and channel.unit is not None and kind_of(channel.unit) == "acceleration"
     moves = known and channel.unit is not None and kind_of(channel.unit) == "displacement"
-    through = reduced(
-        values * factor,
-        rate,
-        chain,
-        accelerates and record.rate is not None,
-        turns.turning if turns else None,
-    )
+    through = reduced(values * factor, rate, turns.turning if turns else None)
     strong = strong_lines(through.spectrum)
     bin_width = through.spectrum.bin_width * through.axis / rate
     peaks = [(one.place * bin_width, abs(one.amplitude)) for one in strong]
@@ -263,7 +257,8 @@ def channel_lines(
     speed = 2 * np.pi * rate * shaft if in_hertz else float("nan")
     share = turns.half_width / turns.frequency if turns else float("nan")
     for want in wanted:
-        line, displacement = through.read(want.position * rate, half_width=want.half_width * rate)
+        reach = want.half_width * rate
+        line = through.read(want.position * rate, half_width=reach, window=chain.window)
         sides = _sides(gearing, teeth, want)
         beside = [p * rate / through.axis for p in [*places, *sides]]
         expected = want.position * rate / through.axis
@@ -271,7 +266,7 @@ def channel_lines(
         if want.kind in ("order", "sideband"):
             reading = _read_known(through.spectrum, expected, beside, strong, followed)
         else:
-            near = line.frequency / through.axis
+            near = line.frequency
             # as many bins that tell of the noise as where nothing was followed
             taken = min(int(followed / through.spectrum.bin_width), REACH)
             reading = read_line(
@@ -289,7 +284,7 @@ def channel_lines(
             own_sides = [p * rate / through.axis for p in sides]
             single = read_line(
                 through.spectrum,
-                line.frequency / through.axis,
+                line.frequency,
                 beside=own_sides,
                 strong=strong,
                 followed=followed,
@@ -323,8 +318,9 @@ def channel_lines(
             off = abs(position - want.position) if other else 0.0  # its own place is known
         amplitude *= 0.5 * (low + high)
         relative += (high - low) / (high + low)
-        # the chain's displacement, read as the acceleration was
-        displacement *= amplitude / line.amplitude if line.amplitude > 0.0 else 1.0
+        displacement = amplitude if moves else float("nan")
+        if accelerates and in_hertz:
+            displacement = chain.displacement(amplitude, frequency=position * rate, rate=rate)
         own = reading.frequency_half_width * through.axis / rate + off
         if turns is not None:
             more = turns.spread if turns.turning is None else turns.half_width
@@ -347,11 +343,7 @@ def channel_lines(
                     frequency=position * rate if in_hertz else float("nan"),
                     reading=amplitude / factor,
                     acceleration=amplitude if accelerates else float("nan"),
-                    displacement=amplitude
-                    if moves
-                    else displacement
-                    if accelerates and in_hertz
-                    else float("nan"),
+                    displacement=displacement,
                     uncertainty=half_width / _NORMAL,
                     bin_offset=line.bin_offset,
                     prominence=line.prominence,

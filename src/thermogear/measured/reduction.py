@@ -115,7 +115,6 @@ class Measurement:
             "method": METHODS[self.chain.method],
             "band": "none" if band is None else f"{band[0]:.6g}..{band[1]:.6g} {unit}",
             "taps": "none" if taps is None else str(taps),
-            "low cut": "none" if self.chain.low_cut is None else f"{self.chain.low_cut:.6g} {unit}",
             "amplitudes": "peak",
         }
 
@@ -384,11 +383,7 @@ def _filtered(chain: Chain, rate: float, mesh: float, gearing: Gearing | None) -
     """Whether the band's filter weakens the line at ``mesh`` [Hz] by more than 1 %."""
     band = chain.filter(rate)
     if band is not None and gearing is not None and abs(float(band.gain(mesh)) - 1) > 0.01:
-        yield Notice.of(
-            "filter_weakens_mesh_line" if chain.method == "trapezoid" else "filter_divided_out",
-            taps=band.taps,
-            gain=float(band.gain(mesh)),
-        )
+        yield Notice.of("filter_weakens_mesh_line", taps=band.taps, gain=float(band.gain(mesh)))
 
 
 def require_teeth(teeth: int | None) -> None:

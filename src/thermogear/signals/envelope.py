@@ -109,9 +109,11 @@ def _whitened(spectrum: NDArray[np.complex128]) -> tuple[NDArray[np.complex128],
 
 def _around(power: Floats, reach: int) -> Floats:
     """Mean power of noise from medians over ``reach`` bins, straight between their middles."""
-    edge = np.arange(0, power.size, reach)
-    middle = np.array([np.median(power[i : i + reach]) for i in edge]) / np.log(2.0)
-    return np.asarray(np.interp(np.arange(power.size), edge + 0.5 * reach, middle))
+    reach = min(reach, power.size)
+    whole = power[: power.size // reach * reach].reshape(-1, reach)
+    middle = np.append(np.median(whole, axis=1), np.median(power[-reach:])) / np.log(2.0)
+    places = np.append(np.arange(len(whole)) * reach, power.size - reach) + 0.5 * reach
+    return np.asarray(np.interp(np.arange(power.size), places, middle))
 
 
 def _clearest(
