@@ -128,9 +128,7 @@ def drawn(random: np.random.Generator, kind: str) -> Drawn:
         pulses = float(kind.split()[1])
         channels.append(Channel("tacho", 5.0 * ((turns * pulses) % 1.0 < 0.4), "V"))
     wrong = float(random.choice([2.0, 0.5])) if kind == "wrong header rate" else 1.0
-    made = Record(
-        tuple(channels), kind, RATE * wrong, "made", tacho="tacho" if pulses else None
-    )
+    made = Record(tuple(channels), kind, RATE * wrong, "made", tacho="tacho" if pulses else None)
     mean = teeth * float(turns[-1] - turns[0]) / (t[-1] - t[0])
     return Drawn(kind, made, teeth, shaft, mean, first, pulses, wrong)
 
@@ -215,8 +213,8 @@ def page() -> str:
         lines.append(f"| **all** | {facts} | {cells} |")
     share = [held["all amplitude"], held["all amplitudes"], held["all frequency"],
              held["all frequencies"]]  # fmt: skip
-    lines += ["", f"Intervals of 95 % that hold what was put in: amplitudes {share[0]} of {share[1]}, "
-              f"frequencies {share[2]} of {share[3]}.", ""]  # fmt: skip
+    lines += ["", "Intervals of 95 % that hold what was put in: amplitudes "
+              f"{share[0]} of {share[1]}, frequencies {share[2]} of {share[3]}.", ""]  # fmt: skip
     return "\n".join(lines)
 
 

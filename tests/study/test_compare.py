@@ -328,8 +328,8 @@ def test_speeds_are_one_for_all_or_one_of_each() -> None:
 
 
 def test_a_record_of_another_speed_is_not_judged() -> None:
+    record = made_record("low", 1000.5, 10.0, swells=0.0)
     with pytest.raises(InputError) as refused:
-        record = made_record("low", 1000.5, 10.0, swells=0.0)
         compare("thesis-5.2", record, teeth=25, speed=2000.0 * RPM)
     assert numbers(str(refused.value))[:1] == [2000.0]
     assert "is that of 1000.5 rpm and 25 teeth; leave the speed out" in str(refused.value)

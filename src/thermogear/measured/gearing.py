@@ -17,7 +17,8 @@ from scipy import special
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.measured.prominence import Prominence, prominence
-from thermogear.signals.orders import line_angle, resample_by_angle, samples_per_cycle
+from thermogear.signals.following import follow_line
+from thermogear.signals.orders import resample_by_angle, samples_per_cycle
 from thermogear.signals.spectra import amplitude_spectrum
 
 LONGEST = 1 << 19
@@ -290,12 +291,11 @@ class _Search:
         sharp = replace(self.raw, per_unit=self.raw.per_unit * mesh)
         angle = _angle(self.table, mesh)
         if angle is not None:
-            cycles, dropped, mesh = angle
+            cycles, mesh = angle
             sharp = replace(sharp, per_unit=self.raw.per_unit * mesh)
         if angle is not None and _wanders(cycles, mesh):
             per_cycle = samples_per_cycle(mesh)
-            kept = self.table[:, dropped : dropped + cycles.size]
-            straight = resample_by_angle(kept, cycles, samples_per_turn=per_cycle)
+            straight = resample_by_angle(self.table, cycles, samples_per_turn=per_cycle)
             sharp = prominence(straight, float(per_cycle))
         top = max(1, min(_AROUND, int(0.45 / mesh)))
         ranks = [rank for rank in range(1, top + 1) if sharp.at(rank) > _STANDS]
@@ -429,8 +429,8 @@ def _line(raw: Prominence, near: float) -> _Line:
     )
 
 
-def _angle(table: Floats, mesh: float) -> tuple[Floats, int, float] | None:
-    """Cycles of the mesh line at each sample, samples dropped and the mean mesh line."""
+def _angle(table: Floats, mesh: float) -> tuple[Floats, float] | None:
+    """Cycles of the mesh line at each sample, and the mean mesh line."""
     half = max(_NARROW * mesh, 12.0 / table.shape[-1])
     if half > 0.2 * mesh:
         return None
@@ -440,10 +440,10 @@ def _angle(table: Floats, mesh: float) -> tuple[Floats, int, float] | None:
         for c in table
     ]
     best = table[int(np.argmax(heights))]
-    cycles, dropped = line_angle(best, frequency=mesh, half_width=half)
+    cycles = follow_line(best, 1.0, frequency=mesh, half_width=half, cut=False).cycles
     if np.any(np.diff(cycles) <= 0):
         return None
-    return cycles, dropped, float(np.polyfit(np.arange(cycles.size), cycles, 1)[0])
+    return cycles, float(np.polyfit(np.arange(cycles.size), cycles, 1)[0])
 
 
 def _wanders(cycles: Floats, mesh: float) -> bool:

@@ -17,8 +17,7 @@ from thermogear.measured.record import Channel, Record
 from thermogear.measured.turns import MeshTurns, unfollowed
 from thermogear.measured.units import kind_of
 from thermogear.signals.interval import APART, REACH, Reading, read_line
-from thermogear.signals.lines import LineSpectrum
-from thermogear.signals.spectra import amplitude_spectrum
+from thermogear.signals.lines import LineSpectrum, line_spectrum
 from thermogear.signals.strong import Strong, strong_lines
 
 _NORMAL = 1.959964  # standard deviations of a normal law that hold 95 %
@@ -146,18 +145,13 @@ def wanted_lines(
     count = values.size
     bins = 3.0 / count
     if gearing is None:
-        spectrum = amplitude_spectrum(values - values.mean(), 1.0, "hann")
-        tops = np.argsort(-spectrum.amplitudes[3:-3])[: 8 * harmonics] + 3
-        found: list[Wanted] = []
-        for top in tops:
-            place = float(top) / count
-            if all(abs(place - other.position) > 2 * bins for other in found):
-                found.append(
-                    Wanted("line", f"line {len(found) + 1}", position=place, half_width=bins)
-                )
-        return found[:harmonics]
+        strong = strong_lines(line_spectrum(values, 1.0), harmonics)
+        return [
+            Wanted("line", f"line {k}", position=one.place / count, half_width=bins)
+            for k, one in enumerate(strong, 1)
+        ]
     mesh = gearing.mesh_frequency
-    found = []
+    found: list[Wanted] = []
     for rank in range(1, harmonics + 1):
         if 2.56 * rank * mesh > 1.0:  # not above rate/2.56
             break

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import fft, ndimage, signal
+from scipy import fft, ndimage
 
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
@@ -42,44 +42,6 @@ def rising_edges(pulses: ArrayLike, *, rate: float, level: float | None = None) 
 
 
 _MANY = 1000  # turns
-
-
-def line_angle(x: ArrayLike, *, frequency: float, half_width: float) -> tuple[Floats, int]:
-    """Cycles of the line near ``frequency`` at each sample, from its phase; and samples dropped.
-
-    The record is shifted by -frequency, low-passed to +-``half_width`` (a Hann-shaped FIR, delay
-    removed, edges dropped) and its phase unwrapped: frequency n + phase/(2 pi). ``frequency`` and
-    ``half_width`` [cycles/sample]. The result belongs to samples dropped .. N - dropped.
-
-    Speed changes are followed as far as they stay inside the half width: keep it below the
-    distance to the next line.
-
-    >>> x = np.cos(2 * np.pi * 0.1 * np.arange(2000))
-    >>> cycles, _ = line_angle(x, frequency=0.1, half_width=0.02)
-    >>> f"{np.diff(cycles).mean():.4f} cycles per sample"
-    '0.1000 cycles per sample'
-    """
-    values = finite_record(x)
-    if not 0 < half_width <= frequency < 0.5:
-        raise InputError(
-            "half_width", f"{half_width:g} at {frequency:g}", allowed="0 < half width <= f < 0.5"
-        )
-    # the first zero of a Hann-shaped kernel of L samples lies 2/L off
-    length = int(np.ceil(2.0 / half_width)) // 2 * 2 + 1
-    if values.size <= 2 * length:
-        raise InputError(
-            "half_width",
-            half_width,
-            allowed=f"above {4.0 / values.size:.3g} cycles/sample for {values.size} samples",
-        )
-    kernel = np.hanning(length + 2)[1:-1]
-    kernel /= kernel.sum()
-    turn = np.exp(-2j * np.pi * frequency * np.arange(values.size))
-    base = signal.oaconvolve((values - values.mean()) * turn, kernel, mode="valid")
-    dropped = (length - 1) // 2
-    place = np.arange(dropped, dropped + base.size)
-    angle = np.asarray(frequency * place + np.unwrap(np.angle(base)) / (2.0 * np.pi), float)
-    return angle, dropped
 
 
 def samples_per_cycle(frequency: float) -> int:
