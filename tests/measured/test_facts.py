@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from said import numbers
 from thermogear.measured.figures import figures
 from thermogear.measured.record import Channel, Record
 from thermogear.measured.reduction import Measurement, measure
@@ -46,7 +47,7 @@ def test_facts_place_the_line_however_high_the_unbalance_is() -> None:
     assert found.teeth == TEETH
     (own,) = [one for one in found.readings if one.name == "shaft x 1"]
     assert own.reading == pytest.approx(1.5, rel=0.01)
-    assert headline(figures(found)).startswith("Mesh line of 32 teeth at 949.3")
+    assert numbers(headline(figures(found)))[:2] == pytest.approx([32.0, 949.34], abs=0.01)
 
 
 def test_without_facts_nothing_is_said_of_gears() -> None:
@@ -61,7 +62,7 @@ def test_multiples_of_a_known_shaft_are_its_lines() -> None:
     found = read(unbalance(), speed=1.01 * SPEED)
     names = {one.name: one for one in found.readings}
     assert found.teeth is None
-    assert names["shaft x 1"].order == pytest.approx(1.0)
+    assert names["shaft x 1"].order == pytest.approx(1.0, rel=1e-4)
     assert names["shaft x 32"].reading == pytest.approx(0.3, rel=0.01)
 
 

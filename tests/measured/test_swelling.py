@@ -9,7 +9,7 @@ from scipy import signal, stats
 from thermogear.measured.figures import figures
 from thermogear.measured.record import Channel, Record
 from thermogear.measured.reduction import measure
-from thermogear.measured.swelling import Swelling, defects_of
+from thermogear.measured.swelling import PARTS, Swelling, defects_of
 from thermogear.study.bearing_rates import bearing_rates
 
 RATE = 12_800.0
@@ -60,10 +60,10 @@ def test_an_inner_race_is_found_by_lines_a_turn_beside_its_rate() -> None:
         (3.572, 5.428, 0.397), abs=1e-3
     )
     (inner,) = defects_of(swells(1.0, 4.37, 3.37), own)
-    assert (inner.part, inner.side_lines) == ("inner race", True)
+    assert (inner.part, inner.side_lines) == (PARTS[1], True)
     assert inner.order == pytest.approx(5.37)
     (outer,) = defects_of(swells(3.55), own)
-    assert outer.part == "outer race"
+    assert outer.part == PARTS[0]
     assert defects_of(swells(2.5), own) == ()
 
 

@@ -104,15 +104,15 @@ class Gearing:
         """
         if self.teeth is not None:
             return "mesh", f"mesh x {rank}"
-        order = shaft_order(self.mesh_frequency, self.turning)
+        order = shaft_order(self.mesh_frequency, shaft=self.turning)
         return ("shaft", f"shaft x {rank * order}") if order else ("line", f"line x {rank}")
 
 
-def shaft_order(place: float, shaft: float | None) -> int:
+def shaft_order(place: float, *, shaft: float | None) -> int:
     """The multiple of a ``shaft`` [turns/sample] that a line at ``place`` [cycles/sample] is,
     within 2 % of a turn; 0: none.
 
-    >>> shaft_order(0.0305, 0.01), shaft_order(0.03, 0.01)
+    >>> shaft_order(0.0305, shaft=0.01), shaft_order(0.03, shaft=0.01)
     (0, 3)
     """
     order = 0.0 if shaft is None else place / shaft
@@ -208,8 +208,8 @@ class _Search:
         lines.sort(key=lambda line: -line.score)
         close = [line for line in lines if abs(line.line / place - 1.0) <= _CLOSE]
         close = [line for line in close if line.heights[0] > _THERE][:1]
-        found = [self.of(line)[0] for line in (lines[:_RIVALS] if self.teeth else [])]
-        gearing = next((one for one in found if one.confirmed), None)
+        tried = [self.of(line)[0] for line in (lines[:_RIVALS] if self.teeth else [])]
+        gearing = next((trial for trial in tried if trial.confirmed), None)
         if gearing is None and close:
             gearing, *_ = self.of(close[0])
         if gearing is None:
@@ -254,7 +254,7 @@ class _Search:
         tried: list[_Line] = []
         for line in self.lines[:_TRIED_LINES]:
             low, high = (line.mesh / shaft / (1.0 + sign * _CLOSE) for sign in (1, -1))
-            if high < FEWEST or any(self._is_harmonic(line, one.mesh) for one in tried):
+            if high < FEWEST or any(self._is_harmonic(line, other.mesh) for other in tried):
                 continue
             gearing, sharp, ranks = self.of(line)
             cycles = self.table.shape[-1] * line.mesh
@@ -276,11 +276,13 @@ class _Search:
         return rivals[:_RIVALS]
 
     def _is_harmonic(self, line: _Line, mesh: float) -> bool:
+        """Whether a line is another or its multiple; of one that wanders every peak is."""
         rank = round(line.mesh / mesh)
-        return rank >= 1 and abs(line.mesh - rank * mesh) * self.raw.per_unit < rank * _BINS
+        off = abs(line.mesh - rank * mesh)
+        return rank >= 1 and off < rank * max(_BINS / self.raw.per_unit, _NARROW * mesh)
 
     def of(self, line: _Line) -> tuple[Gearing, Prominence, list[int]]:
-        """The gearing with this line as the mesh line, what stands out in its angle, and which of
+        """The gearing with this line as the mesh line, what shows in its angle, and which of
         its first harmonics do."""
         if line.mesh not in self._known:
             self._known[line.mesh] = self._of(line)
@@ -320,7 +322,7 @@ def _is_alone(sharp: Prominence, ranks: Sequence[int], teeth: int, *, cycles: fl
     A line of another origin is as near to a whole multiple of the shaft by a chance of 2 x 0.25
     bins; that is a tenth or less from 5 ``teeth`` turns on. Sidebands at half of the distance would
     be those of twice the teeth. Of the comb of a shaft every line has such neighbours: a mesh line
-    stands over those beside it, about most of its harmonics.
+    is the highest of the seven about each of its harmonics, by a chance of 1/343 about three.
     """
     if cycles < 5.0 * teeth**2:
         return False

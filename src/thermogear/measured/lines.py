@@ -210,7 +210,7 @@ def other_lines(
         if size < least or len(found) == _OTHERS:
             break
         if not explained(place) and 3.0 * width < place < 0.5 - 3.0 * width:
-            order = shaft_order(place, shaft)
+            order = shaft_order(place, shaft=shaft)
             name = f"line at {place / mesh:.4g} {'mesh' if gearing.teeth else 'times line x 1'}"
             name = name if shaft is None else f"order {place / shaft:.4g}"
             kind, name = ("shaft", f"shaft x {order}") if order else ("line", name)

@@ -202,12 +202,12 @@ def _named_as(row: Row, base: Row) -> Row:
     their places tell."""
     names = dict(zip(row.harmonics, base.harmonics, strict=False))
 
-    def renamed(one: dict[tuple[str, str], _Value]) -> dict[tuple[str, str], _Value]:
-        found = {}
-        for (channel, name), value in one.items():
-            own, sign, side = name.partition(" - " if " - " in name else " + ")
-            found[channel, names.get(own, own) + sign + side] = value
-        return found
+    def renamed(values: dict[tuple[str, str], _Value]) -> dict[tuple[str, str], _Value]:
+        named = {}
+        for (channel, name), value in values.items():
+            line, sign, side = name.partition(" - " if " - " in name else " + ")
+            named[channel, names.get(line, line) + sign + side] = value
+        return named
 
     return replace(row, readings=renamed(row.readings), places=renamed(row.places))
 

@@ -164,32 +164,32 @@ def defects_of(
     >>> [(one.part, one.side_lines) for one in defects_of(seen, [own])]
     [('inner race', True)]
     """
-    orders = np.array([one.order for one in swellings if one.order is not None])
+    orders = np.array([rate.order for rate in swellings if rate.order is not None])
     if not bearings or not orders.size:
         return ()
-    rates = [(own.name, part, own.order(part)) for own in bearings for part in PARTS]
+    rates = [(bearing.name, part, bearing.order(part)) for bearing in bearings for part in PARTS]
     ends = min(rate for *_, rate in rates) / 1.1, max(rate for *_, rate in rates) * 1.1
     grid = np.geomspace(*ends, 10_000)
     covered = float(np.mean(np.any([_hits(grid, rate) for *_, rate in rates], axis=0)))
     chance = 1.0 - (1.0 - covered) ** orders.size
-    found = [
+    defects = [
         Defect(bearing=bearing, part=part, expected=rate, order=float(order), chance=chance)
         for bearing, part, rate in rates
         for order in orders[_hits(orders, rate)][:1]
     ]
-    turning = [own.order("inner race") for own in bearings]
-    beside = np.any([_hits(grid, rate, SIDES) for rate in turning], axis=0)
-    apart = orders[:, None] - orders[None, :]
-    whole = (np.abs(apart - np.rint(apart)) < _WHOLE) & (np.rint(apart) != 0.0)
+    turning = [bearing.order("inner race") for bearing in bearings]
+    windows = np.any([_hits(grid, rate, SIDES) for rate in turning], axis=0)
+    distance = orders[:, None] - orders[None, :]
+    whole = (np.abs(distance - np.rint(distance)) < _WHOLE) & (np.rint(distance) != 0.0)
     paired = orders[whole.any(axis=0) & (np.abs(orders - np.rint(orders)) > _WHOLE)]
     pairs = orders.size * (orders.size - 1) / 2.0
-    chance = min(1.0, pairs * 2.0 * _WHOLE * float(np.mean(beside)))
-    for own, rate in zip(bearings, turning, strict=True):
+    chance = min(1.0, pairs * 2.0 * _WHOLE * float(np.mean(windows)))
+    for named, rate in zip(bearings, turning, strict=True):
         for order in paired[_hits(paired, rate, SIDES)][:1]:
-            place = min(order + SIDES, key=lambda one: abs(one - rate))
-            found.append(
+            place = min(order + SIDES, key=lambda side: abs(side - rate))
+            defects.append(
                 Defect(
-                    bearing=own.name,
+                    bearing=named.name,
                     part="inner race",
                     expected=rate,
                     order=float(place),
@@ -197,7 +197,8 @@ def defects_of(
                     chance=chance,
                 )
             )
-    return tuple(sorted((one for one in found if one.chance <= 0.5), key=lambda one: one.chance))
+    likely = (defect for defect in defects if defect.chance <= 0.5)
+    return tuple(sorted(likely, key=lambda defect: defect.chance))
 
 
 def _hits(

@@ -85,9 +85,9 @@ def envelope_rates(x: ArrayLike, most: int = 5) -> tuple[Envelope, ...]:
                 band = start / count, (start + width) / count
                 seen.append(Envelope(rate=place / count, band=band, powers=powers, chance=chance))
     rates: list[Envelope] = []
-    for one in sorted(seen, key=lambda one: (one.chance, -sum(one.powers))):
-        if not any(_is_harmonic(one.rate * count, other.rate * count) for other in rates):
-            rates.append(one)
+    for clear in sorted(seen, key=lambda rate: (rate.chance, -sum(rate.powers))):
+        if not any(_is_harmonic(clear.rate * count, other.rate * count) for other in rates):
+            rates.append(clear)
     return tuple(rates[:most])
 
 

@@ -13,16 +13,16 @@ def bearing_rates(names: Sequence[str] = ()) -> tuple[BearingRates, ...]:
 
     Raises InputError for a name that the catalogue has not.
 
-    >>> [f"{own.outer:.2f} {own.inner:.2f}" for own in bearing_rates(["6205"])]
+    >>> [f"{b.outer:.2f} {b.inner:.2f}" for b in bearing_rates(["6205"])]
     ['3.57 5.43']
     """
     chosen = [catalogue_bearing(name) for name in names] or list(CATALOGUE.values())
     return tuple(
         BearingRates.of(
-            own.designation,
-            elements=own.elements,
-            ratio=own.ratio,
-            contact_angle=own.contact_angle,
+            bearing.designation,
+            elements=bearing.elements,
+            ratio=bearing.ratio,
+            contact_angle=bearing.contact_angle,
         )
-        for own in chosen
+        for bearing in chosen
     )
