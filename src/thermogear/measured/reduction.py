@@ -183,9 +183,12 @@ def measure(
     if changing is not None:
         gearing, teeth, turns = changing.gearing, changing.teeth, changing.turns
     else:
-        shaft = None if speed is None or not record.rate else speed / (2 * np.pi) / record.rate
         gearing = stated_gearing(
-            through.table, notices, expected=expected, teeth=teeth, shaft=shaft
+            through.table,
+            notices,
+            expected=expected,
+            teeth=teeth,
+            shaft=_turns(record, speed),
         )
         teeth = teeth or (gearing.teeth if gearing else None)
     if changing is not None and changing.slices is not None:
@@ -249,8 +252,7 @@ def measure(
     )
     notices += dict.fromkeys(turns.told) if turns is not None else []
     lines = [of_velocity(line, record.channel(line.channel)) for line in lines]
-    notices += _hidden(lines)
-    notices += _untold(record, chosen, sensor_tolerance)
+    notices += [*_hidden(lines), *_untold(record, chosen, sensor_tolerance)]
     notices += _filtered(wanted, rate, mesh, gearing)
     swellings = _swellings(record, chosen, table, gearing, speed) if changing is None else ()
     return Measurement(
@@ -271,6 +273,11 @@ def measure(
     )
 
 
+def _turns(record: Record, speed: float | None) -> float | None:
+    """The shaft's turns per sample at the ``speed`` said [rad/s]; None: not known."""
+    return None if speed is None or not record.rate else speed / (2.0 * np.pi * record.rate)
+
+
 def _swellings(
     record: Record,
     chosen: Sequence[Channel],
@@ -280,8 +287,7 @@ def _swellings(
 ) -> tuple[Swelling, ...]:
     """Impacts that slip, beside the shaft by its lines or by the speed said [rad/s]."""
     shaft = gearing.shaft if gearing is not None else None
-    if shaft is None and speed is not None and record.rate is not None:
-        shaft = speed / (2.0 * np.pi) / record.rate
+    shaft = _turns(record, speed) if shaft is None else shaft
     rate = None if record.rate_doubt else record.rate
     return swellings_of([one.name for one in chosen], table, rate, shaft)
 

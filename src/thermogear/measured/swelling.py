@@ -46,7 +46,7 @@ class BearingRates:
     ) -> BearingRates:
         """Of Z ``elements`` and g = D_w cos a/d_m (``ratio``), a the ``contact_angle`` [rad].
 
-        Z (1 - g)/2, Z (1 + g)/2, cos a (1 - g^2)/g, (1 - g)/2; the outer ring stands still.
+        Z (1 - g)/2, Z (1 + g)/2, cos a (1 - g^2)/g, (1 - g)/2; the outer ring is at rest.
         """
         return cls(
             name=name,
