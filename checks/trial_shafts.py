@@ -160,7 +160,8 @@ def run(case: tuple[int, int]) -> Row:
     words = f"{SORTS[case[0]]}, record {case[1]}: {made.words}"
     refused, withheld = "", 0
     try:
-        result = measure(made.record, teeth=made.teeth, sidebands=1, harmonics=2)
+        speed = 2.0 * np.pi * made.shaft
+        result = measure(made.record, teeth=made.teeth, speed=speed, sidebands=1, harmonics=2)
     except ValueError as error:
         refused = str(error)
     else:

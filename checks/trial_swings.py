@@ -120,7 +120,9 @@ def drawn(random: np.random.Generator, sort: str = "speed") -> Swing:
 
 def errors(made: Swing) -> dict[str, list[float]]:
     """Errors of ``measure`` in half widths, by LINES; of a line that is not found, infinite."""
-    found = {line.name: line for line in measure(made.record, teeth=made.teeth).lines}
+    speed = 2.0 * np.pi * made.shaft
+    lines = measure(made.record, teeth=made.teeth, speed=speed).lines
+    found = {line.name: line for line in lines}
     told: dict[str, list[float]] = {name: [] for name in LINES}
     for name, truth in made.amplitudes.items():
         line = found.get(name)

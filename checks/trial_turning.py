@@ -132,7 +132,9 @@ def read(run: Run, kind: str, random: Random) -> Measurement:
     a = Channel("a", run.values, "g")
     asked = [1.0, SECOND, 2.0 * SECOND] if kind == KINDS[5] else [1.0]
     if kind == KINDS[1]:
-        return measure(Record((a,), "made", RATE, "made"), teeth=TEETH, orders=asked)
+        nominal = 2.0 * np.pi * float(np.mean(run.speed))
+        record = Record((a,), "made", RATE, "made")
+        return measure(record, teeth=TEETH, speed=nominal, orders=asked)
     if kind in (KINDS[2], KINDS[7]):
         rpm = 60.0 * run.speed * 1.004 + random.normal(0.0, 5.0, run.time.size)
         speed = Channel("n", rpm, "rpm")

@@ -66,7 +66,8 @@ def test_a_swing_too_fast_to_be_followed_is_told_and_in_the_intervals(number: in
     values += by * np.cos(2 * np.pi * 40 * turns + random.uniform(0.0, 6.0))
     size = depth * 9.0 * ratio / (40 * 9.0)
     made = TRIAL.Swing(40, 0.08, size, 9.0 * ratio, turns, values)
-    found = measure(made.record, teeth=40, harmonics=1, sidebands=1)
+    speed = 2.0 * np.pi * made.shaft
+    found = measure(made.record, teeth=40, speed=speed, harmonics=1, sidebands=1)
     line = next(one for one in found.lines if one.name == "mesh x 1")
     assert line.reading * (1.0 + 1.1 * line.half_width) > 1.0 > line.reading
     assert line.half_width < 1.5 * (1.0 / line.reading - 1.0)
@@ -112,7 +113,9 @@ def test_sidebands_keep_their_own_phase_where_the_speed_swings() -> None:
     for side, height in heights.items():
         values += height * np.cos(2 * np.pi * (40 + side) * turns + random.uniform(0.0, 6.0))
     made = TRIAL.Swing(40, 0.0, 0.01, 0.7, turns, values)
-    found = {line.name: line for line in measure(made.record, teeth=40, harmonics=1).lines}
+    speed = 2.0 * np.pi * made.shaft
+    lines = measure(made.record, teeth=40, speed=speed, harmonics=1).lines
+    found = {line.name: line for line in lines}
     names = {-1: "mesh x 1 - 1 shaft/40", 0: "mesh x 1", 1: "mesh x 1 + 1 shaft/40"}
     for side, height in heights.items():
         line = found[names[side]]

@@ -88,7 +88,8 @@ def test_an_unknown_shaft_does_not_turn_the_path_of_a_line_that_walks(number: in
             place = order if order == 1.0 else 1.0 + sign * order
             values += amplitude * np.cos(2 * np.pi * place * cycles + random.uniform(0.0, 6.3))
     record = Record((Channel("a", values, "g"),), "made", rate, "made")
-    found = measure(record, teeth=teeth, sidebands=1, harmonics=1)
+    own = 2.0 * np.pi * mesh / teeth
+    found = measure(record, teeth=teeth, speed=own, sidebands=1, harmonics=1)
     lines = {line.name: line for line in found.lines}
     line = lines["mesh x 1"]
     assert abs(line.reading - 1.0) < 1.5 * line.half_width

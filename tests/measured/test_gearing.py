@@ -81,7 +81,7 @@ def test_a_lone_harmonic_family_names_the_mesh_line_and_no_distance() -> None:
     x = sum(a * np.cos(2 * np.pi * 0.0613 * k * n) for k, a in ((1, 1.0), (2, 0.5), (3, 0.3)))
     gearing = find_gearing([x + 0.2 * np.random.default_rng(3).standard_normal(n.size)], teeth=25)
     assert gearing.mesh_frequency == pytest.approx(0.0613, abs=1e-6)
-    assert (gearing.families, gearing.confirmed, gearing.alone) == ((), False, True)
+    assert (gearing.families, gearing.confirmed, gearing.teeth) == ((), False, None)
 
 
 def two_lines(random: np.random.Generator, swell: float) -> np.ndarray:
@@ -103,7 +103,7 @@ def test_sidebands_of_the_teeth_given_tell_which_line_is_theirs() -> None:
     second = 0.0027 * 23.0 * 31.0 / 57.0
     plain = find_gearing([two_lines(random, 0.0)], teeth=23)
     assert plain.mesh_frequency == pytest.approx(second, rel=1e-4)
-    assert (plain.confirmed, plain.alone, plain.is_theirs) == (False, False, False)
+    assert (plain.confirmed, plain.teeth) == (False, None)
     swelling = find_gearing([two_lines(random, 0.1)], teeth=23)
     assert swelling.mesh_frequency == pytest.approx(0.0027 * 23.0, rel=1e-4)
     assert swelling.confirmed
@@ -131,8 +131,8 @@ def test_evidence_is_in_words_with_numbers() -> None:
         assert row == pytest.approx([family.lines, 2.0 * family.distance], abs=1e-6)
 
 
-@pytest.mark.parametrize(("near", "alone"), [(0.05, True), (0.1, False)])
-def test_a_line_that_is_followed_may_be_a_harmonic(near: float, alone: bool) -> None:
+@pytest.mark.parametrize(("near", "of"), [(0.05, 0), (0.1, 2)])
+def test_a_line_that_is_followed_may_be_a_harmonic(near: float, of: int) -> None:
     """Taken for the mesh line it made the shaft turn twice as fast."""
     n = np.arange(40_000)
     x = 0.01 * np.random.default_rng(8).standard_normal(n.size)
@@ -140,7 +140,7 @@ def test_a_line_that_is_followed_may_be_a_harmonic(near: float, alone: bool) -> 
         x += size * np.cos(2 * np.pi * rank * 0.05 * n + rank)
     gearing = find_gearing([x], near, teeth=27)
     assert gearing.mesh_frequency == pytest.approx(near, rel=1e-4)
-    assert (gearing.alone, gearing.is_theirs) == (alone, alone)
+    assert (gearing.confirmed, gearing.rank_of) == (False, of)
 
 
 def test_a_speed_is_withheld_where_the_gear_s_mesh_line_is_not_decided() -> None:

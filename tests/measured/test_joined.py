@@ -20,7 +20,7 @@ Floats = NDArray[np.float64]
 
 RATE = 5120.0
 COUNT = 6000
-WORDS = ["--teeth", "20", "--sidebands", "0", "--harmonics", "1"]
+WORDS = ["--teeth", "20", "--speed", "1200.9", "--sidebands", "0", "--harmonics", "1"]
 
 
 def signal(seed: int, count: int = COUNT, size: float = 1.0) -> Floats:

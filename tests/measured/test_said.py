@@ -88,9 +88,10 @@ def test_a_tacho_in_volts_is_a_speed() -> None:
     found = measure(named.with_speed("n", 300.0), teeth=15, harmonics=1, sidebands=0)
     assert found.slices is not None
     assert "n" not in found.channels
-    # the fifteen given count the turns: four thirds of those of the shaft
+    # no sidebands confirm the fifteen given: the turns are those of the speed channel's shaft
     true = FIRST + (LAST - FIRST) * found.slices.time / SECONDS
-    assert found.slices.speed / RPM == pytest.approx(4.0 / 3.0 * true, rel=0.01)
+    assert found.teeth is None
+    assert found.slices.speed / RPM == pytest.approx(true, rel=0.01)
 
 
 def test_a_speed_in_volts_without_its_scale_asks_for_it() -> None:
@@ -123,8 +124,7 @@ def test_what_agrees_or_is_open_is_no_contradiction() -> None:
     assert of_pulses(2.0, mesh=20.0, teeth=None) == []
     assert of_pulses(None, mesh=30.0, teeth=20) == []
     assert of_speed(1000.0, lowest=1090.0, highest=2000.0) == []
-    line, apart = (Gearing(mesh_frequency=f, harmonics=(9.0,)) for f in (0.2, 0.29))
-    assert of_line(line, apart) == []
+    assert of_line(Gearing(mesh_frequency=0.2, harmonics=(9.0,))) == []
     (unlike,) = of_pulses(1.0, mesh=7.3, teeth=20)
     assert (unlike.data["teeth"], unlike.data["order"]) == (20, 7.3)
     assert unlike.data["fitting"] is unlike.data["mate"] is None
@@ -333,7 +333,7 @@ def test_orders_and_harmonics_of_a_run_that_it_cannot_hold() -> None:
         measure(run_up(), pulses_per_turn=PULSES, harmonics=1, orders=(1.2 * top,))
     assert numbers(str(it.value).replace("..", " .. "))[2] == pytest.approx(top, rel=0.05)
     found = measure(run_up(), pulses_per_turn=PULSES, harmonics=64, sidebands=0)
-    read = [line.name for line in found.lines if line.kind == "mesh"]
+    read = [line.name for line in found.lines if line.kind == "shaft"]
     (told,) = [n.data for n in found.notices if n.code == "harmonics_above_rate"]
     assert (told["read"], told["asked"]) == (len(read), 64)
 
@@ -344,7 +344,7 @@ def test_orders_of_a_run_whose_shaft_is_not_known_are_refused() -> None:
     x = np.cos(2 * np.pi * cycles) + 0.05 * np.random.default_rng(1).standard_normal(t.size)
     record = Record((Channel("acc", x, "g"),), "run", RATE, "made")
     assert measure(record).slices is not None
-    with pytest.raises(InputError, match=r"^orders: got 2; no shaft's speed is known; --teeth"):
+    with pytest.raises(InputError, match=r"^orders: got 2; no shaft's speed is known; --speed"):
         measure(record, orders=(2.0,))
-    found = measure(record, teeth=TEETH, orders=(2.0,))
+    found = measure(record, teeth=TEETH, speed=960.0 * RPM, orders=(2.0,))
     assert "order 2" in [line.name for line in found.lines]

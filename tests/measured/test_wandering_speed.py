@@ -18,7 +18,8 @@ def test_lines_of_a_wandering_speed_are_read_in_angle(wander: float) -> None:
     put_in = (10.0, 37.0, 48.0)
     a = sum(x * np.cos(2 * np.pi * k * turns + k) for k, x in enumerate(put_in, 1))
     a = a + np.random.default_rng(1).normal(0.0, 0.2, t.size)
-    found = measure(Record((Channel("a", a, "g"),), "wander", rate, "made"), teeth=25)
+    speed = 2.0 * np.pi * mesh / 25.0
+    found = measure(Record((Channel("a", a, "g"),), "wander", rate, "made"), teeth=25, speed=speed)
     lines = [line for line in found.lines if line.kind == "mesh"]
     assert [line.acceleration_g for line in lines] == pytest.approx(put_in, rel=2e-3)
     assert lines[0].frequency == pytest.approx(mesh, rel=wander / 10)

@@ -5,16 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from scipy import integrate
+from scipy import integrate, signal
 
 from conftest import Compared
 from thermogear.base.errors import InputError
 from thermogear.signals.filters import BandPass, taps_for, without_trend
-from thermogear.signals.integration import (
-    integrate_twice,
-    integrate_twice_trapezoid,
-    trapezoid_factor,
-)
+from thermogear.signals.integration import trapezoid_factor
 from thermogear.signals.lines import line_in, line_spectrum
 from thermogear.signals.spectra import amplitude_spectrum
 
@@ -34,6 +30,18 @@ def rig(rate: float, seconds: float = 4.0, seed: int = 7) -> Floats:
     return x + 0.05 * G + 0.02 * G * t / seconds + 0.05 * G * noise
 
 
+def twice_trapezoid(x: Floats, rate: float) -> Floats:
+    """Two running trapezoidal sums from zero, the thesis's way."""
+    for _ in range(2):
+        x = integrate.cumulative_trapezoid(x, dx=1.0 / rate, initial=0.0)
+    return x
+
+
+def through(band: BandPass, x: Floats) -> Floats:
+    """The record behind the filter, samples that every tap saw."""
+    return np.asarray(signal.oaconvolve(x, band.coefficients, mode="valid"))
+
+
 def errors(displacement: Floats, rate: float) -> list[float]:
     """Error of each line in per cent, read with a flat-top window."""
     return [
@@ -50,7 +58,7 @@ def filtered(rate: float) -> Floats:
     band = BandPass(rate, (0.4 * LINES[0][0], min(1.5 * LINES[2][0], 0.45 * rate)), 1025)
     for frequency, _ in LINES:
         assert band.gain(frequency) == pytest.approx(1.0, abs=3e-3)
-    return band.apply(rig(rate))
+    return through(band, rig(rate))
 
 
 @pytest.mark.parametrize("phase", [0.0, 1.1])
@@ -65,7 +73,7 @@ def test_trapezoid_law_is_exact(u: float, phase: float, compared: Compared) -> N
     scale = (step / (2 * np.tan(u))) ** 2
     start = step / (2 * np.tan(u)) * np.sin(phase)
     expected = -scale * (np.cos(2 * u * n + phase) - np.cos(phase)) - start * n * step
-    got = integrate_twice_trapezoid(a, rate)
+    got = twice_trapezoid(a, rate)
     assert np.max(np.abs(got - expected)) <= 1e-12 * max(np.max(np.abs(expected)), 1.0)
     law = float(trapezoid_factor(frequency, rate=rate))
     compared(
@@ -80,21 +88,6 @@ def test_trapezoid_factor_at_its_ends() -> None:
     np.testing.assert_allclose(trapezoid_factor([0.0, 500.0], rate=1000.0), [1.0, 0.0], atol=1e-30)
     with pytest.raises(InputError, match=r"^frequency: got 501\.0; allowed 0\.\.500 Hz"):
         trapezoid_factor(501.0, rate=1000.0)
-
-
-@pytest.mark.parametrize("rate", [5120.0, 25600.0])
-def test_division_by_omega_squared_reads_every_line(rate: float, compared: Compared) -> None:
-    displacement = integrate_twice(filtered(rate), rate, low_cut=0.4 * LINES[0][0])
-    gains = [float(_band(rate).gain(f)) for f, _ in LINES]
-    corrected = [
-        (1 + e / 100) / g - 1 for e, g in zip(errors(displacement, rate), gains, strict=True)
-    ]
-    compared(
-        "displacement by division by ω², noise, offset and drift",
-        "the lines put in",
-        corrected,
-        7e-4,
-    )
 
 
 @pytest.mark.parametrize(("rate", "limit"), [(5120.0, 4e-4), (25600.0, 4e-4)])
@@ -113,7 +106,7 @@ def test_flat_top_line_over_omega_squared(rate: float, limit: float, compared: C
 
 @pytest.mark.parametrize("rate", [5120.0, 25600.0])
 def test_trapezoid_after_a_filter_loses_what_its_law_says(rate: float) -> None:
-    x = without_trend(integrate_twice_trapezoid(filtered(rate), rate))
+    x = without_trend(twice_trapezoid(filtered(rate), rate))
     law = [100 * (float(trapezoid_factor(f, rate=rate)) - 1) for f, _ in LINES]
     np.testing.assert_allclose(errors(x, rate), law, atol=0.3)
     table = {5120.0: (-4.3, -16.9, -36.8), 25600.0: (-0.1, -0.6, -1.5)}
@@ -133,7 +126,7 @@ def test_simpson_after_a_filter(rate: float, table: tuple[float, float, float]) 
 
 @pytest.mark.parametrize("rate", [5120.0, 25600.0])
 def test_trapezoid_alone_drifts_by_metres(rate: float) -> None:
-    assert np.ptp(integrate_twice_trapezoid(rig(rate), rate)) > 1.0
+    assert np.ptp(twice_trapezoid(rig(rate), rate)) > 1.0
 
 
 @pytest.mark.parametrize("rate", [5120.0, 25600.0])
@@ -165,7 +158,7 @@ def test_a_filtered_line_keeps_phase_and_loses_only_its_edges() -> None:
     t = np.arange(3000) / rate
     x = np.cos(2 * np.pi * frequency * t)
     band = BandPass(rate, (60.0, 200.0), 301)
-    y = band.apply(x)
+    y = through(band, x)
     assert y.size == t.size - 300
     expected = float(band.gain(frequency)) * x[150:-150]
     np.testing.assert_allclose(y, expected, atol=1e-12)
@@ -176,10 +169,6 @@ def test_filter_refusals() -> None:
         BandPass(1000.0, (50.0, 600.0), 65)
     with pytest.raises(InputError, match=r"^taps: got 64; allowed an odd number >= 3; the delay"):
         BandPass(1000.0, (50.0, 60.0), 64)
-    with pytest.raises(InputError, match=r"^taps: got 65; allowed below the record's 65 samples"):
-        BandPass(1000.0, (50.0, 60.0), 65).apply(np.zeros(65))
-    with pytest.raises(InputError, match=r"^low_cut: got 0; allowed 0 < low cut < 500 Hz"):
-        integrate_twice(np.zeros(16), 1000.0, low_cut=0)
     assert taps_for(1000.0, transition=10.0) % 2 == 1
 
 

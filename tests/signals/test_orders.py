@@ -7,11 +7,8 @@ import pytest
 from scipy import interpolate, signal
 
 from thermogear.base.errors import InputError
-from thermogear.signals.orders import (
-    line_angle,
-    resample_by_angle,
-    rising_edges,
-)
+from thermogear.signals.following import follow_line
+from thermogear.signals.orders import resample_by_angle, rising_edges
 from thermogear.signals.spectra import order_amplitudes
 
 RATE = 8192.0
@@ -47,13 +44,10 @@ def test_mesh_line_phase_gives_the_angle_without_a_tacho() -> None:
     rng = np.random.default_rng(1)
     x = gear(turns) + 0.2 * rng.standard_normal(t.size)
     # the neighbours at orders 24 and 26 lie 20 Hz off
-    cycles, dropped = line_angle(x, frequency=500.0 / RATE, half_width=15.0 / RATE)
-    expected = 25 * turns[dropped : dropped + cycles.size]
-    difference = cycles - expected
+    cycles = follow_line(x, RATE, frequency=500.0, half_width=15.0, cut=False).cycles
+    difference = cycles - 25 * turns
     assert np.std(difference - np.round(difference.mean())) < 0.02
-    y = resample_by_angle(
-        x[dropped : dropped + cycles.size], cycles / 25.0, samples_per_turn=256, turns=100
-    )
+    y = resample_by_angle(x, cycles / 25.0, samples_per_turn=256, turns=100)
     lines = order_amplitudes(y, samples_per_period=256, periods=100, orders=[24, 25, 26, 50])
     np.testing.assert_allclose(lines, [0.05, 1.0, 0.1, 0.3], atol=0.02)
 
@@ -62,5 +56,5 @@ def test_refusals() -> None:
     assert rising_edges(np.zeros(100), rate=10.0).size == 0
     with pytest.raises(InputError, match=r"^angle: got shape \(5,\); allowed rising"):
         resample_by_angle(np.zeros(5), [0, 1, 1, 2, 3], samples_per_turn=8)
-    with pytest.raises(InputError, match=r"^half_width: got 0\.2 at 0\.1"):
-        line_angle(np.zeros(100), frequency=0.1, half_width=0.2)
+    with pytest.raises(InputError, match=r"^half_width: got 0\.2"):
+        follow_line(np.zeros(100), 1.0, frequency=0.1, half_width=0.2)

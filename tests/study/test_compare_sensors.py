@@ -240,6 +240,7 @@ def test_what_has_no_drive_train_or_no_record_is_refused(rig: Rig) -> None:
         compare_sensors(other, rig.measured, AT)
     record = rig.measured.record
     bare_channels = tuple(replace(one, unit=None) for one in record.channels)
-    unknown = measure(replace(record, channels=bare_channels), teeth=20)
+    bare = replace(record, channels=bare_channels)
+    unknown = measure(bare, teeth=20, speed=3000.0 * np.pi / 30.0)
     with pytest.raises(InputError, match=r"^channel 'a1': got no unit; allowed an acceleration"):
         compare_sensors(HOUSED, unknown, AT)

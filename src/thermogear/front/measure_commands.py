@@ -32,9 +32,10 @@ def supplies(command: Any, *, speeds: bool = False) -> Any:
             "--speed",
             "Nominal speed of the pinion" + " (one of each record)" * speeds + ".",
             "> 0 .. 500000 rpm",
-            "1500",
+            "1500, or '25 Hz'",
             metavar="RPM",
             multiple=speeds,
+            units={"rpm": 1.0, "Hz": 60.0, "rad/s": 1.0 / RPM},
         ),
         click.option(
             "--channel",
@@ -63,6 +64,14 @@ def supplies(command: Any, *, speeds: bool = False) -> Any:
             "1",
             multiple=True,
             metavar="ORDER",
+        ),
+        click.option(
+            "--bearing",
+            "bearings",
+            metavar="TYPE",
+            multiple=True,
+            help="Rolling bearing on the first shaft, as 6205: swelling noise is held against its "
+            "rates [those of the catalogue]. May be repeated.",
         ),
         number("--harmonics", "Mesh harmonics to read [3].", "1..64", "3", whole=True),
         number("--sidebands", "Sidebands on each side to read [2].", "0..64", "2", whole=True),

@@ -160,6 +160,7 @@ def measured_files(
 def _reduced(record: Record, other: Record | None, options: dict[str, Any]) -> Measurement:
     from thermogear.measured.chain import Chain
     from thermogear.measured.reduction import measure as reduce
+    from thermogear.study.bearing_rates import bearing_rates
 
     speed, scale = options["speed"], options["tacho_scale"]
     if scale is not None:
@@ -173,6 +174,7 @@ def _reduced(record: Record, other: Record | None, options: dict[str, Any]) -> M
         pulses_per_turn=options["pulses"],
         tacho=other,
         orders=options["orders"],
+        bearings=bearing_rates(options["bearings"]),
         harmonics=3 if options["harmonics"] is None else options["harmonics"],
         sidebands=2 if options["sidebands"] is None else options["sidebands"],
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import click
@@ -12,18 +12,33 @@ from thermogear.study.declared import numbers
 
 
 class NumberType(click.ParamType[float | int]):
-    """A number, or a whole one; ``allowed`` in words, ``example`` of one."""
+    """A number, or a whole one; ``allowed`` in words, ``example`` of one. It may have one of the
+    ``units`` behind it, each with its factor."""
 
-    def __init__(self, allowed: str, example: str, *, whole: bool = False) -> None:
+    def __init__(
+        self,
+        allowed: str,
+        example: str,
+        *,
+        whole: bool = False,
+        units: Mapping[str, float] | None = None,
+    ) -> None:
         self.name = "integer" if whole else "float"
         self._allowed, self._example, self._whole = allowed, example, whole
+        self._units = units or {}
 
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> float | int:
         """The number; InputError where the text is none."""
+        text = str(value).strip()
+        unit = next((one for one in self._units if text.lower().endswith(one.lower())), "")
         try:
-            return int(value) if self._whole else float(value)
+            if self._whole:
+                return int(text)
+            return float(text.removesuffix(text[len(text) - len(unit) :])) * self._units.get(
+                unit, 1
+            )
         except ValueError:
             option = param.opts[0] if param is not None else "number"
             fix = f"as {option} {self._example}"
@@ -31,10 +46,18 @@ class NumberType(click.ParamType[float | int]):
 
 
 def number(
-    option: str, words: str, allowed: str, example: str, *, whole: bool = False, **more: Any
+    option: str,
+    words: str,
+    allowed: str,
+    example: str,
+    *,
+    whole: bool = False,
+    units: Mapping[str, float] | None = None,
+    **more: Any,
 ) -> Callable[[Any], Any]:
     """A click option that takes a :class:`NumberType`; ``words`` of its help."""
-    return click.option(option, type=NumberType(allowed, example, whole=whole), help=words, **more)
+    kind = NumberType(allowed, example, whole=whole, units=units)
+    return click.option(option, type=kind, help=words, **more)
 
 
 def grid(option: str, text: str) -> Any:

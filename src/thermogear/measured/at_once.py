@@ -30,13 +30,14 @@ _FEW = 8  # files, for which no processes are started: each takes about a second
 @dataclass(frozen=True, kw_only=True)
 class Row:
     """What is kept of one record: its lines' ``readings`` with half widths and their ``places``,
-    ``unit``, why readings are ``withheld``, what
+    names of the ``harmonics`` by rank, ``unit``, why readings are ``withheld``, what
     damage was ``found``; or why it was ``refused``."""
 
     file: Path
     unit: str = ""
     readings: dict[tuple[str, str], tuple[float, float]] = field(default_factory=dict)
     places: dict[tuple[str, str], Place] = field(default_factory=dict, compare=False)
+    harmonics: tuple[str, ...] = ()
     refused: str = ""
     withheld: str = ""
     found: tuple[Notice, ...] = ()
@@ -58,10 +59,11 @@ def row_of(read: Read, file: Path) -> Row:
         unit=found.record.channel(found.channels[0]).unit or "",
         readings={
             (one.channel, one.name): (one.reading, one.reading * one.half_width)
-            for one in found.lines
+            for one in found.readings
             if np.isfinite(one.reading)
         },
         places=places_of(found),
+        harmonics=found.harmonics,
         withheld="; ".join(f"channel {name!r}: {said}" for name, said in why.items() if said),
         found=found.findings,
         warned=tuple(str(one.message) for one in caught),

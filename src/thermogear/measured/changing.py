@@ -160,6 +160,7 @@ def _steady(shaft: Shaft, angle: OrderAngle, notices: list[Notice]) -> Changing:
         mesh_frequency=mean,
         harmonics=(),
         evidence=(f"the mesh line is put at {angle.teeth} times the tacho's shaft",),
+        teeth=angle.teeth,
     )
     turns = MeshTurns(
         frequency=mean,
@@ -169,7 +170,7 @@ def _steady(shaft: Shaft, angle: OrderAngle, notices: list[Notice]) -> Changing:
         phase_noise=2.0 * np.pi * angle.mesh * angle.noise,
     )
     return Changing(
-        gearing=replace(gearing, mesh_frequency=mean),
+        gearing=replace(gearing, mesh_frequency=mean, turning=mean / angle.mesh),
         teeth=angle.teeth,
         notices=tuple(notices),
         turns=turns,
@@ -193,7 +194,11 @@ def _sliced(
     per_turn = samples_per_turn(turns)
     mean = float((turns[-1] - turns[0]) / (turns.size - 1))
     gearing = (
-        replace(angle.gearing, mesh_frequency=angle.mesh * mean)
+        replace(
+            angle.gearing,
+            mesh_frequency=angle.mesh * mean,
+            turning=None if angle.of_mesh else mean,
+        )
         if angle.mesh is not None and angle.gearing is not None
         else None
     )
@@ -307,7 +312,7 @@ def _wanted(
         found = wanted_lines(gearing, inside[0], harmonics=harmonics, sidebands=sidebands)
     elif angle.mesh is not None:
         found = [
-            Wanted("mesh", f"mesh x {k}", position=k * angle.mesh * mean, half_width=0.0)
+            Wanted("mesh", f"mesh x {k}", position=k * angle.mesh * mean, half_width=0.0, rank=k)
             for k in range(1, harmonics + 1)
         ]
     if angle.teeth and not any(w.kind == "sideband" for w in found):
@@ -334,7 +339,7 @@ def _sidebands(meshes: Sequence[Wanted], teeth: int, count: int, shaft: float) -
             half_width=0.0,
         )
         for one in meshes
-        if one.kind == "mesh"
+        if one.rank
         for n in range(1, count + 1)
         for sign in (-1, 1)
     ]
@@ -371,7 +376,7 @@ def _require_seen(orders: Sequence[float], angle: OrderAngle, highest: float) ->
     """Refuse ``orders`` where no shaft's angle is known, or that are seen in no slice."""
     if orders and angle.of_mesh:
         got = ", ".join(f"{o:g}" for o in orders)
-        raise InputError("orders", got, why="no shaft's speed is known", fix="--teeth or --tacho")
+        raise InputError("orders", got, why="no shaft's speed is known", fix="--speed or --tacho")
     limit = "the sampling rate/2.56 at the slowest speed"
     require_orders(orders, lowest=0.0, highest=highest, limit=limit)
 

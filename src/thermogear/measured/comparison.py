@@ -93,7 +93,7 @@ ANOTHER_SPEED = 0.05
 
 def table_of(found: Measurement, speed: float | None = None) -> LineTable:
     """The mesh line of a measurement (its clearest channel) as a table."""
-    lines = [line for line in found.lines if line.name == "mesh x 1"]
+    lines = [line for line in found.lines if line.name in ("mesh x 1", "line x 1")]
     lines = [line for line in lines if np.isfinite(line.displacement)]
     withheld = next((line.withheld for line in found.lines if line.withheld), "")
     if not lines and withheld:
@@ -112,18 +112,17 @@ def table_of(found: Measurement, speed: float | None = None) -> LineTable:
         )
     line = max(lines, key=lambda item: item.prominence)
     nominal = speed if speed is not None else line.shaft_speed
+    teeth = found.teeth or found.given[0]
     if not np.isfinite(nominal):
-        why = "no tooth number is known" if found.teeth is None else "the record does not decide it"
-        raise InputError(
-            "speed", "none", why=why, fix="--speed" if found.teeth else "--teeth or --speed"
-        )
-    implied = 2.0 * np.pi * line.frequency / found.teeth if found.teeth else nominal
+        why = "no tooth number is known" if teeth is None else "the record does not decide it"
+        raise InputError("speed", "none", why=why, fix="--speed" if teeth else "--teeth or --speed")
+    implied = 2.0 * np.pi * line.frequency / teeth if teeth else nominal
     if abs(implied - nominal) > ANOTHER_SPEED * nominal:
         raise InputError(
             "speed",
             f"{nominal / RPM:.6g} rpm",
             why=f"the mesh line of {found.record.source}, {line.frequency:.6g} Hz, is that of "
-            f"{implied / RPM:.6g} rpm and {found.teeth} teeth",
+            f"{implied / RPM:.6g} rpm and {teeth} teeth",
             fix="leave the speed out, or state other teeth",
         )
     return LineTable(

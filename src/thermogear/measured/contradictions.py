@@ -7,11 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from thermogear.measured.gearing import Gearing, is_rank_of
+from thermogear.measured.gearing import NEAR, Gearing
 from thermogear.measured.record import Notice
 
-NEAR = 0.1
-"""A stated speed is nominal: motors slip by less."""
 _WHOLE = 0.02  # of a number of teeth or of pulses
 
 
@@ -64,13 +62,12 @@ def of_speed(given: float | None, *, lowest: float, highest: float) -> list[Noti
     return [Notice.of("speed_contradicted", given=given, lowest=lowest, highest=highest)]
 
 
-def of_line(near: Gearing, free: Gearing) -> list[Notice]:
+def of_line(near: Gearing) -> list[Notice]:
     """A mesh line that teeth and speed given place, and is read there, where it is the second or
     third harmonic of a line as clear [cycles/sample]."""
-    rank = is_rank_of(near, free)
-    if not rank:
+    if not near.rank_of:
         return []
-    given, clearest = near.mesh_frequency, free.mesh_frequency
+    given, clearest = near.mesh_frequency, near.mesh_frequency / near.rank_of
     return [
         Notice.of("mesh_line_contradicted", given=given, found=clearest, ratio=clearest / given)
     ]

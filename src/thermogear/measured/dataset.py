@@ -87,8 +87,8 @@ def result_of(found: Measurement) -> Result:
     }
     if found.values.shape[-1] > excerpt:
         groups["whole"] = _pieces(found.values, found.start).assign_coords(channel=names)
-    if found.lines:
-        groups["lines"] = _lines(found.lines)
+    if found.readings:
+        groups["lines"] = _lines(found.readings)
     if found.slices is not None:
         groups |= slice_groups(found.slices)
     gearing = found.gearing

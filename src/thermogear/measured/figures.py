@@ -16,7 +16,7 @@ from thermogear.measured.reduction import Measurement
 from thermogear.signals.slices import greatest
 
 _PLAIN = (
-    "teeth order lines powers chance share "
+    "teeth order expected lines powers chance share "
     "relative_half_width relative_standard_uncertainty bin_offset prominence steps turns"
 )
 UNITS: dict[str, str] = {
@@ -62,15 +62,25 @@ def figures(found: Measurement) -> dict[str, Any]:
         "shaft_speed_range": _range(run) if turning and run is not None else None,
         "families": [vars(family) for family in gearing.families] if gearing else [],
         "evidence": evidence(found),
+        "course": _course(found),
         "given": {"teeth": found.given[0], "speed": found.given[1]},
         "teeth_confirmed": gearing is not None and gearing.confirmed,
-        "swelling": vars(found.swelling) if found.swelling else None,
+        "swellings": [vars(one) for one in found.swellings],
+        "defects": [vars(one) for one in found.defects],
         "findings": [one.as_dict() for one in found.findings],
-        "lines": [_line(line, found.record) for line in found.lines],
+        "lines": [_line(line, found.record) for line in found.readings],
         "slices": None if run is None else _slices(run, found.record),
         "notices": [notice.as_dict() for notice in found.notices],
         "units": units(found.record, found.channels),
     }
+
+
+def _course(found: Measurement) -> str:
+    """How the speed goes over the record."""
+    if found.slices is not None:
+        return "its speed changes"
+    followed = any(one.code in ("phase_wanders", "read_in_angle") for one in found.notices)
+    return "its speed wanders" if followed else "steady"
 
 
 def _settings(found: Measurement) -> dict[str, Any]:
@@ -82,7 +92,6 @@ def _settings(found: Measurement) -> dict[str, Any]:
         f"bin_width_{'Hz' if rate else 'cycles_per_sample'}": (rate or 1.0) / found.samples,
         f"band_{'Hz' if rate else 'cycles_per_sample'}": chain.band,
         "taps": chain.taps,
-        f"low_cut_{'Hz' if rate else 'cycles_per_sample'}": chain.low_cut,
     }
 
 
@@ -98,7 +107,8 @@ def units(record: Record, channels: tuple[str, ...]) -> dict[str, str]:
 def evidence(found: Measurement) -> list[str]:
     """What was seen, in sentences."""
     told = list(found.gearing.evidence) if found.gearing else []
-    return told + ([found.swelling.words] if found.swelling else [])
+    told += [one.words for one in found.swellings]
+    return told + [one.words for one in found.defects]
 
 
 def _known(value: float) -> float | None:

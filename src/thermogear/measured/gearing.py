@@ -7,15 +7,18 @@ alone name no teeth: those that a user gives are confirmed by their sidebands, o
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from math import ceil
 
 import numpy as np
-from scipy import stats
+from scipy import special
 
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.measured.prominence import Prominence, prominence
-from thermogear.signals.orders import line_angle, resample_by_angle, samples_per_cycle
+from thermogear.signals.following import follow_line
+from thermogear.signals.orders import resample_by_angle, samples_per_cycle
 from thermogear.signals.spectra import amplitude_spectrum
 
 LONGEST = 1 << 19
@@ -31,7 +34,6 @@ _NARROW = 0.006  # half width of the phase filter over the mesh line
 _RIVALS = 3  # other lines with harmonics that are looked at
 _AS_CLEAR = 0.6  # of the mean log prominence of the clearest line's harmonics
 _LOW_RANK = 3  # a gear has more teeth: a line at a half or a third of another is no shaft's
-_LOW_ORDER = 4  # of a shaft: unbalance, and what is off its axis
 _AROUND = 3  # harmonics about which sidebands are looked for
 _ANYWHERE, _TRIED = (
     (1.0 / 250.0, 1.0 / 12.0),
@@ -41,6 +43,19 @@ _CHANCE = 1e-3  # of lines at any distance to be where sidebands are looked for
 _FAMILIES, _RANKS = 4, 6  # distances that are told, and ranks of a line in one of them
 _APART = 3.0  # bins between a harmonic and a line beside it
 _AT = 0.6  # bins between a line and its place
+NEAR = 0.1
+"""A stated speed is nominal: motors slip by less."""
+_CLOSE = 0.03  # of a line's place: most motors slip by less
+_THERE = float(np.log(4.0))  # over the floor: of 300 bins of noise one is as high in 200 records
+_EXACT = 0.25  # bins
+_OVER, _FEWER_OVER = (
+    0.3,
+    0.7,
+)  # ln: of three mesh harmonics, of fewer, over the lines beside; chosen
+_TRIED_LINES = 8
+_WRONG = (2.0, 0.5, 10.0, 0.1, 2.56, 1.0 / 2.56)  # times a rate that is stated wrong
+_WHOLE = 0.02  # of a turn
+_STEADY = 0.02  # cycles: a thirtieth of its height beside the third harmonic
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,22 +69,54 @@ class Family:
 
 @dataclass(frozen=True, kw_only=True)
 class Gearing:
-    """What a record's lines tell: mesh line [cycles/sample], how many times its ``harmonics`` stand
-    over the floor, ``families`` beside it, the ``evidence`` in words; ``confirmed``: whether it has
-    the sidebands of the teeth given; ``alone``: whether no other line has harmonics as clear."""
+    """What a record's lines tell: the mesh line, or the clearest one, [cycles/sample], how many
+    times its ``harmonics`` stand over the floor, ``families`` beside it, the ``evidence`` in words.
+
+    ``teeth`` of the gear on the first shaft whose mesh line it is, None where that is undecided: it
+    has their sidebands (``confirmed``, of those given), or teeth and speed given, or a tacho, put
+    the mesh line there, or no other number fits a known speed. ``turning``: the line of
+    a shaft of known speed [turns/sample], where there is one. ``rank_of``: 2 or 3 where the line is
+    that harmonic of another as clear, which no shaft's is (a gear has more than three teeth), else
+    0; ``off``: how many times the speed given would fit, else 1.
+    """
 
     mesh_frequency: float
     harmonics: tuple[float, ...]
     evidence: tuple[str, ...] = ()
     families: tuple[Family, ...] = ()
+    teeth: int | None = None
     confirmed: bool = False
-    alone: bool = True
+    turning: float | None = None
+    rank_of: int = 0
+    off: float = 1.0
 
     @property
-    def is_theirs(self) -> bool:
-        """Whether the line is the mesh line of the teeth given: by their sidebands, or because no
-        other may be."""
-        return self.confirmed or self.alone
+    def shaft(self) -> float | None:
+        """The first shaft's [turns/sample]; None: not known."""
+        return self.turning if self.teeth is None else self.mesh_frequency / self.teeth
+
+    def kind(self, rank: int) -> tuple[str, str]:
+        """Kind and name of the line's harmonic ``rank``: "mesh", "shaft" or "line".
+
+        >>> found = Gearing(mesh_frequency=0.02, harmonics=(9.0,), turning=0.01)
+        >>> found.kind(1), replace(found, teeth=25).kind(1)
+        (('shaft', 'shaft x 2'), ('mesh', 'mesh x 1'))
+        """
+        if self.teeth is not None:
+            return "mesh", f"mesh x {rank}"
+        order = shaft_order(self.mesh_frequency, shaft=self.turning)
+        return ("shaft", f"shaft x {rank * order}") if order else ("line", f"line x {rank}")
+
+
+def shaft_order(place: float, *, shaft: float | None) -> int:
+    """The multiple of a ``shaft`` [turns/sample] that a line at ``place`` [cycles/sample] is,
+    within 2 % of a turn; 0: none.
+
+    >>> shaft_order(0.0305, shaft=0.01), shaft_order(0.03, shaft=0.01)
+    (0, 3)
+    """
+    order = 0.0 if shaft is None else place / shaft
+    return round(order) if abs(order - round(order)) < _WHOLE else 0
 
 
 def find_gearing(
@@ -77,14 +124,17 @@ def find_gearing(
     near: float | None = None,
     *,
     teeth: int | None = None,
+    shaft: float | None = None,
     told_as: float = 1.0,
 ) -> Gearing:
     """Mesh line of one record, and the lines at equal distances beside it.
 
-    1. Mesh line: the peak with the clearest harmonics 1..5 (``near`` [cycles/sample] restricts it
-       to +-3 %). Without ``near``, of lines nearly as clear the first that has the sidebands of the
-       ``teeth`` given.
-    2. The phase of that line is the angle: the record is resampled in mesh cycles, in which lines
+    1. Where ``near`` [cycles/sample] is given: of the lines within 10 % that which has the
+       sidebands of the ``teeth`` given, else the clearest within 3 %.
+    2. Else, or where none is there, the line with the clearest harmonics 1..5; of lines nearly as
+       clear the first that has the sidebands of the ``teeth`` given, or the only one that is a
+       whole multiple of a ``shaft`` of known speed [turns/sample, within 3 %] with its sidebands.
+    3. The phase of that line is the angle: the record is resampled in mesh cycles, in which lines
        to both sides of a harmonic are told to a part of a bin.
 
     ``channels``: one array each, equal lengths; ``told_as``: of places in words, where these arrays
@@ -96,31 +146,11 @@ def find_gearing(
     table = table[np.std(table, axis=-1) > 0]
     if table.size == 0 or table.shape[-1] < 256:
         raise InputError("record", f"{table.shape[-1]} samples", allowed=">= 256, not constant")
-    raw = prominence(table, 1.0)
-    lines = _lines(raw, near)
-    if not lines:
-        raise InputError("mesh line", "none", why="no line stands out of the floor")
-    clearest = max(lines, key=lambda line: line.score)
-    rivals = _rivals(raw, clearest, lines if near is None else _lines(raw, None), teeth)
-    gearing = _of_line(table, raw, clearest, teeth)
-    if teeth is not None and near is None and not gearing.confirmed:
-        others = (_of_line(table, raw, line, teeth) for line in rivals)
-        gearing = next((other for other in others if other.confirmed), gearing)
-    return replace(gearing, alone=not rivals, evidence=_words(gearing, told_as))
-
-
-def is_rank_of(higher: Gearing, lower: Gearing) -> int:
-    """2 or 3 where a line is that harmonic of another as clear, else 0. That is no shaft's: a gear
-    has more than three teeth.
-
-    >>> half, line = (Gearing(mesh_frequency=f, harmonics=(9.0,)) for f in (0.05, 0.1))
-    >>> is_rank_of(line, half), is_rank_of(half, line)
-    (2, 0)
-    """
-    ratio = higher.mesh_frequency / lower.mesh_frequency
-    rank = round(ratio)
-    whole = 2 <= rank <= _LOW_RANK and abs(ratio / rank - 1.0) < 1e-3
-    return rank if whole and lower.harmonics[0] >= higher.harmonics[0] else 0
+    search = _Search(table, prominence(table, 1.0), teeth)
+    gearing = search.near(near) if near is not None else None
+    if gearing is None:
+        gearing = search.free(shaft)
+    return replace(gearing, evidence=_words(gearing, told_as))
 
 
 def _words(gearing: Gearing, told_as: float) -> tuple[str, ...]:
@@ -135,11 +165,8 @@ def _words(gearing: Gearing, told_as: float) -> tuple[str, ...]:
         "of it and of its harmonics"
         for family in gearing.families
     ]
-    if not gearing.confirmed:
-        words.append(
-            "no tooth number is decided: it may be a shaft's own line and no mesh line ('mesh x n' "
-            "is its n-th harmonic all the same)"
-        )
+    if gearing.teeth is None:
+        words.append("no tooth number is decided: it may be a shaft's own line and no mesh line")
     return tuple(words)
 
 
@@ -158,28 +185,159 @@ class _Line:
         return sum(self.heights) / max(3, len(self.heights))
 
 
-def _of_line(table: Floats, raw: Prominence, line: _Line, teeth: int | None) -> Gearing:
-    """The gearing with this line as the mesh line."""
-    mesh = line.mesh
-    sharp = replace(raw, per_unit=raw.per_unit * mesh)
-    angle = _angle(table, mesh)
-    if angle is not None:
-        cycles, dropped, mesh = angle
-        per_cycle = samples_per_cycle(mesh)
-        kept = table[:, dropped : dropped + cycles.size]
-        straight = resample_by_angle(kept, cycles, samples_per_turn=per_cycle)
-        sharp = prominence(straight, float(per_cycle))
-    top = max(1, min(_AROUND, int(0.45 / mesh)))
-    ranks = [rank for rank in range(1, top + 1) if sharp.at(rank) > _STANDS]
-    return Gearing(
-        mesh_frequency=mesh,
-        harmonics=tuple(float(np.exp(height)) for height in line.heights),
-        families=tuple(
-            Family(distance=distance * mesh, lines=lines)
-            for distance, lines in _families(sharp, ranks)
-        ),
-        confirmed=teeth is not None and _is_confirmed(sharp, ranks, 1.0 / teeth),
-    )
+@dataclass(frozen=True)
+class _Search:
+    """Lines of a ``table`` (channel, sample) by how far they stand over the floor (``raw``)."""
+
+    table: Floats
+    raw: Prominence
+    teeth: int | None
+    _known: dict[float, tuple[Gearing, Prominence, list[int]]] = field(default_factory=dict)
+
+    @cached_property
+    def lines(self) -> list[_Line]:
+        """Lines that stand out with their harmonics, the clearest first."""
+        peaks = _peaks(self.raw, low=5.0 / self.raw.per_unit, high=0.45)
+        lines = [_line(self.raw, peak / self.raw.per_unit) for peak in peaks]
+        return sorted(lines, key=lambda line: -line.score)
+
+    def near(self, place: float) -> Gearing | None:
+        """The line that facts put at ``place`` [cycles/sample]; None: no line is there."""
+        peaks = _peaks(self.raw, low=(1.0 - NEAR) * place, high=(1.0 + NEAR) * place)
+        lines = [_line(self.raw, peak / self.raw.per_unit) for peak in peaks]
+        lines.sort(key=lambda line: -line.score)
+        close = [line for line in lines if abs(line.line / place - 1.0) <= _CLOSE]
+        close = [line for line in close if line.heights[0] > _THERE][:1]
+        tried = [self.of(line)[0] for line in (lines[:_RIVALS] if self.teeth else [])]
+        gearing = next((trial for trial in tried if trial.confirmed), None)
+        if gearing is None and close:
+            gearing, *_ = self.of(close[0])
+        if gearing is None:
+            return None
+        return replace(gearing, teeth=self.teeth, rank_of=self._rank(gearing))
+
+    def _rank(self, gearing: Gearing) -> int:
+        """2 or 3 where the line is that harmonic of the clearest one, which is as high, else 0."""
+        ratio = gearing.mesh_frequency / self.lines[0].mesh
+        whole = 2 <= round(ratio) <= _LOW_RANK and abs(ratio / round(ratio) - 1.0) < 1e-3
+        high = np.exp(self.lines[0].heights[0]) >= gearing.harmonics[0]
+        return round(ratio) if whole and high else 0
+
+    def free(self, shaft: float | None) -> Gearing:
+        """The clearest line, or another where facts decide."""
+        if not self.lines:
+            raise InputError("mesh line", "none", why="no line stands out of the floor")
+        clearest = self.lines[0]
+        gearing, *_ = self.of(clearest)
+        if self.teeth is not None and not gearing.confirmed:
+            for line in self.rivals(clearest):
+                other, sharp, ranks = self.of(line)
+                # of several lines that are tried one may have some by chance
+                if other.confirmed and all(_clear(sharp, ranks, 1.0 / self.teeth)):
+                    return other
+            return gearing
+        if shaft is None or self.teeth is not None:
+            return gearing
+        named = self.named(shaft)
+        if len(named) == 1:
+            return named[0]
+        wrong = () if named else _WRONG
+        off = next((off for off in wrong if len(self.named(off * shaft)) == 1), 1.0)
+        turns, height = self.raw.peak(shaft, reach=int(_CLOSE * shaft * self.raw.per_unit))
+        seen = off == 1.0 and height > _THERE
+        return replace(gearing, off=off, turning=turns if seen else None)
+
+    def named(self, shaft: float) -> list[Gearing]:
+        """The gearings with each line that is the mesh line of a whole number of teeth on a
+        ``shaft`` [turns/sample, within 3 %]."""
+        named: list[Gearing] = []
+        tried: list[_Line] = []
+        for line in self.lines[:_TRIED_LINES]:
+            low, high = (line.mesh / shaft / (1.0 + sign * _CLOSE) for sign in (1, -1))
+            if high < FEWEST or any(self._is_harmonic(line, other.mesh) for other in tried):
+                continue
+            gearing, sharp, ranks = self.of(line)
+            cycles = self.table.shape[-1] * line.mesh
+            numbers = range(max(FEWEST, ceil(low)), int(high) + 1)
+            fitting = [z for z in numbers if _is_alone(sharp, ranks, z, cycles=cycles)]
+            named += [replace(gearing, teeth=z) for z in fitting]
+            tried.append(line)
+        return named
+
+    def rivals(self, clearest: _Line) -> list[_Line]:
+        """Other lines with harmonics nearly as clear, none of its harmonics or another's."""
+        rivals: list[_Line] = []
+        for line in self.lines:
+            clear = len(line.heights) > 1 and min(line.heights[:2]) > _STANDS
+            if not clear or line.mean < _AS_CLEAR * clearest.mean:
+                continue
+            if not any(self._is_harmonic(line, other.mesh) for other in (clearest, *rivals)):
+                rivals.append(line)
+        return rivals[:_RIVALS]
+
+    def _is_harmonic(self, line: _Line, mesh: float) -> bool:
+        """Whether a line is another or its multiple; of one that wanders every peak is."""
+        rank = round(line.mesh / mesh)
+        off = abs(line.mesh - rank * mesh)
+        return rank >= 1 and off < rank * max(_BINS / self.raw.per_unit, _NARROW * mesh)
+
+    def of(self, line: _Line) -> tuple[Gearing, Prominence, list[int]]:
+        """The gearing with this line as the mesh line, what shows in its angle, and which of
+        its first harmonics do."""
+        if line.mesh not in self._known:
+            self._known[line.mesh] = self._of(line)
+        return self._known[line.mesh]
+
+    def _of(self, line: _Line) -> tuple[Gearing, Prominence, list[int]]:
+        mesh = line.mesh
+        sharp = replace(self.raw, per_unit=self.raw.per_unit * mesh)
+        angle = _angle(self.table, mesh)
+        if angle is not None:
+            cycles, mesh = angle
+            sharp = replace(sharp, per_unit=self.raw.per_unit * mesh)
+        if angle is not None and _wanders(cycles, mesh):
+            per_cycle = samples_per_cycle(mesh)
+            straight = resample_by_angle(self.table, cycles, samples_per_turn=per_cycle)
+            sharp = prominence(straight, float(per_cycle))
+        top = max(1, min(_AROUND, int(0.45 / mesh)))
+        ranks = [rank for rank in range(1, top + 1) if sharp.at(rank) > _STANDS]
+        confirmed = self.teeth is not None and _is_confirmed(sharp, ranks, 1.0 / self.teeth)
+        gearing = Gearing(
+            mesh_frequency=mesh,
+            harmonics=tuple(float(np.exp(height)) for height in line.heights),
+            families=tuple(
+                Family(distance=distance * mesh, lines=lines)
+                for distance, lines in _families(sharp, ranks)
+            ),
+            teeth=self.teeth if confirmed else None,
+            confirmed=confirmed,
+        )
+        return gearing, sharp, ranks
+
+
+def _is_alone(sharp: Prominence, ranks: Sequence[int], teeth: int, *, cycles: float) -> bool:
+    """Whether a mesh line, 1 in its own angle of so many ``cycles``, has the sidebands of these
+    ``teeth``, exactly there, and is the middle of them.
+
+    A line of another origin is as near to a whole multiple of the shaft by a chance of 2 x 0.25
+    bins; that is a tenth or less from 5 ``teeth`` turns on. Sidebands at half of the distance would
+    be those of twice the teeth. Of the comb of a shaft every line has such neighbours: a mesh line
+    is the highest of the seven about each of its harmonics, by a chance of 1/343 about three.
+    """
+    if cycles < 5.0 * teeth**2:
+        return False
+    if not _is_confirmed(sharp, ranks, 1.0 / teeth) or _is_confirmed(sharp, ranks, 0.5 / teeth):
+        return False
+    away, over = [], []
+    for rank in ranks:
+        beside = [sharp.peak(rank + n / teeth, reach=1) for n in (-3, -2, -1, 1, 2, 3)]
+        below, above = beside[2], beside[3]
+        if min(below[1], above[1]) > _STANDS:
+            away.append(0.5 * (above[0] - below[0]))
+        over.append(float(sharp.at(rank)) - max(height for _, height in beside))
+    off = abs(float(np.mean(away)) - 1.0 / teeth) * sharp.per_unit if away else np.inf
+    least = _OVER if len(ranks) == _AROUND else _FEWER_OVER
+    return bool(off < _EXACT and min(over) > 0.0 and np.mean(over) > least)
 
 
 def _clear(sharp: Prominence, ranks: Sequence[int], distance: float) -> list[bool]:
@@ -201,7 +359,7 @@ def _is_confirmed(sharp: Prominence, ranks: Sequence[int], distance: float) -> b
     anywhere = np.linspace(*_ANYWHERE, _TRIED)
     share = np.mean([clear for away in anywhere for clear in _clear(sharp, [top], away)] or [True])
     chances = [
-        stats.binom.sf(sum(sides) - 1, len(sides), max(float(share), 1.0 / _TRIED))
+        special.bdtrc(sum(sides) - 1, len(sides), max(float(share), 1.0 / _TRIED))
         for about in ([top], ranks)
         if (sides := _clear(sharp, about, distance))
     ]
@@ -242,41 +400,6 @@ def _peaks(shown: Prominence, *, low: float, high: float) -> list[int]:
     return [int(peak) for peak in peaks[np.argsort(-level[peaks])][:400]]
 
 
-def _rivals(
-    raw: Prominence, clearest: _Line, lines: Sequence[_Line], teeth: int | None
-) -> list[_Line]:
-    """Other lines with harmonics nearly as clear, the clearest first: none of its harmonics, and no
-    low order of a shaft that its teeth make, of the ``teeth`` given or of any that a gear has."""
-    rivals: list[_Line] = []
-    shafts = [clearest.mesh / teeth] if teeth else []
-    least = _AS_CLEAR * clearest.mean
-
-    def of(line: _Line, step: float, most: float = np.inf) -> bool:
-        rank = round(line.line / step)
-        return 1 <= rank <= most and abs(line.line - rank * step) * raw.per_unit < rank * _BINS
-
-    for line in sorted(lines, key=lambda other: -other.score):
-        if len(line.heights) < 2 or min(line.heights[:2]) < _STANDS or line.mean < least:
-            continue
-        if any(of(line, other.mesh) for other in (clearest, *rivals)):
-            continue
-        part = round(clearest.mesh / line.line)
-        whole = abs(clearest.mesh - part * line.line) * raw.per_unit < part * _BINS
-        if whole and part >= FEWEST:
-            shafts.append(line.line)
-        if not any(of(line, step, _LOW_ORDER) for step in shafts):
-            rivals.append(line)
-        if len(rivals) == _RIVALS:
-            break
-    return rivals
-
-
-def _lines(raw: Prominence, near: float | None) -> list[_Line]:
-    """Lines that stand out of the floor with their harmonics; near ``near`` if given."""
-    low, high = (5.0 / raw.per_unit, 0.45) if near is None else (0.97 * near, 1.03 * near)
-    return [_line(raw, peak / raw.per_unit) for peak in _peaks(raw, low=low, high=high)]
-
-
 def _line(raw: Prominence, near: float) -> _Line:
     start, _ = raw.peak(near, reach=0)
     found: list[tuple[float, float]] = []
@@ -308,8 +431,8 @@ def _line(raw: Prominence, near: float) -> _Line:
     )
 
 
-def _angle(table: Floats, mesh: float) -> tuple[Floats, int, float] | None:
-    """Cycles of the mesh line at each sample, samples dropped and the mean mesh line."""
+def _angle(table: Floats, mesh: float) -> tuple[Floats, float] | None:
+    """Cycles of the mesh line at each sample, and the mean mesh line."""
     half = max(_NARROW * mesh, 12.0 / table.shape[-1])
     if half > 0.2 * mesh:
         return None
@@ -319,10 +442,16 @@ def _angle(table: Floats, mesh: float) -> tuple[Floats, int, float] | None:
         for c in table
     ]
     best = table[int(np.argmax(heights))]
-    cycles, dropped = line_angle(best, frequency=mesh, half_width=half)
+    cycles = follow_line(best, 1.0, frequency=mesh, half_width=half, cut=False).cycles
     if np.any(np.diff(cycles) <= 0):
         return None
-    return cycles, dropped, float(np.polyfit(np.arange(cycles.size), cycles, 1)[0])
+    return cycles, float(np.polyfit(np.arange(cycles.size), cycles, 1)[0])
+
+
+def _wanders(cycles: Floats, mesh: float) -> bool:
+    """Whether a line's cycles leave an even turning by what three times as many would show."""
+    off = cycles - mesh * np.arange(cycles.size)
+    return bool(np.ptp(off) > _STEADY)
 
 
 def _near(count: int, frequency: float) -> slice:

@@ -12,13 +12,12 @@ from thermogear.base.arrays import Floats
 from thermogear.base.units import STANDARD_GRAVITY
 from thermogear.measured.chain import Chain, reduced
 from thermogear.measured.gate import turned_by
-from thermogear.measured.gearing import Gearing, sides_of
+from thermogear.measured.gearing import Gearing, shaft_order, sides_of
 from thermogear.measured.record import Channel, Record
 from thermogear.measured.turns import MeshTurns, unfollowed
 from thermogear.measured.units import kind_of
 from thermogear.signals.interval import APART, REACH, Reading, read_line
-from thermogear.signals.lines import LineSpectrum
-from thermogear.signals.spectra import amplitude_spectrum
+from thermogear.signals.lines import LineSpectrum, line_spectrum
 from thermogear.signals.strong import Strong, strong_lines
 
 _NORMAL = 1.959964  # standard deviations of a normal law that hold 95 %
@@ -34,9 +33,9 @@ _NEAR = 4.0  # bins within which a stronger line reaches into an asked one
 class MeasuredLine:
     """One line of one channel. What the record does not allow is nan, never guessed.
 
-    ``kind``: "mesh" (harmonic of the mesh line), "sideband", "order" (asked for) or "line"
-    (prominent, and none of the others). ``order`` of the first shaft, ``position``
-    [cycles/sample], ``frequency`` [Hz]; ``reading`` peak amplitude in the file's unit,
+    ``kind``: "mesh" (harmonic of the mesh line), "sideband", "shaft" (multiple of a known shaft's
+    turns), "order" (asked for) or "line" (of which no more is known). ``order`` of the first shaft,
+    ``position`` [cycles/sample], ``frequency`` [Hz]; ``reading`` peak amplitude in the file's unit,
     ``acceleration`` [m/s^2], ``displacement`` [m].
 
     What is measured: the amplitude over the stretch, root of the mean square of the line's own
@@ -68,6 +67,11 @@ class MeasuredLine:
     frequency_half_width: float = float("nan")
     speed_half_width: float = float("nan")
     withheld: str = ""
+
+    @property
+    def is_reading(self) -> bool:
+        """Whether the line was asked for, or its interval is no wider than itself."""
+        return self.kind == "order" or not self.half_width > 1.0
 
     @property
     def acceleration_g(self) -> float:
@@ -114,13 +118,15 @@ class Doubts:
 
 @dataclass(frozen=True)
 class Wanted:
-    """A line to look for, at ``position`` +- ``half_width`` [cycles/sample]."""
+    """A line to look for, at ``position`` +- ``half_width`` [cycles/sample]; ``rank`` of a harmonic
+    of the mesh line or of the clearest one, else 0."""
 
     kind: str
     name: str
     _: KW_ONLY
     position: float
     half_width: float
+    rank: int = 0
 
 
 def wanted_lines(
@@ -139,31 +145,29 @@ def wanted_lines(
     count = values.size
     bins = 3.0 / count
     if gearing is None:
-        spectrum = amplitude_spectrum(values - values.mean(), 1.0, "hann")
-        tops = np.argsort(-spectrum.amplitudes[3:-3])[: 8 * harmonics] + 3
-        found: list[Wanted] = []
-        for top in tops:
-            place = float(top) / count
-            if all(abs(place - other.position) > 2 * bins for other in found):
-                found.append(
-                    Wanted("line", f"line {len(found) + 1}", position=place, half_width=bins)
-                )
-        return found[:harmonics]
+        strong = strong_lines(line_spectrum(values, 1.0), harmonics)
+        return [
+            Wanted("line", f"line {k}", position=one.place / count, half_width=bins)
+            for k, one in enumerate(strong, 1)
+        ]
     mesh = gearing.mesh_frequency
-    found = []
+    found: list[Wanted] = []
     for rank in range(1, harmonics + 1):
         if 2.56 * rank * mesh > 1.0:  # not above rate/2.56
             break
         # speed wander spreads a harmonic in proportion to its rank
         reach = max(bins, 2e-4 * rank * mesh)
-        found.append(Wanted("mesh", f"mesh x {rank}", position=rank * mesh, half_width=reach))
+        kind, name = gearing.kind(rank)
+        found.append(Wanted(kind, name, position=rank * mesh, half_width=reach, rank=rank))
         for n in range(1, sidebands + 1 if teeth else 1):
             for sign in (-1, 1):
                 place = rank * mesh + sign * n * mesh / (teeth or 1)
-                label = f"mesh x {rank} {'+' if sign > 0 else '-'} {n} shaft/{teeth}"
+                label = f"{name} {'+' if sign > 0 else '-'} {n} shaft/{teeth}"
                 found.append(Wanted("sideband", label, position=place, half_width=reach))
     if not found:
-        found.append(Wanted("mesh", "mesh x 1", position=mesh, half_width=max(bins, 2e-4 * mesh)))
+        kind, name = gearing.kind(1)
+        reach = max(bins, 2e-4 * mesh)
+        found.append(Wanted(kind, name, position=mesh, half_width=reach, rank=1))
     return [w for w in found if bins < w.position < 0.5 - bins]
 
 
@@ -183,7 +187,7 @@ def other_lines(
     nothing of sidebands.
     """
     mesh = gearing.mesh_frequency
-    shaft = mesh / teeth if teeth else None
+    shaft = gearing.shaft
     least = _PROMINENT * max((size for _, size in strong), default=0.0)
 
     def explained(place: float) -> bool:
@@ -193,22 +197,24 @@ def other_lines(
             for want in wanted
         ):
             return True
-        if place <= 0.5 * mesh:
+        if place <= 0.5 * mesh or gearing.teeth is None:
             return False
         away = abs(place - round(place / mesh) * mesh)
-        if away < reach or shaft is None:
+        if away < reach or not teeth:
             return away < reach
-        rank = round(away / shaft)
-        return rank <= _FAR and abs(away - rank * shaft) < reach
+        rank = round(away * teeth / mesh)
+        return rank <= _FAR and abs(away - rank * mesh / teeth) < reach
 
     found: list[Wanted] = []
     for place, size in sorted(strong, key=lambda one: -one[1]):
         if size < least or len(found) == _OTHERS:
             break
         if not explained(place) and 3.0 * width < place < 0.5 - 3.0 * width:
-            words = f"line at {place / mesh:.4g} mesh"
-            name = words if shaft is None else f"order {place / shaft:.4g}"
-            found.append(Wanted("line", name, position=place, half_width=width))
+            order = shaft_order(place, shaft=shaft)
+            name = f"line at {place / mesh:.4g} {'mesh' if gearing.teeth else 'times line x 1'}"
+            name = name if shaft is None else f"order {place / shaft:.4g}"
+            kind, name = ("shaft", f"shaft x {order}") if order else ("line", name)
+            found.append(Wanted(kind, name, position=place, half_width=width))
     return found
 
 
@@ -230,13 +236,7 @@ def channel_lines(
     factor = channel.si_factor if known else 1.0
     accelerates = known and channel.unit is not None and kind_of(channel.unit) == "acceleration"
     moves = known and channel.unit is not None and kind_of(channel.unit) == "displacement"
-    through = reduced(
-        values * factor,
-        rate,
-        chain,
-        accelerates and record.rate is not None,
-        turns.turning if turns else None,
-    )
+    through = reduced(values * factor, rate, turns.turning if turns else None)
     strong = strong_lines(through.spectrum)
     bin_width = through.spectrum.bin_width * through.axis / rate
     peaks = [(one.place * bin_width, abs(one.amplitude)) for one in strong]
@@ -247,11 +247,12 @@ def channel_lines(
     found = []
     missed: dict[int, float] = {}  # of a mesh harmonic, beside it, of its power
     in_hertz = record.rate is not None
-    shaft = gearing.mesh_frequency / teeth if gearing and teeth else float("nan")
+    shaft = (gearing.shaft if gearing else None) or float("nan")
     speed = 2 * np.pi * rate * shaft if in_hertz else float("nan")
     share = turns.half_width / turns.frequency if turns else float("nan")
     for want in wanted:
-        line, displacement = through.read(want.position * rate, half_width=want.half_width * rate)
+        reach = want.half_width * rate
+        line = through.read(want.position * rate, half_width=reach, window=chain.window)
         sides = _sides(gearing, teeth, want)
         beside = [p * rate / through.axis for p in [*places, *sides]]
         expected = want.position * rate / through.axis
@@ -259,7 +260,7 @@ def channel_lines(
         if want.kind in ("order", "sideband"):
             reading = _read_known(through.spectrum, expected, beside, strong, followed)
         else:
-            near = line.frequency / through.axis
+            near = line.frequency
             # as many bins that tell of the noise as where nothing was followed
             taken = min(int(followed / through.spectrum.bin_width), REACH)
             reading = read_line(
@@ -272,12 +273,12 @@ def channel_lines(
             )
         position = reading.frequency * through.axis / rate
         rank = int(np.rint(position / gearing.mesh_frequency)) if gearing else 0
-        if turns is not None and turns.unfollowed and want.kind == "mesh":
+        if turns is not None and turns.unfollowed and want.rank:
             # among sidebands alone: other lines that are read may be its own
             own_sides = [p * rate / through.axis for p in sides]
             single = read_line(
                 through.spectrum,
-                line.frequency / through.axis,
+                line.frequency,
                 beside=own_sides,
                 strong=strong,
                 followed=followed,
@@ -288,13 +289,13 @@ def channel_lines(
         amplitude, relative = _amplitude(reading, position, turns)
         doubt = turns.doubt if turns else 0.0
         # with the power in doubt, or without; an angle that is another's smears all others
-        itself = want.kind == "mesh" and rank == 1
+        itself = want.rank == 1
         alone = float(np.sqrt(1.0 - doubt)) if itself else 1.0
         relative += rank**2 * doubt if turns and turns.turning and not itself else 0.0
         # with what may be its own beside it, or without; a sideband shares its mesh line's
         gain = float(np.sqrt(1.0 + missed.get(rank, 0.0)))
         low, high = min(1.0, gain), max(1.0, gain)
-        comes = 0.0 if want.kind == "mesh" else reading.changing**2 + reading.turning**2
+        comes = 0.0 if want.rank else reading.changing**2 + reading.turning**2
         if comes > 1.0:  # more of it comes and goes than stays: it may be no line
             relative = max(relative, 1.0)
         else:  # a short event beside it, or its own
@@ -311,8 +312,9 @@ def channel_lines(
             off = abs(position - want.position) if other else 0.0  # its own place is known
         amplitude *= 0.5 * (low + high)
         relative += (high - low) / (high + low)
-        # the chain's displacement, read as the acceleration was
-        displacement *= amplitude / line.amplitude if line.amplitude > 0.0 else 1.0
+        displacement = amplitude if moves else float("nan")
+        if accelerates and in_hertz:
+            displacement = chain.displacement(amplitude, frequency=position * rate, rate=rate)
         own = reading.frequency_half_width * through.axis / rate + off
         if turns is not None:
             more = turns.spread if turns.turning is None else turns.half_width
@@ -335,11 +337,7 @@ def channel_lines(
                     frequency=position * rate if in_hertz else float("nan"),
                     reading=amplitude / factor,
                     acceleration=amplitude if accelerates else float("nan"),
-                    displacement=amplitude
-                    if moves
-                    else displacement
-                    if accelerates and in_hertz
-                    else float("nan"),
+                    displacement=displacement,
                     uncertainty=half_width / _NORMAL,
                     bin_offset=line.bin_offset,
                     prominence=line.prominence,

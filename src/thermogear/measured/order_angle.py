@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -59,9 +60,15 @@ def order_angle(
     straight = [resample_by_angle(c, turns, samples_per_turn=per_turn) for c in loudest]
     near = 1.0 if shaft.line else float(teeth) if teeth and shaft.sure else None
     told_as = per_turn * mean
-    gearing = _found(straight, None if near is None else near / per_turn, teeth, told_as)
-    if near is not None and gearing is None:
-        gearing = _found(straight, None, teeth, told_as)
+    gearing: Gearing | None = None
+    with suppress(InputError):
+        gearing = find_gearing(
+            straight,
+            None if near is None else near / per_turn,
+            teeth=teeth,
+            shaft=1.0 / per_turn if shaft.sure and not shaft.line else None,
+            told_as=told_as,
+        )
     mesh = None if gearing is None else gearing.mesh_frequency * per_turn
     if mesh is None and teeth and not shaft.line:
         mesh = float(teeth)
@@ -80,12 +87,13 @@ def order_angle(
             notices.append(Notice.of("pulses_by_mesh_line", pulses=round(pulses), teeth=z))
         else:
             notices.append(Notice.of("pulses_not_stated", pulses=pulses))
+            z = None
     elif not shaft.sure and steady and speed and (by := _pulses_of(own, speed)):
         factor = 1.0 / by
         notices.append(Notice.of("pulses_by_speed", pulses=by, speed=own / by))
     elif not shaft.sure:
         notices.append(Notice.of("pulses_not_stated", pulses=None))
-    elif mesh is not None and teeth and abs(mesh / teeth - 1.0) > 0.02:
+    elif mesh is not None and teeth and z and abs(mesh / teeth - 1.0) > 0.02:
         factor = mesh / teeth
         notices.append(Notice.of("teeth_on_other_shaft", order=mesh, teeth=teeth, ratio=factor))
     return OrderAngle(
@@ -94,7 +102,7 @@ def order_angle(
         noise=shaft.noise * factor,
         mesh=None if mesh is None else mesh / factor if not shaft.line else z or MESHES,
         of_mesh=shaft.line and not z,
-        gearing=gearing,
+        gearing=None if gearing is None else replace(gearing, teeth=z),
         teeth=z,
     )
 
@@ -107,27 +115,21 @@ def _teeth_of(
     stated: tuple[float | None, float | None],
     notices: list[Notice],
 ) -> int | None:
-    """The teeth given. None where a run's line that was followed may be the mesh line of another
-    gear than theirs, whose speed is not the ``stated`` one [rad/s], with the rate."""
-    if teeth is None or gearing is None or not shaft.line or shaft.span < VARIES:
+    """The teeth given, or those that the lines name beside pulses that are known. None where a
+    run's line that was followed may be the mesh line of another gear than theirs, whose speed is
+    not the ``stated`` one [rad/s], with the rate."""
+    if gearing is not None and shaft.sure and not shaft.line:
+        return gearing.teeth
+    if teeth is None or gearing is None or not shaft.line:
         return teeth
     speed, rate = stated
     per_sample = 2.0 * np.pi * (mesh or 1.0) / teeth * (rate or 1.0)
     low, high = (per_sample * turning for turning in shaft.speeds)
     fits = speed is not None and not of_speed(speed, lowest=low, highest=high)
-    if fits or gearing.is_theirs:
+    if fits or gearing.confirmed:
         return teeth
     notices.append(Notice.of("followed_line_undecided", teeth=teeth))
     return None
-
-
-def _found(
-    table: list[Floats], near: float | None, teeth: int | None, told_as: float
-) -> Gearing | None:
-    try:
-        return find_gearing(table, near, teeth=teeth, told_as=told_as)
-    except InputError:
-        return None
 
 
 def _pulses_of(own: float, speed: float) -> int:

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from thermogear.base.bounds import SPEED
-from thermogear.measured.contradictions import NEAR
-from thermogear.measured.gearing import Gearing
+from thermogear.measured.gearing import NEAR, Gearing
 from thermogear.measured.record import Notice, Record
 
 _TOLD = 0.005

@@ -41,76 +41,16 @@ from thermogear.measured.rate_check import check_rate
 from thermogear.measured.readers import read_record
 from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.stated import expected_mesh, speed_undecided, stated_gearing
+from thermogear.measured.swelling import (
+    BearingRates,
+    Defect,
+    Swelling,
+    defects_of,
+    swellings_of,
+)
 from thermogear.measured.traps import unknown_unit
 from thermogear.measured.turns import MeshTurns, few_turns, mesh_turns
-from thermogear.signals.envelope import envelope_rate
 from thermogear.signals.windows import Window
-
-CHANCE = 1e-3
-"""How often noise may have a rate as clear for one to be told."""
-
-_LONGEST = 1 << 19  # samples
-
-
-@dataclass(frozen=True, kw_only=True)
-class Swelling:
-    """A rate [cycles/sample, and Hz or None] at which the noise of a channel between ``low`` and
-    ``high`` [cycles/sample] swells; ``order`` of the first shaft (None: unknown), ``powers`` of its
-    harmonics over those of noise, ``chance`` that noise alone has one as clear."""
-
-    channel: str
-    position: float
-    frequency: float | None
-    order: float | None
-    low: float
-    high: float
-    powers: tuple[float, ...]
-    chance: float
-
-    @property
-    def words(self) -> str:
-        """In words."""
-        scale = 1.0 if self.frequency is None else self.frequency / self.position
-        unit = "cycles/sample" if self.frequency is None else "Hz"
-        powers = ", ".join(f"{p:.0f}" for p in self.powers)
-        said = (
-            f"what is no line between {scale * self.low:.4g} and {scale * self.high:.4g} {unit} "
-            f"in {self.channel} swells at {scale * self.position:.5g} {unit} "
-            f"(envelope line, harmonics {powers} times noise)"
-        )
-        if self.order is None:
-            return f"{said}: impacts of a bearing or of a shaft, or a load that swings"
-        return f"{said}: {self.order:.3f} of the first shaft"
-
-
-def swelling_of(
-    channels: Sequence[str], table: NDArray[np.float64], rate: float | None, shaft: float | None
-) -> Swelling | None:
-    """The clearest rate of the channels' envelopes; None where chance may explain it.
-
-    ``table`` (channel, sample), ``rate`` [samples/s], ``shaft`` [turns/sample] or None.
-    """
-    found = [
-        (name, one)
-        for name, values in zip(channels, table, strict=True)
-        if (one := envelope_rate(values[:_LONGEST])) is not None
-    ]
-    if not found:
-        return None
-    name, best = min(found, key=lambda pair: (pair[1].chance, -sum(pair[1].powers)))
-    if best.chance * len(found) >= CHANCE:
-        return None
-    return Swelling(
-        channel=name,
-        position=best.rate,
-        frequency=None if rate is None else best.rate * rate,
-        order=None if shaft is None else best.rate / shaft,
-        low=best.band[0],
-        high=best.band[1],
-        powers=best.powers,
-        chance=best.chance,
-    )
-
 
 LONGEST = 1 << 21
 """Samples per channel reduced at once; a longer record is cut there with a notice."""
@@ -128,7 +68,8 @@ class Measurement:
     ``teeth``: those orders are counted with, given or found; ``given``: what the user said (teeth,
     speed [rad/s]), None where he said nothing.
     ``findings``: damage of the record and what was done about it; ``values`` (channel, sample):
-    what the lines were read from, in the file's unit; ``swelling``: impacts that slip.
+    what the lines were read from, in the file's unit; ``swellings``: impacts that slip, and the
+    ``defects`` of bearings whose rates they have.
     """
 
     record: Record
@@ -144,7 +85,19 @@ class Measurement:
     values: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 0)), repr=False)
     slices: OrderSlices | None = None
     given: tuple[int | None, float | None] = (None, None)
-    swelling: Swelling | None = None
+    swellings: tuple[Swelling, ...] = ()
+    defects: tuple[Defect, ...] = ()
+
+    @property
+    def readings(self) -> tuple[MeasuredLine, ...]:
+        """The lines that are told: those asked for, and those known to better than 100 %."""
+        return tuple(line for line in self.lines if line.is_reading)
+
+    @property
+    def harmonics(self) -> tuple[str, ...]:
+        """Names of the harmonics of the mesh line, or of the clearest, by rank."""
+        ranks = range(1, _MOST + 1) if self.gearing is not None else ()
+        return tuple(self.gearing.kind(rank)[1] for rank in ranks if self.gearing)
 
     @property
     def settings(self) -> dict[str, str]:
@@ -162,7 +115,6 @@ class Measurement:
             "method": METHODS[self.chain.method],
             "band": "none" if band is None else f"{band[0]:.6g}..{band[1]:.6g} {unit}",
             "taps": "none" if taps is None else str(taps),
-            "low cut": "none" if self.chain.low_cut is None else f"{self.chain.low_cut:.6g} {unit}",
             "amplitudes": "peak",
         }
 
@@ -180,6 +132,7 @@ def measure(
     pulses_per_turn: float | None = None,
     tacho: Record | None = None,
     orders: Sequence[float] = (),
+    bearings: Sequence[BearingRates] = (),
 ) -> Measurement:
     """Lines of a record: mesh harmonics, sidebands, further meshes, with their uncertainty.
 
@@ -187,7 +140,8 @@ def measure(
     that vibrate); ``teeth`` and ``speed`` [rad/s] of the first shaft where they are known: they
     are checked against what the lines say; ``sensor_tolerance`` the sensor's relative standard
     uncertainty; ``pulses_per_turn`` of the tacho channel, or of that of another record ``tacho``;
-    ``orders`` of the first shaft to read beside. A tacho, or a channel of speed, is always used:
+    ``orders`` of the first shaft to read beside; ``bearings`` on it, against whose rates those of
+    the envelope are held. A tacho, or a channel of speed, is always used:
     lines are read in angle. Without one a speed that wanders is followed by the mesh line's phase,
     one that changes by a line tracked through the spectrum. Where the speed changes by more than
     3 % orders are read slice by slice over it (``slices``). Without a rate the lines are given in
@@ -229,7 +183,14 @@ def measure(
     if changing is not None:
         gearing, teeth, turns = changing.gearing, changing.teeth, changing.turns
     else:
-        gearing = stated_gearing(through.table, notices, expected=expected, teeth=teeth)
+        gearing = stated_gearing(
+            through.table,
+            notices,
+            expected=expected,
+            teeth=teeth,
+            shaft=_turns(record, speed),
+        )
+        teeth = teeth or (gearing.teeth if gearing else None)
     if changing is not None and changing.slices is not None:
         return _of_slices(record, through, chain, changing, notices, given)
     chosen, start, table = through.channels, through.start, through.table
@@ -243,7 +204,7 @@ def measure(
         few = few_turns(gearing, teeth=teeth, samples=table.shape[-1])
         notices += few
         sidebands = 0 if few else sidebands
-        undecided = speed_undecided(gearing, teeth=given[0], speed=speed, rate=record.rate)
+        undecided = speed_undecided(gearing, given[0])
         doubt = check_rate(
             record,
             gearing,
@@ -252,7 +213,7 @@ def measure(
             speed=speed,
             undecided=undecided is not None,
         )
-        through.findings += [undecided] if undecided else []
+        notices += [undecided] if undecided else []
     if doubt:
         through.findings.append(Notice.of("rate_or_speed_doubtful"))
     notices += through.findings
@@ -274,7 +235,6 @@ def measure(
                 ),
                 orders,
                 gearing,
-                teeth,
                 values.size,
             ),
             sensor_tolerance,
@@ -292,41 +252,44 @@ def measure(
     )
     notices += dict.fromkeys(turns.told) if turns is not None else []
     lines = [of_velocity(line, record.channel(line.channel)) for line in lines]
-    notices += _untold(record, chosen, sensor_tolerance)
+    notices += [*_hidden(lines), *_untold(record, chosen, sensor_tolerance)]
     notices += _filtered(wanted, rate, mesh, gearing)
+    swellings = _swellings(record, chosen, table, gearing, speed) if changing is None else ()
     return Measurement(
         record,
         tuple(c.name for c in chosen),
         int(table.shape[-1]),
         wanted,
         gearing,
-        teeth,
+        gearing.teeth if gearing else None,
         tuple(lines),
         tuple(notices),
         start,
         tuple(through.findings),
         table,
         given=given,
-        swelling=_swelling(record, chosen, table, gearing, (teeth, speed))
-        if changing is None
-        else None,
+        swellings=swellings,
+        defects=defects_of(swellings, bearings),
     )
 
 
-def _swelling(
+def _turns(record: Record, speed: float | None) -> float | None:
+    """The shaft's turns per sample at the ``speed`` said [rad/s]; None: not known."""
+    return None if speed is None or not record.rate else speed / (2.0 * np.pi * record.rate)
+
+
+def _swellings(
     record: Record,
     chosen: Sequence[Channel],
     table: NDArray[np.float64],
     gearing: Gearing | None,
-    known: tuple[int | None, float | None],
-) -> Swelling | None:
-    """Impacts that slip, beside the shaft by its teeth or by the speed said [rad/s]."""
-    teeth, speed = known
-    shaft = gearing.mesh_frequency / teeth if gearing is not None and teeth else None
-    if shaft is None and speed is not None and record.rate is not None:
-        shaft = speed / (2.0 * np.pi) / record.rate
+    speed: float | None,
+) -> tuple[Swelling, ...]:
+    """Impacts that slip, beside the shaft by its lines or by the speed said [rad/s]."""
+    shaft = gearing.shaft if gearing is not None else None
+    shaft = _turns(record, speed) if shaft is None else shaft
     rate = None if record.rate_doubt else record.rate
-    return swelling_of([one.name for one in chosen], table, rate, shaft)
+    return swellings_of([one.name for one in chosen], table, rate, shaft)
 
 
 def _require(
@@ -373,7 +336,7 @@ def _of_slices(
         found.gearing,
         found.teeth,
         found.lines,
-        (*notices, *_untold(record, through.channels, None)),
+        (*notices, *_hidden(found.lines), *_untold(record, through.channels, None)),
         through.start,
         tuple(through.findings),
         through.table,
@@ -382,11 +345,16 @@ def _of_slices(
     )
 
 
+def _hidden(lines: Sequence[MeasuredLine]) -> list[Notice]:
+    """How many lines are no readings."""
+    hidden = sum(not line.is_reading for line in lines)
+    return [Notice.of("lines_hidden", lines=hidden, of=len(lines))] if hidden else []
+
+
 def _with_orders(
     wanted: list[Wanted],
     orders: Sequence[float],
     gearing: Gearing | None,
-    teeth: int | None,
     samples: int,
 ) -> list[Wanted]:
     """The lines with those at ``orders`` of the first shaft, which must be known for them.
@@ -395,10 +363,10 @@ def _with_orders(
     """
     if not orders:
         return wanted
-    if gearing is None or not teeth:
+    if gearing is None or gearing.shaft is None:
         got = ", ".join(f"{o:g}" for o in orders)
-        raise InputError("orders", got, why="no shaft's speed is known", fix="--teeth or --tacho")
-    shaft = gearing.mesh_frequency / teeth
+        raise InputError("orders", got, why="no shaft's speed is known", fix="--speed or --tacho")
+    shaft = gearing.shaft
     require_orders(orders, lowest=1.0 / (samples * shaft), highest=(0.5 - 2.0 / samples) / shaft)
     return wanted + order_lines(orders, shaft, wanted)
 
@@ -421,11 +389,7 @@ def _filtered(chain: Chain, rate: float, mesh: float, gearing: Gearing | None) -
     """Whether the band's filter weakens the line at ``mesh`` [Hz] by more than 1 %."""
     band = chain.filter(rate)
     if band is not None and gearing is not None and abs(float(band.gain(mesh)) - 1) > 0.01:
-        yield Notice.of(
-            "filter_weakens_mesh_line" if chain.method == "trapezoid" else "filter_divided_out",
-            taps=band.taps,
-            gain=float(band.gain(mesh)),
-        )
+        yield Notice.of("filter_weakens_mesh_line", taps=band.taps, gain=float(band.gain(mesh)))
 
 
 def require_teeth(teeth: int | None) -> None:

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from thermogear.measured.contradictions import NEAR
+from thermogear.measured.gearing import NEAR
 from thermogear.measured.record import Notice
 from thermogear.measured.reduction import Measurement
 from thermogear.measured.shaft import given_shaft

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,7 @@ from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, nearest
 from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import label
-from thermogear.measured.at_once import rows_of
+from thermogear.measured.at_once import Row, rows_of
 from thermogear.measured.joined import require_once, shown_names
 from thermogear.measured.reduction import Measurement
 from thermogear.measured.same_line import ALIKE, Turns, compare
@@ -23,6 +23,7 @@ from thermogear.results.result import Notice, Result, now
 
 MOST = 10_000
 _HALF = 1.959964
+_Value = TypeVar("_Value")
 _REASONS = 3  # files that a refusal tells of
 
 
@@ -163,6 +164,7 @@ def several(
         for row in good
         if row.unit != unit
     ]
+    kept = [_named_as(row, good[place]) for row in kept]
     withheld = tuple((names[row.file], row.withheld) for row in kept if row.withheld)
     keys = tuple(dict.fromkeys(key for row in kept for key in row.readings))
     blank = (float("nan"), float("nan"))
@@ -193,6 +195,21 @@ def several(
         withheld=withheld,
         found=tuple((names[row.file], row.found) for row in kept if row.found),
     )
+
+
+def _named_as(row: Row, base: Row) -> Row:
+    """The row with its harmonics named as those of the baseline: whether they are the same lines
+    their places tell."""
+    names = dict(zip(row.harmonics, base.harmonics, strict=False))
+
+    def renamed(values: dict[tuple[str, str], _Value]) -> dict[tuple[str, str], _Value]:
+        named = {}
+        for (channel, name), value in values.items():
+            line, sign, side = name.partition(" - " if " - " in name else " + ")
+            named[channel, names.get(line, line) + sign + side] = value
+        return named
+
+    return replace(row, readings=renamed(row.readings), places=renamed(row.places))
 
 
 def _nothing_compared(baseline: str, refused: Sequence[tuple[str, str]], files: int) -> InputError:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import signal
+from scipy import fft, signal
 
 from thermogear.base.arrays import Floats
 from thermogear.measured.chain import Turning
@@ -85,7 +85,6 @@ def mesh_turns(
     one where its phase, noise taken away, wanders by less than a fiftieth of a turn at the
     highest of ``harmonics``, and where it explains the power near it.
     """
-    per_cycle = samples_per_cycle(gearing.mesh_frequency)
     values, spectrum = clearest(table, gearing.mesh_frequency)
     line = line_in(spectrum, near=gearing.mesh_frequency, half_width=_reach(spectrum, gearing))
     beside = sides_of(teeth=teeth, rank=1, mesh=line.frequency)
@@ -94,7 +93,7 @@ def mesh_turns(
     least = _wandering(spectrum, reading, beside, strong, harmonics)
     turns: MeshTurns | None = None
     if least is not None:
-        turns = _follow(values, spectrum, line.frequency, per_cycle, least=least, beside=beside)
+        turns = _follow(values, spectrum, line.frequency, least=least, beside=beside)
     if turns is not None:
         return _or_steady(turns, spectrum, reading, beside, strong)
     best = reading.frequency, reading.frequency_half_width
@@ -292,7 +291,6 @@ def _follow(
     values: Floats,
     spectrum: LineSpectrum,
     frequency: float,
-    per_cycle: int,
     *,
     least: float,
     beside: Sequence[float],
@@ -314,7 +312,7 @@ def _follow(
             beside=[every * place for place in beside],
             cut=False,
         )
-        turns = _followed(one, thin, samples_per_cycle(every * frequency), orders, trial=True)
+        turns = _followed(one, thin, orders, trial=True)
         if turns is not None:
             tried.append((half_width, one, turns))
     held = [one for one in tried if one[1].whole] or tried
@@ -331,12 +329,12 @@ def _follow(
         half_width=half_width,
         beside=beside,
     )
-    found = _followed(whole, values, per_cycle, orders)
-    return found and _with_pairs(found, whole, values, beside)
+    found = _followed(whole, values, orders)
+    return found and _with_pairs(found, whole, values, middle=frequency, beside=beside)
 
 
 def _with_pairs(
-    turns: MeshTurns, found: Followed, values: Floats, beside: Sequence[float]
+    turns: MeshTurns, found: Followed, values: Floats, *, middle: float, beside: Sequence[float]
 ) -> MeshTurns:
     """A line followed, once more with pairs of lines that turn with it taken away.
 
@@ -345,31 +343,24 @@ def _with_pairs(
     would change its amplitude (I): then it is followed without them. Of an oscillation of the speed
     it would have left Q: where there is Q, the intervals hold both.
     """
-    assert turns.turning is not None
-    per_cycle, frequency = turns.turning.per_cycle, found.frequency
-    straight = line_spectrum(turns.turning.resampled(values, 0), float(per_cycle))
-    width, sides = straight.bin_width, [one / frequency for one in beside]
-    strong = strong_lines(straight)
-    line = min(strong, key=lambda one: abs(one.place * width - 1.0), default=None)
+    frequency = found.frequency
+    straight = _straight(values, found)
+    width, strong = straight.bin_width, strong_lines(straight)
+    line = min(strong, key=lambda one: abs(one.place * width - frequency), default=None)
+    sides = [one * found.frequency / middle for one in beside]
     free = [
         one
         for one in strong
-        if _CLEAR * width < abs(one.place * width - 1.0) < found.last / frequency
+        if _CLEAR * width < abs(one.place * width - frequency) < found.last
         and not _is_side(one, sides, width)
     ]
-    both_sides = twins(free, 1.0 / width) if line else []
+    both_sides = twins(free, frequency / width) if line else []
     if line is None or not both_sides:
         return turns
     pairs = [one for pair in both_sides for one in pair]
-    orders = [*sides, *(one.place * width for one in pairs)]
-    again = follow_line(
-        values,
-        1.0,
-        frequency=frequency,
-        half_width=found.half_width,
-        beside=[one * frequency for one in orders],
-    )
-    other = _followed(again, values, per_cycle, orders)
+    known = [*sides, *(one.place * width for one in pairs)]
+    again = follow_line(values, 1.0, frequency=frequency, half_width=found.half_width, beside=known)
+    other = _followed(again, values, [one / frequency for one in known])
     if other is None:
         return turns
     shares = [
@@ -386,10 +377,23 @@ def _with_pairs(
     )
 
 
+def _straight(values: Floats, found: Followed) -> LineSpectrum:
+    """The spectrum about a line followed, its phase beyond that of an even turning taken away.
+
+    Lines near it that turn with it keep of that phase what their distance is of its frequency.
+    Farther than half of that off nothing is left.
+    """
+    even = found.frequency * np.arange(values.size)
+    turned = (values - values.mean()) * np.exp(-2j * np.pi * (found.cycles - even))
+    lines = fft.fft(turned)[: values.size // 2 + 1] * (2.0 / values.size)
+    place = np.arange(lines.size) / values.size
+    lines[np.abs(place - found.frequency) > 0.5 * found.frequency] = 0.0
+    return LineSpectrum(1.0, values.size, lines)
+
+
 def _followed(
     found: Followed,
     values: Floats,
-    per_cycle: int,
     beside: Sequence[float],
     *,
     trial: bool = False,
@@ -399,14 +403,13 @@ def _followed(
     cycles = found.cycles
     if np.any(np.diff(cycles) <= 0.0):
         return None
-    turning = Turning(cycles=cycles, dropped=0, per_cycle=per_cycle)
     wander = float(np.std(cycles - np.linspace(cycles[0], cycles[-1], cycles.size)))
-    straight = line_spectrum(turning.resampled(values, 0), float(per_cycle))
+    straight, sides = _straight(values, found), [one * found.frequency for one in beside]
     strong = () if trial else strong_lines(straight)
     reading = read_line(
-        straight, 1.0, beside=beside, strong=strong, followed=_HELD * found.last / found.frequency
+        straight, found.frequency, beside=sides, strong=strong, followed=_HELD * found.last
     )
-    share, spread = (0.0, 0.0) if trial else unfollowed(straight, reading, beside, strong)
+    share, spread = (0.0, 0.0) if trial else unfollowed(straight, reading, sides, strong)
     bins = 1.2 * found.last * values.size  # in the filter, its noise bandwidth
     # what the filter misses is seen beyond it; farther off it is taken to be as much again
     noise = reading.noise / max(reading.amplitude, 1e-300) * float(np.sqrt(0.5 * bins))
@@ -414,9 +417,9 @@ def _followed(
     line = 2.0 * abs(np.sum(hann * values * np.exp(-2j * np.pi * cycles))) / np.sum(hann)
     return MeshTurns(
         frequency=found.frequency,
-        half_width=float(np.hypot(found.frequency_half_width, spread * found.frequency)),
+        half_width=float(np.hypot(found.frequency_half_width, spread)),
         unfollowed=share,
-        turning=turning,
+        turning=Turning(cycles=cycles, dropped=0, per_cycle=samples_per_cycle(found.frequency)),
         told=(Notice.of("phase_wanders", cycles=wander),),
         phase_noise=float(np.hypot(noise, reading.turning)),
         followed=_HELD * found.last,

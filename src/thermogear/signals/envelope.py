@@ -44,8 +44,9 @@ class Envelope:
     chance: float
 
 
-def envelope_rate(x: ArrayLike) -> Envelope | None:
-    """The clearest rate in the squared envelope of one channel without its lines; None: too short.
+def envelope_rates(x: ArrayLike, most: int = 5) -> tuple[Envelope, ...]:
+    """The clearest rates in the squared envelope of one channel without its lines, the least likely
+    by chance first, no harmonic of one before; none where it is too short.
 
     The Hann-windowed DFT is set to 0 where a bin's power is 12 times over the median of 301 around
     it, and three bins beside; the rest is divided by that floor. Of a band of M bins the
@@ -63,35 +64,38 @@ def envelope_rate(x: ArrayLike) -> Envelope | None:
 
     >>> noise = np.random.default_rng(1).normal(size=20_000)
     >>> swell = 1.0 + 0.9 * np.cos(2 * np.pi * 0.0031 * np.arange(20_000))
-    >>> f"{envelope_rate(noise * swell).rate:.4f}"
+    >>> f"{envelope_rates(noise * swell)[0].rate:.4f}"
     '0.0031'
     """
     values = finite_record(x)
     count = values.size
     if count < 64 * _LOWEST:
-        return None
+        return ()
     window = 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(count) / count)
     whitened, kept = _whitened(fft.rfft((values - values.mean()) * window))
-    best: Envelope | None = None
+    seen: list[Envelope] = []
     tests = float(len(_SHARES) * whitened.size)
     for share in _SHARES:
         width = whitened.size // share
         # bands of each width overlap by half
         for start in range(0, whitened.size - width + 1, width // 2):
             part = slice(start, start + width)
-            found = _clearest(whitened[part], kept[part])
-            if found is None:
-                continue
-            place, powers = found
-            chance = tests * float(special.gammaincc(HARMONICS, sum(powers)))
-            if best is None or chance < best.chance:
-                best = Envelope(
-                    rate=place / count,
-                    band=(start / count, (start + width) / count),
-                    powers=powers,
-                    chance=chance,
-                )
-    return best
+            for place, powers in _clearest(whitened[part], kept[part], most):
+                chance = tests * float(special.gammaincc(HARMONICS, sum(powers)))
+                band = start / count, (start + width) / count
+                seen.append(Envelope(rate=place / count, band=band, powers=powers, chance=chance))
+    rates: list[Envelope] = []
+    for clear in sorted(seen, key=lambda rate: (rate.chance, -sum(rate.powers))):
+        if not any(_is_harmonic(clear.rate * count, other.rate * count) for other in rates):
+            rates.append(clear)
+    return tuple(rates[:most])
+
+
+def _is_harmonic(place: float, other: float) -> bool:
+    """Whether a place [bins] is another or a multiple of it, within their widths: two bins, or the
+    1 % that impacts which slip spread over."""
+    rank = max(1, round(place / other))
+    return abs(place - rank * other) < rank * max(2.0, 0.01 * other)
 
 
 def _whitened(spectrum: NDArray[np.complex128]) -> tuple[NDArray[np.complex128], Floats]:
@@ -105,13 +109,17 @@ def _whitened(spectrum: NDArray[np.complex128]) -> tuple[NDArray[np.complex128],
 
 def _around(power: Floats, reach: int) -> Floats:
     """Mean power of noise from medians over ``reach`` bins, straight between their middles."""
-    edge = np.arange(0, power.size, reach)
-    middle = np.array([np.median(power[i : i + reach]) for i in edge]) / np.log(2.0)
-    return np.asarray(np.interp(np.arange(power.size), edge + 0.5 * reach, middle))
+    reach = min(reach, power.size)
+    whole = power[: power.size // reach * reach].reshape(-1, reach)
+    middle = np.append(np.median(whole, axis=1), np.median(power[-reach:])) / np.log(2.0)
+    places = np.append(np.arange(len(whole)) * reach, power.size - reach) + 0.5 * reach
+    return np.asarray(np.interp(np.arange(power.size), places, middle))
 
 
-def _clearest(band: NDArray[np.complex128], kept: Floats) -> tuple[float, tuple[float, ...]] | None:
-    """The bin (with its fraction) of the clearest rate in a band, and its harmonics' powers."""
+def _clearest(
+    band: NDArray[np.complex128], kept: Floats, most: int
+) -> list[tuple[float, tuple[float, ...]]]:
+    """Bins (with their fractions) of the clearest rates in a band, and their harmonics' powers."""
     size = fft.next_fast_len(2 * band.size)
     squared = np.abs(fft.ifft(band, size)) ** 2
     power = np.abs(fft.fft(squared)[: band.size]) ** 2
@@ -121,16 +129,19 @@ def _clearest(band: NDArray[np.complex128], kept: Floats) -> tuple[float, tuple[
     over = over / np.maximum(1.0, _around(over, _BESIDE))
     last = band.size // (4 * HARMONICS)
     if last <= _LOWEST + 2:
-        return None
+        return []
     tops = _LOWEST + np.argsort(-over[_LOWEST:last])[:_TOPS]
     rank = np.arange(1, HARMONICS + 1)
     parts = over[rank * tops[:, None]]
     # a rate whose double alone stands out is not the rate
     sums = np.where(parts[:, 0] >= _FIRST * parts.max(axis=-1), parts.sum(axis=-1), 0.0)
-    if not sums.max() > 0.0:  # the band holds lines alone
-        return None
-    # where a rate stands out, so do its multiples: the lowest of those that do
-    top = int(np.min(tops[sums >= 0.5 * sums.max()]))
-    left, middle, right = np.sqrt(over[top - 1 : top + 2])
-    shift = 2.0 * (right - left) / (left + 2.0 * middle + right)
-    return top + float(np.clip(shift, -0.5, 0.5)), tuple(float(over[r * top]) for r in rank)
+    clear: list[tuple[float, tuple[float, ...]]] = []
+    while len(clear) < most and sums.max() > 0.0:  # else the band holds lines alone
+        # where a rate stands out, so do its multiples: the lowest of those that do
+        top = int(np.min(tops[sums >= 0.5 * sums.max()]))
+        left, middle, right = np.sqrt(over[top - 1 : top + 2])
+        shift = 2.0 * (right - left) / (left + 2.0 * middle + right)
+        powers = tuple(float(over[r * top]) for r in rank)
+        clear.append((top + float(np.clip(shift, -0.5, 0.5)), powers))
+        sums[[_is_harmonic(float(other), float(top)) for other in tops]] = 0.0
+    return clear

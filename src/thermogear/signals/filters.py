@@ -1,4 +1,4 @@
-"""Linear-phase FIR band passes whose delay is taken away and whose edges are dropped."""
+"""Linear-phase FIR band passes: their taps, and their gain at a line."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class BandPass:
 
     @property
     def delay(self) -> int:
-        """Samples of delay, all of it removed by ``apply``: (taps - 1)/2."""
+        """Samples of delay: (taps - 1)/2."""
         return (self.taps - 1) // 2
 
     def gain(self, frequency: ArrayLike) -> Floats:
@@ -62,24 +62,6 @@ class BandPass:
         shift = np.arange(self.taps) - self.delay
         angle = 2.0 * np.pi * np.multiply.outer(f, shift) / self.rate
         return np.asarray(np.cos(angle) @ self.coefficients)
-
-    def apply(self, x: ArrayLike) -> Floats:
-        """The filtered record without delay, ``delay`` samples dropped at each end.
-
-        Sample 0 of the result is at the time of sample ``delay`` of the record. Only samples
-        that every tap saw remain: no padding is invented.
-        """
-        values = finite_record(x)
-        if values.shape[-1] <= self.taps:
-            raise InputError(
-                "taps",
-                self.taps,
-                allowed=f"below the record's {values.shape[-1]} samples",
-                fix="take fewer taps or a longer record",
-            )
-        shape = (1,) * (values.ndim - 1) + (self.taps,)
-        kernel = self.coefficients.reshape(shape)
-        return np.asarray(signal.oaconvolve(values, kernel, mode="valid", axes=-1))
 
 
 def taps_for(rate: float, *, transition: float) -> int:

@@ -195,12 +195,14 @@ def _hann_kernel(length: float) -> Floats:
     return np.asarray(np.hanning(odd + 2)[1:-1])
 
 
-def _envelope(values: Floats, cycles: Floats, length: float) -> tuple[Complexes, NDArray[np.int64]]:
-    """The record turned back by ``cycles``, behind a filter four times wider than the kernel, and
-    which samples of it are kept."""
+def _envelope(
+    values: Floats, frequency: float, length: float
+) -> tuple[Complexes, NDArray[np.int64]]:
+    """The record turned back by ``frequency`` [cycles/sample], behind a filter eight times wider
+    than the kernel, and which samples of it are kept."""
     count = values.size
-    kernel = _hann_kernel(length / 4.0)
-    turn = np.exp(-2j * np.pi * cycles)
+    kernel = _hann_kernel(length / 8.0)
+    turn = np.exp(-2j * np.pi * frequency * np.arange(count))
     base = signal.oaconvolve((values - values.mean()) * turn, kernel, mode="same")
     size = max(64, int(np.ceil(count / length * _FINER)))
     place = np.unique(np.rint(np.linspace(0, count - 1, min(size, count))).astype(np.int64))
@@ -268,23 +270,17 @@ def _path(values: Floats, frequency: float, length: float, *, last: float) -> tu
     leaves and which lets less of other lines in. Sidebands that a filter takes unevenly, because
     the line is not in its middle, turn the phase: it is smoothed and followed once more.
     """
+    envelope, place = _envelope(values, frequency, length)
+    finer = (place.size - 1) / (values.size - 1)
+    longer = _hann_kernel(last * finer)
+    phase, size = _smoothed(envelope, _hann_kernel(length * finer), 1)
+    quiet = _Smoother(longer, place.size)
+    for _ in range(2):
+        phase = quiet.values(quiet.values(phase))
+        phase = phase + _smoothed(envelope * np.exp(-1j * phase), longer, _PASSES)[0]
     grid = np.arange(values.size)
-    even = np.asarray(frequency * grid, float)
-    cycles, whole = even, True
-    for stage in ("caught", "followed", "followed again"):
-        caught = stage == "caught"
-        envelope, place = _envelope(values, cycles, length if caught else last)
-        finer = (place.size - 1) / (values.size - 1)
-        kernel = _hann_kernel((length if caught else last) * finer)
-        phase, size = _smoothed(envelope, kernel, 1 if caught else _PASSES)
-        turned = (cycles - even)[place] + phase / (2.0 * np.pi)
-        if caught:
-            whole = bool(np.min(size) > 0.5 * np.median(size))
-        if stage != "followed again":
-            quiet = _Smoother(_hann_kernel(last * finer), place.size)
-            turned = quiet.values(quiet.values(turned))
-        cycles = even + interpolate.CubicSpline(place, turned)(grid)
-    return cycles, whole
+    turned = interpolate.CubicSpline(place, phase / (2.0 * np.pi))(grid)
+    return frequency * grid + turned, bool(np.min(size) > 0.5 * np.median(size))
 
 
 def _turning_with(values: Floats, cycles: Floats, ratios: Sequence[float]) -> Floats:

@@ -20,7 +20,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import stats
+from scipy import special
 
 from thermogear.base.arrays import Complexes, Floats
 from thermogear.signals.lines import LineSpectrum
@@ -279,7 +279,7 @@ def student(degrees: float) -> float:
     >>> f"{student(10.0):.3f}"
     '2.228'
     """
-    return float(stats.t.ppf(0.975, max(degrees, 1.0)))
+    return float(special.stdtrit(max(degrees, 1.0), 0.975))
 
 
 def read_line(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import fft, ndimage, signal
+from scipy import fft, ndimage
 
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
@@ -41,42 +41,7 @@ def rising_edges(pulses: ArrayLike, *, rate: float, level: float | None = None) 
     return np.asarray(kept, dtype=float)
 
 
-def line_angle(x: ArrayLike, *, frequency: float, half_width: float) -> tuple[Floats, int]:
-    """Cycles of the line near ``frequency`` at each sample, from its phase; and samples dropped.
-
-    The record is shifted by -frequency, low-passed to +-``half_width`` (a Hann-shaped FIR, delay
-    removed, edges dropped) and its phase unwrapped: frequency n + phase/(2 pi). ``frequency`` and
-    ``half_width`` [cycles/sample]. The result belongs to samples dropped .. N - dropped.
-
-    Speed changes are followed as far as they stay inside the half width: keep it below the
-    distance to the next line.
-
-    >>> x = np.cos(2 * np.pi * 0.1 * np.arange(2000))
-    >>> cycles, _ = line_angle(x, frequency=0.1, half_width=0.02)
-    >>> f"{np.diff(cycles).mean():.4f} cycles per sample"
-    '0.1000 cycles per sample'
-    """
-    values = finite_record(x)
-    if not 0 < half_width <= frequency < 0.5:
-        raise InputError(
-            "half_width", f"{half_width:g} at {frequency:g}", allowed="0 < half width <= f < 0.5"
-        )
-    # the first zero of a Hann-shaped kernel of L samples lies 2/L off
-    length = int(np.ceil(2.0 / half_width)) // 2 * 2 + 1
-    if values.size <= 2 * length:
-        raise InputError(
-            "half_width",
-            half_width,
-            allowed=f"above {4.0 / values.size:.3g} cycles/sample for {values.size} samples",
-        )
-    kernel = np.hanning(length + 2)[1:-1]
-    kernel /= kernel.sum()
-    turn = np.exp(-2j * np.pi * frequency * np.arange(values.size))
-    base = signal.oaconvolve((values - values.mean()) * turn, kernel, mode="valid")
-    dropped = (length - 1) // 2
-    place = np.arange(dropped, dropped + base.size)
-    angle = np.asarray(frequency * place + np.unwrap(np.angle(base)) / (2.0 * np.pi), float)
-    return angle, dropped
+_MANY = 1000  # turns
 
 
 def samples_per_cycle(frequency: float) -> int:
@@ -95,8 +60,8 @@ def resample_by_angle(
     """The record at equal steps of angle, whole turns only, from the first whole turn on.
 
     ``x`` [any unit] time last, ``angle`` [turns] of each sample, rising. The record is first made
-    four times finer by its Fourier series, so that the cubic spline through it loses less than
-    0.1 % up to 0.8 of half the rate. Returns (..., turns x samples_per_turn).
+    twice as fine by its Fourier series, so that the spline of fifth order through it loses less
+    than 0.1 % up to 0.8 of half the rate. Returns (..., turns x samples_per_turn).
 
     >>> angle = np.linspace(0.0, 4.0, 401)
     >>> turned = resample_by_angle(np.cos(2 * np.pi * angle), angle, samples_per_turn=32)
@@ -109,14 +74,16 @@ def resample_by_angle(
         raise InputError("angle", f"shape {turned.shape}", allowed="rising, one per sample")
     first = float(np.ceil(turned[0]))
     whole = int(np.floor(turned[-1] - first))
-    count = whole if turns is None else min(int(turns), whole)
+    count = min(int(turns or whole), whole)
+    if turns is None and count > _MANY:  # a few turns fewer make a length that the transform likes
+        count = int(fft.prev_fast_len(count, real=True))
     if count < 1 or samples_per_turn < 2:
         raise InputError("turns", count, allowed=">= 1 whole turn and >= 2 samples per turn")
     wanted = first + np.arange(count * samples_per_turn) / samples_per_turn
     place = np.interp(wanted, turned, np.arange(turned.size))
-    fine = _finer(values, 4)
+    fine = _finer(values, 2)
     rows = [
-        ndimage.map_coordinates(row, 4.0 * place[None], order=3, mode="mirror")
+        ndimage.map_coordinates(row, 2.0 * place[None], order=5, mode="mirror")
         for row in fine.reshape(-1, fine.shape[-1])
     ]
     return np.reshape(rows, (*values.shape[:-1], place.size))

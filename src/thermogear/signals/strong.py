@@ -86,9 +86,10 @@ def strong_lines(spectrum: LineSpectrum, most: int = MOST) -> tuple[Strong, ...]
     size, count = np.abs(left), left.size
     open_to = size > 3.0 * _rough_floor(size)
     open_to[:3] = open_to[-3:] = False
+    tops = np.flatnonzero(open_to)
     found: list[Strong] = []
-    for _ in range(3 * most):
-        peak = int(np.argmax(np.where(open_to, size, 0.0)))
+    for _ in range(3 * most if tops.size else 0):
+        peak = int(tops[np.argmax(np.where(open_to[tops], size[tops], 0.0))])
         if len(found) == most or not open_to[peak] or size[peak] <= 0.0:
             break
         open_to[max(0, peak - 3) : peak + 4] = False
@@ -124,6 +125,6 @@ def twins(lines: Sequence[Strong], place: float) -> list[tuple[Strong, Strong]]:
 
 def _rough_floor(size: Floats, block: int = 128) -> Floats:
     """Medians of blocks, at each bin."""
-    starts = np.arange(0, size.size, block)
-    floors = np.array([np.median(size[start : start + block]) for start in starts])
-    return np.asarray(np.repeat(floors, block)[: size.size])
+    whole = max(1, size.size // block) * block
+    floors = np.median(size[:whole].reshape(-1, min(block, size.size)), axis=1)
+    return np.asarray(np.append(np.repeat(floors, block), np.full(block, floors[-1]))[: size.size])

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from thermogear.base.arrays import Dataset, Floats
-from thermogear.base.display import SPEED, number
+from thermogear.base.display import PERCENT, SPEED, number
 from thermogear.results.result import Result
 from thermogear.views.columns import Column, by_name, key, pairs
 from thermogear.views.page import Block, Page, Pictures, Section, Text
@@ -38,21 +38,41 @@ def page(result: Result) -> Page:
     )
     return Page(
         result,
-        result.text("conclusion") or _summary(result),
+        result.text("conclusion") or headline(result.table("figures")),
         [section for make in made if (section := make(result)) is not None],
         numbers=lambda: numbers(result),
         told=lambda: TOLD[result.kind](result),
     )
 
 
-def _summary(results: Result) -> str:
-    rate, unit, teeth = (results.text(name) for name in ("rate", "unit", "teeth"))
-    said = [
-        f"{number(float(rate), 6)} samples/s" if rate else "no rate is known: orders only",
-        f"amplitudes in {unit}" if unit else "no unit is known: the file's own numbers",
-        f"{teeth} teeth on the first shaft" if teeth else "the teeth are undecided",
+def headline(figures: Mapping[str, Any]) -> str:
+    """What a record shows, in one sentence: its first line in the channel where it is highest.
+
+    >>> line = {"channel": "a", "name": "line x 1", "kind": "line", "unit": "g", "reading": 1.5,
+    ...         "frequency": 29.667, "position": 0.002, "relative_half_width": 0.01}
+    >>> headline({"lines": [line], "teeth": None, "course": "steady"})
+    'Clearest line at 29.667 Hz, 1.50 g; no gear is decided: steady.'
+    """
+    lines = [line for line in figures["lines"] if line["reading"] is not None]
+    named = next((line["name"] for line in lines if line["kind"] != "order"), None)
+    if named is None:
+        return "No line is told from the noise."
+    first = max((line for line in lines if line["name"] == named), key=lambda line: line["reading"])
+    hertz, kind = first["frequency"], first["kind"]
+    place = f"{first['position']:.6f} cycles/sample" if hertz is None else f"{number(hertz, 5)} Hz"
+    what = {"mesh": "Mesh line", "shaft": f"Line of the shaft ({named})"}.get(kind, "Clearest line")
+    teeth = f" of {figures['teeth']} teeth" if kind == "mesh" else ""
+    sides = [
+        line["reading"] / first["reading"]
+        for line in lines
+        if line["kind"] == "sideband"
+        and line["channel"] == first["channel"]
+        and line["name"].startswith(f"{named} ")
     ]
-    return "; ".join(said) + "."
+    size = f"{number(first['reading'], 3)} {first['unit'] or '(no unit)'}"
+    beside = f", sidebands {number(PERCENT(max(sides)), 2)} %" if sides else ""
+    open_to = "" if kind == "mesh" else "; no gear is decided"
+    return f"{what}{teeth} at {place}, {size}{beside}{open_to}: {figures['course']}."
 
 
 def _record(results: Result) -> Section | None:
@@ -212,7 +232,7 @@ def _comparison(results: Result) -> Section | None:
 def measured(result: Result) -> list[Block]:
     """Evidence, settings, and a row for each line."""
     found = result.table("figures")
-    told = given_and_found(found)
+    told = [headline(found), *given_and_found(found)]
     told += [f"evidence: {text}" for text in found["evidence"]]
     told += [f"{name}: {value}" for name, value in result.table("settings").items()]
     if found.get("shaft_speed") is not None:
@@ -266,9 +286,13 @@ def given_and_found(figures: Mapping[str, Any]) -> list[str]:
     given = figures["given"]
     said = [f"{given['teeth']} teeth"] if given["teeth"] is not None else []
     said += [f"{SPEED(given['speed']):.6g} rpm"] if given["speed"] is not None else []
-    seen = "undecided"
+    teeth, seen = figures["teeth"], "undecided"
     if figures["teeth_confirmed"]:
-        seen = f"sidebands of the {given['teeth']} teeth given"
+        seen = f"sidebands of the {teeth} teeth given"
+    elif teeth is not None and teeth == given["teeth"]:
+        seen = f"{teeth} as given; no sidebands confirm them"
+    elif teeth is not None:
+        seen = f"{teeth}, by the shaft's speed and the sidebands; no other number fits"
     return [f"given: {', '.join(said) if said else 'neither teeth nor speed'}", f"teeth: {seen}"]
 
 
