@@ -138,7 +138,8 @@ def _of_labview(layout: Layout, above: list[str]) -> None:
     """Units, steps and starts that a LabVIEW header states for its channels."""
     said = [unit(text) for text in labelled(above, layout.separator)]
     waves = waves_of(above, layout.separator)
-    axis = None if waves is not None and not waves.of_time else "s"  # LabVIEW counts X in seconds
+    in_time = waves is None or waves.axis == "time"
+    axis = "s" if in_time else None  # LabVIEW counts X in seconds
     if said and len(layout.names) == layout.columns:
         if layout.columns == len(said) + 1:
             layout.units = [axis, *said]

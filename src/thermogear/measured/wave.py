@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from thermogear.measured.options import ReadOptions, places_of, refused
-from thermogear.measured.record import Channel, Notice, Record
+from thermogear.measured.contract import Stated, record_of_channels, stated_rate
+from thermogear.measured.options import ReadOptions, refused
+from thermogear.measured.record import Channel, Record
 from thermogear.measured.store import FileTable
 from thermogear.measured.tables import MOST_CHANNELS, Column
 
@@ -46,23 +47,26 @@ def read_wave(path: Path, options: ReadOptions) -> Record:
         raise refused(
             path, "WAV", f"{channels} channels, {rate} samples/s, {bits} bits, blocks of {block}"
         )
-    notes: list[Notice] = []
-    size = path.stat().st_size
-    if offset + length > size:
-        notes.append(Notice.of("data_cut_off"))
-        length = size - offset
-    frames = length // block
+    frames = min(length, path.stat().st_size - offset) // block
     if frames < 1:
         raise refused(path, "WAV", "it holds no samples")
     data, scale, shift, integer = _samples(path, code, bits, offset, frames, channels)
-    names = [f"channel {i + 1}" for i in range(channels)]
-    kept = set(places_of(options.keep or names, names))
-    found = tuple(
-        Channel(name, Column(data, i, axis=0), None, scale=scale, offset=shift, needs_scale=integer)
-        for i, name in enumerate(names)
-        if i in kept
-    )
-    return Record(found, path.name, float(rate), "WAV header", 0.0, None, tuple(notes))
+    base = stated_rate(float(rate), "WAV header", [])
+    stated = [
+        Stated(
+            Channel(
+                f"channel {i + 1}",
+                Column(data, i, axis=0),
+                scale=scale,
+                offset=shift,
+                needs_scale=integer,
+            ),
+            base,
+            count=length // block,
+        )
+        for i in range(channels)
+    ]
+    return record_of_channels(path, "WAV", stated, keep=options.keep)
 
 
 def _chunks(path: Path) -> tuple[bytes, int, int]:
