@@ -27,9 +27,9 @@ class Layout:
     """How the numbers of a text file are written: found from its first lines.
 
     ``separator`` None: runs of blanks. ``paired``: commas part both numbers and decimals, two
-    fields make one number. ``skip``: lines before the first row. ``commented``: what follows the
-    columns is a comment; ``clocks``: clock stamps are turned to seconds; ``waves``: what a LabVIEW
-    header says.
+    fields make one number. ``thousands``: the sign that groups digits, "" for none. ``skip``: lines
+    before the first row. ``commented``: what follows the columns is a comment; ``clocks``: clock
+    stamps are turned to seconds; ``waves``: what a LabVIEW header says.
     """
 
     separator: str | None
@@ -41,9 +41,24 @@ class Layout:
     skip: int
     rate: float | None = None
     commented: bool = field(default=False, kw_only=True)
+    thousands: str = field(default="", kw_only=True)
     clocks: bool = field(default=False, kw_only=True)
     waves: Waves | None = field(default=None, kw_only=True)
     notices: list[Notice] = field(default_factory=list)
+
+    def plain(self, line: str) -> str:
+        """A line with its numbers as Python writes them."""
+        return plain(line, self.separator, self.decimal, self.thousands)
+
+
+def plain(line: str, separator: str | None, decimal: str, thousands: str) -> str:
+    """A line with numbers as Python writes them.
+
+    >>> plain("1.234,5;2,0", ";", ",", ".")
+    '1234.5;2.0'
+    """
+    line = line.replace(thousands, "") if thousands else line
+    return line.replace(",", ".") if decimal == "," and separator != "," else line
 
 
 def _is_row(cells: list[str]) -> bool:
@@ -58,9 +73,8 @@ def find_layout(head: list[str], path: Path, options: ReadOptions) -> Layout:
     body = [line for line in head if line.strip()]
     if not body:
         raise refused(path, "text", "it is empty", A_TEXT)
-    separator, decimal = _separator(body, options, path)
-    swap = decimal == "," and separator != ","
-    table = [cells_of(line.replace(",", ".") if swap else line, separator) for line in head]
+    separator, decimal, thousands = _separator(body, options, path)
+    table = [cells_of(plain(line, separator, decimal, thousands), separator) for line in head]
     comment = comment_column(table)
     if comment is not None:
         table = [c if i < comment[0] else c[: comment[1]] for i, c in enumerate(table)]
@@ -93,7 +107,7 @@ def find_layout(head: list[str], path: Path, options: ReadOptions) -> Layout:
         why = f"{columns} columns; allowed 1..{MOST_COLUMNS} (channels stand side by side)"
         raise refused(path, "text", why)
     layout = Layout(separator, decimal, paired, columns, names, units, start)
-    layout.commented = comment is not None
+    layout.commented, layout.thousands = comment is not None, thousands
     _of_labview(layout, above)
     if paired:
         layout.notices.append(Notice.of("commas_ambiguous"))
@@ -149,19 +163,35 @@ def _of_labview(layout: Layout, above: list[str]) -> None:
         layout.waves = waves.placed(layout.columns)
 
 
-def _separator(body: list[str], options: ReadOptions, path: Path) -> tuple[str | None, str]:
+def _separator(body: list[str], options: ReadOptions, path: Path) -> tuple[str | None, str, str]:
+    """Separator, decimal sign and the sign that groups thousands, "" for none."""
     sample = body[len(body) // 2 :]  # the second half: past the header
     for separator in ("\t", ";"):
         if sum(separator in line for line in sample) > 0.8 * len(sample):
             commas = sum(bool(re.search(r"\d,\d", line)) for line in sample)
             points = sum(bool(re.search(r"\d\.\d", line)) for line in sample)
-            if commas and points and options.decimal is None:
-                raise refused(path, "text", "it holds both 1,2 and 1.2: give --decimal")
-            return separator, options.decimal or ("," if commas else ".")
+            if commas and points:
+                signs = [options.decimal] if options.decimal else [",", "."]
+                grouped = [one for one in signs if _groups(sample, separator, one)]
+                if len(grouped) == 1:
+                    return separator, grouped[0], "," if grouped[0] == "." else "."
+                if options.decimal is None:
+                    raise refused(path, "text", "it holds both 1,2 and 1.2: give --decimal")
+            return separator, options.decimal or ("," if commas else "."), ""
     if sum("," in line for line in sample) > 0.5 * len(sample):
         blanks = sum(bool(re.search(r"\d\s+[-+\d]", line.strip())) for line in sample)
-        return (None, ",") if blanks > 0.8 * len(sample) else (",", options.decimal or ".")
-    return None, options.decimal or "."
+        if blanks > 0.8 * len(sample):
+            return None, ",", ""
+        return ",", options.decimal or ".", ""
+    return None, options.decimal or ".", ""
+
+
+def _groups(sample: list[str], separator: str, decimal: str) -> bool:
+    """Whether the sign that is not the ``decimal`` one groups thousands wherever it stands."""
+    other = "," if decimal == "." else "."
+    grouped = re.compile(rf"[+-]?[1-9]\d{{0,2}}(\{other}\d{{3}})+(\{decimal}\d*)?")
+    cells = [cell for line in sample for cell in cells_of(line, separator) if other in cell]
+    return bool(cells) and all(grouped.fullmatch(cell) for cell in cells)
 
 
 def _header(

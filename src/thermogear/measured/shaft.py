@@ -207,8 +207,8 @@ def _counted(values: Floats, rate: float) -> Pulses:
         tried.reverse()
     for times in tried:
         with suppress(InputError):
-            return numbered(times)
-    return numbered(max(tried, key=len))
+            return numbered(times, grain=1.0 / rate)
+    return numbered(max(tried, key=len), grain=1.0 / rate)
 
 
 def _by_speed(channel: Channel, own: float, rate: float, samples: int, at: float) -> Shaft:

@@ -2,28 +2,43 @@
 
 from __future__ import annotations
 
+import math
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from thermogear.base.notice import catalogue
 from thermogear.measured.contract import Stated, agreed, record_of_channels, stated_rate, timed
 from thermogear.measured.options import ReadOptions, refused
 from thermogear.measured.record import Channel, Notice, Record, Samples
-from thermogear.measured.traps import TimeBase, is_rate_name, is_step_name, split_unit
+from thermogear.measured.traps import (
+    TimeBase,
+    is_rate_name,
+    is_step_name,
+    is_time_name,
+    split_unit,
+)
 from thermogear.measured.units import factor_of, kind_of, unit, unknown
 
 MOST_CHANNELS = 512
 """Channels of one table."""
+UNITS = ("unit", "units")
+"""Names of fields and attributes that hold a unit."""
+LONGEST_UNIT = 64
+"""Bytes or characters of one."""
 SHORTEST = 8  # samples: shorter arrays are parameters, not records
 
 
 @dataclass(frozen=True)
 class Named:
-    """One stored array: 1-D or 2-D, in memory or on disk; ``attributes`` as the file has them."""
+    """One stored array: 1-D or 2-D, in memory or on disk; ``attributes`` as the file has them.
+
+    ``data`` None: an object of MATLAB, whose numbers are not read.
+    """
 
     name: str
     data: Any
@@ -67,9 +82,13 @@ def number_of(value: Any) -> float | None:
 
 
 def record_of(
-    path: Path, kind: str, arrays: Sequence[Named], options: ReadOptions, common: dict[str, Any]
+    path: Path,
+    kind: str,
+    arrays: Sequence[Named],
+    options: ReadOptions,
+    groups: Mapping[str, dict[str, Any]],
 ) -> Record:
-    """One record from a file's arrays.
+    """One record from a file's arrays; ``groups``: attributes of its groups, "" for the file.
 
     The longest arrays are the channels, shorter ones are left aside with a notice; an array
     named time gives the rate (if it states its unit), a number named fs, rate, ... likewise. What
@@ -77,21 +96,20 @@ def record_of(
     is used by neither.
     """
     told = _Told()
-    for key, value in common.items():
-        told.number(str(key), value, f"attribute {key}", scope="")
+    for scope, facts in [*groups.items(), *((one.name, one.attributes) for one in arrays)]:
+        for key, value in facts.items():
+            told.number(str(key), value, f"attribute {key}", scope=scope)
     for array in arrays:
-        for key, value in array.attributes.items():
-            told.number(str(key), value, f"attribute {key}", scope=array.name)
         told.array(array)
-    if told.complex:
-        aside = Notice.of("complex_left_aside", arrays=told.complex)
-        if not told.channels:
-            fix = "save what was sampled: real numbers"
-            raise refused(path, kind, f"{aside.text}; no other array is as long as one", fix)
-        told.notes.append(aside)
+    asides = [Notice.of("complex_left_aside", arrays=told.complex)] if told.complex else []
+    asides += [Notice.of("objects_left_aside", arrays=told.objects)] if told.objects else []
+    if asides and not told.channels:
+        why = f"{asides[0].text}; no other array is as long as one"
+        raise refused(path, kind, why, catalogue()[asides[0].code].to_do)
+    told.notes += asides
     if not told.channels:
         raise refused(path, kind, "it holds no array of numbers as long as a record")
-    units = [v for k, v in common.items() if str(k).lower() in ("unit", "units")]
+    units = [v for k, v in groups.get("", {}).items() if str(k).lower() in UNITS]
     of_all = unit(text_of(units[-1]) or "") if units else None
     if of_all is not None:
         told.channels = [c if c.unit else replace(c, unit=of_all) for c in told.channels]
@@ -107,6 +125,7 @@ class _Told:
     rates: list[tuple[str, TimeBase]] = field(default_factory=list)
     notes: list[Notice] = field(default_factory=list)
     complex: list[str] = field(default_factory=list)
+    objects: list[str] = field(default_factory=list)
 
     def number(
         self, name: str, value: Any, origin: str, *, scope: str, factor: float = 1.0
@@ -134,7 +153,9 @@ class _Told:
             text = text_of(array.attributes.get(key)) or ""
             said, strange = said or unit(text), strange or unknown(text)
         sizes = [n for n in array.shape if n != 1]
-        if not sizes:
+        if array.data is None:
+            self.objects.append(array.name)
+        elif not sizes:
             factor = factor_of(said) if said and kind_of(said) == "frequency" else 1.0
             value = array.data[()] if hasattr(array.data, "shape") else array.data
             origin = f"variable {array.name}"
@@ -172,6 +193,19 @@ class _Told:
                 agreed_on[scopes] = agreed(bases, self.notes)
             found.append(Stated(channel, agreed_on[scopes]))
         return timed(found, self.notes)
+
+
+def with_units(arrays: Sequence[Named], units: Mapping[str, str]) -> list[Named]:
+    """The arrays with the units that their own structures state, by the structures' names; clocks
+    and single numbers aside."""
+    found = []
+    for array in arrays:
+        structure, _, leaf = array.name.rpartition(".")
+        said = units.get(structure)
+        if said is not None and not is_time_name(leaf) and math.prod(array.shape) > 1:
+            array = replace(array, attributes={"units": said} | array.attributes)
+        found.append(array)
+    return found
 
 
 def _parent(name: str) -> str:

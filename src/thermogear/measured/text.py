@@ -230,9 +230,7 @@ def _cut_end(block: list[str], layout: Layout) -> None:
 
 
 def _fields(line: str, layout: Layout) -> list[str]:
-    if layout.decimal == "," and layout.separator != ",":
-        line = line.replace(",", ".")
-    cells = cells_of(line, layout.separator)
+    cells = cells_of(layout.plain(line), layout.separator)
     if layout.commented:
         cells = cells[: layout.columns]
     if layout.paired:
@@ -243,12 +241,11 @@ def _fields(line: str, layout: Layout) -> list[str]:
 
 def _table(block: list[str], layout: Layout, path: Path, number: int, last: bool) -> Floats:
     if not layout.paired:
-        swap = layout.decimal == "," and layout.separator != ","
-        plain = [line.replace(",", ".") for line in block] if swap else block
         try:
             used = range(layout.columns) if layout.commented else None
+            rows_plain = map(layout.plain, block)
             table = np.loadtxt(
-                plain, delimiter=layout.separator, ndmin=2, comments=None, usecols=used
+                rows_plain, delimiter=layout.separator, ndmin=2, comments=None, usecols=used
             )
             if table.shape[1] == layout.columns:
                 return table
