@@ -150,7 +150,7 @@ def test_labview_start_and_steps_that_are_none(tmp_path: Path) -> None:
     record = read_record(lvm(tmp_path, "No", [FINE], dimension="Length"))
     assert record.rate is None
     told = [(n.code, n.data) for n in record.notices]
-    assert ("step_is_no_time", {"dimension": "length", "channel": "a1"}) in told
+    assert ("step_is_no_time", {"dimension": "Length", "channel": "a1"}) in told
 
 
 @pytest.mark.parametrize("stamp", ["2024-01-05 12:00:{:09.6f}", "12:00:{:09.6f}"])

@@ -9,6 +9,7 @@ without a number; those of another time base are kept beside as records of their
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass, replace
 from pathlib import Path
@@ -33,6 +34,8 @@ MOST_IN_ALL = 4096
 """Channels of a whole file."""
 UNSTATED = TimeBase(rate=None, start=0.0, origin="")
 """The time base of a channel of which the file states none."""
+_LEAF = re.compile(r"[./]?[^./]*$")
+"""The name of a channel in its structure or group, with the sign before it."""
 _SAME = 1e-3  # relative difference of two statements of one rate
 _OVERLAP = 0.5  # of the longer of two channels, from which they are cut to their common time
 
@@ -107,37 +110,47 @@ def stated_rate(rate: float, origin: str, notices: list[Notice]) -> TimeBase:
 
 
 def timed(stated: Sequence[Stated], notices: list[Notice]) -> list[Stated]:
-    """The channels without the times among them, which give those as long as they their base."""
-    leaves = [one.channel.name.rsplit("/", 1)[-1].rsplit(".", 1)[-1] for one in stated]
-    is_time = [
-        is_time_column(leaf, one.channel.unit) for leaf, one in zip(leaves, stated, strict=True)
+    """The channels without the times among them, which give their base to those as long as they in
+    the same structure or group, else in the whole file."""
+    leaves = [_LEAF.search(one.channel.name)[0] for one in stated]  # type: ignore[index]
+    times = [
+        i for i, one in enumerate(stated) if is_time_column(leaves[i].strip("./"), one.channel.unit)
     ]
-    others = [one for one, time in zip(stated, is_time, strict=True) if not time]
-    by_length: dict[int, TimeBase] = {}
-    for length in dict.fromkeys(len(one.channel) for one in others):
-        same = [i for i, one in enumerate(stated) if is_time[i] and len(one.channel) == length]
-        best = time_column([(leaves[i], stated[i].channel.unit, stated[i].channel.samples)
-                            for i in same])  # fmt: skip
-        if best is None:
-            continue
-        time = stated[same[best]].channel
-        t = np.asarray(time.samples[0 : min(length, MOST_STAMPS)], dtype=float)
-        if t.size < length:
-            notices.append(Notice.of("rate_of_first_rows", rows=t.size, column=time.name))
-        known = any(one.base.rate is not None for one in others)
-        by_length[length] = longest_even(time.name, time.unit, t, stated=known)
-        if len(same) > 1:
-            told = Notice.of("several_time_columns", columns=len(same), used=time.name)
-            notices.append(told)
+    known = any(one.base.rate is not None for one in stated)
+    by_times: dict[tuple[int, ...], TimeBase] = {}
     # what all channels of one base share is agreed on once
-    settled: dict[tuple[int, int], TimeBase] = {}
+    settled: dict[tuple[int, tuple[int, ...]], TimeBase] = {}
     found = []
-    for one in others:
-        key = id(one.base), len(one.channel)
-        if key not in settled and len(one.channel) in by_length:
-            settled[key] = agreed([one.base, by_length[len(one.channel)]], notices)
-        found.append(replace(one, base=settled.get(key, one.base)))
+    for place, one in enumerate(stated):
+        if place in times:
+            continue
+        same = [i for i in times if len(stated[i].channel) == len(one.channel)]
+        parent = one.channel.name.removesuffix(leaves[place])
+        own = [i for i in same if stated[i].channel.name == parent + leaves[i]]
+        those = tuple(own or same)
+        if those not in by_times:
+            by_times[those] = _by_time([stated[i].channel for i in those], known, notices)
+        key = id(one.base), those
+        if key not in settled:
+            settled[key] = agreed([one.base, by_times[those]], notices) if those else one.base
+        found.append(replace(one, base=settled[key]))
     return found
+
+
+def _by_time(times: Sequence[Channel], known: bool, notices: list[Notice]) -> TimeBase:
+    """The time base by the best of several times; a rate may be ``known`` from elsewhere."""
+    best = time_column(
+        [(_LEAF.search(c.name)[0].strip("./"), c.unit, c.samples) for c in times]  # type: ignore[index]
+    )
+    if best is None:
+        return UNSTATED
+    time = times[best]
+    t = np.asarray(time.samples[0 : min(len(time), MOST_STAMPS)], dtype=float)
+    if t.size < len(time):
+        notices.append(Notice.of("rate_of_first_rows", rows=t.size, column=time.name))
+    if len(times) > 1:
+        notices.append(Notice.of("several_time_columns", columns=len(times), used=time.name))
+    return longest_even(time.name, time.unit, t, stated=known)
 
 
 def record_of_channels(

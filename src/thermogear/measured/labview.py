@@ -57,7 +57,9 @@ class Waves:
         >>> Waves(()).axis, Waves((), "Frequency").axis
         ('time', 'frequency')
         """
-        return "time" if is_time_name(self.dimension) else self.dimension.lower()
+        if is_time_name(self.dimension):
+            return "time"
+        return "frequency" if "freq" in self.dimension.lower() else self.dimension
 
     @property
     def samples(self) -> int:

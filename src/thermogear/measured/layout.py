@@ -15,7 +15,7 @@ from thermogear.measured.labview import Waves, waves_of
 from thermogear.measured.options import A_TEXT, ReadOptions, refused
 from thermogear.measured.record import Notice
 from thermogear.measured.traps import is_possible_rate, is_rate_name, split_unit
-from thermogear.measured.units import factor_of, kind_of, unit
+from thermogear.measured.units import factor_of, kind_of, unit, unknown
 
 MOST_COLUMNS = 4096
 _LONGEST_FACT = 400  # characters of a line above the table that are looked at
@@ -29,7 +29,8 @@ class Layout:
     ``separator`` None: runs of blanks. ``paired``: commas part both numbers and decimals, two
     fields make one number. ``thousands``: the sign that groups digits, "" for none. ``skip``: lines
     before the first row. ``commented``: what follows the columns is a comment; ``clocks``: clock
-    stamps are turned to seconds; ``waves``: what a LabVIEW header says.
+    stamps are turned to seconds; ``waves``: what a LabVIEW header says;
+    ``strange``: units of columns that are none known.
     """
 
     separator: str | None
@@ -42,6 +43,7 @@ class Layout:
     rate: float | None = None
     commented: bool = field(default=False, kw_only=True)
     thousands: str = field(default="", kw_only=True)
+    strange: dict[int, str] = field(default_factory=dict, kw_only=True)
     clocks: bool = field(default=False, kw_only=True)
     waves: Waves | None = field(default=None, kw_only=True)
     notices: list[Notice] = field(default_factory=list)
@@ -150,7 +152,8 @@ def _empty_first(table: list[list[str]], start: int) -> int:
 
 def _of_labview(layout: Layout, above: list[str]) -> None:
     """Units, steps and starts that a LabVIEW header states for its channels."""
-    said = [unit(text) for text in labelled(above, layout.separator)]
+    labels = labelled(above, layout.separator)
+    said = [unit(text) for text in labels]
     waves = waves_of(above, layout.separator)
     in_time = waves is None or waves.axis == "time"
     axis = "s" if in_time else None  # LabVIEW counts X in seconds
@@ -161,6 +164,7 @@ def _of_labview(layout: Layout, above: list[str]) -> None:
             layout.units = [one for own in said for one in (axis, own)]
     if waves is not None:
         layout.waves = waves.placed(layout.columns)
+        layout.strange = dict(zip(layout.waves.columns, map(unknown, labels), strict=False))
 
 
 def _separator(body: list[str], options: ReadOptions, path: Path) -> tuple[str | None, str, str]:

@@ -9,6 +9,7 @@ import io
 import json
 import logging
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -24,7 +25,7 @@ from thermogear.base.errors import of_extra
 from thermogear.measured.contract import UNSTATED, Stated, record_of_channels, timed
 from thermogear.measured.options import ReadOptions, refused
 from thermogear.measured.record import Channel, Notice, Record, Samples
-from thermogear.measured.traps import TimeBase, longest_even, step_base
+from thermogear.measured.traps import TimeBase, is_time_name, longest_even, step_base
 from thermogear.measured.units import factor_of, kind_of, unit, unknown
 
 _UFF_AXES = {18: "frequency", 19: "speed", 20: "order"}
@@ -138,20 +139,24 @@ def _unscaled(nptdms: ModuleType, *properties: dict[str, Any]) -> bool:
     return asked and nptdms.scaling.get_scaling(*properties) is None
 
 
-def _axis(label: str, name: str = "time") -> tuple[str, float]:
+def _axis(label: str, name: str = "") -> tuple[str, float]:
     """What an x axis counts, by its unit where that is known, else by its name; seconds, or turns,
     in one of its unit."""
     known = unit(label)
     if known is not None:
         return kind_of(known), factor_of(known)
-    kinds = "frequency", "speed", "order", "angle"
-    return next((kind for kind in kinds if kind in name.lower()), "time"), 1.0
+    if not name or is_time_name(name):
+        return "time", 1.0
+    return "frequency" if "freq" in name.lower() else name, 1.0
 
 
 def read_uff(path: Path, options: ReadOptions) -> Record:
     """Universal file, data sets 58 over time; abscissa and unit as stored."""
     stated = _guarded(path, "UFF", "pyuff", _uff)
-    return record_of_channels(path, "UFF", stated, keep=options.keep)
+    # the last set is not closed: what it states is not there
+    cut = len(re.findall(rb"(?m)^ {4}-1\s*$", path.read_bytes())) % 2
+    notices = [Notice.of("data_cut_off")] if cut else []
+    return record_of_channels(path, "UFF", stated, notices, keep=options.keep)
 
 
 def _uff(pyuff: ModuleType, path: Path) -> list[Stated]:
@@ -161,7 +166,7 @@ def _uff(pyuff: ModuleType, path: Path) -> list[Stated]:
         values = np.asarray(item.get("data", ()))
         if item.get("type") != 58 or values.dtype.kind not in "iufc" or values.size < 2:
             continue
-        axis = _UFF_AXES.get(item.get("abscissa_spec_data_type"), "time")
+        axis = _UFF_AXES.get(item.get("abscissa_spec_data_type"), "")
         axis, factor = _axis(str(item.get("abscissa_axis_units_lab", "")), axis)
         if item.get("func_type") not in (0, 1):
             axis = "frequency"  # a spectrum, or another function of records

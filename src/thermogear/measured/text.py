@@ -300,7 +300,9 @@ def _record(
     # channels with the time column that is theirs, of each block under one header
     together: dict[tuple[int, int], list[Stated]] = {}
     for i, column in zip(keep, columns, strict=True):
-        place, one = 0, Stated(Channel(layout.names[i], column, layout.units[i]), header)
+        strange = layout.strange.get(i, "")
+        channel = Channel(layout.names[i], column, layout.units[i], strange=strange)
+        place, one = 0, Stated(channel, header)
         if waves is not None and i in waves.columns:
             wave = waves.columns[i]
             base = wave.base(layout.names[i]) if header is UNSTATED else header
