@@ -11,11 +11,9 @@ from thermogear.measured.record import Record
 from thermogear.measured.tables import (
     LONGEST_UNIT,
     MOST_CHANNELS,
-    UNITS,
     Named,
     record_of,
     text_of,
-    with_units,
 )
 
 _MOST_SETS = 4096
@@ -42,17 +40,16 @@ def read_hdf(path: Path, options: ReadOptions) -> Record:
         file = h5py.File(path, "r", locking=False)
         contents = _Contents(file, path, options.limit)
         file.visititems(contents.visit)
-        arrays = with_units(contents.arrays, contents.units)
-        return record_of(path, "HDF5", arrays, options, {"": dict(file.attrs)} | contents.groups)
+        groups = {"": dict(file.attrs)} | contents.groups
+        return record_of(path, "HDF5", contents.arrays, options, groups)
 
 
 class _Contents:
-    """What the data sets of a file are, one after another: ``arrays``; ``units`` of structures by
-    their name, attributes of ``groups``."""
+    """What the data sets of a file are, one after another: ``arrays`` and attributes of
+    ``groups``."""
 
     def __init__(self, file: Any, path: Path, limit: int) -> None:
         self.arrays: list[Named] = []
-        self.units: dict[str, str] = {}
         self.groups: dict[str, dict[str, Any]] = {}
         self._file, self._path, self._limit = file, path, limit
         self._claimed = self._seen = 0
@@ -90,13 +87,12 @@ class _Contents:
         if "MATLAB_class" in item.attrs:
             name = name.replace("/", ".")
             kind = text_of(item.attrs["MATLAB_class"])
-            structure, _, field = name.rpartition(".")
             if "MATLAB_object_decode" in item.attrs:
                 self.arrays.append(Named(f"{name} ({kind})", None, ()))
                 return
             if kind == "char":
-                if field.lower() in UNITS and item.size <= LONGEST_UNIT:
-                    self.units[structure] = "".join(map(chr, item[()].reshape(-1)))
+                small = item[()].reshape(-1) if item.size <= LONGEST_UNIT else ()
+                self.arrays.append(Named(name, "".join(map(chr, small)), ()))
                 return
         if item.dtype.kind not in "iuf" or item.dtype.names or len(self.arrays) >= _MOST_SETS:
             return

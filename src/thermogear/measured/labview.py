@@ -16,12 +16,13 @@ _PRINTED = 6
 
 @dataclass(frozen=True)
 class Wave:
-    """A channel as the header has it: ``step`` (Delta_X) and ``start`` (X0) [s] and ``count``
-    (Samples) as written."""
+    """A channel as the header has it: ``step`` (Delta_X) and ``start`` (X0) [s], ``count``
+    (Samples) and ``unit`` (Y_Unit_Label) as written."""
 
     step: str = ""
     start: str = ""
     count: str = ""
+    unit: str = ""
 
     def base(self, channel: str) -> TimeBase:
         """The time base of the ``channel``; one without a rate where the step gives none.
@@ -105,16 +106,16 @@ def waves_of(above: Sequence[str], separator: str | None) -> Waves | None:
     for line in above:
         key, *cells = (cell.strip().strip('"').strip() for cell in line.split(separator or "\t"))
         rows[key] = [cell for cell in cells if cell]
-    if "Delta_X" not in rows:
+    count = len(rows.get("Delta_X") or rows.get("Y_Unit_Label", ()))
+    if not count:
         return None
-    steps = rows["Delta_X"]
-    starts, counts = (
-        cells if len(cells := rows.get(key, [])) == len(steps) else [""] * len(steps)
-        for key in ("X0", "Samples")
+    facts = (
+        cells if len(cells := rows.get(key, [])) == count else [""] * count
+        for key in ("Delta_X", "X0", "Samples", "Y_Unit_Label")
     )
     dimensions = rows.get("X_Dimension") or ["Time"]
     odd = next((one for one in dimensions if not is_time_name(one)), dimensions[0])
-    return Waves(tuple(map(Wave, steps, starts, counts)), odd)
+    return Waves(tuple(map(Wave, *facts)), odd)
 
 
 def _number(text: str) -> float:

@@ -9,8 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from thermogear.base.cells import MISSING, NUMBER, cells_of
-from thermogear.measured.choosing import is_time_column
-from thermogear.measured.clock import comment_column, labelled
+from thermogear.measured.clock import comment_column
 from thermogear.measured.labview import Waves, waves_of
 from thermogear.measured.options import A_TEXT, ReadOptions, refused
 from thermogear.measured.record import Notice
@@ -152,19 +151,15 @@ def _empty_first(table: list[list[str]], start: int) -> int:
 
 def _of_labview(layout: Layout, above: list[str]) -> None:
     """Units, steps and starts that a LabVIEW header states for its channels."""
-    labels = labelled(above, layout.separator)
-    said = [unit(text) for text in labels]
     waves = waves_of(above, layout.separator)
-    in_time = waves is None or waves.axis == "time"
-    axis = "s" if in_time else None  # LabVIEW counts X in seconds
-    if said and len(layout.names) == layout.columns:
-        if layout.columns == len(said) + 1:
-            layout.units = [axis, *said]
-        elif layout.columns == 2 * len(said):
-            layout.units = [one for own in said for one in (axis, own)]
-    if waves is not None:
-        layout.waves = waves.placed(layout.columns)
-        layout.strange = dict(zip(layout.waves.columns, map(unknown, labels), strict=False))
+    if waves is None:
+        return
+    layout.waves = placed = waves.placed(layout.columns)
+    if placed.columns and len(layout.names) == layout.columns:
+        # LabVIEW counts X in seconds
+        layout.units = ["s" if waves.axis == "time" else None] * layout.columns
+        for i, wave in placed.columns.items():
+            layout.units[i], layout.strange[i] = unit(wave.unit), unknown(wave.unit)
 
 
 def _separator(body: list[str], options: ReadOptions, path: Path) -> tuple[str | None, str, str]:
@@ -264,7 +259,7 @@ def _paired(rows: list[list[str]], named: int, path: Path, options: ReadOptions)
 
 
 def _facts(layout: Layout, above: list[str]) -> None:
-    """What the lines above the names state: rate, count of channels, unit."""
+    """What the lines above the names state: rate and unit."""
     for line in above:
         found = _META.match(line.strip()[:_LONGEST_FACT])
         if not found:
@@ -280,14 +275,5 @@ def _facts(layout: Layout, above: list[str]) -> None:
                 )
             elif is_possible_rate(float(number) * factor_of(said)):
                 layout.rate = float(number) * factor_of(said)
-        elif re.match(r"(number of )?channels?( count)?$", key_name.strip(), re.I) and re.fullmatch(
-            r"[0-9]+", number
-        ):
-            columns = zip(layout.names, layout.units, strict=True)
-            signals = sum(not is_time_column(*column) for column in columns)
-            if number.lstrip("0") not in (str(signals), str(layout.columns)):
-                layout.notices.append(
-                    Notice.of("channel_count_wrong", stated=float(number[:20]), channels=signals)
-                )
         elif key_name.strip().lower() in ("unit", "units", "单位") and unit(value):
             layout.units = [u or unit(value) for u in layout.units]

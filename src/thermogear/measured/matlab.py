@@ -19,7 +19,7 @@ import numpy as np
 
 from thermogear.measured.options import ReadOptions, refused, refusing, too_large
 from thermogear.measured.record import Record
-from thermogear.measured.tables import LONGEST_UNIT, UNITS, Named, record_of, with_units
+from thermogear.measured.tables import LONGEST_UNIT, Named, record_of
 
 _KINDS = {
     1: "i1",
@@ -86,7 +86,6 @@ def read_mat(path: Path, options: ReadOptions) -> Record:
         raise refused(path, "MAT", "no version 5 header (save it with -v7 or -v7.3)")
     order = "<" if raw[126:128] == b"IM" else ">"
     arrays: list[Named] = []
-    units: dict[str, str] = {}
     left = options.limit
     damages = _Malformed, zlib.error, struct.error, ValueError, OverflowError
     with refusing(path, "MAT", *damages):
@@ -95,10 +94,10 @@ def read_mat(path: Path, options: ReadOptions) -> Record:
                 packed, left = _unpacked(body, order, left, path, options)
                 for inner, content in _Buffer(memoryview(packed), order).elements():
                     if inner == _MATRIX:
-                        arrays += _matrix(content, order, "", 0, units)
+                        arrays += _matrix(content, order, "", 0)
             elif kind == _MATRIX:
-                arrays += _matrix(body, order, "", 0, units)
-    return record_of(path, "MAT", with_units(arrays, units), options, {})
+                arrays += _matrix(body, order, "", 0)
+    return record_of(path, "MAT", arrays, options, {})
 
 
 def _unpacked(
@@ -116,11 +115,9 @@ def _unpacked(
     return tag + engine.decompress(engine.unconsumed_tail, size) if size else tag, left
 
 
-def _matrix(
-    body: memoryview, order: str, prefix: str, depth: int, units: dict[str, str]
-) -> list[Named]:
-    """The numeric arrays of one variable, those inside structures by their dotted names; texts of
-    structures that are ``units`` go there."""
+def _matrix(body: memoryview, order: str, prefix: str, depth: int) -> list[Named]:
+    """The numeric arrays and short texts of one variable, those inside structures by their dotted
+    names."""
     if depth > _DEEPEST or len(body) == 0:
         return []
     parts = list(_Buffer(body, order).elements())
@@ -136,13 +133,14 @@ def _matrix(
         raise _Malformed(f"dimensions {shape}")
     own = bytes(parts[2][1]).decode("ascii", "replace").strip("\0")
     name = prefix + own if own else prefix.rstrip(".")
-    if not name:  # MATLAB keeps there what its objects hold
-        return []
     if kind == _STRUCT:
-        return _structure(parts, order, name, shape, depth, units)
+        return _structure(parts, order, name, shape, depth)
     if kind == _CELL:
-        return _cells(parts[3:], order, name, shape, depth, units)
-    if kind == _CHAR or kind > 15 or kind < 6 or len(parts) < 4:
+        return _cells(parts[3:], order, name, shape, depth)
+    if kind == _CHAR:
+        return [Named(name, _text(parts, order), ())]
+    # without a name MATLAB keeps what its objects hold
+    if not name or not 6 <= kind <= 15 or len(parts) < 4:
         return []
     if is_complex:  # no record: what it is called and how large it is will do
         return [Named(name, np.broadcast_to(np.complex128(0.0), shape), shape)]
@@ -162,7 +160,6 @@ def _structure(
     name: str,
     shape: tuple[int, ...],
     depth: int,
-    units: dict[str, str],
 ) -> list[Named]:
     if len(parts) < 5 or len(parts[3][1]) < 4:
         return []
@@ -183,20 +180,14 @@ def _structure(
         number, field = divmod(place, len(fields))
         if kind == _MATRIX:
             which = name if one else f"{name}({number + 1})"
-            found += _matrix(body, order, f"{which}.{fields[field]}.", depth + 1, units)
-            if fields[field].lower() in UNITS and (said := _text(body, order)):
-                units[which] = said
+            found += _matrix(body, order, f"{which}.{fields[field]}.", depth + 1)
     return found
 
 
-def _text(body: memoryview, order: str) -> str:
-    """The text of a variable of characters; of any other ''."""
-    parts = list(_Buffer(body, order).elements())
-    if len(parts) < 4 or len(parts[0][1]) < 8:
-        return ""
-    kind = struct.unpack(order + "I", parts[0][1][:4])[0] & 0xFF
-    stored, content = parts[3]
-    if kind != _CHAR or stored not in _TEXTS or len(content) > LONGEST_UNIT:
+def _text(parts: list[tuple[int, memoryview]], order: str) -> str:
+    """The text of a variable of characters, where it may be a unit; of any other ""."""
+    stored, content = parts[3] if len(parts) > 3 else (0, memoryview(b""))
+    if stored not in _TEXTS or len(content) > LONGEST_UNIT:
         return ""
     wide = {"<": "-le", ">": "-be"}[order]
     return bytes(content).decode(_TEXTS[stored].replace("*", wide), "replace").strip()
@@ -208,11 +199,10 @@ def _cells(
     name: str,
     shape: tuple[int, ...],
     depth: int,
-    units: dict[str, str],
 ) -> list[Named]:
     """The arrays in a cell array, numbered from 1."""
     found: list[Named] = []
     for number, (kind, body) in enumerate(parts[: math.prod(shape)], start=1):
         if kind == _MATRIX:
-            found += _matrix(body, order, f"{name}{{{number}}}.", depth + 1, units)
+            found += _matrix(body, order, f"{name}{{{number}}}.", depth + 1)
     return found

@@ -37,7 +37,7 @@ SHORTEST = 8  # samples: shorter arrays are parameters, not records
 class Named:
     """One stored array: 1-D or 2-D, in memory or on disk; ``attributes`` as the file has them.
 
-    ``data`` None: an object of MATLAB, whose numbers are not read.
+    ``data`` a text: a variable of characters; None: an object of MATLAB, which is not read.
     """
 
     name: str
@@ -96,6 +96,7 @@ def record_of(
     is used by neither.
     """
     told = _Told()
+    arrays = _with_units(arrays)
     for scope, facts in [*groups.items(), *((one.name, one.attributes) for one in arrays)]:
         for key, value in facts.items():
             told.number(str(key), value, f"attribute {key}", scope=scope)
@@ -195,11 +196,16 @@ class _Told:
         return timed(found, self.notes)
 
 
-def with_units(arrays: Sequence[Named], units: Mapping[str, str]) -> list[Named]:
-    """The arrays with the units that their own structures state, by the structures' names; clocks
-    and single numbers aside."""
+def _with_units(arrays: Sequence[Named]) -> list[Named]:
+    """The arrays with the units that their own structures state as texts; clocks and single numbers
+    aside."""
+    parted = [(*one.name.rpartition("."), one.data) for one in arrays if isinstance(one.data, str)]
+    units = {structure: text for structure, dot, leaf, text in parted
+             if dot and leaf.lower() in UNITS and text}  # fmt: skip
     found = []
     for array in arrays:
+        if isinstance(array.data, str):
+            continue
         structure, _, leaf = array.name.rpartition(".")
         said = units.get(structure)
         if said is not None and not is_time_name(leaf) and math.prod(array.shape) > 1:

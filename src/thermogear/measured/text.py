@@ -36,7 +36,7 @@ from thermogear.measured.options import (
 )
 from thermogear.measured.parts import cut
 from thermogear.measured.record import Channel, Notice, Record
-from thermogear.measured.store import ColumnStore, StoredColumn
+from thermogear.measured.store import ColumnStore
 from thermogear.measured.traps import MOST_STAMPS, is_tacho_name, is_time_name
 from thermogear.measured.units import counts_turns
 
@@ -49,7 +49,6 @@ _BLOCK = re.compile(r" \(block \d+\)$")
 
 def read_text(path: Path, options: ReadOptions) -> Record:
     """A record from a CSV or TXT file (also gzipped), read row block by row block."""
-    _require_limit(path, options.limit)
     encoding, notes = _encoding(path)
     with _open(path, encoding, options) as lines:
         head = _head(lines)
@@ -107,15 +106,6 @@ def _bytes(path: Path) -> IO[bytes]:
     with path.open("rb") as file:
         packed = file.read(2) == b"\x1f\x8b"
     return gzip.open(path, "rb") if packed else path.open("rb")  # type: ignore[return-value]
-
-
-def _require_limit(path: Path, limit: int) -> None:
-    """Refuse a packed text that becomes longer than ``limit`` [bytes] before any row is parsed."""
-    with _bytes(path) as stream:
-        if isinstance(stream, gzip.GzipFile):
-            counted, block = _Counted(stream, path, limit), memoryview(bytearray(_HEAD))
-            while counted.readinto(block):
-                pass
 
 
 def _open(path: Path, encoding: str, options: ReadOptions) -> io.TextIOWrapper:
@@ -293,7 +283,7 @@ def _record(
     layout: Layout,
     keep: list[int],
     named: tuple[str, ...],
-    columns: Sequence[Floats | StoredColumn],
+    columns: Sequence[Floats],
 ) -> Record:
     waves, notices = layout.waves, layout.notices
     header = UNSTATED if layout.rate is None else stated_rate(layout.rate, "header", notices)
@@ -329,6 +319,6 @@ def _blocks(one: Stated, by: int, held: int) -> list[Stated]:
     return blocks
 
 
-def _empty(column: Floats | StoredColumn) -> bool:
+def _empty(column: Floats) -> bool:
     """Whether a column holds no number."""
     return not np.any(np.isfinite(column[:MOST_STAMPS]))
