@@ -306,8 +306,10 @@ def test_a_scaling_that_was_not_applied_withholds_the_unit(tmp_path: Path) -> No
         writer.write_segment([ChannelObject("rig", "acc", LINE, properties=said)])
     found = read_record(tmp_path / "a.tdms")
     assert "scaling_not_applied" in codes(found)
-    with pytest.raises(InputError, match="scale"):
-        _ = found.channels[0].si_factor
+    assert found.channels[0].unit is None
+    given = read_record(tmp_path / "a.tdms", unit="g")
+    with pytest.raises(InputError, match="give --scale"):
+        _ = given.channels[0].si_factor
 
 
 def test_samples_marked_invalid_are_missing(tmp_path: Path) -> None:

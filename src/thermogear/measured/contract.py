@@ -205,14 +205,16 @@ def record_of_channels(
 
 
 def _as_read(one: Stated) -> Stated:
-    """The channel between pauses, lost samples put in; if not scaled, a unit alone is none."""
+    """The channel between pauses, lost samples put in; of one not scaled the unit is withheld."""
     channel = one.channel
     if one.base.stretch is not None:
         first, stop = one.base.stretch
-        channel = cut(channel, first, stop - first)
+        channel = cut(channel, first=first, count=stop - first)
     if one.base.gaps:
         channel = with_gaps(channel, one.base.gaps)
-    return replace(one, channel=replace(channel, needs_scale=channel.needs_scale or one.unscaled))
+    if one.unscaled:
+        channel = replace(channel, needs_scale=True, unit=None)
+    return replace(one, channel=channel)
 
 
 def _kept(stated: list[Stated], keep: tuple[str, ...]) -> tuple[list[Stated], Stated | None]:
@@ -327,7 +329,7 @@ def _joined(path: Path, group: list[Stated], notes: list[Notice]) -> Record:
         notes.append(told)
     timely = base if group[0].axis == "time" else UNSTATED
     return Record(
-        tuple(cut(c, shift, count) for c, shift in zip(channels, shifts, strict=True)),
+        tuple(cut(c, first=shift, count=count) for c, shift in zip(channels, shifts, strict=True)),
         path.name,
         timely.rate,
         timely.origin,

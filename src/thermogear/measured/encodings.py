@@ -25,7 +25,7 @@ def encoding_of(head: bytes) -> Encoding:
 
     Windows-1252 (Latin-1 and more) or GB 18030 (GBK and more): European letters are single ones
     between ASCII letters, Chinese characters are pairs of high bytes, or four bytes. A pair whose
-    second byte is ASCII, or that stands alone between two ASCII letters, speaks for Europe.
+    second byte is ASCII, or that is alone between two ASCII letters, speaks for Europe.
 
     >>> encoding_of("Gehäuse [µm]".encode("latin-1")).name
     'Latin-1'

@@ -136,7 +136,7 @@ def _channels(records: Sequence[Record], files: Sequence[str], rate: float | Non
     for file, one, shift in zip(files, records, shifts, strict=True):
         for c in one.channels:
             name = c.name if names[c.name] == 1 else f"{file}{SIGN}{c.name}"
-            channels.append(replace(cut(c, shift, count), name=name, file=file))
+            channels.append(replace(cut(c, first=shift, count=count), name=name, file=file))
             if tacho is None and c.name == one.tacho:
                 tacho = name
     origin = next((one.rate_origin for one in records if one.rate is not None), "")

@@ -106,7 +106,7 @@ def waves_of(above: Sequence[str], separator: str | None) -> Waves | None:
     for line in above:
         key, *cells = (cell.strip().strip('"').strip() for cell in line.split(separator or "\t"))
         rows[key] = [cell for cell in cells if cell]
-    count = len(rows.get("Delta_X") or rows.get("Y_Unit_Label", ()))
+    count = len(rows.get("Delta_X") or rows.get("Y_Unit_Label") or ())
     if not count:
         return None
     facts = (

@@ -186,7 +186,7 @@ def _separator(body: list[str], options: ReadOptions, path: Path) -> tuple[str |
 
 
 def _groups(sample: list[str], separator: str, decimal: str) -> bool:
-    """Whether the sign that is not the ``decimal`` one groups thousands wherever it stands."""
+    """Whether the sign that is not the ``decimal`` one groups thousands wherever it is."""
     other = "," if decimal == "." else "."
     grouped = re.compile(rf"[+-]?[1-9]\d{{0,2}}(\{other}\d{{3}})+(\{decimal}\d*)?")
     cells = [cell for line in sample for cell in cells_of(line, separator) if other in cell]

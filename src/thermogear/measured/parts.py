@@ -65,7 +65,7 @@ def common_span(
     return begin, shifts, min(n - k for n, k in zip(lengths, shifts, strict=True))
 
 
-def cut(channel: Channel, first: int, count: int) -> Channel:
+def cut(channel: Channel, *, first: int, count: int) -> Channel:
     """The channel's ``count`` samples from ``first`` on."""
     if first == 0 and count == len(channel):
         return channel

@@ -102,7 +102,7 @@ class Record:
     ``tacho`` names the tacho channel; ``notices`` are the traps met while reading; ``rate_doubt``:
     what contradicts the rate; ``rate_half_width`` [samples/s] of its 95 % interval, 0 where it is
     stated, ``rate_note``: how well time stamps tell it, and their ``jitter`` [rms, steps].
-    ``per_turn``: samples per turn of the shaft where they were taken at even angles; ``others``:
+    ``per_turn`` [samples/turn] where they are taken at even angles; ``others``:
     what the same file holds at other rates or times.
     """
 

@@ -313,7 +313,7 @@ def _blocks(one: Stated, by: int, held: int) -> list[Stated]:
     channel; all of it where the header does not say (0)."""
     channel, blocks = one.channel, []
     for k, first in enumerate(range(0, len(channel), by or len(channel)), start=1):
-        part = cut(channel, first, min(held or len(channel), len(channel) - first))
+        part = cut(channel, first=first, count=min(held or len(channel), len(channel) - first))
         name = channel.name if k == 1 else f"{channel.name} (block {k})"
         blocks.append(replace(one, channel=replace(part, name=name), count=held or None, block=k))
     return blocks

@@ -110,7 +110,7 @@ def numbered(times: ArrayLike, *, grain: float = 0.0) -> Pulses:
     )
 
 
-def _spread(grain: Floats | float, *, now: Floats, before: Floats) -> Floats:
+def _spread(grain: Floats, *, now: Floats | Ints, before: Floats | Ints) -> Floats:
     """Standard deviation of the change of ln(period) between two intervals of ``now`` and
     ``before`` whole periods, edges known to half of a ``grain`` [periods]."""
     own, last = 1.0 / now, 1.0 / before
@@ -158,16 +158,20 @@ def _likeliest(edges: Floats, grain: float) -> tuple[Ints, Ints]:
     left = _EXTRA * np.arange(count - 1, -1, -1.0)
     last = int(np.argmin(cost + left[:, None, None]))
     place, b, k = (int(one) for one in np.unravel_index(last, cost.shape))
-    places, steps = [int(place)], []
+    return _traced(origin, place, b, k)
+
+
+def _traced(origin: NDArray[np.int16], place: int, back: int, periods: int) -> tuple[Ints, Ints]:
+    """Places and whole periods of the way that ends at a pulse with a state, from its begin on."""
+    places, steps = [place], []
     while True:
-        steps.append(int(k) + 1)
-        came = int(origin[place, b, k])
-        place = place - (b + 1)
-        places.append(int(place))
+        steps.append(periods + 1)
+        came = int(origin[place, back, periods])
+        place -= back + 1
+        places.append(place)
         if came < 0:
-            break
-        b, k = divmod(came, _MOST)
-    return np.asarray(places[::-1], dtype=np.int64), np.asarray(steps[::-1], dtype=np.int64)
+            return np.asarray(places[::-1]), np.asarray(steps[::-1])
+        back, periods = divmod(came, _MOST)
 
 
 def _rare(off: Floats) -> Floats:
