@@ -71,32 +71,29 @@ def agreed(bases: Sequence[TimeBase], notices: list[Notice]) -> TimeBase:
         return unsaid if stamped.by_stamps or told else UNSTATED
     best = known[0]
     for other in known[1:]:
-        assert best.rate is not None
-        assert other.rate is not None
-        unsure = (best.half_width + other.half_width) / best.rate
-        if abs(other.rate / best.rate - 1.0) > _SAME + unsure:
+        rate, second = best.rate or np.nan, other.rate or np.nan
+        if abs(second / rate - 1.0) > _SAME + (best.half_width + other.half_width) / rate:
             notices.append(
                 Notice.of(
                     "rate_stated_twice",
                     origin=best.origin,
-                    rate=best.rate,
+                    rate=rate,
                     other_origin=other.origin,
-                    other_rate=other.rate,
-                    ratio=best.rate / other.rate,
+                    other_rate=second,
+                    ratio=rate / second,
                 )
             )
             return unsaid
-        off = max(best.half_width, abs(other.rate - best.rate))
-        if other.by_stamps and off > other.half_width:
+        if other.by_stamps and max(best.half_width, abs(second - rate)) > other.half_width:
             best = other
-    start = stamped.start if stamped.by_stamps else best.start
+    if not stamped.by_stamps:
+        return replace(best, notices=told)
     return replace(
-        best,
-        start=start,
-        gaps=stamped.gaps,
-        jitter=stamped.jitter,
-        stretch=stamped.stretch,
-        by_stamps=stamped.by_stamps,
+        stamped,
+        rate=best.rate,
+        origin=best.origin,
+        half_width=best.half_width,
+        note=best.note,
         notices=told,
     )
 

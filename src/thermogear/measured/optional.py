@@ -78,21 +78,9 @@ def read_tdms(path: Path, options: ReadOptions) -> Record:
     return record_of_channels(path, "TDMS", timed(stated, notices), notices, keep=options.keep)
 
 
-class _Clipped(io.BufferedReader):
-    """A file that never makes room for more bytes than it has."""
-
-    def __init__(self, path: Path) -> None:
-        super().__init__(io.FileIO(path))
-        self._size = path.stat().st_size
-
-    def read(self, size: int | None = -1, /) -> bytes:
-        left = max(0, self._size - self.tell())
-        return super().read(left if size is None or size < 0 else min(size, left))
-
-
 def _tdms(nptdms: ModuleType, path: Path) -> list[Stated]:
     size = path.stat().st_size
-    with _Clipped(path) as file:
+    with path.open("rb") as file:
         promised = nptdms.TdmsFile.read_metadata(file)
         count = sum(len(item) for group in promised.groups() for item in group.channels())
         if count > size:  # a value takes a byte or more

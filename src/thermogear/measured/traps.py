@@ -369,7 +369,7 @@ def without_doubles(
 ) -> tuple[list[Channel], tuple[Notice, ...]]:
     """Channels with the doubled names resolved: an all-zero twin is left aside, never chosen.
 
-    Twins that hold the same samples are one; twins that differ both stay, numbered.
+    Other twins both stay, numbered.
     """
     notes: list[Notice] = []
     kept: list[Channel] = []
@@ -385,8 +385,6 @@ def without_doubles(
         if (zeros := health(first).zeros) or health(channel).zeros:
             kept[place] = channel if zeros else first
             notes.append(Notice.of("twin_zero", channel=channel.name))
-        elif len(first) == len(channel) and same_samples(first, channel):
-            notes.append(Notice.of("twin_same", channel=channel.name))
         else:
             number = numbers[channel.name] = numbers.get(channel.name, 1) + 1
             while f"{channel.name} ({number})" in places:
@@ -398,11 +396,3 @@ def without_doubles(
     if not kept:
         raise InputError("file", source, why="it holds no channel of numbers")
     return kept, tuple(notes)
-
-
-def same_samples(one: Channel, other: Channel) -> bool:
-    """Whether two channels of one length hold the same."""
-    return all(
-        np.array_equal(a, b, equal_nan=True)
-        for a, b in zip(one.blocks(), other.blocks(), strict=True)
-    )
