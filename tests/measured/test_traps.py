@@ -271,9 +271,6 @@ def test_more_channels_than_the_text_says(tmp_path: Path) -> None:
     assert len(record.channels) == 28
     assert record.names[0] == "column 1"
     assert told(record) == [("names_do_not_fit", {"names": 27, "columns": 28})]
-    header = ",".join(f"c{i}" for i in range(28))
-    counted = read(tmp_path, lines(["Channels: 27", header, *body]))
-    assert told(counted) == [("channel_count_wrong", {"stated": 27.0, "channels": 28})]
 
 
 def test_a_variable_stored_twice_the_first_all_zeros(tmp_path: Path) -> None:

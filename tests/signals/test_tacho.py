@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from thermogear.base.errors import InputError
+from thermogear.signals.orders import rising_edges
 from thermogear.signals.tacho import numbered, pulse_turns, speed_turns
 
 
@@ -85,3 +86,20 @@ def test_pulses_of_a_fast_run_up_between_steady_speeds_are_counted(
         own_numbers = kept[np.searchsorted(times, found.times)]
         np.testing.assert_array_equal(found.numbers, own_numbers - own_numbers[0])
         assert found.times.size >= (0.9 if lost else 1.0) * kept.size
+
+
+@pytest.mark.parametrize("speed", [30.0, 38.0, 53.0, 70.0])
+@pytest.mark.parametrize("lost", [0.0, 0.05])
+def test_square_pulses_of_few_samples_are_counted(speed: float, lost: float) -> None:
+    """60 pulses a turn at 12 800/s: an edge is known to half a sample, a period of s samples to
+    .71/s of itself."""
+    random = np.random.default_rng([60, int(speed)])
+    place = speed * 60.0 / 12_800.0 * np.arange(3000) + random.random()
+    whole = np.floor(place).astype(int)
+    up = (place - whole < 0.5) & (random.random(whole[-1] + 1) >= lost)[whole]
+    times = rising_edges(5.0 * up, rate=12_800.0)
+    found = numbered(times, grain=1.0 / 12_800.0)
+    turned = (found.times[-1] - found.times[0]) * speed * 60.0
+    assert found.numbers[-1] == pytest.approx(turned, rel=4e-3, abs=1.0)
+    assert found.numbers[-1] > 0.95 * 3000 / 12_800.0 * speed * 60.0
+    assert found.extra == 0

@@ -54,16 +54,3 @@ def comment_column(table: Sequence[Sequence[str]]) -> tuple[int, int] | None:
         if len(cells) > 1 and cells[-1].strip().lower() == "comment"
     )
     return next(places, None)
-
-
-def labelled(above: Sequence[str], separator: str | None = "\t") -> list[str]:
-    """Units that a LabVIEW header states for its channels in order ("Y_Unit_Label").
-
-    >>> labelled(["Channels\\t2", "Y_Unit_Label\\tg\\tm/s^2\\t"])
-    ['g', 'm/s^2']
-    """
-    for line in above:
-        cells = [cell.strip() for cell in line.split(separator or "\t")]
-        if cells[0] == "Y_Unit_Label":
-            return [cell for cell in cells[1:] if cell]
-    return []

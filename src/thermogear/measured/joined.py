@@ -11,8 +11,8 @@ import numpy as np
 
 from thermogear.base.errors import InputError, nearest
 from thermogear.measured.options import place_of
-from thermogear.measured.parts import Joined, Part
-from thermogear.measured.record import Channel, Notice, Record, Samples
+from thermogear.measured.parts import Joined, Part, common_span, cut
+from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.units import counts_turns
 
 JOINS = ("channels", "time")
@@ -103,11 +103,11 @@ def _one_rate(records: Sequence[Record], files: Sequence[str]) -> float | None:
 def _channels(records: Sequence[Record], files: Sequence[str], rate: float | None) -> Record:
     """Every file's channels side by side, over the time that all files have."""
     notes: list[Notice] = []
-    begin = max(one.start for one in records)
-    shifts = [0 if rate is None else round((begin - one.start) * rate) for one in records]
-    late = [file for file, shift in zip(files, shifts, strict=True) if shift]
+    begin, shifts, count = common_span(
+        [one.start for one in records], [one.samples for one in records], rate=rate
+    )
     left = [one.samples - shift for one, shift in zip(records, shifts, strict=True)]
-    if min(left) < 2:
+    if count < 2:
         place = int(np.argmin(left))
         last = files[int(np.argmax([one.start for one in records]))]
         raise InputError(
@@ -116,9 +116,9 @@ def _channels(records: Sequence[Record], files: Sequence[str], rate: float | Non
             why=f"by its time stamps it ends before {last} starts",
             fix="leave one out, or join pieces with --join time",
         )
-    if late:
+    if any(shifts):
         notes.append(Notice.of("cut_to_common_start", samples=max(shifts)))
-    count, most = min(left), max(left)
+    most = max(left)
     if count < most:
         short, long = files[left.index(count)], files[left.index(most)]
         if count < (1.0 - _CUT) * most:
@@ -136,10 +136,7 @@ def _channels(records: Sequence[Record], files: Sequence[str], rate: float | Non
     for file, one, shift in zip(files, records, shifts, strict=True):
         for c in one.channels:
             name = c.name if names[c.name] == 1 else f"{file}{SIGN}{c.name}"
-            cut: Samples = c.samples
-            if shift or len(c) > count:
-                cut = Joined((Part(c.samples, first=shift, stop=shift + count),))
-            channels.append(replace(c, name=name, samples=cut, file=file))
+            channels.append(replace(cut(c, first=shift, count=count), name=name, file=file))
             if tacho is None and c.name == one.tacho:
                 tacho = name
     origin = next((one.rate_origin for one in records if one.rate is not None), "")
@@ -155,6 +152,7 @@ def _channels(records: Sequence[Record], files: Sequence[str], rate: float | Non
         rate_half_width=records[0].rate_half_width,
         rate_note=records[0].rate_note,
         jitter=max(one.jitter for one in records),
+        others=tuple(other for one in records for other in one.others),
     )
 
 

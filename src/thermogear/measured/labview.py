@@ -1,4 +1,4 @@
-"""What the header of a LabVIEW file (LVM) states of its channels: step, start and dimension."""
+"""What the header of a LabVIEW file (LVM) states of its channels: step, start, count, dimension."""
 
 from __future__ import annotations
 
@@ -7,44 +7,40 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from thermogear.base.cells import NUMBER
-from thermogear.measured.record import Notice
-from thermogear.measured.traps import is_possible_rate, is_time_name
-from thermogear.signals.stamps import usual_rate
+from thermogear.measured.contract import UNSTATED
+from thermogear.measured.traps import TimeBase, is_time_name, step_base
 
 _PRINTED = 6
 """Decimals from which a step without an exponent is taken as rounded to them, as "%f" does."""
-_SAME = 1e-6  # of a step: steps and starts nearer than this are the same
 
 
 @dataclass(frozen=True)
 class Wave:
-    """A channel as the header has it: ``step`` (Delta_X) and ``start`` (X0) [s] as written."""
+    """A channel as the header has it: ``step`` (Delta_X) and ``start`` (X0) [s], ``count``
+    (Samples) and ``unit`` (Y_Unit_Label) as written."""
 
     step: str = ""
     start: str = ""
+    count: str = ""
+    unit: str = ""
 
-    @property
-    def seconds(self) -> float | None:
-        """The step [s]; None where it gives no rate.
+    def base(self, channel: str) -> TimeBase:
+        """The time base of the ``channel``; one without a rate where the step gives none.
 
-        >>> Wave("1.0E-4").seconds, Wave("0").seconds
-        (0.0001, None)
+        >>> Wave("1.0E-4").base("a").rate, Wave("0").base("a").rate
+        (10000.0, None)
         """
-        value = _number(self.step)
-        return value if value > 0.0 and is_possible_rate(1.0 / value) else None
-
-
-@dataclass(frozen=True, kw_only=True)
-class Stated:
-    """The rate [1/s] that a header states: None where it states none or several; half width of its
-    interval, what it rests on, ``start`` [s]; ``several``: no time column speaks for all."""
-
-    rate: float | None = None
-    half_width: float = 0.0
-    note: str = ""
-    start: float = 0.0
-    several: bool = False
-    notices: tuple[Notice, ...] = ()
+        if not self.step:
+            return UNSTATED
+        decimals = len(re.split("[.,]", self.step)[-1]) if re.search("[.,]", self.step) else 0
+        rounded = decimals >= _PRINTED and "e" not in self.step.lower()
+        return step_base(
+            _number(self.step),
+            channel=channel,
+            start=_number(self.start),
+            origin="Delta_X",
+            half_width=0.5 * 10.0**-decimals if rounded else 0.0,
+        )
 
 
 @dataclass(frozen=True)
@@ -56,13 +52,25 @@ class Waves:
     columns: dict[int, Wave] = field(default_factory=dict)
 
     @property
-    def of_time(self) -> bool:
-        """Whether the X axis is time.
+    def axis(self) -> str:
+        """What the X axis counts.
 
-        >>> Waves(()).of_time, Waves((), "Frequency").of_time
-        (True, False)
+        >>> Waves(()).axis, Waves((), "Frequency").axis
+        ('time', 'frequency')
         """
-        return is_time_name(self.dimension)
+        if is_time_name(self.dimension):
+            return "time"
+        return "frequency" if "freq" in self.dimension.lower() else self.dimension
+
+    @property
+    def samples(self) -> int:
+        """Samples of a block, the most of its channels; 0 where the header does not say."""
+        return int(max((_number(wave.count) for wave in self.waves), default=0.0))
+
+    def held(self, column: int) -> int:
+        """Samples of a block of the channel in a column, or of the channel behind that X column."""
+        wave = self.columns.get(column, self.columns.get(column + 1))
+        return self.samples if wave is None else int(_number(wave.count))
 
     def placed(self, columns: int) -> Waves:
         """The same with the wave of each of the table's ``columns``: behind one X column, each
@@ -87,78 +95,30 @@ class Waves:
         own = len(self.columns) > 1 and column - 1 not in self.columns
         return column - 1 if own else 0
 
-    def stated(self, names: dict[int, str]) -> Stated:
-        """The rate of the channels in the columns ``names``, or why there is none.
-
-        >>> waves = Waves((Wave("1e-4"), Wave("1e-3"))).placed(3)
-        >>> round(waves.stated({1: "a"}).rate), waves.stated({1: "a", 2: "b"}).rate
-        (10000, None)
-        """
-        own = {names[i]: self.columns[i] for i in names if i in self.columns}
-        steps = {name: wave.seconds for name, wave in own.items() if wave.step}
-        if not steps:
-            return Stated()
-        if not self.of_time:
-            return Stated(notices=(Notice.of("step_is_no_time", dimension=self.dimension),))
-        wrong = next((name for name, step in steps.items() if step is None), None)
-        if wrong is not None:
-            told = Notice.of("step_gives_no_rate", channel=wrong, step=_number(own[wrong].step))
-            return Stated(notices=(told,))
-        known = [step for step in steps.values() if step is not None]
-        if max(known) - min(known) > _SAME * min(known):
-            told = Notice.of(
-                "steps_differ", channels=list(steps), rates=[1.0 / one for one in known]
-            )
-            return Stated(several=True, notices=(told,))
-        return _one(next(iter(own.values())), _starts(own, known[0]))
-
 
 def waves_of(above: Sequence[str], separator: str | None) -> Waves | None:
     """What the lines ``above`` a table say where they are a LabVIEW header with its channels.
 
-    >>> waves_of(["X_Columns\\tNo", "Delta_X\\t0,001\\t0,001\\t"], "\\t").waves[0].seconds
-    0.001
+    >>> waves_of(["X_Columns\\tNo", "Delta_X\\t0,001\\t0,001\\t"], "\\t").waves[0].base("a").rate
+    1000.0
     """
-    found: dict[str, list[str]] = {}
+    rows: dict[str, list[str]] = {}
     for line in above:
         key, *cells = (cell.strip().strip('"').strip() for cell in line.split(separator or "\t"))
-        found[key] = [cell for cell in cells if cell]
-    if "Delta_X" not in found:
+        rows[key] = [cell for cell in cells if cell]
+    count = len(rows.get("Delta_X") or rows.get("Y_Unit_Label") or ())
+    if not count:
         return None
-    steps = found["Delta_X"]
-    starts = found.get("X0", [])
-    starts = starts if len(starts) == len(steps) else [""] * len(steps)
-    dimensions = found.get("X_Dimension") or ["Time"]
+    facts = (
+        cells if len(cells := rows.get(key, [])) == count else [""] * count
+        for key in ("Delta_X", "X0", "Samples", "Y_Unit_Label")
+    )
+    dimensions = rows.get("X_Dimension") or ["Time"]
     odd = next((one for one in dimensions if not is_time_name(one)), dimensions[0])
-    return Waves(tuple(map(Wave, steps, starts)), odd)
+    return Waves(tuple(map(Wave, *facts)), odd)
 
 
 def _number(text: str) -> float:
     """A number with a point or a comma; 0 where it is none."""
     plain = text.replace(",", ".")
     return float(plain) if NUMBER.match(plain) else 0.0
-
-
-def _starts(own: dict[str, Wave], step: float) -> tuple[float, tuple[Notice, ...]]:
-    """The first start [s], and a word where the channels do not start together."""
-    starts = [_number(wave.start) for wave in own.values()]
-    apart = max(starts) - min(starts)
-    if apart <= max(_SAME * step, 1e-12 * max(map(abs, starts))):
-        return starts[0], ()
-    return starts[0], (Notice.of("channels_start_apart", time=apart),)
-
-
-def _one(wave: Wave, start: tuple[float, tuple[Notice, ...]]) -> Stated:
-    """The rate by one step, with what its last decimal leaves open."""
-    step = wave.seconds or 1.0
-    rate, half, note = 1.0 / step, 0.0, ""
-    decimals = len(re.split("[.,]", wave.step)[-1]) if re.search("[.,]", wave.step) else 0
-    if decimals >= _PRINTED and "e" not in wave.step.lower():
-        off = 0.5 * 10.0**-decimals
-        low, high = 1.0 / (step + off), 1.0 / max(step - off, 0.1 * step)
-        usual = usual_rate(low, high=high)
-        rate = rate if usual is None else usual
-        half = max(high - rate, rate - low) if usual is None else 0.0
-        note = f"{wave.step} s is rounded: +- {max(high - rate, rate - low):.2g} samples/s"
-        note += "" if usual is None else ", the usual rate there is taken"
-    return Stated(rate=rate, half_width=half, note=note, start=start[0], notices=start[1])

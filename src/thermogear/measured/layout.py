@@ -9,13 +9,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from thermogear.base.cells import MISSING, NUMBER, cells_of
-from thermogear.measured.choosing import is_time_column
-from thermogear.measured.clock import comment_column, labelled
+from thermogear.measured.clock import comment_column
 from thermogear.measured.labview import Waves, waves_of
 from thermogear.measured.options import A_TEXT, ReadOptions, refused
 from thermogear.measured.record import Notice
 from thermogear.measured.traps import is_possible_rate, is_rate_name, split_unit
-from thermogear.measured.units import factor_of, kind_of, unit
+from thermogear.measured.units import factor_of, kind_of, unit, unknown
 
 MOST_COLUMNS = 4096
 _LONGEST_FACT = 400  # characters of a line above the table that are looked at
@@ -27,9 +26,10 @@ class Layout:
     """How the numbers of a text file are written: found from its first lines.
 
     ``separator`` None: runs of blanks. ``paired``: commas part both numbers and decimals, two
-    fields make one number. ``skip``: lines before the first row. ``commented``: what follows the
-    columns is a comment; ``clocks``: clock stamps are turned to seconds; ``waves``: what a LabVIEW
-    header says.
+    fields make one number. ``thousands``: the sign that groups digits, "" for none. ``skip``: lines
+    before the first row. ``commented``: what follows the columns is a comment; ``clocks``: clock
+    stamps are turned to seconds; ``waves``: what a LabVIEW header says;
+    ``strange``: units of columns that are none known.
     """
 
     separator: str | None
@@ -41,9 +41,25 @@ class Layout:
     skip: int
     rate: float | None = None
     commented: bool = field(default=False, kw_only=True)
+    thousands: str = field(default="", kw_only=True)
+    strange: dict[int, str] = field(default_factory=dict, kw_only=True)
     clocks: bool = field(default=False, kw_only=True)
     waves: Waves | None = field(default=None, kw_only=True)
     notices: list[Notice] = field(default_factory=list)
+
+    def plain(self, line: str) -> str:
+        """A line with its numbers as Python writes them."""
+        return plain(line, self.separator, self.decimal, self.thousands)
+
+
+def plain(line: str, separator: str | None, decimal: str, thousands: str) -> str:
+    """A line with numbers as Python writes them.
+
+    >>> plain("1.234,5;2,0", ";", ",", ".")
+    '1234.5;2.0'
+    """
+    line = line.replace(thousands, "") if thousands else line
+    return line.replace(",", ".") if decimal == "," and separator != "," else line
 
 
 def _is_row(cells: list[str]) -> bool:
@@ -58,9 +74,8 @@ def find_layout(head: list[str], path: Path, options: ReadOptions) -> Layout:
     body = [line for line in head if line.strip()]
     if not body:
         raise refused(path, "text", "it is empty", A_TEXT)
-    separator, decimal = _separator(body, options, path)
-    swap = decimal == "," and separator != ","
-    table = [cells_of(line.replace(",", ".") if swap else line, separator) for line in head]
+    separator, decimal, thousands = _separator(body, options, path)
+    table = [cells_of(plain(line, separator, decimal, thousands), separator) for line in head]
     comment = comment_column(table)
     if comment is not None:
         table = [c if i < comment[0] else c[: comment[1]] for i, c in enumerate(table)]
@@ -93,7 +108,7 @@ def find_layout(head: list[str], path: Path, options: ReadOptions) -> Layout:
         why = f"{columns} columns; allowed 1..{MOST_COLUMNS} (channels stand side by side)"
         raise refused(path, "text", why)
     layout = Layout(separator, decimal, paired, columns, names, units, start)
-    layout.commented = comment is not None
+    layout.commented, layout.thousands = comment is not None, thousands
     _of_labview(layout, above)
     if paired:
         layout.notices.append(Notice.of("commas_ambiguous"))
@@ -136,31 +151,46 @@ def _empty_first(table: list[list[str]], start: int) -> int:
 
 def _of_labview(layout: Layout, above: list[str]) -> None:
     """Units, steps and starts that a LabVIEW header states for its channels."""
-    said = [unit(text) for text in labelled(above, layout.separator)]
     waves = waves_of(above, layout.separator)
-    axis = None if waves is not None and not waves.of_time else "s"  # LabVIEW counts X in seconds
-    if said and len(layout.names) == layout.columns:
-        if layout.columns == len(said) + 1:
-            layout.units = [axis, *said]
-        elif layout.columns == 2 * len(said):
-            layout.units = [one for own in said for one in (axis, own)]
-    if waves is not None:
-        layout.waves = waves.placed(layout.columns)
+    if waves is None:
+        return
+    layout.waves = placed = waves.placed(layout.columns)
+    if placed.columns and len(layout.names) == layout.columns:
+        # LabVIEW counts X in seconds
+        layout.units = ["s" if waves.axis == "time" else None] * layout.columns
+        for i, wave in placed.columns.items():
+            layout.units[i], layout.strange[i] = unit(wave.unit), unknown(wave.unit)
 
 
-def _separator(body: list[str], options: ReadOptions, path: Path) -> tuple[str | None, str]:
+def _separator(body: list[str], options: ReadOptions, path: Path) -> tuple[str | None, str, str]:
+    """Separator, decimal sign and the sign that groups thousands, "" for none."""
     sample = body[len(body) // 2 :]  # the second half: past the header
     for separator in ("\t", ";"):
         if sum(separator in line for line in sample) > 0.8 * len(sample):
             commas = sum(bool(re.search(r"\d,\d", line)) for line in sample)
             points = sum(bool(re.search(r"\d\.\d", line)) for line in sample)
-            if commas and points and options.decimal is None:
-                raise refused(path, "text", "it holds both 1,2 and 1.2: give --decimal")
-            return separator, options.decimal or ("," if commas else ".")
+            if commas and points:
+                signs = [options.decimal] if options.decimal else [",", "."]
+                grouped = [one for one in signs if _groups(sample, separator, one)]
+                if len(grouped) == 1:
+                    return separator, grouped[0], "," if grouped[0] == "." else "."
+                if options.decimal is None:
+                    raise refused(path, "text", "it holds both 1,2 and 1.2: give --decimal")
+            return separator, options.decimal or ("," if commas else "."), ""
     if sum("," in line for line in sample) > 0.5 * len(sample):
         blanks = sum(bool(re.search(r"\d\s+[-+\d]", line.strip())) for line in sample)
-        return (None, ",") if blanks > 0.8 * len(sample) else (",", options.decimal or ".")
-    return None, options.decimal or "."
+        if blanks > 0.8 * len(sample):
+            return None, ",", ""
+        return ",", options.decimal or ".", ""
+    return None, options.decimal or ".", ""
+
+
+def _groups(sample: list[str], separator: str, decimal: str) -> bool:
+    """Whether the sign that is not the ``decimal`` one groups thousands wherever it is."""
+    other = "," if decimal == "." else "."
+    grouped = re.compile(rf"[+-]?[1-9]\d{{0,2}}(\{other}\d{{3}})+(\{decimal}\d*)?")
+    cells = [cell for line in sample for cell in cells_of(line, separator) if other in cell]
+    return bool(cells) and all(grouped.fullmatch(cell) for cell in cells)
 
 
 def _header(
@@ -229,7 +259,7 @@ def _paired(rows: list[list[str]], named: int, path: Path, options: ReadOptions)
 
 
 def _facts(layout: Layout, above: list[str]) -> None:
-    """What the lines above the names state: rate, count of channels, unit."""
+    """What the lines above the names state: rate and unit."""
     for line in above:
         found = _META.match(line.strip()[:_LONGEST_FACT])
         if not found:
@@ -245,14 +275,5 @@ def _facts(layout: Layout, above: list[str]) -> None:
                 )
             elif is_possible_rate(float(number) * factor_of(said)):
                 layout.rate = float(number) * factor_of(said)
-        elif re.match(r"(number of )?channels?( count)?$", key_name.strip(), re.I) and re.fullmatch(
-            r"[0-9]+", number
-        ):
-            columns = zip(layout.names, layout.units, strict=True)
-            signals = sum(not is_time_column(*column) for column in columns)
-            if number.lstrip("0") not in (str(signals), str(layout.columns)):
-                layout.notices.append(
-                    Notice.of("channel_count_wrong", stated=float(number[:20]), channels=signals)
-                )
         elif key_name.strip().lower() in ("unit", "units", "单位") and unit(value):
             layout.units = [u or unit(value) for u in layout.units]

@@ -12,15 +12,14 @@ import mmap
 import struct
 import zlib
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from thermogear.measured.options import ReadOptions, refused, refusing, too_large
 from thermogear.measured.record import Record
-from thermogear.measured.tables import Named, record_of
-from thermogear.measured.traps import is_time_name
+from thermogear.measured.tables import LONGEST_UNIT, Named, record_of
 
 _KINDS = {
     1: "i1",
@@ -38,10 +37,8 @@ _KINDS = {
     18: "u4",
 }
 _MATRIX, _COMPRESSED = 14, 15
-_CELL, _STRUCT, _CHAR = 1, 2, 4
+_CELL, _STRUCT, _CHAR, _OPAQUE = 1, 2, 4, 17
 _TEXTS = {1: "latin-1", 2: "latin-1", 4: "utf-16*", 16: "utf-8", 17: "utf-16*"}
-_UNITS = ("unit", "units")
-_LONGEST_UNIT = 64  # bytes
 _DEEPEST = 8
 _MOST_PARTS = 1 << 16
 """Elements of one file or variable: fields of structures and their numbers."""
@@ -119,7 +116,8 @@ def _unpacked(
 
 
 def _matrix(body: memoryview, order: str, prefix: str, depth: int) -> list[Named]:
-    """The numeric arrays of one variable, those inside structures by their dotted names."""
+    """The numeric arrays and short texts of one variable, those inside structures by their dotted
+    names."""
     if depth > _DEEPEST or len(body) == 0:
         return []
     parts = list(_Buffer(body, order).elements())
@@ -127,6 +125,9 @@ def _matrix(body: memoryview, order: str, prefix: str, depth: int) -> list[Named
         raise _Malformed("a variable without flags, dimensions and name")
     flags = struct.unpack(order + "I", parts[0][1][:4])[0]
     kind, is_complex = flags & 0xFF, bool(flags & 0x0800)
+    if kind == _OPAQUE:
+        texts = [bytes(part[1]).decode("ascii", "replace") for part in parts[1:4]]
+        return [Named(f"{prefix}{texts[0]} ({texts[-1]})", None, ())]
     shape = tuple(int(n) for n in np.frombuffer(parts[1][1], order + "i4"))
     if len(shape) < 2 or any(n < 0 for n in shape):
         raise _Malformed(f"dimensions {shape}")
@@ -136,7 +137,10 @@ def _matrix(body: memoryview, order: str, prefix: str, depth: int) -> list[Named
         return _structure(parts, order, name, shape, depth)
     if kind == _CELL:
         return _cells(parts[3:], order, name, shape, depth)
-    if kind == _CHAR or kind > 15 or kind < 6 or len(parts) < 4:
+    if kind == _CHAR:
+        return [Named(name, _text(parts, order), ())]
+    # without a name MATLAB keeps what its objects hold
+    if not name or not 6 <= kind <= 15 or len(parts) < 4:
         return []
     if is_complex:  # no record: what it is called and how large it is will do
         return [Named(name, np.broadcast_to(np.complex128(0.0), shape), shape)]
@@ -151,7 +155,11 @@ def _matrix(body: memoryview, order: str, prefix: str, depth: int) -> list[Named
 
 
 def _structure(
-    parts: list[tuple[int, memoryview]], order: str, name: str, shape: tuple[int, ...], depth: int
+    parts: list[tuple[int, memoryview]],
+    order: str,
+    name: str,
+    shape: tuple[int, ...],
+    depth: int,
 ) -> list[Named]:
     if len(parts) < 5 or len(parts[3][1]) < 4:
         return []
@@ -167,41 +175,30 @@ def _structure(
     if not fields:
         return found
     # the structures of an array one after another, each with all its fields
-    one, unit_of = math.prod(shape) == 1, dict[str, str]()
+    one = math.prod(shape) == 1
     for place, (kind, body) in enumerate(parts[5:]):
         number, field = divmod(place, len(fields))
         if kind == _MATRIX:
             which = name if one else f"{name}({number + 1})"
             found += _matrix(body, order, f"{which}.{fields[field]}.", depth + 1)
-            if fields[field].lower() in _UNITS and (said := _text(body, order)):
-                unit_of[which] = said
-    return [_with_unit(array, unit_of) for array in found]
+    return found
 
 
-def _with_unit(array: Named, unit_of: dict[str, str]) -> Named:
-    """An array with the unit that its own structure states, a clock and numbers of one aside."""
-    structure, _, field = array.name.rpartition(".")
-    said = unit_of.get(structure)
-    if said is None or is_time_name(field) or math.prod(array.shape) == 1:
-        return array
-    return replace(array, attributes={"units": said} | array.attributes)
-
-
-def _text(body: memoryview, order: str) -> str:
-    """The text of a variable of characters; of any other ''."""
-    parts = list(_Buffer(body, order).elements())
-    if len(parts) < 4 or len(parts[0][1]) < 8:
-        return ""
-    kind = struct.unpack(order + "I", parts[0][1][:4])[0] & 0xFF
-    stored, content = parts[3]
-    if kind != _CHAR or stored not in _TEXTS or len(content) > _LONGEST_UNIT:
+def _text(parts: list[tuple[int, memoryview]], order: str) -> str:
+    """The text of a variable of characters, where it may be a unit; of any other ""."""
+    stored, content = parts[3] if len(parts) > 3 else (0, memoryview(b""))
+    if stored not in _TEXTS or len(content) > LONGEST_UNIT:
         return ""
     wide = {"<": "-le", ">": "-be"}[order]
     return bytes(content).decode(_TEXTS[stored].replace("*", wide), "replace").strip()
 
 
 def _cells(
-    parts: list[tuple[int, memoryview]], order: str, name: str, shape: tuple[int, ...], depth: int
+    parts: list[tuple[int, memoryview]],
+    order: str,
+    name: str,
+    shape: tuple[int, ...],
+    depth: int,
 ) -> list[Named]:
     """The arrays in a cell array, numbered from 1."""
     found: list[Named] = []

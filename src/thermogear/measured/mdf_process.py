@@ -36,27 +36,35 @@ def bounded(*, memory: int, seconds: int) -> None:
     resource.setrlimit(resource.RLIMIT_CPU, (used + seconds, used + seconds + 1))
 
 
-def found_in(asammdf: Any, path: Path, folder: Path) -> dict[str, Any]:
-    """Names, units, rates, and which channels have an uneven time; the samples go to ``folder``."""
-    channels: list[dict[str, str]] = []
-    rates: list[tuple[float, str]] = []
-    uneven: list[str] = []
+_AXES = {2: "angle", 3: "distance", 4: "index"}
+"""What a master channel counts by its type of synchronisation, where that is no time."""
+
+
+def read_from(asammdf: Any, path: Path, folder: Path) -> dict[str, Any]:
+    """Names, units and groups of the channels; samples, and stamps of each group, go to ``folder``.
+
+    Samples that the file marks as invalid are NaN.
+    """
+    channels: list[dict[str, Any]] = []
     with asammdf.MDF(str(path)) as file:
         for item in file.iter_channels():
             samples = np.asarray(item.samples)
             stamps = np.asarray(item.timestamps, dtype=float)
             if samples.dtype.kind not in "iuf" or samples.ndim != 1 or stamps.size < 3:
                 continue
-            steps = np.diff(stamps)
-            step = float((stamps[-1] - stamps[0]) / steps.size)
-            name = str(item.name)
-            if step > 0 and np.max(np.abs(steps - step)) <= 0.5 * step:
-                rates.append((1.0 / step, f"time base of {name}"))
-            else:
-                uneven.append(name)
+            if item.invalidation_bits is not None and np.any(item.invalidation_bits):
+                samples = np.where(np.asarray(item.invalidation_bits), np.nan, samples)
+            group = int(item.group_index)
+            axis = _AXES.get((item.master_metadata or ("", 1))[1], "time")
+            np.save(folder / f"stamps{group}.npy", stamps)
             np.save(folder / f"{len(channels)}.npy", samples)
-            channels.append({"name": name, "unit": str(item.unit or "")})
-    return {"channels": channels, "rates": rates, "uneven": uneven}
+            whole = file.groups[group]
+            master = file.masters_db.get(group)
+            label = "" if master is None else str(whole.channels[master].unit or "")
+            count = int(whole.channel_group.cycles_nr)
+            told = {"name": str(item.name), "unit": str(item.unit or ""), "axis": axis}
+            channels.append(told | {"group": group, "count": count, "axis_unit": label})
+    return {"channels": channels}
 
 
 def main(words: list[str]) -> int:
@@ -66,14 +74,14 @@ def main(words: list[str]) -> int:
     warnings.simplefilter("ignore")
     asammdf = importlib.import_module("asammdf")
     bounded(memory=int(words[2]), seconds=int(words[3]))
-    found: dict[str, Any]
+    read: dict[str, Any]
     try:
-        found = found_in(asammdf, path, folder)
+        read = read_from(asammdf, path, folder)
     except MemoryError:
-        found = {"error": "it states more values than the memory it may take can hold"}
+        read = {"error": "it states more values than the memory it may take can hold"}
     except Exception as error:  # a foreign reader's failures are of any type
-        found = {"error": str(error) or type(error).__name__}
-    (folder / "parts.json").write_text(json.dumps(found), "utf-8")
+        read = {"error": str(error) or type(error).__name__}
+    (folder / "parts.json").write_text(json.dumps(read), "utf-8")
     return 0
 
 

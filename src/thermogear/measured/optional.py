@@ -21,11 +21,14 @@ from typing import Any
 import numpy as np
 
 from thermogear.base.errors import of_extra
+from thermogear.measured.contract import UNSTATED, Stated, record_of_channels, timed
 from thermogear.measured.options import ReadOptions, refused
-from thermogear.measured.record import Channel, Notice, Record
-from thermogear.measured.tables import agreed, of_one_length
-from thermogear.measured.traps import is_tacho_name, without_doubles
-from thermogear.measured.units import unit
+from thermogear.measured.record import Channel, Notice, Record, Samples
+from thermogear.measured.traps import TimeBase, is_time_name, longest_even, step_base
+from thermogear.measured.units import factor_of, kind_of, unit, unknown
+
+_UFF_AXES = {18: "frequency", 19: "speed", 20: "order"}
+"""What an abscissa counts by its data type, where that is no time."""
 
 
 def _load(module: str, path: Path, kind: str) -> ModuleType:
@@ -35,22 +38,13 @@ def _load(module: str, path: Path, kind: str) -> ModuleType:
     return package
 
 
-class _Parts:
-    """What a foreign reader found, before it becomes a record."""
-
-    def __init__(self) -> None:
-        self.channels: list[Channel] = []
-        self.rates: list[tuple[float, str]] = []
-        self.notes: list[Notice] = []
-
-
 def _guarded(
-    path: Path, kind: str, module: str, read: Callable[[ModuleType, Path, _Parts], None]
-) -> Record:
-    """Run a foreign reader: whatever it raises, logs, prints or leaves in its destructors on a
-    malformed file becomes one refusal."""
+    path: Path, kind: str, module: str, read: Callable[[ModuleType, Path], list[Stated]]
+) -> list[Stated]:
+    """What a foreign reader finds: whatever it raises, logs, prints or leaves in its destructors on
+    a malformed file becomes one refusal."""
     foreign = _load(module, path, kind)
-    parts, reason = _Parts(), ""
+    stated, reason = list[Stated](), ""
     hook, disabled = sys.unraisablehook, logging.root.manager.disable
     sys.unraisablehook = lambda _: None
     logging.disable(logging.CRITICAL)
@@ -58,7 +52,7 @@ def _guarded(
         with warnings.catch_warnings(), contextlib.redirect_stdout(io.StringIO()):
             warnings.simplefilter("ignore")
             try:
-                read(foreign, path, parts)
+                stated = read(foreign, path)
             except Exception as error:  # a foreign reader's failures are of any type
                 reason = str(error) or type(error).__name__
             gc.collect()  # half-built readers fail again when they are taken away: here, unheard
@@ -67,89 +61,155 @@ def _guarded(
         logging.disable(disabled)
     if reason:
         raise refused(path, kind, reason)
-    return _record(path, kind, parts.channels, parts.rates, parts.notes)
+    return stated
+
+
+def _channel(name: str, samples: Samples, label: str) -> Channel:
+    """A channel with its unit as the file writes it; "NONE" is UFF's for none."""
+    label = "" if label.strip().upper() == "NONE" else label
+    return Channel(name, samples, unit(label), strange=unknown(label))
 
 
 def read_tdms(path: Path, options: ReadOptions) -> Record:
-    """TDMS: every channel of numbers; rate from wf_increment, unit from unit_string."""
-    return _guarded(path, "TDMS", "nptdms", _tdms)
+    """TDMS: every channel of numbers; step and start as wf_increment, wf_start_offset and
+    wf_start_time state them, unit from unit_string."""
+    stated = _guarded(path, "TDMS", "nptdms", _tdms)
+    notices: list[Notice] = []
+    return record_of_channels(path, "TDMS", timed(stated, notices), notices, keep=options.keep)
 
 
-class _Clipped(io.BufferedReader):
-    """A file that never makes room for more bytes than it has."""
-
-    def __init__(self, path: Path) -> None:
-        super().__init__(io.FileIO(path))
-        self._size = path.stat().st_size
-
-    def read(self, size: int | None = -1, /) -> bytes:
-        left = max(0, self._size - self.tell())
-        return super().read(left if size is None or size < 0 else min(size, left))
-
-
-def _tdms(nptdms: ModuleType, path: Path, parts: _Parts) -> None:
+def _tdms(nptdms: ModuleType, path: Path) -> list[Stated]:
     size = path.stat().st_size
-    with _Clipped(path) as file:
-        stated = nptdms.TdmsFile.read_metadata(file)
-        count = sum(len(item) for group in stated.groups() for item in group.channels())
+    with path.open("rb") as file:
+        promised = nptdms.TdmsFile.read_metadata(file)
+        count = sum(len(item) for group in promised.groups() for item in group.channels())
         if count > size:  # a value takes a byte or more
             raise ValueError(f"it states {count} values and has {size} bytes")
         file.seek(0)
-        groups = nptdms.TdmsFile.read(file).groups()
-    for group in groups:
-        for item in group.channels():
-            values = np.asarray(item[:])
-            if values.dtype.kind not in "iuf" or values.size < 2:
-                continue
-            said = item.properties
-            step = said.get("wf_increment")
-            if isinstance(step, float) and step > 0:
-                parts.rates.append((1.0 / step, f"wf_increment of {item.name}"))
-            name = unit(str(said.get("unit_string", said.get("NI_UnitDescription", ""))))
-            parts.channels.append(Channel(f"{group.name}/{item.name}", values, name))
+        whole = nptdms.TdmsFile.read(file)
+    items = [(group, item) for group in whole.groups() for item in group.channels()]
+    times = [item.properties.get("wf_start_time") for _, item in items]
+    first = min((t for t in times if isinstance(t, np.datetime64)), default=None)
+    cut = whole.file_status.incomplete_final_segment
+    found = []
+    for (group, item), time in zip(items, times, strict=True):
+        values, said = np.asarray(item[:]), item.properties
+        if values.dtype.kind not in "iuf" or values.size < 2:
+            continue
+        start = float(said.get("wf_start_offset", 0.0))
+        if first is not None and isinstance(time, np.datetime64):
+            start += float((time - first) / np.timedelta64(1, "s"))
+        step, origin = said.get("wf_increment"), f"wf_increment of {item.name}"
+        axis, factor = _axis(str(said.get("wf_xunit_string", "")), str(said.get("wf_xname", "")))
+        base = UNSTATED
+        if isinstance(step, float) and step > 0:
+            base = step_base(step * factor, channel=item.name, start=start, origin=origin)
+        name, label = f"{group.name}/{item.name}", said.get("unit_string", "")
+        found.append(
+            Stated(
+                _channel(name, values, str(label or said.get("NI_UnitDescription", ""))),
+                base,
+                axis=axis,
+                count=values.size + 1 if cut else None,
+                unscaled=_unscaled(nptdms, said, group.properties, whole.properties),
+            )
+        )
+    return found
+
+
+def _unscaled(nptdms: ModuleType, *properties: dict[str, Any]) -> bool:
+    """Whether a channel, its group or its file states scales of which the library applies none."""
+    asked = any(
+        "NI_Scale[0]_Scale_Type" in said and said.get("NI_Scaling_Status") != "scaled"
+        for said in properties
+    )
+    return asked and nptdms.scaling.get_scaling(*properties) is None
+
+
+def _axis(label: str, name: str = "") -> tuple[str, float]:
+    """What an x axis counts, by its unit where that is known, else by its name; seconds, or turns,
+    in one of its unit."""
+    known = unit(label)
+    if known is not None:
+        return kind_of(known), factor_of(known)
+    if not name or is_time_name(name):
+        return "time", 1.0
+    return "frequency" if "freq" in name.lower() else name, 1.0
 
 
 def read_uff(path: Path, options: ReadOptions) -> Record:
-    """Universal file, data sets 58 that are time responses; step and unit as stored."""
-    return _guarded(path, "UFF", "pyuff", _uff)
+    """Universal file, data sets 58 over time; abscissa and unit as stored."""
+    stated = _guarded(path, "UFF", "pyuff", _uff)
+    # the last set is not closed: what it states is not there
+    closed = path.read_bytes()[-100:].rstrip().endswith(b"    -1")
+    notices = [] if closed else [Notice.of("data_cut_off")]
+    return record_of_channels(path, "UFF", stated, notices, keep=options.keep)
 
 
-def _uff(pyuff: ModuleType, path: Path, parts: _Parts) -> None:
+def _uff(pyuff: ModuleType, path: Path) -> list[Stated]:
     sets = pyuff.UFF(str(path)).read_sets()
+    found = []
     for number, item in enumerate([sets] if isinstance(sets, dict) else sets, start=1):
-        if item.get("type") != 58 or item.get("func_type") != 1:
+        values = np.asarray(item.get("data", ()))
+        if item.get("type") != 58 or values.dtype.kind not in "iufc" or values.size < 2:
             continue
-        values = np.asarray(item["data"])
-        x = np.asarray(item["x"], dtype=float)
-        if values.dtype.kind not in "iuf" or values.size < 2:
-            continue
-        step = float(item.get("abscissa_inc", 0.0) or 0.0) or float(x[1] - x[0])
-        if step > 0:
-            parts.rates.append((1.0 / step, f"abscissa of set {number}"))
-        name = str(item.get("id1", "")).strip() or f"set {number}"
+        axis = _UFF_AXES.get(item.get("abscissa_spec_data_type"), "")
+        axis, factor = _axis(str(item.get("abscissa_axis_units_lab", "")), axis)
+        if item.get("func_type") not in (0, 1):
+            axis = "frequency"  # a spectrum, or another function of records
+        name = str(item.get("id1", "")).strip()
+        name = "" if name == "NONE" else name
         label = str(item.get("ordinate_axis_units_lab", "")).strip()
-        parts.channels.append(Channel(f"{name} {number}", values, unit(label)))
+        found.append(
+            Stated(
+                _channel(f"{name or 'set'} {number}", values, label),
+                _abscissa(item, factor, f"set {number}"),
+                axis=axis,
+                count=int(item["num_pts"]),
+            )
+        )
+    return found
+
+
+def _abscissa(item: dict[str, Any], factor: float, name: str) -> TimeBase:
+    """The time base of a data set, ``factor`` [s] in one of its unit: by its step, which is printed
+    with six digits, or by uneven stamps."""
+    if item.get("abscissa_spacing") == 0:
+        return longest_even(f"abscissa of {name}", "s", np.asarray(item["x"], dtype=float) * factor)
+    step = float(item.get("abscissa_inc") or 0.0)
+    half = 0.5 * 10.0 ** (np.floor(np.log10(step)) - 5.0) if step > 0.0 else 0.0
+    start = float(item.get("abscissa_min") or 0.0) * factor
+    origin = f"abscissa of {name}"
+    return step_base(
+        step * factor, channel=name, start=start, origin=origin, half_width=half * factor
+    )
 
 
 def read_mdf(path: Path, options: ReadOptions) -> Record:
-    """MDF 4 (and 3): the channels of the longest common time base; unit as stored.
+    """MDF 4 (and 3): channels with the stamps of their own groups; unit as stored.
 
     It is read in a process of its own, for asammdf may crash on a damaged file.
     """
     if importlib.util.find_spec("asammdf") is None:
         _load("asammdf", path, "MDF")
-    parts = _Parts()
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
-        found = _apart(path, folder, options)
-        if "error" in found:
-            raise refused(path, "MDF", found["error"])
-        for number, one in enumerate(found["channels"]):
+        read = _apart(path, folder, options)
+        if "error" in read:
+            raise refused(path, "MDF", read["error"])
+        bases: dict[int, TimeBase] = {}
+        stated = []
+        for number, one in enumerate(read["channels"]):
             samples = np.load(folder / f"{number}.npy", allow_pickle=False)
-            parts.channels.append(Channel(one["name"], samples, unit(one["unit"])))
-        parts.rates += [(rate, where) for rate, where in found["rates"]]
-        parts.notes += [Notice.of("time_base_uneven", channel=name) for name in found["uneven"]]
-    return _record(path, "MDF", parts.channels, parts.rates, parts.notes)
+            group, axis = one["group"], one["axis"]
+            if group not in bases:
+                stamps = np.load(folder / f"stamps{group}.npy", allow_pickle=False)
+                label = one["axis_unit"] or ("rad" if axis == "angle" else "s")
+                name = f"master of {one['name']}"
+                bases[group] = longest_even(name, "s", stamps * _axis(label)[1])
+            channel = _channel(one["name"], samples, one["unit"])
+            stated.append(Stated(channel, bases[group], axis=axis, count=one["count"]))
+    return record_of_channels(path, "MDF", stated, keep=options.keep)
 
 
 def _apart(path: Path, folder: Path, options: ReadOptions) -> dict[str, Any]:
@@ -177,19 +237,3 @@ def _run(words: list[str], environment: dict[str, str]) -> int:
         stderr=subprocess.DEVNULL,
         check=False,
     ).returncode
-
-
-def _record(
-    path: Path,
-    kind: str,
-    channels: list[Channel],
-    rates: list[tuple[float, str]],
-    notes: list[Notice],
-) -> Record:
-    if not channels:
-        raise refused(path, kind, "it holds no channel of numbers")
-    said = list(notes)
-    kept, doubled = without_doubles(of_one_length(channels, said), path.name)
-    rate, origin = agreed(rates, said)
-    tacho = next((c.name for c in kept if is_tacho_name(c.name)), None)
-    return Record(tuple(kept), path.name, rate, origin, 0.0, tacho, (*said, *doubled))

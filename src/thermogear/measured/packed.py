@@ -45,17 +45,12 @@ def read_npz(path: Path, options: ReadOptions) -> Record:
 
 def read_npy(path: Path, options: ReadOptions) -> Record:
     """A record from one NPY file, kept on disk as a memory map."""
-    damages = OSError, ValueError, EOFError, OverflowError, SyntaxError, TypeError
-    with refusing(path, "NPY", *damages):
-        with path.open("rb") as stream:
-            shape, fortran, dtype = _header(stream, path)
-            offset = stream.tell()
-        if dtype.hasobject or dtype.kind not in "iufb" or math.prod(shape) == 0:
-            raise refused(path, "NPY", f"it holds {dtype} of shape {shape}")
-        data = np.memmap(
-            path, dtype, "r", offset=offset, shape=shape, order="F" if fortran else "C"
-        )
-    return record_of(path, "NPY", [Named(path.stem, data, shape)], options, {})
+    damages = OSError, ValueError, EOFError, OverflowError, SyntaxError, TypeError, TokenError
+    with refusing(path, "NPY", *damages), warnings.catch_warnings(action="ignore"):
+        data = np.load(path, mmap_mode="r", allow_pickle=False)
+        if data.dtype.kind not in "iufb" or data.size == 0:
+            raise refused(path, "NPY", f"it holds {data.dtype} of shape {data.shape}")
+    return record_of(path, "NPY", [Named(path.stem, data, data.shape)], options, {})
 
 
 def _header(stream: IO[bytes], path: Path) -> tuple[tuple[int, ...], bool, np.dtype[np.generic]]:

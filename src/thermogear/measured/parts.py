@@ -51,6 +51,28 @@ class Joined:
         return np.concatenate(found)[::step] if found else np.zeros(0)
 
 
+def common_span(
+    starts: Sequence[float], lengths: Sequence[int], *, rate: float | None
+) -> tuple[float, list[int], int]:
+    """The time that stretches of one rate have in common: its begin [s], how many samples of each
+    lie before it, and how many are left of the shortest, 0 or less where there are none.
+
+    ``starts`` [s] and ``lengths`` [samples] of the stretches; without a ``rate`` [1/s] all start
+    together.
+    """
+    begin = max(starts)
+    shifts = [0 if rate is None else round((begin - start) * rate) for start in starts]
+    return begin, shifts, min(n - k for n, k in zip(lengths, shifts, strict=True))
+
+
+def cut(channel: Channel, *, first: int, count: int) -> Channel:
+    """The channel's ``count`` samples from ``first`` on."""
+    if first == 0 and count == len(channel):
+        return channel
+    samples: Samples = Joined((Part(channel.samples, first=first, stop=first + count),))
+    return replace(channel, samples=samples)
+
+
 def with_gaps(channel: Channel, gaps: Sequence[tuple[int, int]]) -> Channel:
     """The channel with samples without a number put in: (before which sample, how many)."""
     parts: list[Part] = []

@@ -102,6 +102,8 @@ class Record:
     ``tacho`` names the tacho channel; ``notices`` are the traps met while reading; ``rate_doubt``:
     what contradicts the rate; ``rate_half_width`` [samples/s] of its 95 % interval, 0 where it is
     stated, ``rate_note``: how well time stamps tell it, and their ``jitter`` [rms, steps].
+    ``per_turn`` [samples/turn] where they are taken at even angles; ``others``:
+    what the same file holds at other rates or times.
     """
 
     channels: tuple[Channel, ...]
@@ -115,6 +117,8 @@ class Record:
     rate_half_width: float = 0.0
     rate_note: str = ""
     jitter: float = 0.0
+    per_turn: float | None = None
+    others: tuple[Record, ...] = ()
 
     def __post_init__(self) -> None:
         _keep_printable(self, "source", "rate_origin", "rate_doubt", "rate_note")
@@ -170,6 +174,11 @@ class Record:
         return found
 
     def _with_tacho(self, tacho: str | int) -> Record:
+        others = tuple(
+            replace(one, tacho=str(tacho) if tacho in one.names else None) for one in self.others
+        )
+        if any(one.tacho for one in others):
+            return replace(self, tacho=None, others=others)
         try:
             named = self.channel(tacho).name
         except InputError as error:

@@ -81,6 +81,9 @@ def given_shaft(
     First pulses (the tacho channel), then a channel of speed. What is there and cannot be used is
     told: then ``turns`` is empty. None where there is nothing.
     """
+    if record.per_turn is not None:
+        turns = (start + np.arange(samples)) / record.per_turn
+        return Shaft(turns=turns, first=0, noise=0.0, origin="the x axis, an angle")
     if record.rate is None:
         return None
     told: list[Notice] = []
@@ -109,7 +112,7 @@ def given_shaft(
             share = found.turns.size / samples
             told.append(Notice.of("tacho_too_short", channel=channel.name, share=share))
             continue
-        if source is not record:
+        if source is tacho:
             told.append(
                 Notice.of(
                     "tacho_by_start_times"
@@ -127,7 +130,7 @@ def given_shaft(
 def _sources(record: Record, tacho: Record | None) -> list[tuple[Record, Channel, bool]]:
     """(record, channel, whether it is a speed) of everything that may tell the angle."""
     found: list[tuple[Record, Channel, bool]] = []
-    for one in (tacho, record):
+    for one in (tacho, record, *record.others):
         if one is None:
             continue
         speeds = [c for c in one.channels if _is_speed(c)]
@@ -207,8 +210,8 @@ def _counted(values: Floats, rate: float) -> Pulses:
         tried.reverse()
     for times in tried:
         with suppress(InputError):
-            return numbered(times)
-    return numbered(max(tried, key=len))
+            return numbered(times, grain=1.0 / rate)
+    return numbered(max(tried, key=len), grain=1.0 / rate)
 
 
 def _by_speed(channel: Channel, own: float, rate: float, samples: int, at: float) -> Shaft:

@@ -2,39 +2,43 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+import math
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from thermogear.measured.choosing import is_time_column, time_column
-from thermogear.measured.options import ReadOptions, places_of, refused
-from thermogear.measured.parts import with_gaps
+from thermogear.base.notice import catalogue
+from thermogear.measured.contract import Stated, agreed, record_of_channels, stated_rate, timed
+from thermogear.measured.options import ReadOptions, refused
 from thermogear.measured.record import Channel, Notice, Record, Samples
 from thermogear.measured.traps import (
-    MOST_STAMPS,
     TimeBase,
-    is_possible_rate,
     is_rate_name,
     is_step_name,
-    is_tacho_name,
-    read_time,
+    is_time_name,
     split_unit,
-    without_doubles,
 )
-from thermogear.measured.units import counts_turns, factor_of, kind_of, unit, unknown
+from thermogear.measured.units import factor_of, kind_of, unit, unknown
 
 MOST_CHANNELS = 512
-MOST_IN_ALL = 4096
-"""Channels of one table, and of a whole file."""
+"""Channels of one table."""
+UNITS = ("unit", "units")
+"""Names of fields and attributes that hold a unit."""
+LONGEST_UNIT = 64
+"""Bytes or characters of one."""
 SHORTEST = 8  # samples: shorter arrays are parameters, not records
 
 
 @dataclass(frozen=True)
 class Named:
-    """One stored array: 1-D or 2-D, in memory or on disk; ``attributes`` as the file has them."""
+    """One stored array: 1-D or 2-D, in memory or on disk; ``attributes`` as the file has them.
+
+    ``data`` a text: a variable of characters; None: an object of MATLAB, which is not read.
+    """
 
     name: str
     data: Any
@@ -78,81 +82,68 @@ def number_of(value: Any) -> float | None:
 
 
 def record_of(
-    path: Path, kind: str, arrays: Sequence[Named], options: ReadOptions, common: dict[str, Any]
+    path: Path,
+    kind: str,
+    arrays: Sequence[Named],
+    options: ReadOptions,
+    groups: Mapping[str, dict[str, Any]],
 ) -> Record:
-    """One record from a file's arrays.
+    """One record from a file's arrays; ``groups``: attributes of its groups, "" for the file.
 
     The longest arrays are the channels, shorter ones are left aside with a notice; an array
-    named time gives the rate (if it states its unit), a number named fs, rate, ... likewise. A
-    rate told twice in two ways is used by neither.
+    named time gives the rate (if it states its unit), a number named fs, rate, ... likewise. What
+    a structure or a group states of the rate is of its own channels. A rate told twice in two ways
+    is used by neither.
     """
     told = _Told()
-    for place in (common, *(a.attributes for a in arrays)):
-        for key, value in place.items():
-            told.number(str(key), value, f"attribute {key}")
+    arrays = _with_units(arrays)
+    for scope, facts in [*groups.items(), *((one.name, one.attributes) for one in arrays)]:
+        for key, value in facts.items():
+            told.number(str(key), value, f"attribute {key}", scope=scope)
     for array in arrays:
         told.array(array)
-    if told.complex:
-        aside = Notice.of("complex_left_aside", arrays=told.complex)
-        if not told.channels:
-            fix = "save what was sampled: real numbers"
-            raise refused(path, kind, f"{aside.text}; no other array is as long as one", fix)
-        told.notes.append(aside)
+    asides = [Notice.of("complex_left_aside", arrays=told.complex)] if told.complex else []
+    asides += [Notice.of("objects_left_aside", arrays=told.objects)] if told.objects else []
+    if asides and not told.channels:
+        why = f"{asides[0].text}; no other array is as long as one"
+        raise refused(path, kind, why, catalogue()[asides[0].code].to_do)
+    told.notes += asides
     if not told.channels:
         raise refused(path, kind, "it holds no array of numbers as long as a record")
-    notes = told.notes
-    channels = of_one_length(told.channels, notes)
-    if len(channels) > MOST_IN_ALL:
-        raise refused(path, kind, f"{len(channels)} channels; allowed 1..{MOST_IN_ALL}")
-    longest = len(channels[0])
-    channels, doubled = without_doubles(channels, path.name)
-    if options.keep:
-        channels = _kept(channels, options.keep)
-    base = told.time_base(longest)
-    channels = [with_gaps(one, base.gaps) for one in channels] if base.gaps else channels
-    units = [v for k, v in common.items() if str(k).lower() in ("unit", "units")]
+    units = [v for k, v in groups.get("", {}).items() if str(k).lower() in UNITS]
     of_all = unit(text_of(units[-1]) or "") if units else None
     if of_all is not None:
-        channels = [c if c.unit else Channel(c.name, c.samples, of_all) for c in channels]
-    rate, origin = agreed(told.rates, notes)
-    by_stamps = rate is not None and origin == base.origin
-    tacho = next((c.name for c in channels if is_tacho_name(c.name)), None)
-    return Record(
-        tuple(channels),
-        path.name,
-        rate,
-        origin,
-        base.start,
-        tacho,
-        (*notes, *doubled),
-        rate_half_width=base.half_width if by_stamps else 0.0,
-        rate_note=base.note if by_stamps else "",
-        jitter=base.jitter,
-    )
+        told.channels = [c if c.unit else replace(c, unit=of_all) for c in told.channels]
+    return record_of_channels(path, kind, told.stated(), told.notes, keep=options.keep)
 
 
 @dataclass
 class _Told:
-    """What a file's arrays and attributes turn out to be; ``rates`` [1/s] with their origins."""
+    """What a file's arrays and attributes turn out to be; ``rates`` with the array, structure or
+    group that each is of."""
 
     channels: list[Channel] = field(default_factory=list)
-    times: list[Channel] = field(default_factory=list)
-    rates: list[tuple[float, str]] = field(default_factory=list)
+    rates: list[tuple[str, TimeBase]] = field(default_factory=list)
     notes: list[Notice] = field(default_factory=list)
     complex: list[str] = field(default_factory=list)
+    objects: list[str] = field(default_factory=list)
 
-    def number(self, name: str, value: Any, origin: str, factor: float = 1.0) -> None:
+    def number(
+        self, name: str, value: Any, origin: str, *, scope: str, factor: float = 1.0
+    ) -> None:
         """A rate, where ``name`` says so and ``value`` is a number of ``factor`` [1/s]."""
         number = number_of(value)
         if number is None or number <= 0:
             return
-        if is_rate_name(name):
-            self.rates.append((number * factor, origin))
-        elif is_step_name(name):
-            self.rates.append((1.0 / max(number, 1e-300), f"{origin} (a step, in seconds)"))
+        rate = number * factor
+        if is_step_name(name):
+            rate, origin = 1.0 / max(number, 1e-300), f"{origin} (a step, in seconds)"
+        elif not is_rate_name(name):
+            return
+        self.rates.append((scope, stated_rate(rate, origin, self.notes)))
 
     def array(self, array: Named) -> None:
-        """A number, a time, one channel or several, by its shape and name."""
+        """A number, one channel or several, by its shape and name."""
         bare, said = split_unit(array.name)
         leaf = bare.rsplit("/", 1)[-1].rsplit(".", 1)[-1]
         if said is None:  # "time_s" tells its unit wherever it is
@@ -163,17 +154,19 @@ class _Told:
             text = text_of(array.attributes.get(key)) or ""
             said, strange = said or unit(text), strange or unknown(text)
         sizes = [n for n in array.shape if n != 1]
-        if not sizes:
+        if array.data is None:
+            self.objects.append(array.name)
+        elif not sizes:
             factor = factor_of(said) if said and kind_of(said) == "frequency" else 1.0
             value = array.data[()] if hasattr(array.data, "shape") else array.data
-            self.number(leaf, value, f"variable {array.name}", factor)
+            origin = f"variable {array.name}"
+            self.number(leaf, value, origin, scope=_parent(array.name), factor=factor)
         elif len(sizes) > 2 or max(sizes) < SHORTEST:
             return
         elif np.iscomplexobj(array.data):
             self.complex.append(array.name)
         elif len(sizes) == 1:
-            kind = self.times if is_time_column(leaf, said) else self.channels
-            kind.append(Channel(bare, _flat(array), said, strange=strange))
+            self.channels.append(Channel(bare, _flat(array), said, strange=strange))
         elif min(sizes) > MOST_CHANNELS or len(array.shape) != 2:
             self.notes.append(
                 Notice.of("array_left_aside", array=array.name, shape=list(array.shape))
@@ -190,63 +183,45 @@ class _Told:
                 for index in range(min(sizes))
             ]
 
-    def time_base(self, longest: int) -> TimeBase:
-        """What the time as long as the channels says; nothing where there is none.
-
-        What it says of the rate goes to the others.
-        """
-        times = [one for one in self.times if len(one) == longest]
-        leaves = [one.name.rsplit("/", 1)[-1].rsplit(".", 1)[-1] for one in times]
-        columns = [(leaf, one.unit, one.samples) for leaf, one in zip(leaves, times, strict=True)]
-        best = time_column(columns)
-        if best is None:
-            return TimeBase(rate=None, start=0.0, origin="")
-        time = times[best]
-        t = np.asarray(time.samples[0 : min(longest, MOST_STAMPS)], dtype=float)
-        if t.size < longest:
-            self.notes.append(Notice.of("rate_of_first_rows", rows=t.size, column=time.name))
-        base = read_time(time.name, time.unit, t, stated=bool(self.rates))
-        self.notes += base.notices
-        if base.rate is not None:
-            self.rates.append((base.rate, base.origin))
-        return base
+    def stated(self) -> list[Stated]:
+        """The channels with the rates that are theirs: of what they are in, else of the file."""
+        agreed_on: dict[tuple[str, ...], TimeBase] = {}
+        found = []
+        for channel in self.channels:
+            scopes = tuple(dict.fromkeys(s for s, _ in self.rates if _is_in(channel.name, s)))
+            if scopes not in agreed_on:
+                bases = [base for scope, base in self.rates if scope in scopes or not scopes]
+                agreed_on[scopes] = agreed(bases, self.notes)
+            found.append(Stated(channel, agreed_on[scopes]))
+        return timed(found, self.notes)
 
 
-def of_one_length(channels: list[Channel], notes: list[Notice]) -> list[Channel]:
-    """The longest of the channels; those left aside are named in ``notes``."""
-    longest = max(len(c) for c in channels)
-    aside = [c.name for c in channels if len(c) != longest]
-    if aside:
-        notes.append(Notice.of("shorter_left_aside", samples=longest, channels=aside))
-    return [c for c in channels if len(c) == longest]
+def _with_units(arrays: Sequence[Named]) -> list[Named]:
+    """The arrays with the units that their own structures state as texts; clocks and single numbers
+    aside."""
+    parted = [(*one.name.rpartition("."), one.data) for one in arrays if isinstance(one.data, str)]
+    units = {structure: text for structure, dot, leaf, text in parted
+             if dot and leaf.lower() in UNITS and text}  # fmt: skip
+    found = []
+    for array in arrays:
+        if isinstance(array.data, str):
+            continue
+        structure, _, leaf = array.name.rpartition(".")
+        said = units.get(structure)
+        if said is not None and not is_time_name(leaf) and math.prod(array.shape) > 1:
+            array = replace(array, attributes={"units": said} | array.attributes)
+        found.append(array)
+    return found
 
 
-def agreed(rates: list[tuple[float, str]], notes: list[Notice]) -> tuple[float | None, str]:
-    """The one rate that every place in the file agrees on, else None with a notice."""
-    notes += [
-        Notice.of("rate_impossible", origin=origin, rate=rate)
-        for rate, origin in rates
-        if not is_possible_rate(rate)
-    ]
-    rates = [one for one in rates if is_possible_rate(one[0])]
-    if not rates:
-        return None, ""
-    rate, origin = rates[0]
-    for other, where in rates[1:]:
-        if abs(other / rate - 1.0) > 1e-3:
-            notes.append(
-                Notice.of(
-                    "rate_stated_twice",
-                    origin=origin,
-                    rate=rate,
-                    other_origin=where,
-                    other_rate=other,
-                    ratio=rate / other,
-                )
-            )
-            return None, ""
-    notes.append(Notice.of("rate_read", rate=rate, origin=origin))
-    return rate, origin
+def _parent(name: str) -> str:
+    """The structure or group that an array is in, "" for the file."""
+    return re.sub(r"[./]?[^./]*$", "", name)
+
+
+def _is_in(name: str, scope: str) -> bool:
+    """Whether an array is the one named, or in the structure or group named; "" is the file."""
+    return not scope or re.match(re.escape(scope) + r"($|[./\[{(])", name) is not None
 
 
 def _flat(array: Named) -> Samples:
@@ -256,10 +231,3 @@ def _flat(array: Named) -> Samples:
         axis = 0 if array.shape[0] != 1 else 1
         return Column(array.data, 0, axis=axis)
     return np.asarray(array.data).reshape(-1)
-
-
-def _kept(channels: list[Channel], keep: tuple[str, ...]) -> list[Channel]:
-    names = [c.name for c in channels]
-    wanted = set(places_of(keep, names))
-    special = {i for i, c in enumerate(channels) if is_tacho_name(c.name) or counts_turns(c.unit)}
-    return [channels[i] for i in sorted(wanted | special)]

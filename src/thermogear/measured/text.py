@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import gzip
 import io
+import re
 import zlib
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import IO
 
@@ -13,10 +15,16 @@ import numpy as np
 
 from thermogear.base.arrays import Floats
 from thermogear.base.cells import MISSING, NUMBER, cells_of
-from thermogear.measured.choosing import is_time_column, time_column
+from thermogear.measured.choosing import is_time_column
 from thermogear.measured.clock import has_clocks, is_stamp_name, without_clocks
+from thermogear.measured.contract import (
+    UNSTATED,
+    Stated,
+    record_of_channels,
+    stated_rate,
+    timed,
+)
 from thermogear.measured.encodings import encoding_of
-from thermogear.measured.labview import Stated
 from thermogear.measured.layout import Layout, find_layout
 from thermogear.measured.options import (
     A_TEXT,
@@ -26,27 +34,21 @@ from thermogear.measured.options import (
     refusing,
     too_large,
 )
-from thermogear.measured.parts import with_gaps
+from thermogear.measured.parts import cut
 from thermogear.measured.record import Channel, Notice, Record
-from thermogear.measured.store import ColumnStore, StoredColumn
-from thermogear.measured.traps import (
-    MOST_STAMPS,
-    is_tacho_name,
-    is_time_name,
-    read_time,
-    without_doubles,
-)
+from thermogear.measured.store import ColumnStore
+from thermogear.measured.traps import MOST_STAMPS, is_tacho_name, is_time_name
 from thermogear.measured.units import counts_turns
 
 _HEAD = 1 << 16
 _LINES = 1 << 15  # rows parsed at once
 _CHARACTERS = 1 << 24  # of the rows parsed at once
 _LONGEST = 1 << 20  # characters of one line
+_BLOCK = re.compile(r" \(block \d+\)$")
 
 
 def read_text(path: Path, options: ReadOptions) -> Record:
     """A record from a CSV or TXT file (also gzipped), read row block by row block."""
-    _require_limit(path, options.limit)
     encoding, notes = _encoding(path)
     with _open(path, encoding, options) as lines:
         head = _head(lines)
@@ -62,7 +64,7 @@ def read_text(path: Path, options: ReadOptions) -> Record:
         ]
         layout.names = ["time" if is_stamp_name(n) else n for n in layout.names]
     layout.notices[:0] = notes
-    keep = _kept(layout, options)
+    keep, named = _kept(layout, options)
     store = ColumnStore(len(keep))
     with _open(path, encoding, options) as lines:
         for _ in range(layout.skip):
@@ -71,7 +73,7 @@ def read_text(path: Path, options: ReadOptions) -> Record:
             store.append(table[:, keep])
     if store.rows == 0:
         raise refused(path, "text", "it holds no row of numbers", A_TEXT)
-    return _record(path, layout, keep, store.columns())
+    return _record(path, layout, keep, named, store.columns())
 
 
 # --- opening -------------------------------------------------------------------------------------
@@ -104,15 +106,6 @@ def _bytes(path: Path) -> IO[bytes]:
     with path.open("rb") as file:
         packed = file.read(2) == b"\x1f\x8b"
     return gzip.open(path, "rb") if packed else path.open("rb")  # type: ignore[return-value]
-
-
-def _require_limit(path: Path, limit: int) -> None:
-    """Refuse a packed text that becomes longer than ``limit`` [bytes] before any row is parsed."""
-    with _bytes(path) as stream:
-        if isinstance(stream, gzip.GzipFile):
-            counted, block = _Counted(stream, path, limit), memoryview(bytearray(_HEAD))
-            while counted.readinto(block):
-                pass
 
 
 def _open(path: Path, encoding: str, options: ReadOptions) -> io.TextIOWrapper:
@@ -163,23 +156,25 @@ def _some(lines: io.TextIOWrapper, most: int, characters: int) -> tuple[list[str
     return found, False
 
 
-def _kept(layout: Layout, options: ReadOptions) -> list[int]:
+def _kept(layout: Layout, options: ReadOptions) -> tuple[list[int], tuple[str, ...]]:
+    """The columns to keep, with the times and what tells a shaft's angle; names of the channels
+    that are asked for, with their blocks."""
     if not options.keep:
-        return list(range(layout.columns))
+        return list(range(layout.columns)), ()
     columns = list(zip(layout.names, layout.units, strict=True))
     times = {i for i, column in enumerate(columns) if is_time_column(*column)}
-    waves = layout.waves.columns if layout.waves is not None else {}
     channels = [i for i in range(layout.columns) if i not in times]
-    names = [layout.names[i] for i in channels]
-    wanted = {channels[place] for place in places_of(options.keep, names)}
+    blocks = [_BLOCK.search(key) for key in options.keep]
+    keys = [_BLOCK.sub("", key) for key in options.keep]
+    wanted = [channels[place] for place in places_of(keys, [layout.names[i] for i in channels])]
     special = {
         i for i, (name, unit) in enumerate(columns) if is_tacho_name(name) or counts_turns(unit)
     }
-    if layout.waves is not None:  # a LabVIEW file may hold channels of several rates
-        times &= {layout.waves.own_time(i) for i in wanted}
-        steps = {waves[i].seconds for i in wanted if i in waves}
-        special = {i for i in special if i not in waves or waves[i].seconds in steps}
-    return sorted(wanted | times | special)
+    named = tuple(
+        layout.names[i] + (block[0] if block else "")
+        for i, block in zip(wanted, blocks, strict=True)
+    )
+    return sorted({*wanted, *special, *times}), named
 
 
 # --- rows ----------------------------------------------------------------------------------------
@@ -225,9 +220,7 @@ def _cut_end(block: list[str], layout: Layout) -> None:
 
 
 def _fields(line: str, layout: Layout) -> list[str]:
-    if layout.decimal == "," and layout.separator != ",":
-        line = line.replace(",", ".")
-    cells = cells_of(line, layout.separator)
+    cells = cells_of(layout.plain(line), layout.separator)
     if layout.commented:
         cells = cells[: layout.columns]
     if layout.paired:
@@ -238,12 +231,11 @@ def _fields(line: str, layout: Layout) -> list[str]:
 
 def _table(block: list[str], layout: Layout, path: Path, number: int, last: bool) -> Floats:
     if not layout.paired:
-        swap = layout.decimal == "," and layout.separator != ","
-        plain = [line.replace(",", ".") for line in block] if swap else block
         try:
             used = range(layout.columns) if layout.commented else None
+            rows_plain = map(layout.plain, block)
             table = np.loadtxt(
-                plain, delimiter=layout.separator, ndmin=2, comments=None, usecols=used
+                rows_plain, delimiter=layout.separator, ndmin=2, comments=None, usecols=used
             )
             if table.shape[1] == layout.columns:
                 return table
@@ -287,83 +279,46 @@ def _value(cell: str) -> float:
 
 
 def _record(
-    path: Path, layout: Layout, keep: list[int], columns: Sequence[Floats | StoredColumn]
+    path: Path,
+    layout: Layout,
+    keep: list[int],
+    named: tuple[str, ...],
+    columns: Sequence[Floats],
 ) -> Record:
-    names = [layout.names[i] for i in keep]
-    units = [layout.units[i] for i in keep]
-    stated = _stated(layout, keep)
-    notes = [*layout.notices, *stated.notices]
-    gaps: tuple[tuple[int, int], ...] = ()
-    half, note, jitter = stated.half_width, stated.note, 0.0
-    rate, start = stated.rate, stated.start
-    origin = "" if rate is None else "header" if layout.rate is not None else "Delta_X"
-    table = list(zip(names, units, columns, strict=True))
-    times = [i for i, (name, unit_name, _) in enumerate(table) if is_time_column(name, unit_name)]
-    best = time_column([table[i] for i in times])
-    if layout.waves is not None and (
-        stated.several or (best is not None and _empty(columns[times[best]]))
-    ):
-        best = None  # X_Columns No: the X column is empty
-    if best is not None:
-        place = times[best]
-        t = np.asarray(columns[place][:MOST_STAMPS])
-        if t.size < len(columns[place]):
-            notes.append(Notice.of("rate_of_first_rows", rows=t.size, column=names[place]))
-        base = read_time(names[place], units[place], t, stated=rate is not None)
-        notes += base.notices
-        start, gaps, jitter = base.start, base.gaps, base.jitter
-        if (
-            base.rate is not None
-            and rate is not None
-            and abs(base.rate / rate - 1) > 1e-3 + half / rate
-        ):
-            notes.append(
-                Notice.of(
-                    "rate_stated_twice",
-                    origin="the header",
-                    rate=rate,
-                    other_origin=base.origin,
-                    other_rate=base.rate,
-                    ratio=rate / base.rate,
-                )
-            )
-            rate, origin, half, note = None, "", 0.0, ""
-        elif base.rate is not None and (
-            rate is None or max(half, abs(base.rate - rate)) > base.half_width
-        ):
-            rate, origin = base.rate, base.origin
-            half, note = base.half_width, base.note
-        if len(times) > 1 and layout.waves is None:
-            notes.append(Notice.of("several_time_columns", columns=len(times), used=names[place]))
-    channels = [
-        Channel(name, column, unit_name)
-        for i, (name, unit_name, column) in enumerate(zip(names, units, columns, strict=True))
-        if i not in times
-    ]
-    channels, doubled = without_doubles(channels, path.name)
-    channels = [with_gaps(one, gaps) for one in channels] if gaps else channels
-    tacho = next((c.name for c in channels if is_tacho_name(c.name)), None)
-    return Record(
-        tuple(channels),
-        path.name,
-        rate,
-        origin,
-        start,
-        tacho,
-        (*notes, *doubled),
-        rate_half_width=half,
-        rate_note=note,
-        jitter=jitter,
-    )
+    waves, notices = layout.waves, layout.notices
+    header = UNSTATED if layout.rate is None else stated_rate(layout.rate, "header", notices)
+    # channels with the time column that is theirs, of each block under one header
+    together: dict[tuple[int, int], list[Stated]] = {}
+    for i, column in zip(keep, columns, strict=True):
+        strange = layout.strange.get(i, "")
+        channel = Channel(layout.names[i], column, layout.units[i], strange=strange)
+        place, one = 0, Stated(channel, header)
+        if waves is not None and i in waves.columns:
+            wave = waves.columns[i]
+            base = wave.base(layout.names[i]) if header is UNSTATED else header
+            place, one = waves.own_time(i), replace(one, base=base, axis=waves.axis)
+        elif waves is not None:
+            place = i
+            if _empty(column):  # X_Columns No
+                continue
+        by, held = (0, 0) if waves is None else (waves.samples, waves.held(i))
+        for block in _blocks(one, by, held):
+            together.setdefault((place, block.block), []).append(block)
+    stated = [one for some in together.values() for one in timed(some, notices)]
+    return record_of_channels(path, "text", stated, notices, keep=named)
 
 
-def _stated(layout: Layout, keep: list[int]) -> Stated:
-    """The rate that the header states for the columns ``keep``."""
-    if layout.rate is not None or layout.waves is None:
-        return Stated(rate=layout.rate)
-    return layout.waves.stated({i: layout.names[i] for i in keep})
+def _blocks(one: Stated, by: int, held: int) -> list[Stated]:
+    """A channel's blocks under one LabVIEW header: one ``by`` so many rows, ``held`` by the
+    channel; all of it where the header does not say (0)."""
+    channel, blocks = one.channel, []
+    for k, first in enumerate(range(0, len(channel), by or len(channel)), start=1):
+        part = cut(channel, first=first, count=min(held or len(channel), len(channel) - first))
+        name = channel.name if k == 1 else f"{channel.name} (block {k})"
+        blocks.append(replace(one, channel=replace(part, name=name), count=held or None, block=k))
+    return blocks
 
 
-def _empty(column: Floats | StoredColumn) -> bool:
+def _empty(column: Floats) -> bool:
     """Whether a column holds no number."""
     return not np.any(np.isfinite(column[:MOST_STAMPS]))

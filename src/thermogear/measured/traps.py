@@ -124,7 +124,8 @@ def unknown_unit(name: str) -> str:
 class TimeBase:
     """What a time column says: rate [1/s] (None: it cannot be told) and the half width of its 95 %
     interval, 0 where it is a usual rate; start, the stamps' ``jitter`` [steps rms];
-    ``note``: how well they tell the rate."""
+    ``note``: how well they tell the rate; ``by_stamps``: each sample has its own;
+    ``stretch``: the rows that it is of, None for all."""
 
     rate: float | None
     start: float
@@ -134,6 +135,8 @@ class TimeBase:
     half_width: float = 0.0
     jitter: float = 0.0
     note: str = ""
+    by_stamps: bool = False
+    stretch: tuple[int, int] | None = None
 
 
 def read_time(name: str, unit_name: str | None, t: Floats, *, stated: bool = False) -> TimeBase:
@@ -166,13 +169,38 @@ def read_time(name: str, unit_name: str | None, t: Floats, *, stated: bool = Fal
     grain = grain_of(t) * factor_of(unit_name)
     steps = np.diff(seconds)
     mean = float(seconds[-1] - seconds[0]) / (seconds.size - 1)
-    found = TimeBase(rate=None, start=float(seconds[0]), origin="")
+    found = TimeBase(rate=None, start=float(seconds[0]), origin="", by_stamps=True)
     if mean <= 0.0 or np.any(steps < 0):
         row = int(np.argmax(steps < 0)) + 2
         return replace(found, notices=(Notice.of("time_falls", column=name, row=row),))
     if not RATE.least <= 1.0 / max(mean, 1e-300) <= RATE.most:
         return replace(found, notices=(Notice.of("time_step_impossible", column=name, step=mean),))
     return _paced(found, name, seconds, grain, unit_name)
+
+
+def longest_even(name: str, unit_name: str | None, t: Floats, *, stated: bool = False) -> TimeBase:
+    """The time base by stamps, as :func:`read_time`; where these pause up to three times, by no
+    whole number of steps, that of the longest stretch between pauses."""
+    base = read_time(name, unit_name, t, stated=stated)
+    if base.rate is not None or not base.by_stamps:
+        return base
+    rows, ahead = jumps_of(t, grain=grain_of(t))
+    if not 0 < rows.size <= _SOME or np.any(ahead <= 0.0):
+        return base
+    edges = np.concatenate([[0], rows, [t.size]])
+    longest = int(np.argmax(np.diff(edges)))
+    first, stop = int(edges[longest]), int(edges[longest + 1])
+    part = read_time(name, unit_name, t[first:stop], stated=stated)
+    told = Notice.of(
+        "time_pauses",
+        column=name,
+        places=rows.size,
+        row=int(rows[0]) + 1,
+        first=first,
+        last=stop - 1,
+    )
+    stretch = replace(part, stretch=(first, stop), notices=(told, *part.notices))
+    return base if part.rate is None else stretch
 
 
 def _paced(found: TimeBase, name: str, seconds: Floats, grain: Floats, unit_name: str) -> TimeBase:
@@ -216,10 +244,30 @@ def _paced(found: TimeBase, name: str, seconds: Floats, grain: Floats, unit_name
         )
     if unit_name != "s":
         notes.append(Notice.of("time_unit", column=name, unit=unit_name))
-    return _with_rate(replace(found, gaps=gaps, notices=tuple(notes)), name, pace)
+    origin = f"time column {name!r}"
+    return _with_rate(replace(found, gaps=gaps, origin=origin, notices=tuple(notes)), pace)
 
 
-def _with_rate(base: TimeBase, name: str, pace: Pace) -> TimeBase:
+def step_base(
+    step: float, *, channel: str, start: float, origin: str, half_width: float = 0.0
+) -> TimeBase:
+    """The time base by a ``step`` [s] that a file states of a channel.
+
+    The digits it is printed with leave +- ``half_width`` [s] open: the rate is the one usual rate
+    in there, else has its half width.
+
+    >>> step_base(1.95313e-5, channel="a", start=0.0, origin="x", half_width=5e-11).rate
+    51200.0
+    """
+    base = TimeBase(rate=None, start=start, origin=origin)
+    if not (step > 0.0 and is_possible_rate(1.0 / step)):
+        told = Notice.of("step_gives_no_rate", channel=channel, step=step)
+        return replace(base, origin="", notices=(told,))
+    low, high = max(step - half_width, 0.1 * step), step + half_width
+    return _with_rate(base, Pace(step=step, low=low, high=high, grain=2.0 * half_width))
+
+
+def _with_rate(base: TimeBase, pace: Pace) -> TimeBase:
     """The rate by a pace [s]: the usual rate that alone fits it, else with its half width."""
     low, high = 1.0 / pace.high, 1.0 / pace.low
     usual = usual_rate(low, high=high)
@@ -229,7 +277,8 @@ def _with_rate(base: TimeBase, name: str, pace: Pace) -> TimeBase:
     width = max(high - rate, rate - low) / rate
     note = ""
     if width > _EXACTLY or rounded:
-        note = f"stamps of {pace.grain:.3g} s allow +- {width * rate:.2g}"
+        what = "stamps of" if base.by_stamps else f"{pace.step:g} s, rounded to"
+        note = f"{what} {pace.grain:.3g} s, allow +- {width * rate:.2g} samples/s"
         note += "" if usual is None else ": the usual rate there is taken"
     return replace(
         base,
@@ -237,7 +286,6 @@ def _with_rate(base: TimeBase, name: str, pace: Pace) -> TimeBase:
         start=base.start + (pace.begin if rounded else 0.0),
         half_width=half,
         jitter=pace.jitter,
-        origin=f"time column {name!r}",
         note=note,
     )
 
@@ -321,7 +369,7 @@ def without_doubles(
 ) -> tuple[list[Channel], tuple[Notice, ...]]:
     """Channels with the doubled names resolved: an all-zero twin is left aside, never chosen.
 
-    Twins that hold the same samples are one; twins that differ both stay, numbered.
+    Other twins both stay, numbered.
     """
     notes: list[Notice] = []
     kept: list[Channel] = []
@@ -337,8 +385,6 @@ def without_doubles(
         if (zeros := health(first).zeros) or health(channel).zeros:
             kept[place] = channel if zeros else first
             notes.append(Notice.of("twin_zero", channel=channel.name))
-        elif len(first) == len(channel) and same_samples(first, channel):
-            notes.append(Notice.of("twin_same", channel=channel.name))
         else:
             number = numbers[channel.name] = numbers.get(channel.name, 1) + 1
             while f"{channel.name} ({number})" in places:
@@ -350,11 +396,3 @@ def without_doubles(
     if not kept:
         raise InputError("file", source, why="it holds no channel of numbers")
     return kept, tuple(notes)
-
-
-def same_samples(one: Channel, other: Channel) -> bool:
-    """Whether two channels of one length hold the same."""
-    return all(
-        np.array_equal(a, b, equal_nan=True)
-        for a, b in zip(one.blocks(), other.blocks(), strict=True)
-    )

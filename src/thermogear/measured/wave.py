@@ -7,10 +7,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from thermogear.measured.options import ReadOptions, places_of, refused
-from thermogear.measured.record import Channel, Notice, Record
-from thermogear.measured.store import FileTable
+from thermogear.measured.contract import Stated, record_of_channels, stated_rate
+from thermogear.measured.options import ReadOptions, refused
+from thermogear.measured.record import Channel, Record
 from thermogear.measured.tables import MOST_CHANNELS, Column
 
 _PCM, _FLOAT, _EXTENSIBLE = 1, 3, 0xFFFE
@@ -19,13 +20,13 @@ _PCM, _FLOAT, _EXTENSIBLE = 1, 3, 0xFFFE
 class _Packed24:
     """24-bit integers, three bytes each, unpacked slice by slice; shape (frames, channels)."""
 
-    def __init__(self, raw: FileTable, channels: int) -> None:
+    def __init__(self, raw: NDArray[np.uint8], channels: int) -> None:
         self._raw = raw  # frames of 3 bytes per channel
         self.shape = (raw.shape[0], channels)
 
     def __getitem__(self, key: tuple[slice, int]) -> Any:
         first = 3 * key[1]
-        part = self._raw.frames(key[0])[:, first : first + 3].astype(np.int32)
+        part = self._raw[key[0], first : first + 3].astype(np.int32)
         value = part[..., 0] | part[..., 1] << 8 | part[..., 2] << 16
         return (value ^ 0x800000) - 0x800000
 
@@ -46,23 +47,26 @@ def read_wave(path: Path, options: ReadOptions) -> Record:
         raise refused(
             path, "WAV", f"{channels} channels, {rate} samples/s, {bits} bits, blocks of {block}"
         )
-    notes: list[Notice] = []
-    size = path.stat().st_size
-    if offset + length > size:
-        notes.append(Notice.of("data_cut_off"))
-        length = size - offset
-    frames = length // block
+    frames = min(length, path.stat().st_size - offset) // block
     if frames < 1:
         raise refused(path, "WAV", "it holds no samples")
-    data, scale, shift, integer = _samples(path, code, bits, offset, frames, channels)
-    names = [f"channel {i + 1}" for i in range(channels)]
-    kept = set(places_of(options.keep or names, names))
-    found = tuple(
-        Channel(name, Column(data, i, axis=0), None, scale=scale, offset=shift, needs_scale=integer)
-        for i, name in enumerate(names)
-        if i in kept
-    )
-    return Record(found, path.name, float(rate), "WAV header", 0.0, None, tuple(notes))
+    data, scale, shift = _samples(path, code, bits, offset, frames, channels)
+    base = stated_rate(float(rate), "WAV header", [])
+    stated = [
+        Stated(
+            Channel(
+                f"channel {i + 1}",
+                Column(data, i, axis=0),
+                scale=scale,
+                offset=shift,
+                needs_scale=code == _PCM,
+            ),
+            base,
+            count=length // block,
+        )
+        for i in range(channels)
+    ]
+    return record_of_channels(path, "WAV", stated, keep=options.keep)
 
 
 def _chunks(path: Path) -> tuple[bytes, int, int]:
@@ -95,34 +99,25 @@ def _chunks(path: Path) -> tuple[bytes, int, int]:
     raise refused(path, "WAV", "no format or no data chunk")
 
 
+_KINDS = {
+    (_FLOAT, 32): ("<f4", 1.0, 0.0),
+    (_FLOAT, 64): ("<f8", 1.0, 0.0),
+    (_PCM, 8): ("u1", 1.0 / 128.0, -1.0),  # unsigned, 128 is zero
+    (_PCM, 16): ("<i2", 2.0**-15, 0.0),
+    (_PCM, 24): ("u1", 2.0**-23, 0.0),
+    (_PCM, 32): ("<i4", 2.0**-31, 0.0),
+}
+"""Stored type of each format and width, with scale and offset to fractions of full scale."""
+
+
 def _samples(
     path: Path, code: int, bits: int, offset: int, frames: int, channels: int
-) -> tuple[Any, float, float, bool]:
-    """Stored samples with scale and offset to fractions of full scale, and whether integer."""
-    if code == _FLOAT and bits in (32, 64):
-        kind = "<f4" if bits == 32 else "<f8"
-        return (
-            FileTable(path, kind, offset=offset, frames=frames, columns=channels),
-            1.0,
-            0.0,
-            False,
-        )
-    if code == _PCM and bits == 8:  # unsigned, 128 is zero
-        return (
-            FileTable(path, "u1", offset=offset, frames=frames, columns=channels),
-            1 / 128,
-            -1.0,
-            True,
-        )
-    if code == _PCM and bits in (16, 32):
-        kind = "<i2" if bits == 16 else "<i4"
-        return (
-            FileTable(path, kind, offset=offset, frames=frames, columns=channels),
-            2.0 ** (1 - bits),
-            0.0,
-            True,
-        )
-    if code == _PCM and bits == 24:
-        raw = FileTable(path, "u1", offset=offset, frames=frames, columns=3 * channels)
-        return _Packed24(raw, channels), 2.0**-23, 0.0, True
-    raise refused(path, "WAV", f"format {code} with {bits} bits is not supported")
+) -> tuple[Any, float, float]:
+    """Stored samples with scale and offset to fractions of full scale."""
+    if (code, bits) not in _KINDS:
+        raise refused(path, "WAV", f"format {code} with {bits} bits is not supported")
+    kind, scale, shift = _KINDS[code, bits]
+    bytes_each = 3 if bits == 24 else 1
+    shape = frames, bytes_each * channels
+    table = np.memmap(path, kind, "r", offset=offset, shape=shape)
+    return _Packed24(table, channels) if bits == 24 else table, scale, shift
