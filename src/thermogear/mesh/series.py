@@ -182,7 +182,7 @@ def _curves(
         touch=pressed,
     )
     carried = load or LEAST_LINE_LOAD * pair.face_width
-    _, delta, tangent, _ = system.solve(np.full(len(parts), carried), by_load=True)
+    _, delta, tangent, _ = system.solve(np.full(len(parts), carried))
     deflection = delta if load else unloaded
     if hot.model.spring == "secant":
         stiffness, error = carried * wider / (delta - unloaded), unloaded
