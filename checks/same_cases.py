@@ -269,11 +269,11 @@ ONE_BUNDLE = f"{SHORT} --set model.bundle=consistent"
 MOTION = f"""{ONE_BUNDLE} --set 'draw.pictures=["motion"]'"""
 NUMBERS = "--zeta 0.1535 --w 1.245 --eps 0.335 --fm 0.017 --fh -1.16"
 CHOICES = (
-    "friction=dry inlet=oil flash=exact heat_distribution=uniform bore=rigid spring=secant "
+    "friction=dry inlet=oil flash=blok heat_distribution=uniform bore=rigid spring=secant "
     "body=bore-clamped sharing=stiffness",
     "friction=xu-kahraman flash=blok flank=thesis bore=shaft modulus=constant "
     "stiffness=textbook-30-degree thermal_stiffness=thesis housing=rigid",
-    "friction=fernandes flash=exact heat_distribution=parabola inlet=oil sharing=equal",
+    "friction=fernandes flash=blok heat_distribution=parabola inlet=oil sharing=equal",
 )
 COMMANDS = [
     *("new", "import", "export", "draw", "answers", "run", "report", "check", "example", "schema"),

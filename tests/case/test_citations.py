@@ -27,7 +27,6 @@ def test_a_bundle_cites_its_own_laws_alone() -> None:
     [
         ("friction=xu-kahraman", {"xu-kahraman"}, {"lambda-blend", "grubin", "benedict-kelley"}),
         ("friction=dry", set(), {"dry", "lambda-blend", "benedict-kelley"}),
-        ("flash=exact", {"jaeger"}, {"blok"}),
         ("flash=blok", {"blok"}, {"jaeger"}),
         ("sharing=stiffness", {"yang-sun"}, set()),
         ("stiffness=textbook-30-degree", {"yang-sun", "sainsot"}, set()),

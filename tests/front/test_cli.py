@@ -334,13 +334,6 @@ def test_run_without_overrides_hands_the_text_on_as_it_is(
     assert pretended["tables"]
 
 
-def test_the_reference_flash_is_asked_for_by_a_flag(
-    rig: Path, tmp_path: Path, pretended: dict[str, Any]
-) -> None:
-    assert main(["run", str(rig), "-o", str(tmp_path / "results"), "--reference"]) == 0
-    assert {model.flash for model in pretended["case"].models} == {"exact"}
-
-
 def test_run_for_scripts_prints_json_alone(
     rig: Path, tmp_path: Path, pretended: dict[str, Any], capsys: pytest.CaptureFixture[str]
 ) -> None:

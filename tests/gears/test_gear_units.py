@@ -196,7 +196,6 @@ FORMULAS: dict[str, tuple[tuple[int, int, int], Formula]] = {
     "solve_mesh forces": ((0, 1, 0), lambda g: solved(g).force),
     "solve_mesh pressure": (STRESS, lambda g: solved(g).pressure),
     "solve_mesh springs": (STIFFNESS, lambda g: (solved(g).tangent, solved(g).secant)),
-    "mesh_force": ((0, 1, 0), lambda g: loaded.mesh_force(g.pair, 2 * g.amount, g.phase)[0]),
     "loaded_contact": (
         LENGTH,
         lambda g: loaded.loaded_contact(g.pair, g.force, g.phase).transmission_error.values,

@@ -28,7 +28,6 @@ from thermogear.study.branches import (
     Sweep,
     branch_results,
     cascade_results,
-    heats,
     on_numbers,
     sweeps_of,
 )
@@ -190,11 +189,16 @@ def test_cascades_of_the_table_cold() -> None:
 def test_heat_moves_a_cascade_by_scaling_alone() -> None:
     """Without back-side impacts eps_T acts by scaling and b' not at all (M2, M5)."""
     (sweep,) = sweeps_of(table(), "zeta")
-    found = cascade_results([sweep], 2, title="", hot=True)
-    cold, thesis, consistent = found.summary["cascades"]
-    assert coded(found.notices) == {"backlash_without_effect": [{}]}
-    for entry in (thesis, consistent):
-        s = np.sqrt(1.0 + entry["heat_numbers"]["thermal_stiffness"])
+    heats = {0.0: 1.0, 0.02: 0.8, -0.0462: 0.8}
+    hot = [
+        on_numbers([sweep], {"thermal_stiffness": thermal, "half_backlash": b})[0]
+        for thermal, b in heats.items()
+    ]
+    results = [cascade_results([one], 2, title="") for one in hot]
+    assert all(coded(r.notices) == {"backlash_without_effect": [{}]} for r in results)
+    cold, thesis, consistent = (r.summary["cascades"][0] for r in results)
+    for thermal, entry in zip((0.02, -0.0462), (thesis, consistent), strict=True):
+        s = np.sqrt(1.0 + thermal)
         numbers = {
             **sweep.base,
             "frequency": sweep.base["frequency"] / s,
@@ -223,13 +227,6 @@ def test_a_row_that_begins_past_its_flip_starts_beyond_its_end() -> None:
     value = summary["cascades"][0]["flips"][0]["value"]
     assert value > sweep.first
     assert value == pytest.approx(1.304211729, abs=6e-10)
-
-
-def test_heat_is_read_from_the_ready_made_case() -> None:
-    cold, thesis, consistent = heats()
-    assert cold.numbers == {}
-    assert thesis.numbers == {"half_backlash": 0.8, "thermal_stiffness": 0.02}
-    assert consistent.numbers["thermal_stiffness"] == pytest.approx(-0.0462)
 
 
 def test_a_gear_pair_speaks_in_micrometres_and_hertz(rig_case: GearCase) -> None:

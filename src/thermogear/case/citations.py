@@ -23,7 +23,7 @@ JAEGER = (
     "J. C. Jaeger (1942), moving sources of heat at sliding contacts",
     "flash temperature at finite speed",
 )
-FLASH = {"blok": (BLOK,), "peclet": (BLOK, JAEGER), "exact": (JAEGER,)}
+FLASH = {"blok": (BLOK,), "peclet": (BLOK, JAEGER)}
 HERTZ = ("johnson", "K. L. Johnson, Contact Mechanics, eqs. 4.43 and 4.45", "Hertzian contact")
 FILM = ("dowson-higginson", "D. Dowson, G. R. Higginson, line contact", "least film thickness")
 GRUBIN = ("grubin", "A. N. Grubin (1949)", "central film thickness")

@@ -147,7 +147,6 @@ def cli() -> None:
 @delivery.overrides
 @delivery.as_json
 @click.option("--force", is_flag=True, help="Run even if it may not fit into the free memory.")
-@click.option("--reference", is_flag=True, help="Flash temperature by the exact moving source.")
 @click.option(
     "--pictures",
     type=click.Choice(["first", "all", "none"]),
@@ -164,7 +163,6 @@ def run(
     overrides: tuple[str, ...],
     as_json: bool,
     force: bool,
-    reference: bool,
     pictures: str,
     curves: bool,
 ) -> None:
@@ -172,7 +170,7 @@ def run(
     from thermogear.case.size import require_room
     from thermogear.results.files import require_ours
 
-    read = delivery.load(case, (*overrides, "model.flash=exact") if reference else overrides)
+    read = delivery.load(case, overrides)
     require_room(read, forced=force)
     require_ours(Path(output))
 

@@ -138,7 +138,6 @@ def point_of(options: dict[str, Any]) -> OnePoint:
     "--cascade", type=int, metavar="N",
     help="Find the first N period doublings of every row (or of --parameter).",
 )  # fmt: skip
-@click.option("--hot", is_flag=True, help="The cascades with section 4.1's heat beside the cold.")
 @click.option(
     "--and", "second", metavar="NAME=FROM:TO:COUNT",
     help="A second parameter: every fold, doubling, pitchfork and torus point found at FROM is "
@@ -164,7 +163,6 @@ def continue_(
     direct: bool,
     switch: int,
     cascade: int | None,
-    hot: bool,
     second: str | None,
     rigid: bool,
     coordinates: int | None,
@@ -184,7 +182,7 @@ def continue_(
     grazing          the motion just touches an edge of the gap: contacts begin or end
 
     \b
-      thermogear continue table-4.2 --cascade 4 --hot
+      thermogear continue table-4.2 --cascade 4
       thermogear continue rig.toml --parameter speed --to "6000 rpm" -o branches
       thermogear continue --zeta 0.18 --w 1.245 --eps 0.335 --fm 0.017 --fh -1.16 \\
         --parameter zeta --to 0.10 --switch 2
@@ -205,14 +203,12 @@ def continue_(
 
         def make_cascade(report: Progress) -> Result:
             return cascade_results(
-                sweeps, cascade, title=title, hot=hot, start=_start(options),
+                sweeps, cascade, title=title, start=_start(options),
                 progress=report,
             )  # fmt: skip
 
         delivery.deliver(make_cascade, options["output"], as_json=options["as_json"])
         return
-    if hot:
-        raise InputError("--hot", "without --cascade", fix="add --cascade 4")
     if parameter is None or to is None:
         missing = "--parameter" if parameter is None else "--to"
         raise InputError(missing, "nothing", fix="for instance --parameter zeta --to 0.1")

@@ -34,7 +34,6 @@ __all__ = [
     "LoadedMesh",
     "LoadedModel",
     "loaded_contact",
-    "mesh_force",
     "solve_mesh",
 ]
 
@@ -166,7 +165,7 @@ def solve_mesh(
     lead, width = system.lead, pair.face_width
     asked = flat(load, lead=lead)
     carried = np.where(asked == 0.0, LEAST_LINE_LOAD * width, asked)
-    force, delta, stiffness, settled = system.solve(carried, by_load=True)
+    force, delta, stiffness, settled = system.solve(carried)
 
     share = force / carried[:, None, None]
     idle = settled & (asked == 0.0)[:, None]
@@ -195,59 +194,6 @@ def solve_mesh(
     if not idle.any():
         return mesh
     return mesh._replace(deflection=np.where(shaped(idle), mesh.unloaded, mesh.elastic))
-
-
-def mesh_force(
-    pair: GearPair,
-    deflection: ArrayLike,
-    phase: ArrayLike,
-    *,
-    pinion: Moduli | None = None,
-    wheel: Moduli | None = None,
-    deviations: Sequence[Deviation] = (),
-    model: LoadedModel | None = None,
-    flank: str = "drive",
-    mean_load: ArrayLike = 0.0,
-) -> tuple[Floats, Floats]:
-    """Load-shared force of one flank side at a given deflection: the inverse of the mesh.
-
-    F = sum_j F_j,  sum_k C_jk F_k + delta_H(F_j) + e_j = delta  (F_j > 0),  >= delta  (else)
-
-    Every tooth pair comes into and out of contact by itself, which the one spring
-    k(t) f(x) cannot show.
-
-    deflection: delta [m], shape ``lead``; with half backlash b and displacement y of the
-    pinion's base circle over the wheel's it is y - b on the drive flank and -y - b on the back
-    flank; mean_load [N]: that whose half width averages the shapes of the flanks, 0 as they are.
-    Deviations carry their full S_j (thermal growth less the axes' movement).
-    Other arguments as :func:`loaded_contact`. Returns (F [N], dF/d delta
-    [N/m]) of shape (*lead, position); both 0 before the first pair touches.
-
-    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
-    >>> force, stiffness = mesh_force(pair, 10e-6, [0.0, 0.5])
-    >>> f"{force[0] / force[1]:.2f}"
-    '0.95'
-    """
-    delta = np.asarray(deflection, dtype=float)
-    if not np.all(np.isfinite(delta)):
-        raise InputError("deflection", f"{delta} m", allowed="finite")
-    moduli = (pinion or Moduli.of(pair.pinion), wheel or Moduli.of(pair.wheel))
-    system = MeshSystem.of(
-        pair,
-        shape=delta.shape,
-        phase=phase,
-        moduli=moduli,
-        deviations=deviations,
-        model=model or LoadedModel(),
-        flank=flank,
-        load=mean_load,
-    )
-    force, _, stiffness, settled = system.solve(flat(delta, lead=system.lead), by_load=False)
-    total = np.where(settled, force.sum(axis=-1), np.nan)
-    return (
-        total.reshape(*system.lead, *total.shape[1:]),
-        stiffness.reshape(*system.lead, *total.shape[1:]),
-    )
 
 
 DIMENSIONS = ((), ("operating",), ("temperature", "load"))

@@ -263,24 +263,21 @@ class MeshSystem:
         """The same cases with other gaps and edges, (case, position, pair)."""
         return replace(self, gaps=np.ascontiguousarray(touch.gap), edges=touch.edge)
 
-    def solve(
-        self, asked: Floats, by_load: bool
-    ) -> tuple[Floats, Floats, Floats, NDArray[np.bool_]]:
-        """(force, deflection, tangent stiffness, settled) for loads > 0 or for deflections.
+    def solve(self, loads: Floats) -> tuple[Floats, Floats, Floats, NDArray[np.bool_]]:
+        """(force, deflection, tangent stiffness, settled) under ``loads`` F_n [N] > 0.
 
-        asked: one value a case, shape (case,). Returns shapes (case, position[, pair]).
+        loads: one a case, shape (case,). Returns shapes (case, position[, pair]).
         """
         from thermogear.gears.sharing_kernel import share_many
 
         width = self.pair.face_width
         nu = [g.material.poisson_ratio for g in (self.pair.pinion, self.pair.wheel)]
-        cases, (positions, count) = asked.size, self.points.s.shape
+        cases, (positions, count) = loads.size, self.points.s.shape
         force = np.empty((cases, positions, count))
         delta, stiffness = np.empty((2, cases, positions))
         settled = np.empty((cases, positions), dtype=np.bool_)
         share_many(
-            asked,
-            by_load,
+            loads,
             self.gaps,
             self.tooth,
             self.body,

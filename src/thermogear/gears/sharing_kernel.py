@@ -131,8 +131,7 @@ def _unsettled(force: Floats) -> tuple[float, float, bool]:
 
 @compiled
 def _share_one(
-    asked: float,
-    by_load: bool,
+    load: float,
     gap: Floats,
     compliance: Floats,
     soft: float,
@@ -142,7 +141,7 @@ def _share_one(
 ) -> tuple[float, float, bool]:
     """Forces of one position into ``force``; returns (delta, tangent stiffness, settled).
 
-    ``asked`` is the load F_n > 0, or delta where ``by_load`` is false; ``soft``, ``places``
+    ``load`` F_n > 0; ``soft``, ``places``
     [pair, 7] and ``law`` as :func:`_approach` takes them. ``force`` holds forces to begin with,
     whose sum is the load, or nothing above 0: then the nearest pair begins alone. A gap of inf
     never closes. nan everywhere and not settled where a gap is nan or the steps find no balance of
@@ -161,20 +160,12 @@ def _share_one(
     # gaps are counted from the nearest pair, before anything is added to them: a common shift
     # would round the balance at its own size
     origin = gap[first]
-    load, delta, stiffness = asked, 0.0, 0.0
-    if not by_load:
-        delta = asked - origin
-        if delta <= 0.0:
-            return asked, 0.0, True
-        # a first guess, and the scale of the tolerances
-        load = delta / compliance[first, first]
-        contact, _ = _approach(load, soft, places, first, law)
-        load = delta / (compliance[first, first] + contact / load)
+    delta, stiffness = 0.0, 0.0
     least = 1e-14 * load
     carried = 0.0
     for j in range(count):
         # a pair carries where its force is not 0
-        if not (by_load and force[j] > least and gap[j] < np.inf):
+        if not (force[j] > least and gap[j] < np.inf):
             force[j] = 0.0
         carried += force[j]
     if carried == 0.0:
@@ -205,7 +196,7 @@ def _share_one(
         for a in range(size):
             stiffness += right[a, 1]
             slack -= right[a, 0]
-        advance = slack / stiffness if by_load else 0.0
+        advance = slack / stiffness
         step, leaving, at_rest = 1.0, -1, True
         for a in range(size):
             j = index[a]
@@ -241,8 +232,7 @@ def _share_one(
 
 @compiled
 def share_many(
-    asked: Floats,
-    by_load: bool,
+    loads: Floats,
     gap: Floats,
     tooth: Floats,
     body: Floats,
@@ -259,7 +249,7 @@ def share_many(
 ) -> None:
     """All cases x positions into ``force``, ``delta``, ``stiffness``, ``settled``.
 
-    asked [case]: loads, or deflections where ``by_load`` is false; gap [case or 1, position,
+    loads [case] F_n > 0; gap [case or 1, position,
     pair]; tooth [2, place, pair] and body [2, place, pair, pair]: compliances of both gears for
     unit modulus and width; places [place, pair, 7], softness [case]: 4/(pi b E*), law [case, 6]:
     see :func:`_approach`; place [position]: that of each position, the same in all mesh periods;
@@ -287,8 +277,7 @@ def share_many(
                 gained = before - force[c, p - 2, j] if p > 1 else 0.0
                 force[c, p, j] = max(before + gained, 0.0) if before > 0.0 else 0.0
             delta[c, p], stiffness[c, p], settled[c, p] = _share_one(
-                asked[c],
-                by_load,
+                loads[c],
                 gap[own, p],
                 compliance,
                 softness[c],

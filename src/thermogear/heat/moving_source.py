@@ -1,12 +1,13 @@
-"""Exact moving band source on a half-plane (Jaeger) and two bodies in sliding contact.
+"""Exact moving band source on a half-plane (Jaeger), and flash temperatures from it.
 
 Lengths in half widths, Peclet number Pe = v B/a. In the frame of the source the material
 moves in +x and the surface rise is
 
 T(x) = Q/(pi k) int phi(s) exp[Pe (x-s)/2] K_0[Pe |x-s|/2] ds,
 
-Q the heat per width and phi its shape with unit total. The reference that Blok's formula and
-its Peclet correction are checked against.
+Q the heat per width and phi its shape with unit total. ``tests/heat/two_bodies.py`` solves two
+bodies whose temperatures agree point by point: what Blok's formula and the Peclet correction are
+checked against.
 """
 
 from __future__ import annotations
@@ -30,7 +31,6 @@ from thermogear.heat.temperature import (
 METHODS: dict[str, str] = {
     "blok": "high-speed limit, share of heat by B sqrt(v)",
     "peclet": "the same with the exact single-body maximum C(Pe) on each flank",
-    "exact": "pointwise equal temperatures of both flanks, boundary elements (reference)",
 }
 
 _SHAPES: dict[str, Callable[[Floats], Floats]] = {  # of (1 - s)(1 + s)
@@ -87,7 +87,6 @@ def moving_source_rise(
 
 
 _LOWEST, _HIGHEST = 1e-4, 1e5
-_STILL = 1e-8
 
 
 _MAXIMA = (
@@ -218,56 +217,6 @@ def peclet_flash(
     return np.asarray(np.divide(q, total, out=np.zeros(shape), where=total > 0.0))
 
 
-def _kernel_integral(distance: Floats, peclet: float) -> Floats:
-    """int_0^x exp(Pe t/2) K_0(Pe |t|/2) dt, closed form (Jaeger)."""
-    from scipy.special import k0e, k1e
-
-    z = 0.5 * peclet * np.abs(distance)
-    safe = np.where(z > 0.0, z, 1.0)
-    ahead = safe * (k0e(safe) + k1e(safe)) - 1.0
-    behind = 1.0 + safe * np.exp(-2.0 * safe) * (k0e(safe) - k1e(safe))
-    signed = np.where(distance > 0.0, ahead, -behind)
-    return np.asarray(np.where(z > 0.0, 2.0 / peclet * signed, 0.0))
-
-
-def exact_two_body(
-    *,
-    peclet_1: float,
-    peclet_2: float,
-    distribution: str = "ellipse",
-    conductivity_ratio: float = 1.0,
-    elements: int = 400,
-) -> tuple[float, float]:
-    """Two moving flanks whose temperatures agree at every point: (T_max k_1/Q [-], share of 1).
-
-    Boundary elements of constant heat, graded towards both edges; the heat of each element is
-    split so that both half-planes have one surface temperature at its centre.
-
-    ``peclet_1``, ``peclet_2`` > 0, ``conductivity_ratio`` k_2/k_1. With 400 elements the
-    maximum is right to 1e-4.
-
-    >>> _, share = exact_two_body(peclet_1=20.0, peclet_2=20.0, elements=60)
-    >>> f"{share:.3f}"
-    '0.500'
-    """
-    flash_factor(distribution)
-    if not (peclet_1 > 0.0 and peclet_2 > 0.0):
-        raise InputError("peclet", (peclet_1, peclet_2), allowed="> 0 on both flanks")
-    edges = -np.cos(np.linspace(0.0, np.pi, elements + 1))
-    centres = 0.5 * (edges[1:] + edges[:-1])
-    width = np.diff(edges)
-    heat = _SHAPES[distribution]((1.0 - centres) * (1.0 + centres))
-    heat = heat / np.sum(heat * width)
-
-    def influence(peclet: float) -> Floats:
-        reach = _kernel_integral(centres[:, None] - edges[None, :], peclet)
-        return (reach[:, :-1] - reach[:, 1:]) / np.pi
-
-    one, two = influence(peclet_1), influence(peclet_2) / conductivity_ratio
-    first = np.linalg.solve(one + two, two @ heat)
-    return float(np.max(one @ first)), float(np.sum(first * width))
-
-
 def flash_temperature(
     friction: ArrayLike,
     line_load: ArrayLike,
@@ -283,9 +232,8 @@ def flash_temperature(
     """Flash temperature of one tooth pair by a named method [K].
 
     ``friction`` mu [-], ``line_load`` w [N/m] of this pair, ``speed_1``, ``speed_2`` [m/s],
-    ``half_width`` B [m], ``distribution`` ellipse, uniform or parabola, ``method`` "blok",
-    "peclet" (default) or "exact" (one linear system per point: a reference, slow). Any shape;
-    0 at the pitch point, at no load and at rest.
+    ``half_width`` B [m], ``distribution`` ellipse, uniform or parabola, ``method`` "blok"
+    or "peclet" (default). Any shape; 0 at the pitch point, at no load and at rest.
 
     >>> steel = material("steel")
     >>> rise = flash_temperature(
@@ -317,24 +265,4 @@ def flash_temperature(
             material_2=material_2,
             distribution=distribution,
         )
-    if method != "exact":
-        raise InputError("method", repr(method), allowed=" | ".join(METHODS))
-    q, v1, v2, b = np.broadcast_arrays(heat, speed_1, speed_2, half_width)
-    result = np.zeros(q.shape)
-    one = material_1.thermal_conductivity
-    ratio = material_2.thermal_conductivity / one
-    spread_1, spread_2 = (
-        m.thermal_conductivity / (m.density * m.specific_heat) for m in (material_1, material_2)
-    )
-    for at in np.ndindex(q.shape):
-        if q[at] == 0.0:
-            continue
-        # a flank at rest is the limit of a very slow one: it takes next to no heat
-        pe_1, pe_2 = (
-            max(float(v[at] * b[at] / a), _STILL) for v, a in ((v1, spread_1), (v2, spread_2))
-        )
-        peak, _ = exact_two_body(
-            peclet_1=pe_1, peclet_2=pe_2, distribution=distribution, conductivity_ratio=ratio
-        )
-        result[at] = q[at] / one * peak
-    return result
+    raise InputError("method", repr(method), allowed=" | ".join(METHODS))

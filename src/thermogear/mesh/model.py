@@ -29,7 +29,6 @@ CHOICES: dict[str, dict[str, str]] = {
     "flash": {
         "blok": "Blok's high-speed limit",
         "peclet": "Blok with the finite Peclet number",
-        "exact": "moving source, temperatures equal point by point (slow reference)",
     },
     "heat_distribution": {
         "ellipse": "u = 0.78598 with the half width: heat as the Hertzian pressure",

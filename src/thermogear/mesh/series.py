@@ -187,7 +187,7 @@ def _curves(
         touch=pressed,
     )
     carried = load or LEAST_LINE_LOAD * pair.face_width
-    _, delta, tangent, _ = system.solve(np.full(len(parts), carried), by_load=True)
+    _, delta, tangent, _ = system.solve(np.full(len(parts), carried))
     unloaded, stiffness = delta, tangent * wider
     if hot.model.spring == "secant" or not load:
         unloaded = _nearest(touch_of_parts(drive, warm, 0.0)[0])

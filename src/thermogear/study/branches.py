@@ -1,4 +1,4 @@
-"""Branches of orbits along a parameter, doubled branches, and whole cascades, cold and hot."""
+"""Branches of orbits along a parameter, doubled branches, and whole cascades."""
 
 from __future__ import annotations
 
@@ -18,9 +18,8 @@ from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.base.notice import Notice
 from thermogear.base.parameters import NUMBERS, Parameter
 from thermogear.base.progress import Progress, silent
-from thermogear.base.units import ZERO_CELSIUS
 from thermogear.case.allowed import gear_parameter, number_parameter
-from thermogear.case.case import DimensionlessCase, GearCase, load_example
+from thermogear.case.case import DimensionlessCase, GearCase
 from thermogear.case.dimensionless import Point
 from thermogear.case.one_point import OnePoint, of_numbers
 from thermogear.results.result import Result
@@ -37,11 +36,10 @@ Models = Callable[[float], object]
 
 @dataclass(frozen=True)
 class Leg:
-    """A branch that was walked: how deep below the first one, and the heat it belongs to."""
+    """A branch that was walked: how deep below the first one, and the row of its cascade."""
 
     branch: Branch
     level: int = 0
-    heat: str = "cold"
     row: str = ""
 
 
@@ -260,41 +258,11 @@ def dataset(leg: Leg, unit: str) -> Dataset:
     if "section_x" in data:
         places = np.array([b.state[0] for b in leg.branch.bifurcations], dtype=float)
         data["event_x"] = ("event", places, {"units": "1", "long_name": "displacement at phase 0"})
-    data.attrs.update({"level": leg.level, "heat": leg.heat, "row": leg.row})
+    data.attrs.update({"level": leg.level, "row": leg.row})
     return data
 
 
 # --- cascades -----------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class Heat:
-    """A state of heat of the dimensionless equation: its name and the numbers it sets."""
-
-    name: str
-    numbers: dict[str, float]
-
-
-COLD = Heat("cold", {})
-
-
-def heats() -> tuple[Heat, ...]:
-    """Cold, and the hottest point of every row of the ready-made case of section 4.1."""
-    case = load_example("section-4.1")
-    assert isinstance(case, DimensionlessCase)
-    hottest: dict[str, Point] = {}
-    for point in case.points:
-        kept = hottest.get(point.row)
-        if kept is None or point.value > kept.value:
-            hottest[point.row] = point
-    return COLD, *(
-        Heat(
-            f"{p.value - ZERO_CELSIUS:.4g} °C, {row} (b' {p.half_backlash:.4g}, eps_T "
-            f"{p.thermal_stiffness:+.4g})",
-            {"half_backlash": p.half_backlash, "thermal_stiffness": p.thermal_stiffness},
-        )
-        for row, p in hottest.items()
-    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -345,11 +313,10 @@ def cascade_results(
     flips: int,
     *,
     title: str,
-    hot: bool = False,
     start: tuple[float, float] | None = None,
     progress: Progress = silent,
 ) -> Result:
-    """The first ``flips`` period doublings of every sweep, cold and (``hot``) with heat.
+    """The first ``flips`` period doublings of every sweep.
 
     Each cascade starts from the orbit of period 1 at the sweep's first value. Where that one has
     doubled already, the walk begins where it is stable, beyond the sweep's end.
@@ -360,25 +327,21 @@ def cascade_results(
     entries: list[dict[str, Any]] = []
     notices: list[Notice] = []
     cut = False
-    for heat in heats() if hot else (COLD,):
-        for sweep in sweeps:
-            if cut:
-                break
-            point = of_numbers({**sweep.base, **heat.numbers, sweep.parameter: sweep.first}, start)
-            about = f"{sweep.row}, {heat.name}"
-            stage = about.split(" (")[0]
-            own: list[Leg] = []
-            values: list[Bifurcation] = []
-            try:
-                cut = _cascade(point, sweep, flips, stage, progress, own, values)
-            except ConvergenceError as error:
-                notices.append(Notice.of("cascade_not_found", about=about, reason=str(error)))
-            except KeyboardInterrupt:
-                cut = True
-            if not own:
-                continue
-            legs += [replace(leg, heat=heat.name, row=sweep.row) for leg in own]
-            entries.append(_entry(sweep, heat, values, own))
+    for sweep in sweeps:
+        if cut:
+            break
+        point = of_numbers(sweep.base, start)
+        own: list[Leg] = []
+        values: list[Bifurcation] = []
+        try:
+            cut = _cascade(point, sweep, flips, progress, own, values)
+        except ConvergenceError as error:
+            notices.append(Notice.of("cascade_not_found", about=sweep.row, reason=str(error)))
+        except KeyboardInterrupt:
+            cut = True
+        if own:
+            legs += [replace(leg, row=sweep.row) for leg in own]
+            entries.append(_entry(sweep, values, own))
     if not legs and cut:
         raise KeyboardInterrupt
     if not legs:
@@ -390,9 +353,7 @@ def cascade_results(
     return found("cascade", groups, summary, notices, interrupted=cut)
 
 
-def _entry(
-    sweep: Sweep, heat: Heat, values: Sequence[Bifurcation], legs: Sequence[Leg]
-) -> dict[str, Any]:
+def _entry(sweep: Sweep, values: Sequence[Bifurcation], legs: Sequence[Leg]) -> dict[str, Any]:
     gaps = np.diff(np.array([b.value for b in values]))
     return {
         "row": sweep.row,
@@ -400,8 +361,6 @@ def _entry(
         "from": sweep.first,
         "to": sweep.last,
         "base": sweep.base,
-        "heat": heat.name,
-        "heat_numbers": heat.numbers,
         "flips": [
             {
                 "from_period": b.period,
@@ -423,7 +382,6 @@ def _cascade(
     point: OnePoint,
     sweep: Sweep,
     flips: int,
-    stage: str,
     progress: Progress,
     legs: list[Leg],
     values: list[Bifurcation],
@@ -433,7 +391,7 @@ def _cascade(
     orbit, begin = _mother(point, sweep, models)
     direction, first = None, begin
     while True:
-        name = f"{stage}: period {orbit.period}"
+        name = f"{sweep.row}: period {orbit.period}"
         branch = _walk(
             orbit, sweep.parameter, sweep.last, models, begin, name, progress, direction, FLIP,
             back_to=first,

@@ -114,7 +114,7 @@ class PartErrors:
         for case in self._loads:
             touch, loads = case.parts.touch(reliefs), np.full(self._shape[0], case.load)
             system = case.system.with_touch(touch)
-            _, deflection, _, settled = system.solve(loads, by_load=True)
+            _, deflection, _, settled = system.solve(loads)
             if not settled.all():
                 lost = int(np.count_nonzero(~settled))
                 raise ConvergenceError(

@@ -137,7 +137,7 @@ def csv_tables(kind: str, groups: Groups) -> dict[str, str]:
     files: dict[str, list[str]] = {}
     for name, data in groups.items():
         file = "plane" if name.startswith("curve_") else kind
-        own = {k: data.attrs[k] for k in ("row", "heat", "kind", "period") if k in data.attrs}
+        own = {k: data.attrs[k] for k in ("row", "kind", "period") if k in data.attrs}
         for axis in data.dims:
             columns = [str(v) for v in data.variables if data[v].dims == (axis,)]
             if not columns or axis in ("multiplier", "coordinate"):
@@ -157,6 +157,7 @@ HEADINGS = {
 }
 CAPTIONS = {
     "lyapunov": "The band is one standard error of the mean.",
+    "cascade": "Dots: period doublings.",
 }
 
 
@@ -185,10 +186,6 @@ def _caption(kind: str, summary: Summary, groups: Groups) -> str:
         if "mesh_periods" in summary:
             words.append(f"Periods are those of the turn of {summary['mesh_periods']} mesh periods")
         return ". ".join(words) + "."
-    if kind == "cascade":
-        several = len({one["heat"] for one in summary["cascades"]}) > 1
-        heat = " One colour for each state of heat." if several else ""
-        return f"Dots: period doublings.{heat}"
     return CAPTIONS[kind]
 
 
@@ -321,29 +318,18 @@ def _train_words(train: Summary) -> list[Block]:
 
 
 def _cascade_tables(summary: Summary) -> list[Block]:
-    return [
-        _cascade_table([c for c in summary["cascades"] if c["row"] == row], summary["flips"])
-        for row in dict.fromkeys(c["row"] for c in summary["cascades"])
-    ]
+    return [_cascade_table(cascade, summary["flips"]) for cascade in summary["cascades"]]
 
 
-def _cascade_table(cascades: list[Summary], most: int) -> Table:
-    """Flips of the cascades of one row, one column for each state of heat."""
-    rows: list[dict[str, Any]] = [
-        {
-            "name": f"{2**k} → {2 ** (k + 1)}",
-            "cells": [_flip_words(c["flips"], k) for c in cascades],
-        }
+def _cascade_table(cascade: Summary, most: int) -> Table:
+    """The flips of a cascade."""
+    rows = [
+        {"name": f"{2**k} → {2 ** (k + 1)}", "value": _flip_words(cascade["flips"], k)}
         for k in range(most)
     ]
-    rows.append({"name": "branch then", "cells": [c["ended"] for c in cascades]})
-    first = cascades[0]
-    caption = page_words(first["parameter"]) + f", {first['from']:g} to {first['to']:g}"
-    columns = [
-        Column("period doubling", "name"),
-        *(Column(c["heat"], lambda row, k=k: row["cells"][k]) for k, c in enumerate(cascades)),  # type: ignore[misc]
-    ]
-    return declared(caption, columns, rows)
+    rows.append({"name": "branch then", "value": cascade["ended"]})
+    caption = page_words(cascade["parameter"]) + f", {cascade['from']:g} to {cascade['to']:g}"
+    return declared(caption, [Column("period doubling", "name"), Column("at", "value")], rows)
 
 
 def _flip_words(flips: Sequence[Summary], place: int) -> str:

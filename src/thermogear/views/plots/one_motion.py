@@ -239,24 +239,20 @@ def _marks(panel: Panel, branches: Sequence[Dataset], parameter: str, row: str =
 
 
 def cascade_picture(branches: Sequence[Dataset]) -> Picture:
-    """One axis for each row: the doubling branches, one colour for each state of heat."""
+    """One axis for each row: the doubling branches."""
     rows = list(dict.fromkeys(str(b.attrs["row"]) for b in branches))
-    heats = list(dict.fromkeys(str(b.attrs["heat"]) for b in branches))
     panels = []
     for row in rows:
         own = [b for b in branches if str(b.attrs["row"]) == row]
         parameter = str(own[0].attrs["parameter"])
         panel = Panel(Axis(axis_words(parameter, own[0]["value"])))
         for data in own:
-            place = heats.index(str(data.attrs["heat"]))
-            colour = COLD if place == 0 else OKABE_ITO[place % len(OKABE_ITO)]
             value = shown(parameter, data["value"])
-            label = plain(heats[place])
-            panel.curve(value, data["section_x"].values, colour=colour, width=1.2, label=label)
+            panel.curve(value, data["section_x"].values, colour=COLD, width=1.2)
             flips = data["event_kind"].values.astype(str) == "period doubling"
             panel.points(
                 shown(parameter, data["event_value"][flips]), data["event_x"].values[flips],
-                size=4.5, colour=colour, edge="white", edge_width=0.5,
+                size=4.5, colour=COLD, edge="white", edge_width=0.5,
             )  # fmt: skip
         panels.append(panel)
     panels[0].y.words = "displacement X at phase 0 [–]"
