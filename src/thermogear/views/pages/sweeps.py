@@ -62,7 +62,7 @@ EXPLAINED = {
 
 
 OF_SERIES = (
-    " Of the series of the case's class, pairs from rest over their turns: band, median (long "
+    " Of the series of the case's class, pairs over their turns, the worse of two starts: band, median (long "
     "dashes) and what one pair in ten exceeds. All else is of one pair, the case's own drawing: "
     "its mean tooth, unless its turn is asked for."
 )
