@@ -197,9 +197,10 @@ def _hann_kernel(length: float) -> Floats:
 
 def _envelope(
     values: Floats, frequency: float, length: float
-) -> tuple[Complexes, NDArray[np.int64]]:
+) -> tuple[Complexes, NDArray[np.int64], Floats]:
     """The record turned back by ``frequency`` [cycles/sample], behind a filter eight times wider
-    than the kernel, and which samples of it are kept."""
+    than the kernel, which samples of it are kept, and how far from each is the centre of weight of
+    its kernel, which the record's ends cut [samples]."""
     count = values.size
     kernel = _hann_kernel(length / 8.0)
     turn = np.exp(-2j * np.pi * frequency * np.arange(count))
@@ -207,10 +208,12 @@ def _envelope(
     size = max(64, int(np.ceil(count / length * _FINER)))
     place = np.unique(np.rint(np.linspace(0, count - 1, min(size, count))).astype(np.int64))
     # of the kernel what is inside the record
-    inside = np.concatenate([[0.0], np.cumsum(kernel)])
+    away = kernel.size // 2 - np.arange(kernel.size)
+    sums = np.cumsum(np.insert([kernel, away * kernel], 0, 0.0, axis=1), axis=1)
     last = place + kernel.size // 2 + 1
-    weight = inside[np.minimum(last, kernel.size)] - inside[np.maximum(last - count, 0)]
-    return base[place] / weight, place
+    ends = np.minimum(last, kernel.size), np.maximum(last - count, 0)
+    weight, moment = sums[:, ends[0]] - sums[:, ends[1]]
+    return base[place] / weight, place, moment / weight
 
 
 @dataclass(frozen=True)
@@ -270,7 +273,7 @@ def _path(values: Floats, frequency: float, length: float, *, last: float) -> tu
     leaves and which lets less of other lines in. Sidebands that a filter takes unevenly, because
     the line is not in its middle, turn the phase: it is smoothed and followed once more.
     """
-    envelope, place = _envelope(values, frequency, length)
+    envelope, place, centre = _envelope(values, frequency, length)
     finer = (place.size - 1) / (values.size - 1)
     longer = _hann_kernel(last * finer)
     phase, size = _smoothed(envelope, _hann_kernel(length * finer), 1)
@@ -278,6 +281,7 @@ def _path(values: Floats, frequency: float, length: float, *, last: float) -> tu
     for _ in range(2):
         phase = quiet.values(quiet.values(phase))
         phase = phase + _smoothed(envelope * np.exp(-1j * phase), longer, _PASSES)[0]
+    phase -= (phase[-1] - phase[0]) / (values.size - 1) * centre  # by their mean turning
     grid = np.arange(values.size)
     turned = interpolate.CubicSpline(place, phase / (2.0 * np.pi))(grid)
     return frequency * grid + turned, bool(np.min(size) > 0.5 * np.median(size))
