@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import json
+import struct
 import sys
 import warnings
 from collections.abc import Callable, Sequence
@@ -320,6 +321,71 @@ def test_samples_marked_invalid_are_missing(tmp_path: Path) -> None:
     file.close()
     found = read_record(tmp_path / "a.mf4")
     assert np.array_equal(np.isnan(values(found)), wrong)
+
+
+def element(kind: int, content: bytes) -> bytes:
+    return struct.pack("<II", kind, len(content)) + content + bytes(-len(content) % 8)
+
+
+@pytest.mark.parametrize("beside", [False, True])
+@pytest.mark.parametrize("name", ["five.mat", "seven.mat"])
+def test_tables_of_matlab_are_named_with_the_way_out(
+    tmp_path: Path, name: str, beside: bool
+) -> None:
+    """A table is an object: its numbers lie in a variable without a name, or in #subsystem#."""
+    path = tmp_path / name
+    if name == "five.mat":
+        io.savemat(path, {"acc": LINE} if beside else {})
+        words = b"T", b"MCOS", b"table"
+        table = element(6, struct.pack("<II", 17, 0)) + b"".join(element(1, w) for w in words)
+        hidden = element(6, struct.pack("<II", 9, 0)) + element(5, struct.pack("<ii", 1, 4000))
+        hidden += element(1, b"") + element(2, bytes(4000))
+        path.write_bytes(path.read_bytes() + element(14, table) + element(14, hidden))
+    else:
+        with h5py.File(path, "w") as file:
+            file["T"] = np.zeros((1, 6), "u4")
+            file["T"].attrs["MATLAB_class"] = np.bytes_("table")
+            file["T"].attrs["MATLAB_object_decode"] = 3
+            if beside:
+                file["acc"] = LINE
+    if beside:
+        found = read_record(path)
+        assert found.names == ("acc",)
+        assert [one.data for one in found.notices if one.code == "objects_left_aside"] == [
+            {"arrays": ["T (table)"]}
+        ]
+    else:
+        with pytest.raises(InputError, match=r"T \(table\); .*table2struct"):
+            read_record(path)
+
+
+def test_cells_and_arrays_of_structures_of_seven_are_those_of_five(tmp_path: Path) -> None:
+    many = np.zeros((1, 2), dtype=[("y", object), ("unit", object)])
+    many["y"][0], many["unit"][0] = [LINE, -LINE], ["g", "g"]
+    cells = np.empty((1, 2), object)
+    cells[0, 0], cells[0, 1] = 2.0 * LINE, 3.0 * LINE
+    io.savemat(tmp_path / "five.mat", {"c": cells, "run": many, "fs": RATE})
+    with h5py.File(tmp_path / "seven.mat", "w") as file:
+        kept = []
+        for k, value in enumerate((2.0 * LINE, 3.0 * LINE, LINE, -LINE, "g", "g")):
+            text = isinstance(value, str)
+            data = np.array([[ord("g")]], "u2") if text else np.atleast_2d(value)
+            file[f"#refs#/{k}"] = data
+            file[f"#refs#/{k}"].attrs["MATLAB_class"] = np.bytes_("char" if text else "double")
+            kept.append(file[f"#refs#/{k}"].ref)
+        for at, first in (("c", 0), ("run/y", 2), ("run/unit", 4)):
+            pair = np.array([kept[first : first + 2]], h5py.ref_dtype).T
+            file.create_dataset(at, data=pair, dtype=h5py.ref_dtype)
+        file["c"].attrs["MATLAB_class"] = np.bytes_("cell")
+        file["run"].attrs["MATLAB_class"] = np.bytes_("struct")
+        file["fs"] = [[RATE]]
+    five, seven = (read_record(tmp_path / f"{name}.mat") for name in ("five", "seven"))
+    assert sorted(five.names) == sorted(seven.names) == ["c{1}", "c{2}", "run(1).y", "run(2).y"]
+    assert five.rate == seven.rate == RATE
+    for channel in five.channels:
+        twin = seven.channel(channel.name)
+        assert twin.unit == channel.unit == ("g" if "run" in channel.name else None)
+        np.testing.assert_array_equal(twin.values(), channel.values())
 
 
 def test_each_block_under_one_header_is_a_record(tmp_path: Path) -> None:

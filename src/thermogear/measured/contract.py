@@ -16,6 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
+from thermogear.base.errors import InputError
 from thermogear.measured.choosing import is_time_column, time_column
 from thermogear.measured.options import places_of, refused
 from thermogear.measured.parts import common_span, cut, with_gaps
@@ -63,12 +64,12 @@ def agreed(bases: Sequence[TimeBase], notices: list[Notice]) -> TimeBase:
     """The time base that all places of a file agree on: the rate best known, start, gaps and
     jitter of the stamps. Rates that differ by more than 0.1 % and their half widths are used by
     none."""
-    stamped = next((one for one in bases if one.by_stamps), UNSTATED)
-    told = tuple(notice for one in bases for notice in one.notices)
-    unsaid = replace(stamped, rate=None, origin="", half_width=0.0, note="", notices=told)
-    known = [one for one in bases if one.rate is not None]
+    stamped = next((base for base in bases if base.by_stamps), UNSTATED)
+    notes = tuple(notice for base in bases for notice in base.notices)
+    unsaid = replace(stamped, rate=None, origin="", half_width=0.0, note="", notices=notes)
+    known = [base for base in bases if base.rate is not None]
     if not known:
-        return unsaid if stamped.by_stamps or told else UNSTATED
+        return unsaid if stamped.by_stamps or notes else UNSTATED
     best = known[0]
     for other in known[1:]:
         rate, second = best.rate or np.nan, other.rate or np.nan
@@ -87,14 +88,14 @@ def agreed(bases: Sequence[TimeBase], notices: list[Notice]) -> TimeBase:
         if other.by_stamps and max(best.half_width, abs(second - rate)) > other.half_width:
             best = other
     if not stamped.by_stamps:
-        return replace(best, notices=told)
+        return replace(best, notices=notes)
     return replace(
         stamped,
         rate=best.rate,
         origin=best.origin,
         half_width=best.half_width,
         note=best.note,
-        notices=told,
+        notices=notes,
     )
 
 
@@ -109,29 +110,31 @@ def stated_rate(rate: float, origin: str, notices: list[Notice]) -> TimeBase:
 def timed(stated: Sequence[Stated], notices: list[Notice]) -> list[Stated]:
     """The channels without the times among them, which give their base to those as long as they in
     the same structure or group, else in the whole file."""
-    leaves = [_LEAF.search(one.channel.name)[0] for one in stated]  # type: ignore[index]
+    leaves = [_LEAF.search(signal.channel.name)[0] for signal in stated]  # type: ignore[index]
     times = [
-        i for i, one in enumerate(stated) if is_time_column(leaves[i].strip("./"), one.channel.unit)
+        i
+        for i, signal in enumerate(stated)
+        if is_time_column(leaves[i].strip("./"), signal.channel.unit)
     ]
-    known = any(one.base.rate is not None for one in stated)
+    known = any(signal.base.rate is not None for signal in stated)
     by_times: dict[tuple[int, ...], TimeBase] = {}
     # what all channels of one base share is agreed on once
     settled: dict[tuple[int, tuple[int, ...]], TimeBase] = {}
-    found = []
-    for place, one in enumerate(stated):
+    signals = []
+    for place, signal in enumerate(stated):
         if place in times:
             continue
-        same = [i for i in times if len(stated[i].channel) == len(one.channel)]
-        parent = one.channel.name.removesuffix(leaves[place])
-        own = [i for i in same if stated[i].channel.name == parent + leaves[i]]
-        those = tuple(own or same)
+        same = [i for i in times if len(stated[i].channel) == len(signal.channel)]
+        parent = signal.channel.name.removesuffix(leaves[place])
+        in_group = [i for i in same if stated[i].channel.name == parent + leaves[i]]
+        those = tuple(in_group or same)
         if those not in by_times:
             by_times[those] = _by_time([stated[i].channel for i in those], known, notices)
-        key = id(one.base), those
+        key = id(signal.base), those
         if key not in settled:
-            settled[key] = agreed([one.base, by_times[those]], notices) if those else one.base
-        found.append(replace(one, base=settled[key]))
-    return found
+            settled[key] = agreed([signal.base, by_times[those]], notices) if those else signal.base
+        signals.append(replace(signal, base=settled[key]))
+    return signals
 
 
 def _by_time(times: Sequence[Channel], known: bool, notices: list[Notice]) -> TimeBase:
@@ -166,8 +169,10 @@ def record_of_channels(
     Raises InputError where no channel is left.
     """
     notes = list(notices)
-    of_time = [one for one in stated if one.axis != "frequency" and len(one.channel) > 0]
-    spectra = [one.channel.name for one in stated if one.axis == "frequency"]
+    of_time = [
+        signal for signal in stated if signal.axis != "frequency" and len(signal.channel) > 0
+    ]
+    spectra = [signal.channel.name for signal in stated if signal.axis == "frequency"]
     if spectra and not of_time:
         why = f"it holds spectra, as {spectra[0]!r}, and no samples over time"
         raise refused(path, kind, why, "export the time record that they were computed from")
@@ -178,15 +183,15 @@ def record_of_channels(
         raise refused(path, kind, why)
     if spectra:
         notes.append(Notice.of("spectra_left_aside", channels=spectra))
-    if any(one.count is not None and one.count > len(one.channel) for one in of_time):
+    if any(signal.count is not None and signal.count > len(signal.channel) for signal in of_time):
         notes.append(Notice.of("data_cut_off"))
-    notes += [notice for one in of_time for notice in one.base.notices]
-    raw = [one.channel.name for one in of_time if one.unscaled]
+    notes += [notice for signal in of_time for notice in signal.base.notices]
+    raw = [signal.channel.name for signal in of_time if signal.unscaled]
     if raw:
         notes.append(Notice.of("scaling_not_applied", channels=raw))
-    of_time = [_as_read(one) for one in of_time]
-    channels, doubled = without_doubles([one.channel for one in of_time], path.name)
-    by_samples = {id(one.channel.samples): one for one in of_time}
+    of_time = [_as_read(signal) for signal in of_time]
+    channels, doubled = without_doubles([signal.channel for signal in of_time], path.name)
+    by_samples = {id(signal.channel.samples): signal for signal in of_time}
     of_time = [replace(by_samples[id(c.samples)], channel=c) for c in channels]
     kept, first = _kept(of_time, keep)
     groups = _groups(kept)
@@ -201,26 +206,26 @@ def record_of_channels(
     )
 
 
-def _as_read(one: Stated) -> Stated:
+def _as_read(signal: Stated) -> Stated:
     """The channel between pauses, lost samples put in; of one not scaled the unit is withheld."""
-    channel = one.channel
-    if one.base.stretch is not None:
-        first, stop = one.base.stretch
+    channel = signal.channel
+    if signal.base.stretch is not None:
+        first, stop = signal.base.stretch
         channel = cut(channel, first=first, count=stop - first)
-    if one.base.gaps:
-        channel = with_gaps(channel, one.base.gaps)
-    if one.unscaled:
+    if signal.base.gaps:
+        channel = with_gaps(channel, signal.base.gaps)
+    if signal.unscaled:
         channel = replace(channel, needs_scale=True, unit=None)
-    return replace(one, channel=channel)
+    return replace(signal, channel=channel)
 
 
 def _kept(stated: list[Stated], keep: tuple[str, ...]) -> tuple[list[Stated], Stated | None]:
     """The channels to keep, what tells a shaft's angle with them; and the first that is named."""
     if not keep:
         return stated, None
-    places = places_of(keep, [one.channel.name for one in stated])
-    wanted = {*places, *(i for i, one in enumerate(stated) if _tells_angle(one.channel))}
-    return [one for i, one in enumerate(stated) if i in wanted], stated[places[0]]
+    places = places_of(keep, [signal.channel.name for signal in stated])
+    wanted = {*places, *(i for i, signal in enumerate(stated) if _tells_angle(signal.channel))}
+    return [signal for i, signal in enumerate(stated) if i in wanted], stated[places[0]]
 
 
 def _tells_angle(channel: Channel) -> bool:
@@ -233,21 +238,21 @@ def _groups(stated: list[Stated]) -> list[list[Stated]]:
     One of which the file states no time joins the first group as long as it.
     """
     groups: list[list[Stated]] = []
-    for one in sorted(stated, key=lambda each: each.base is UNSTATED):
-        group = next((g for g in groups if _together(g[0], one)), None)
+    for signal in sorted(stated, key=lambda each: each.base is UNSTATED):
+        group = next((g for g in groups if _together(g[0], signal)), None)
         if group is None:
-            groups.append([one])
+            groups.append([signal])
         else:
-            group.append(one)
-    order = {id(one): place for place, one in enumerate(stated)}
+            group.append(signal)
+    order = {id(signal): place for place, signal in enumerate(stated)}
     return [sorted(group, key=lambda each: order[id(each)]) for group in groups]
 
 
-def _together(one: Stated, other: Stated) -> bool:
-    bases, lengths = (one.base, other.base), (len(one.channel), len(other.channel))
-    if other.base is UNSTATED or one.base is other.base:
-        return lengths[0] == lengths[1] and one.block == other.block
-    if one.axis != other.axis or one.block != other.block:
+def _together(first: Stated, second: Stated) -> bool:
+    bases, lengths = (first.base, second.base), (len(first.channel), len(second.channel))
+    if second.base is UNSTATED or first.base is second.base:
+        return lengths[0] == lengths[1] and first.block == second.block
+    if first.axis != second.axis or first.block != second.block:
         return False
     if bases[0].rate is None or bases[1].rate is None:
         return bases[0] == bases[1] and lengths[0] == lengths[1]
@@ -262,15 +267,15 @@ def _weight(group: list[Stated]) -> tuple[bool, int]:
     """What ranks groups: whether one of the channels may vibrate, then how long they are."""
     vibrates = any(
         not is_tacho_name(c.name) and (c.unit is None or kind_of(c.unit) not in OTHER)
-        for c in (one.channel for one in group)
+        for c in (signal.channel for signal in group)
     )
     return vibrates, len(group[0].channel)
 
 
-def _own_time(one: Stated, chosen: Stated) -> bool:
+def _own_time(signal: Stated, chosen: Stated) -> bool:
     """Whether a channel left out of the record has a time base of its own."""
-    known = one.base.rate is not None and one.axis == "time"
-    return known and one.base is not chosen.base and one.block == chosen.block
+    known = signal.base.rate is not None and signal.axis == "time"
+    return known and signal.base is not chosen.base and signal.block == chosen.block
 
 
 def _tell_of_rest(
@@ -280,16 +285,16 @@ def _tell_of_rest(
     notes: list[Notice],
 ) -> None:
     """Say which channels are not in the record, and why."""
-    rest = [one for g in groups if g is not chosen and g not in others for one in g]
-    blocks = [one for one in rest if one.block != chosen[0].block]
-    aside = [one.channel.name for one in rest if one.block == chosen[0].block]
+    rest = [signal for g in groups if g is not chosen and g not in others for signal in g]
+    blocks = [signal for signal in rest if signal.block != chosen[0].block]
+    aside = [signal.channel.name for signal in rest if signal.block == chosen[0].block]
     if blocks:
         notes.append(
             Notice.of(
                 "several_blocks",
                 read=chosen[0].block,
                 samples=len(chosen[0].channel),
-                channels=[one.channel.name for one in blocks],
+                channels=[signal.channel.name for signal in blocks],
             )
         )
     if aside:
@@ -299,7 +304,7 @@ def _tell_of_rest(
         notes.append(
             Notice.of(
                 "channels_of_own_time",
-                channels=[one.channel.name for g in others for one in g],
+                channels=[signal.channel.name for g in others for signal in g],
                 rates=[g[0].base.rate for g in others],
             )
         )
@@ -307,10 +312,13 @@ def _tell_of_rest(
 
 def _joined(path: Path, group: list[Stated], notes: list[Notice]) -> Record:
     """One record of channels sampled together, cut to the time that they have in common."""
-    base = next((one.base for one in group if one.base is not UNSTATED), UNSTATED)
-    channels = [one.channel for one in group]
-    starts = [base.start if one.base is UNSTATED else one.base.start for one in group]
+    base = next((signal.base for signal in group if signal.base is not UNSTATED), UNSTATED)
+    channels = [signal.channel for signal in group]
+    starts = [base.start if signal.base is UNSTATED else signal.base.start for signal in group]
     begin, shifts, count = common_span(starts, [len(c) for c in channels], rate=base.rate)
+    if count < 1:
+        why = f"its channels have no time in common, as {channels[0].name!r} with the others"
+        raise InputError("file", path.name, why=why, fix="name channels of one time by --channel")
     if any(shifts):
         notes.append(Notice.of("cut_to_common_start", samples=max(shifts)))
     short = min(channels, key=len)
@@ -322,8 +330,8 @@ def _joined(path: Path, group: list[Stated], notes: list[Notice]) -> Record:
     if angle:
         notes.append(Notice.of("x_is_angle", channel=channels[0].name, per_turn=base.rate))
     elif group[0].axis != "time":
-        told = Notice.of("step_is_no_time", dimension=group[0].axis, channel=channels[0].name)
-        notes.append(told)
+        notice = Notice.of("step_is_no_time", dimension=group[0].axis, channel=channels[0].name)
+        notes.append(notice)
     timely = base if group[0].axis == "time" else UNSTATED
     return Record(
         tuple(cut(c, first=shift, count=count) for c, shift in zip(channels, shifts, strict=True)),

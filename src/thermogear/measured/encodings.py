@@ -34,17 +34,17 @@ def encoding_of(head: bytes) -> Encoding:
     """
     text = head.decode("gb18030", "replace")
     votes, signs, known = 0, 0, 0
-    for found in _HIGH.finditer(text):
-        around = text[max(found.start() - 1, 0)], text[found.end() : found.end() + 1]
-        alone = len(found.group()) == 1 and all(map(str.isalpha, around))
-        for raw in (sign.encode("gb18030") for sign in found.group()):
+    for run in _HIGH.finditer(text):
+        around = text[max(run.start() - 1, 0)], text[run.end() : run.end() + 1]
+        alone = len(run.group()) == 1 and all(map(str.isalpha, around))
+        for raw in (sign.encode("gb18030") for sign in run.group()):
             votes += 1 if len(raw) == 4 or (raw[1] >= 0xA1 and not alone) else -1
             signs += 1
             known += len(raw) == 4 or (raw[1] >= 0xA1 and 0xA1 <= raw[0] <= 0xD7)
     if votes > 0 and "\ufffd" not in text:
         return Encoding("gb18030", "GBK", known >= _LIKELY * signs)
     european = head.decode("cp1252", "replace")
-    longest = max((len(one) for one in _HIGH.findall(european)), default=0)
+    longest = max((len(run) for run in _HIGH.findall(european)), default=0)
     latin = all(sign < "\x80" or sign >= "\xa0" for sign in head.decode("latin-1"))
     name = "Latin-1" if latin else "Windows-1252"
     return Encoding("cp1252", name, longest <= _LONGEST_RUN and "\ufffd" not in european)

@@ -78,10 +78,12 @@ class _Contents:
             if not reference:
                 continue
             target = self._file[reference]
-            own = f"{name}{{{number}}}" if cells else f"{parent}({number})/{field}"
-            self.visit(own, target)
+            path = f"{name}{{{number}}}" if cells else f"{parent}({number})/{field}"
+            self.visit(path, target)
             if hasattr(target, "visititems"):
-                target.visititems(lambda inner, each, own=own: self.visit(f"{own}/{inner}", each))
+                target.visititems(
+                    lambda inner, each, path=path: self.visit(f"{path}/{inner}", each)
+                )
 
     def _array(self, name: str, item: Any) -> None:
         if "MATLAB_class" in item.attrs:

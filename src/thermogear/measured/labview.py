@@ -62,15 +62,12 @@ class Waves:
             return "time"
         return "frequency" if "freq" in self.dimension.lower() else self.dimension
 
-    @property
-    def samples(self) -> int:
-        """Samples of a block, the most of its channels; 0 where the header does not say."""
-        return int(max((_number(wave.count) for wave in self.waves), default=0.0))
-
-    def held(self, column: int) -> int:
-        """Samples of a block of the channel in a column, or of the channel behind that X column."""
+    def samples(self, column: int) -> tuple[int, int]:
+        """Samples of a block, and of those the samples of the channel in a column or behind that X
+        column; 0 where the header does not say."""
+        most = int(max(_number(wave.count) for wave in self.waves))
         wave = self.columns.get(column, self.columns.get(column + 1))
-        return self.samples if wave is None else int(_number(wave.count))
+        return most, most if wave is None else int(_number(wave.count))
 
     def placed(self, columns: int) -> Waves:
         """The same with the wave of each of the table's ``columns``: behind one X column, each

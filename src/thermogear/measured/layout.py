@@ -171,7 +171,7 @@ def _separator(body: list[str], options: ReadOptions, path: Path) -> tuple[str |
             points = sum(bool(re.search(r"\d\.\d", line)) for line in sample)
             if commas and points:
                 signs = [options.decimal] if options.decimal else [",", "."]
-                grouped = [one for one in signs if _groups(sample, separator, one)]
+                grouped = [sign for sign in signs if _groups(sample, separator, sign)]
                 if len(grouped) == 1:
                     return separator, grouped[0], "," if grouped[0] == "." else "."
                 if options.decimal is None:

@@ -62,8 +62,8 @@ def read_from(asammdf: Any, path: Path, folder: Path) -> dict[str, Any]:
             master = file.masters_db.get(group)
             label = "" if master is None else str(whole.channels[master].unit or "")
             count = int(whole.channel_group.cycles_nr)
-            told = {"name": str(item.name), "unit": str(item.unit or ""), "axis": axis}
-            channels.append(told | {"group": group, "count": count, "axis_unit": label})
+            facts = {"name": str(item.name), "unit": str(item.unit or ""), "axis": axis}
+            channels.append(facts | {"group": group, "count": count, "axis_unit": label})
     return {"channels": channels}
 
 

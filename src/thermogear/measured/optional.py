@@ -91,39 +91,39 @@ def _tdms(nptdms: ModuleType, path: Path) -> list[Stated]:
     times = [item.properties.get("wf_start_time") for _, item in items]
     first = min((t for t in times if isinstance(t, np.datetime64)), default=None)
     cut = whole.file_status.incomplete_final_segment
-    found = []
+    stated = []
     for (group, item), time in zip(items, times, strict=True):
-        values, said = np.asarray(item[:]), item.properties
+        values, facts = np.asarray(item[:]), item.properties
         if values.dtype.kind not in "iuf" or values.size < 2:
             continue
-        start = float(said.get("wf_start_offset", 0.0))
+        start = float(facts.get("wf_start_offset", 0.0))
         if first is not None and isinstance(time, np.datetime64):
             start += float((time - first) / np.timedelta64(1, "s"))
-        step, origin = said.get("wf_increment"), f"wf_increment of {item.name}"
-        axis, factor = _axis(str(said.get("wf_xunit_string", "")), str(said.get("wf_xname", "")))
+        step, origin = facts.get("wf_increment"), f"wf_increment of {item.name}"
+        axis, factor = _axis(str(facts.get("wf_xunit_string", "")), str(facts.get("wf_xname", "")))
         base = UNSTATED
         if isinstance(step, float) and step > 0:
             base = step_base(step * factor, channel=item.name, start=start, origin=origin)
-        name, label = f"{group.name}/{item.name}", said.get("unit_string", "")
-        found.append(
+        name, label = f"{group.name}/{item.name}", facts.get("unit_string", "")
+        stated.append(
             Stated(
-                _channel(name, values, str(label or said.get("NI_UnitDescription", ""))),
+                _channel(name, values, str(label or facts.get("NI_UnitDescription", ""))),
                 base,
                 axis=axis,
                 count=values.size + 1 if cut else None,
-                unscaled=_unscaled(nptdms, said, group.properties, whole.properties),
+                unscaled=_unscaled(nptdms, facts, group.properties, whole.properties),
             )
         )
-    return found
+    return stated
 
 
 def _unscaled(nptdms: ModuleType, *properties: dict[str, Any]) -> bool:
     """Whether a channel, its group or its file states scales of which the library applies none."""
-    asked = any(
-        "NI_Scale[0]_Scale_Type" in said and said.get("NI_Scaling_Status") != "scaled"
-        for said in properties
+    scaled = any(
+        "NI_Scale[0]_Scale_Type" in facts and facts.get("NI_Scaling_Status") != "scaled"
+        for facts in properties
     )
-    return asked and nptdms.scaling.get_scaling(*properties) is None
+    return scaled and nptdms.scaling.get_scaling(*properties) is None
 
 
 def _axis(label: str, name: str = "") -> tuple[str, float]:
@@ -148,7 +148,7 @@ def read_uff(path: Path, options: ReadOptions) -> Record:
 
 def _uff(pyuff: ModuleType, path: Path) -> list[Stated]:
     sets = pyuff.UFF(str(path)).read_sets()
-    found = []
+    stated = []
     for number, item in enumerate([sets] if isinstance(sets, dict) else sets, start=1):
         values = np.asarray(item.get("data", ()))
         if item.get("type") != 58 or values.dtype.kind not in "iufc" or values.size < 2:
@@ -160,7 +160,7 @@ def _uff(pyuff: ModuleType, path: Path) -> list[Stated]:
         name = str(item.get("id1", "")).strip()
         name = "" if name == "NONE" else name
         label = str(item.get("ordinate_axis_units_lab", "")).strip()
-        found.append(
+        stated.append(
             Stated(
                 _channel(f"{name or 'set'} {number}", values, label),
                 _abscissa(item, factor, f"set {number}"),
@@ -168,7 +168,7 @@ def _uff(pyuff: ModuleType, path: Path) -> list[Stated]:
                 count=int(item["num_pts"]),
             )
         )
-    return found
+    return stated
 
 
 def _abscissa(item: dict[str, Any], factor: float, name: str) -> TimeBase:
@@ -199,16 +199,16 @@ def read_mdf(path: Path, options: ReadOptions) -> Record:
             raise refused(path, "MDF", read["error"])
         bases: dict[int, TimeBase] = {}
         stated = []
-        for number, one in enumerate(read["channels"]):
+        for number, facts in enumerate(read["channels"]):
             samples = np.load(folder / f"{number}.npy", allow_pickle=False)
-            group, axis = one["group"], one["axis"]
+            group, axis = facts["group"], facts["axis"]
             if group not in bases:
                 stamps = np.load(folder / f"stamps{group}.npy", allow_pickle=False)
-                label = one["axis_unit"] or ("rad" if axis == "angle" else "s")
-                name = f"master of {one['name']}"
+                label = facts["axis_unit"] or ("rad" if axis == "angle" else "s")
+                name = f"master of {facts['name']}"
                 bases[group] = longest_even(name, "s", stamps * _axis(label)[1])
-            channel = _channel(one["name"], samples, one["unit"])
-            stated.append(Stated(channel, bases[group], axis=axis, count=one["count"]))
+            channel = _channel(facts["name"], samples, facts["unit"])
+            stated.append(Stated(channel, bases[group], axis=axis, count=facts["count"]))
     return record_of_channels(path, "MDF", stated, keep=options.keep)
 
 

@@ -175,9 +175,10 @@ class Record:
 
     def _with_tacho(self, tacho: str | int) -> Record:
         others = tuple(
-            replace(one, tacho=str(tacho) if tacho in one.names else None) for one in self.others
+            replace(other, tacho=str(tacho) if tacho in other.names else None)
+            for other in self.others
         )
-        if any(one.tacho for one in others):
+        if any(other.tacho for other in others):
             return replace(self, tacho=None, others=others)
         try:
             named = self.channel(tacho).name

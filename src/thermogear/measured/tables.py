@@ -95,26 +95,26 @@ def record_of(
     a structure or a group states of the rate is of its own channels. A rate told twice in two ways
     is used by neither.
     """
-    told = _Told()
+    contents = _Told()
     arrays = _with_units(arrays)
-    for scope, facts in [*groups.items(), *((one.name, one.attributes) for one in arrays)]:
+    for scope, facts in [*groups.items(), *((array.name, array.attributes) for array in arrays)]:
         for key, value in facts.items():
-            told.number(str(key), value, f"attribute {key}", scope=scope)
+            contents.number(str(key), value, f"attribute {key}", scope=scope)
     for array in arrays:
-        told.array(array)
-    asides = [Notice.of("complex_left_aside", arrays=told.complex)] if told.complex else []
-    asides += [Notice.of("objects_left_aside", arrays=told.objects)] if told.objects else []
-    if asides and not told.channels:
+        contents.array(array)
+    asides = [Notice.of("complex_left_aside", arrays=contents.complex)] if contents.complex else []
+    asides += [Notice.of("objects_left_aside", arrays=contents.objects)] if contents.objects else []
+    if asides and not contents.channels:
         why = f"{asides[0].text}; no other array is as long as one"
         raise refused(path, kind, why, catalogue()[asides[0].code].to_do)
-    told.notes += asides
-    if not told.channels:
+    contents.notes += asides
+    if not contents.channels:
         raise refused(path, kind, "it holds no array of numbers as long as a record")
     units = [v for k, v in groups.get("", {}).items() if str(k).lower() in UNITS]
     of_all = unit(text_of(units[-1]) or "") if units else None
     if of_all is not None:
-        told.channels = [c if c.unit else replace(c, unit=of_all) for c in told.channels]
-    return record_of_channels(path, kind, told.stated(), told.notes, keep=options.keep)
+        contents.channels = [c if c.unit else replace(c, unit=of_all) for c in contents.channels]
+    return record_of_channels(path, kind, contents.stated(), contents.notes, keep=options.keep)
 
 
 @dataclass
@@ -186,32 +186,34 @@ class _Told:
     def stated(self) -> list[Stated]:
         """The channels with the rates that are theirs: of what they are in, else of the file."""
         agreed_on: dict[tuple[str, ...], TimeBase] = {}
-        found = []
+        stated = []
         for channel in self.channels:
             scopes = tuple(dict.fromkeys(s for s, _ in self.rates if _is_in(channel.name, s)))
             if scopes not in agreed_on:
                 bases = [base for scope, base in self.rates if scope in scopes or not scopes]
                 agreed_on[scopes] = agreed(bases, self.notes)
-            found.append(Stated(channel, agreed_on[scopes]))
-        return timed(found, self.notes)
+            stated.append(Stated(channel, agreed_on[scopes]))
+        return timed(stated, self.notes)
 
 
 def _with_units(arrays: Sequence[Named]) -> list[Named]:
     """The arrays with the units that their own structures state as texts; clocks and single numbers
     aside."""
-    parted = [(*one.name.rpartition("."), one.data) for one in arrays if isinstance(one.data, str)]
+    parted = [
+        (*array.name.rpartition("."), array.data) for array in arrays if isinstance(array.data, str)
+    ]
     units = {structure: text for structure, dot, leaf, text in parted
              if dot and leaf.lower() in UNITS and text}  # fmt: skip
-    found = []
+    kept = []
     for array in arrays:
         if isinstance(array.data, str):
             continue
         structure, _, leaf = array.name.rpartition(".")
-        said = units.get(structure)
-        if said is not None and not is_time_name(leaf) and math.prod(array.shape) > 1:
-            array = replace(array, attributes={"units": said} | array.attributes)
-        found.append(array)
-    return found
+        label = units.get(structure)
+        if label is not None and not is_time_name(leaf) and math.prod(array.shape) > 1:
+            array = replace(array, attributes={"units": label} | array.attributes)
+        kept.append(array)
+    return kept
 
 
 def _parent(name: str) -> str:
@@ -221,7 +223,7 @@ def _parent(name: str) -> str:
 
 def _is_in(name: str, scope: str) -> bool:
     """Whether an array is the one named, or in the structure or group named; "" is the file."""
-    return not scope or re.match(re.escape(scope) + r"($|[./\[{(])", name) is not None
+    return not scope or name == scope or name.startswith(tuple(scope + sign for sign in "./[{("))
 
 
 def _flat(array: Named) -> Samples:

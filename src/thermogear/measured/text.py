@@ -292,30 +292,32 @@ def _record(
     for i, column in zip(keep, columns, strict=True):
         strange = layout.strange.get(i, "")
         channel = Channel(layout.names[i], column, layout.units[i], strange=strange)
-        place, one = 0, Stated(channel, header)
+        place, signal = 0, Stated(channel, header)
         if waves is not None and i in waves.columns:
             wave = waves.columns[i]
             base = wave.base(layout.names[i]) if header is UNSTATED else header
-            place, one = waves.own_time(i), replace(one, base=base, axis=waves.axis)
+            place, signal = waves.own_time(i), replace(signal, base=base, axis=waves.axis)
         elif waves is not None:
             place = i
             if _empty(column):  # X_Columns No
                 continue
-        by, held = (0, 0) if waves is None else (waves.samples, waves.held(i))
-        for block in _blocks(one, by, held):
+        by, held = (0, 0) if waves is None else waves.samples(i)
+        for block in _blocks(signal, by, held):
             together.setdefault((place, block.block), []).append(block)
-    stated = [one for some in together.values() for one in timed(some, notices)]
+    stated = [signal for some in together.values() for signal in timed(some, notices)]
     return record_of_channels(path, "text", stated, notices, keep=named)
 
 
-def _blocks(one: Stated, by: int, held: int) -> list[Stated]:
+def _blocks(signal: Stated, by: int, held: int) -> list[Stated]:
     """A channel's blocks under one LabVIEW header: one ``by`` so many rows, ``held`` by the
     channel; all of it where the header does not say (0)."""
-    channel, blocks = one.channel, []
+    channel, blocks = signal.channel, []
     for k, first in enumerate(range(0, len(channel), by or len(channel)), start=1):
         part = cut(channel, first=first, count=min(held or len(channel), len(channel) - first))
         name = channel.name if k == 1 else f"{channel.name} (block {k})"
-        blocks.append(replace(one, channel=replace(part, name=name), count=held or None, block=k))
+        blocks.append(
+            replace(signal, channel=replace(part, name=name), count=held or None, block=k)
+        )
     return blocks
 
 

@@ -191,7 +191,7 @@ def longest_even(name: str, unit_name: str | None, t: Floats, *, stated: bool = 
     longest = int(np.argmax(np.diff(edges)))
     first, stop = int(edges[longest]), int(edges[longest + 1])
     part = read_time(name, unit_name, t[first:stop], stated=stated)
-    told = Notice.of(
+    notice = Notice.of(
         "time_pauses",
         column=name,
         places=rows.size,
@@ -199,7 +199,7 @@ def longest_even(name: str, unit_name: str | None, t: Floats, *, stated: bool = 
         first=first,
         last=stop - 1,
     )
-    stretch = replace(part, stretch=(first, stop), notices=(told, *part.notices))
+    stretch = replace(part, stretch=(first, stop), notices=(notice, *part.notices))
     return base if part.rate is None else stretch
 
 
