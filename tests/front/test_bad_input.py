@@ -559,8 +559,8 @@ def test_path_with_a_zero_byte(failing: Run) -> None:
         (("rn",), "unknown command 'rn'; did you mean 'run'?"),
         (("frobnicate",), "unknown command 'frobnicate'; did you mean 'friction'?"),
         (
-            ("run", "x.toml", "--forse"),
-            "No such option '--forse'. Did you mean '--force'?",
+            ("run", "x.toml", "--forced"),
+            "No such option '--forced'. Did you mean '--force'?",
         ),
         (("run", "x.toml"), "Missing option '-o' / '--output'."),
         (("run",), "Missing argument 'CASE'."),

@@ -24,7 +24,6 @@ from thermogear.base.vocabulary import (
     labelled,
 )
 from thermogear.case.case import GearCase
-from thermogear.case.thesis_cases import of_the_thesis
 from thermogear.heat.film import regime_shares
 from thermogear.heat.scuffing import scuffing_margin, scuffing_temperature
 from thermogear.mesh.balance import HeatBalance
@@ -33,14 +32,11 @@ from thermogear.mesh.body_estimates import ESTIMATES, body_estimates
 from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
-from thermogear.mesh.trends import conclusion, verdicts
 from thermogear.results.beside import from_data
 from thermogear.results.result import Notice, Result
 from thermogear.study.declared import Temperature, declared
 from thermogear.study.notices import heat_notices, jam_notices, turn_notices
 from thermogear.study.scuffing import load_stage, not_steel
-
-LUBRICATIONS = ("mixed", "dry")
 
 PATH_POSITIONS = 81
 MESH_POSITIONS = 64
@@ -65,52 +61,35 @@ def thermal_map(
 
     Groups: ``map`` over (pinion_speed, pinion_torque), ``status`` per point (ok, jammed,
     no_oil_bath; not_converged, heat_not_settled: every number is nan) with ``iterations`` and
-    ``residual``, and ``several`` where from hot another state is steady than the one told;
-    ``conclusion`` (friction, flash and growth, mixed and dry, with rank correlations).
-    For the thesis's rig ``verdicts`` (attribute) say what holds of the
-    thesis's first conclusion.
+    ``residual``, and ``several`` where from hot another state is steady than the one told.
     """
     began = time.perf_counter()
     model = case.models[0]
-    friction = "benedict-kelley" if model.friction == "dry" else model.friction
-    models = {
-        "mixed": model.override(friction=friction),
-        "dry": model.override(friction="dry"),
-    }
     omega = np.repeat(np.asarray(speeds, dtype=float), len(torques))
     moment = np.tile(np.asarray(torques, dtype=float), len(speeds))
     shape = (len(speeds), len(torques))
     blocks = range(0, omega.size, BLOCK)
-    total, done = len(blocks) * len(models), 0
-    points: dict[str, list[xr.Dataset]] = {name: [] for name in models}
-    for name, one in models.items():
-        for start in blocks:
-            progress("closed loop", done, total)
-            part = slice(start, start + BLOCK)
-            points[name].append(_points(case, one, omega[part], moment[part]))
-            done += 1
-    progress("closed loop", total, total)
+    points: list[xr.Dataset] = []
+    for done, start in enumerate(blocks):
+        progress("closed loop", done, len(blocks))
+        part = slice(start, start + BLOCK)
+        points.append(_points(case, model, omega[part], moment[part]))
+    progress("closed loop", len(blocks), len(blocks))
     seconds = time.perf_counter() - began
-    chosen_law = "dry" if model.friction == "dry" else "mixed"
-    why = [r for part in points[chosen_law] for r in json.loads(part.attrs["lost"]).values()]
-    wholes = {name: xr.concat(parts, "operating") for name, parts in points.items()}
-    grids = {name: _on_grid(whole, speeds, torques, shape) for name, whole in wholes.items()}
-    checked = conclusion({name: grids[name] for name in LUBRICATIONS})
-    chosen = grids[chosen_law]
+    why = [r for part in points for r in json.loads(part.attrs["lost"]).values()]
+    grid = _on_grid(xr.concat(points, "operating"), speeds, torques, shape)
     return Result.of(
         Temperature.kind,
-        f"{_heading(chosen)}: {case.title}",
-        {"map": chosen, "conclusion": checked},
-        _notices(case, chosen, seconds, why),
+        f"{_heading(grid)}: {case.title}",
+        {"map": grid},
+        _notices(case, grid, seconds, why),
         **case.provenance,
         bundle=model.name,
         choices=model.choices(),
-        laws={name: one.choices()["friction"] for name, one in models.items()},
         held={name: float(np.ravel(t)[0]) for name, t in case.gearbox.measured.items()},
         scuffing_load_stage=case.scuffing_load_stage,
         cold_half_backlash=case.cold_backlash.half,
         seconds=seconds,
-        verdicts=verdicts(checked) if of_the_thesis(case) else [],
     )
 
 
@@ -203,9 +182,6 @@ def _gathered(case: GearCase, settled: HeatBalance, cycle: xr.Dataset) -> xr.Dat
         "K",
         "body temperature by an ISO report",
     )
-    by = ("operating", "path_position")
-    for name in ("friction_coefficient", "flash_temperature"):
-        variables[f"{name.partition('_')[0]}_along"] = labelled(name, (by, cycle[name].values))
     merged = data.assign(variables)
     status = np.where(settled.settled, cycle["status"].values, HEAT_NOT_SETTLED)
     lost = ~is_known(status)
@@ -224,7 +200,6 @@ def _gathered(case: GearCase, settled: HeatBalance, cycle: xr.Dataset) -> xr.Dat
     return blanked(merged, lost).assign_coords(
         regime_name=list(REGIMES),
         estimate=list(ESTIMATES),
-        path_position=labelled("path_position", cycle["path_position"].values),
     )
 
 

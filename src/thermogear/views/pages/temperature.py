@@ -19,7 +19,7 @@ from thermogear.views.pages.survey import OPERATING, survey
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import INK, OKABE_ITO, WIDE, names_of, scale
 from thermogear.views.tables import is_settled
-from thermogear.views.typesetting import jam_at, prose
+from thermogear.views.typesetting import jam_at
 
 KINDS = ("temperature",)
 
@@ -39,19 +39,7 @@ def page(result: Result) -> Page:
                 wide=True,
             )
         )
-    rows = result.rows("verdicts")
     told = [reaches("Over all operating points.", REACH, data)]
-    if rows:
-        caption = (
-            "The thesis's first conclusion, checked over the map. Rank correlations with speed and "
-            "torque are means over the lines of the grid."
-        )
-        told.append(
-            declared(
-                caption, CONCLUSION, rows, names=3,
-                marked=lambda row: row["verdict"] != "holds", wordy=True,
-            )
-        )  # fmt: skip
     status = data["status"].values
     count = {word: int((status == place).sum()) for place, word in enumerate(STATUS)}
     summary = (
@@ -71,7 +59,6 @@ def page(result: Result) -> Page:
             "points": status.size,
             **by_name(data, IN_JSON),
             "units": units(IN_JSON, data),
-            "conclusion": rows,
         },
         told=told,
     )
@@ -94,13 +81,6 @@ IN_JSON = (
     key("least_half_backlash"),
     key("residual"),
     *REACH,
-)
-
-
-CONCLUSION = (
-    Column("claim", "claim"),
-    Column("found", lambda row: prose(row["found"])),
-    Column("verdict", "verdict"),
 )
 
 
