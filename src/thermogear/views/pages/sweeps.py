@@ -62,9 +62,9 @@ EXPLAINED = {
 
 
 OF_SERIES = (
-    " Of the series of the case's class, pairs over their turns, the worse of two starts: band, median (long "
-    "dashes) and what one pair in ten exceeds. All else is of one pair, the case's own drawing: "
-    "its mean tooth, unless its turn is asked for."
+    " Of the series of the case's class, pairs over their turns, the worse of two starts: band, "
+    "median (long dashes) and what one pair in ten exceeds. All else is of one pair, the case's "
+    "own drawing: its mean tooth, unless its turn is asked for."
 )
 LOST_MAP = (
     "Teeth: whether the drive flanks part at some moment of the settled motion, and whether the "
