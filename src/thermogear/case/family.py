@@ -245,7 +245,7 @@ class GearFamily:
         ``want`` names them (:func:`~thermogear.mesh.cycle.mesh_cycle`), and "oil_temperature",
         "tooth_temperature" (the hotter addendum), "pinion_temperature" (its addendum) [K], and as
         objects "hot_pair", the pair of the row alone as hot as it is, and "case", whose gears and
-        flanks it has: what varies in columns stands in the pair; only they are computed.
+        flanks it has: what varies in columns is in the pair; only they are computed.
         ``path_positions`` along the path of contact, where a quantity runs over it.
         With them ``status``: a row that no case could have ("impossible"), or whose heat or mesh
         does not settle, is nan, and the others do not notice.

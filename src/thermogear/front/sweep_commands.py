@@ -270,7 +270,7 @@ def runup(
 ) -> None:
     """Run CASE up and down in speed, without heat and hot: error, mesh force, K_v, jumps.
 
-    Of a case in series (a class and no seed) the band of its pairs stands behind the one followed.
+    Of a case in series (a class, no seed) the band of its pairs is drawn behind the one followed.
     """
     from thermogear.case.thermal_state import UNDEFORMED, ThermalState
     from thermogear.study.run_up import run_up_plan
