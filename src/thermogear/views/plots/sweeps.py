@@ -59,7 +59,8 @@ def classes_of(data: Dataset) -> NDArray[np.int64]:
         (label > 3, label + 7), (label == 3, 10), (label == 2, 8), (periodic & (period > 8), 7),
         (periodic & (period > 6), 6), (periodic, np.clip(period, 1, 6) - 1),
     )  # fmt: skip
-    return np.asarray(np.select(*zip(*kinds, strict=True), default=9), np.int64)
+    where, codes = [one for one, _ in kinds], [code for _, code in kinds]
+    return np.asarray(np.select(where, codes, default=9), np.int64)
 
 
 def class_words(data: Dataset) -> list[str]:
