@@ -10,7 +10,6 @@ import pytest
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.base.vocabulary import STATUS
 from thermogear.dynamics.integrate import simulate
-from thermogear.dynamics.kernels.rk4 import advance_pair
 from thermogear.dynamics.lanes import Lanes
 from thermogear.dynamics.models import TorsionalModel
 
@@ -79,12 +78,3 @@ def test_the_adaptive_reference_does_not_step_where_nothing_is_known(
 ) -> None:
     with pytest.raises(ConvergenceError, match=r"^adaptive reference: "):
         simulate(Own(since, backlash), periods=2, initial_state=(0.5, 0.0), method="adaptive")
-
-
-def test_two_gears_that_lose_their_numbers_diverge() -> None:
-    tables = np.ones((3, 8))
-    tables[0, 3] = NAN
-    state, sections = np.zeros(4), np.empty((2, 4))
-    constants = np.array([1.0, 1.0, 0.1, 0.1, 1.0, 1.0, 0.1, 1e-3])
-    advance_pair(tables, constants, 0.1, state, sections, np.empty((0, 4)), 1)
-    assert np.isnan(sections).all()

@@ -18,7 +18,6 @@ from thermogear.case.case import GearCase, load_example
 from thermogear.case.size import require_points
 from thermogear.heat.scuffing import scuffing_temperature
 from thermogear.mesh.balance import heat_balance
-from thermogear.mesh.body_estimates import ESTIMATES, body_estimates
 from thermogear.mesh.cycle import mesh_cycle
 from thermogear.study.notices import heat_notices
 from thermogear.study.scuffing import load_stage, not_steel
@@ -103,18 +102,6 @@ def test_a_map_without_a_margin_keeps_its_axes(tree: xr.DataTree) -> None:
     speed, torque = data["pinion_speed"].values / RPM, data["pinion_torque"].values
     assert (empty.x.low, empty.x.high) == pytest.approx((speed.min(), speed.max()))
     assert (empty.y.low, empty.y.high) == (torque.min(), torque.max())
-
-
-def test_estimates_lie_above_the_oil_and_grow_with_the_loss() -> None:
-    case = rig('operating.torque=["0 N m", "100 N m", "300 N m"]', 'operating.speed="2000 rpm"')
-    oil = np.asarray(case.operating.oil_temperature)
-    found = body_estimates(case.pair, case.operating, np.array([0.0, 10.0, 20.0]))
-    assert found.shape == (len(ESTIMATES), 3)
-    np.testing.assert_allclose(found[:, 0], oil, rtol=1e-12)
-    assert np.all(np.diff(found, axis=1) > 0.0)
-    # sprayed gears are reckoned hotter
-    sprayed = body_estimates(case.pair, case.operating, np.array([0.0, 10.0, 20.0]), dipped=False)
-    np.testing.assert_allclose(sprayed - oil, 1.2 * (found - oil), rtol=1e-9, atol=1e-9)
 
 
 @pytest.mark.slow

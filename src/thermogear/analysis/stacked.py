@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermogear.analysis.maps import MapPlan
 from thermogear.base.arrays import Dataset
@@ -72,12 +70,6 @@ class StackedPlan:
     def sparing(self) -> StackedPlan:
         """The same with points spared where neighbours are alike."""
         return replace(self, plans=tuple(one.sparing() for one in self.plans))
-
-    def thinned(self, step: int) -> tuple[StackedPlan, Mapping[str, NDArray[np.int64]]]:
-        """Every ``step``-th value of both axes of each."""
-        thin = [one.thinned(step) for one in self.plans]
-        places = {AXIS: np.arange(len(self.plans)), **thin[0][1]}
-        return replace(self, plans=tuple(plan for plan, _ in thin)), places
 
     def compute(self, key: Key, before: Arrays | None, alive: Alive) -> Arrays:
         inner = None if before is None else {name: v[0] for name, v in before.items()}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -21,7 +21,7 @@ from thermogear.dynamics.kernels.rk4 import advance_rk4
 from thermogear.dynamics.lanes import Lanes
 from thermogear.dynamics.models import ClearanceModel, PairModel
 from thermogear.dynamics.outcome import DIVERGED, Result, dataset
-from thermogear.dynamics.pair import four_of, simulate_pair, with_angles
+from thermogear.dynamics.pair import angle_attributes, four_of, with_angles
 
 METHODS = {
     "exact": "event-exact affine maps",
@@ -224,15 +224,14 @@ def simulate(
         raise InputError("initial_state", start.tolist(), allowed="finite numbers")
     if not isinstance(model, ClearanceModel):
         data = _free(model, start, run)
-    elif isinstance(model, PairModel) and run.method != "exact":
-        data = simulate_pair(
-            model, run.method, start, **run.counts, steps=run.steps, tolerances=run.tolerances
-        )
     elif isinstance(model, PairModel):
         state = four_of(start, model)
-        x0, v0 = model.displacement(0.0, state)
-        data = _batch(model.lanes(), np.array([float(x0), float(v0)]), run, threads, progress)
-        data = with_angles(data, model, state)
+        if run.method == "adaptive":
+            data = _both_rotations(model, state, run)
+        else:
+            x0, v0 = model.displacement(0.0, state)
+            data = _batch(model.lanes(), np.array([float(x0), float(v0)]), run, threads, progress)
+            data = with_angles(data, model, state)
     else:
         data = _batch(model.lanes(), start, run, threads, progress)
     _give_units(data, si=isinstance(model, PairModel))
@@ -385,6 +384,17 @@ def _free(model: object, start: Floats, run: _Run) -> Dataset:
         return data
     data = _with_states(data, model, sections=sections, path=path)
     return data if relative is not None else data.drop_vars(["x", "v", "section_x", "section_v"])
+
+
+def _both_rotations(model: PairModel, start: Floats, run: _Run) -> Dataset:
+    """Two gears integrated as they are: four states, the tolerance that of their rotations."""
+    rtol, atol = run.tolerances
+    scaled = atol * model.half_backlash / max(model.base_radii)
+    data = _free(model, start, replace(run, tolerances=(rtol, scaled)))
+    for name in model.states:
+        for part in ("", "section_"):
+            data[part + name].attrs = angle_attributes(name)
+    return data
 
 
 def _with_states(data: Dataset, model: object, *, sections: Floats, path: Floats) -> Dataset:

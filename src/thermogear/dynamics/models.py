@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import Protocol, runtime_checkable
+from typing import ClassVar, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -337,6 +337,7 @@ class PairModel:
     half_backlash: float
     mesh_frequency: float
     mesh_periods: int = 1
+    states: ClassVar[tuple[str, ...]] = ("theta1", "theta2", "omega1", "omega2")
 
     def __post_init__(self) -> None:
         for name in ("inertias", "base_radii", "torques"):

@@ -300,8 +300,8 @@ class Friction(Study, kind="friction", home="thermogear.study.friction:friction_
 class Temperature(Study, kind="temperature", home="thermogear.study.temperature:thermal_map"):
     """Close the loop of friction and heat over speeds and torques: the map of everything hot.
 
-    Regime, flash and body temperature, backlash left, scuffing margin, ISO estimates. Steady states
-    alone: `warmup` follows the way there. Temperatures that CASE gives are not used; nodes that
+    Regime, flash and body temperature, backlash left, scuffing margin. Steady states alone:
+    `warmup` follows the way there. Temperatures that CASE gives are not used; nodes that
     [gearbox.measured] holds are. Writes temperature.nc, temperature.html, pictures and CSV.
     """
 

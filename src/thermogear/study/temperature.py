@@ -28,7 +28,6 @@ from thermogear.heat.film import regime_shares
 from thermogear.heat.scuffing import scuffing_margin, scuffing_temperature
 from thermogear.mesh.balance import HeatBalance
 from thermogear.mesh.balance_table import balance_dataset, blanked
-from thermogear.mesh.body_estimates import ESTIMATES, body_estimates
 from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
@@ -120,8 +119,7 @@ def _points(case: GearCase, model: MeshModel, speed: Floats, torque: Floats) -> 
 def _gathered(case: GearCase, settled: HeatBalance, cycle: xr.Dataset) -> xr.Dataset:
     data = balance_dataset(settled).drop_vars("heat_to_ambient")
     operating: Operating = settled.operating
-    flash, share = cycle["flash_temperature"], cycle["film_parameter"]
-    mean_flash = flash.mean("path_position").values
+    share = cycle["film_parameter"]
 
     def greatest(name: str) -> Floats:
         return np.asarray(cycle[name].max("path_position").values)
@@ -162,7 +160,6 @@ def _gathered(case: GearCase, settled: HeatBalance, cycle: xr.Dataset) -> xr.Dat
             "m",
             "greatest normal growth of both flanks together",
         ),
-        "mean_flash": (mean_flash, "K", "flash temperature, mean along the path"),
     }
     along = ("operating",)
     variables = {name: dressed(along, *entry) for name, entry in figures.items()}
@@ -175,12 +172,6 @@ def _gathered(case: GearCase, settled: HeatBalance, cycle: xr.Dataset) -> xr.Dat
         variables[name] = cycle[name].variable
     variables["regime_share"] = dressed(
         ("operating", "regime_name"), regime_shares(share.values), "1", "share of the path"
-    )
-    variables["body_estimate"] = dressed(
-        ("operating", "estimate"),
-        body_estimates(case.pair, operating, mean_flash, dipped=case.gearbox.immersion > 0.0).T,
-        "K",
-        "body temperature by an ISO report",
     )
     merged = data.assign(variables)
     status = np.where(settled.settled, cycle["status"].values, HEAT_NOT_SETTLED)
@@ -197,10 +188,7 @@ def _gathered(case: GearCase, settled: HeatBalance, cycle: xr.Dataset) -> xr.Dat
     merged["tempered"] = dressed(
         along, (~lost & (teeth > hottest)).astype(np.int8), "1", "1 where the steel is tempered"
     )
-    return blanked(merged, lost).assign_coords(
-        regime_name=list(REGIMES),
-        estimate=list(ESTIMATES),
-    )
+    return blanked(merged, lost).assign_coords(regime_name=list(REGIMES))
 
 
 def _on_grid(

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from thermogear.base.arrays import Dataset, Floats
-from thermogear.base.display import CELSIUS, KELVIN, MICROMETRE, PERCENT, SPEED, exactly, number
+from thermogear.base.display import CELSIUS, KELVIN, MICROMETRE, PERCENT, SPEED, exactly
 from thermogear.base.vocabulary import STATUS, is_known
 from thermogear.results.result import Result
-from thermogear.views.columns import Column, Row, by_name, declared, key, reaches, rows_along, units
+from thermogear.views.columns import Column, by_name, declared, key, reaches, rows_along, units
 from thermogear.views.page import Page, Shown, Table
 from thermogear.views.pages import survey_captions as words
 from thermogear.views.pages.survey import OPERATING, survey
@@ -53,7 +53,7 @@ def page(result: Result) -> Page:
         result,
         summary,
         pictures,
-        [_corner_table(data), _estimate_table(data), *told],
+        [_corner_table(data), *told],
         numbers=lambda: {
             "seconds": float(result.text("seconds")),
             "points": status.size,
@@ -107,12 +107,9 @@ CORNERS = (
 
 
 def _with_nodes(data: Dataset) -> Dataset:
-    """The same with the temperature of every node and each estimate as a variable."""
-    of_nodes = {n: data["node_temperature"].sel(node=n, drop=True) for n in names_of(data, "node")}
-    estimates = {
-        n: data["body_estimate"].sel(estimate=n, drop=True) for n in names_of(data, "estimate")
-    }
-    return data.assign(of_nodes | estimates)
+    """The same with the temperature of every node as a variable."""
+    names = names_of(data, "node")
+    return data.assign({n: data["node_temperature"].sel(node=n, drop=True) for n in names})
 
 
 def _at_corners(data: Dataset) -> list[dict[str, Any]]:
@@ -127,34 +124,6 @@ def _at_corners(data: Dataset) -> list[dict[str, Any]]:
 def _corner_table(data: Dataset) -> Table:
     caption = ("The operating point.", "Ends and middle.", "Corners and middle of the map.")
     return declared(caption[len(words.running(data))], CORNERS, _at_corners(data), names=3)
-
-
-def _teeth(row: Row) -> float:
-    """Mean temperature [K] of both gears' teeth."""
-    return float(row["pinion_tooth"] + row["wheel_tooth"]) / 2.0
-
-
-def _estimate(row: Row, name: str) -> str:
-    """An estimate of the body's temperature and its difference to the heat balance."""
-    difference = row[name] - _teeth(row)
-    apart = f" ({difference:+.1f})" if np.isfinite(difference) else ""
-    return f"{Column('', name, 3, CELSIUS).cell(row)}{apart}".replace("-", "−")
-
-
-def _estimate_table(data: Dataset) -> Table:
-    names = names_of(data, "estimate")
-    columns = [
-        *POINT,
-        Column("heat balance", lambda row: number(float(CELSIUS(_teeth(row))))),
-        *(Column(name, partial(_estimate, name=name)) for name in names),
-    ]
-    return declared(
-        "Body temperature [°C]: mean of both gears' teeth by the heat balance, and the estimates "
-        "of the ISO reports at the same oil temperature (difference to the heat balance in K).",
-        columns,
-        _at_corners(data),
-        names=2,
-    )
 
 
 # --- pictures -----------------------------------------------------------------------------------
