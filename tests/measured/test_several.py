@@ -101,7 +101,9 @@ def test_processes_give_the_same_rows_and_one_that_ends_is_told(
     for number, file in enumerate(files):
         write(file, 1.0, number)
     files[1].write_text("nothing\n", encoding="utf-8")
-    options = dict.fromkeys(WORDS) | {"channels": (), "orders": (), "method": "line"}
+    options = dict.fromkeys(WORDS) | {
+        "channels": (), "orders": (), "method": "line", "bearings": (),
+    }  # fmt: skip
     read = partial(measured_among, options=options)
     told: list[tuple[int, int]] = []
     serial = rows_of(read, files, cores=1, progress=lambda _, done, total: None)

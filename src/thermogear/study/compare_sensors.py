@@ -116,20 +116,17 @@ def compare_sensors(
     entered = np.hypot(spread, drawn)
     notices += runs.told(tolerances or {}, len(drawings))
     names = tuple(told)
-    made = []
-    for number, row in enumerate(rows):
-        one = Row(
-            speed=speed,
-            quantity="acceleration",
-            where=f"{row.sensor.channel}: {row.sensor.words}; mesh x {row.order}",
-            measured=row.found.acceleration,
-            simulated=tuple(float(told[name][number]) for name in names),
+    made = [
+        _row(
+            row,
+            speed,
+            {name: float(values[number]) for name, values in told.items()},
             u_num=float(numeric[number]),
             u_input=float(entered[number]),
-            u_data=row.found.uncertainty if u_data is None else u_data,
-            computed=True,
+            u_data=u_data,
         )
-        made.append(replace(one, verdict=_verdict(one, names)))
+        for number, row in enumerate(rows)
+    ]
     counts = [
         f"{name} {sum(abs(one.errors[k]) <= AGREES * one.u_val for one in made)}"
         for k, name in enumerate(names)
@@ -143,6 +140,30 @@ def compare_sensors(
         (*_seen(own), *measured.findings, *notices),
         f"within {AGREES:g} u_val: {', '.join(counts)} of {len(made)}",
     )
+
+
+def _row(
+    line: _Line,
+    speed: float,
+    simulated: Mapping[str, float],
+    *,
+    u_num: float,
+    u_input: float,
+    u_data: float | None,
+) -> Row:
+    """One line beside those ``simulated`` [m/s^2], by thermal state, with its verdict."""
+    row = Row(
+        speed=speed,
+        quantity="acceleration",
+        where=f"{line.sensor.channel}: {line.sensor.words}; mesh x {line.order}",
+        measured=line.found.acceleration,
+        simulated=tuple(simulated.values()),
+        u_num=u_num,
+        u_input=u_input,
+        u_data=line.found.uncertainty if u_data is None else u_data,
+        computed=True,
+    )
+    return replace(row, verdict=_verdict(row, tuple(simulated)))
 
 
 def _rows(measured: Measurement, sensors: Sequence[Accelerometer]) -> list[_Line]:

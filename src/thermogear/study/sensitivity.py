@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import time
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -282,14 +282,7 @@ def evaluate(
         # corners of the ranges leave an oil's range; the ranges stand beside the results
         cold = cycle(consistent, UNDEFORMED, stiffness)
         hot = cycle(consistent, HOT, (*stiffness, *OF_THE_PATH))
-        lost = int(np.count_nonzero(hot["status"] == STATUS.index("not_converged")))
-        if lost:
-            raise InputError(
-                "inputs",
-                f"ranges in which {lost} of {count} samples have no mesh",
-                why="no case could have these values, or the loaded contact does not settle",
-                fix="take narrower ranges",
-            )
+        _require_meshes(hot)
         printed = [cycle(thesis, state, ("mean_stiffness",)) for state in (UNDEFORMED, HOT)]
     flash = {kind: hot[f"flash_temperature_{kind}"].max(axis=1) for kind in ("mixed", "dry")}
     values = {output.name: np.zeros(count) for output in OUTPUTS} | {
@@ -309,6 +302,18 @@ def evaluate(
         _vibrate(both, moving[start : start + LANES], values)
     progress("sensitivity", 5, 5)
     return values, count - moving.size
+
+
+def _require_meshes(hot: Mapping[str, NDArray[Any]]) -> None:
+    """Refuse ranges in which some samples have no mesh."""
+    lost = int(np.count_nonzero(hot["status"] == STATUS.index("not_converged")))
+    if lost:
+        raise InputError(
+            "inputs",
+            f"ranges in which {lost} of {hot['status'].size} samples have no mesh",
+            why="no case could have these values, or the loaded contact does not settle",
+            fix="take narrower ranges",
+        )
 
 
 def _held(case: GearCase) -> GearCase:

@@ -119,7 +119,7 @@ KEY_RESULTS = (
 )
 
 
-def band(low: float, middle: float, high: float) -> str:
+def band(*, low: float, middle: float, high: float) -> str:
     """Median and band of 90 % of parts, in no more figures than the band bears."""
     digits = 3 if high - low < 0.1 * middle else 2
     return f"{number(middle, digits)} ({number(low, digits)} to {number(high, digits)})"
@@ -140,8 +140,9 @@ def _of_series(series: Dataset) -> dict[tuple[float, float], Row]:
         own = np.argmin(np.abs(here["pinion_speed"].values - speed))
         parts = np.isfinite(here["own_dynamic_factor"].values).sum()
         parted = (here["contact_loss_onset"].values <= speed * (1.0 + 1e-9)).sum()
+        low, middle, high = here["dynamic_factor"].values[:, own]
         found[speed, float(here["pinion_torque"])] = {
-            "of_series": band(*here["dynamic_factor"].values[:, own]),
+            "of_series": band(low=low, middle=middle, high=high),
             "parting": f"{parted} of {parts}",
         }
     return found

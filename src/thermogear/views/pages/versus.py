@@ -216,7 +216,7 @@ def _points(data: Dataset) -> list[str]:
 
 
 def _band(row: Row, name: str, scale: float = 1.0) -> str:
-    return band(*(scale * row[f"{name}_{which}"] for which in ("low", "middle", "high")))
+    return band(**{which: scale * row[f"{name}_{which}"] for which in ("low", "middle", "high")})
 
 
 def _better(row: Row, name: str) -> str:
