@@ -381,8 +381,8 @@ def population(file: GearFile) -> Population:
 def series(file: GearFile, grade: int | None, *, loaded: bool) -> int:
     """How many parts of the class ``grade`` the answers are of; 1: the part of the case alone.
 
-    One where a seed or a drawing is stated, flanks or pitches are given, all teeth are taken alike,
-    or the springs do not feel the flanks (not ``loaded``).
+    One where a seed or a drawing of whole teeth is stated, flanks or pitches are given, all teeth
+    are taken alike, or the springs do not feel the flanks (not ``loaded``).
     """
     table = file.flanks
     if table is None or grade is None or file.gears.period == "mesh":
@@ -393,7 +393,7 @@ def series(file: GearFile, grade: int | None, *, loaded: bool) -> int:
     if "drawing" in table.model_fields_set and table.teeth == "drawn":
         return 1
     if table.parts is None:
-        return PARTS if drawn and not {"seed", "drawing"} & table.model_fields_set else 1
+        return PARTS if drawn and "seed" not in table.model_fields_set else 1
     if table.parts > 1 and not drawn:
         raise InputError(
             "flanks.parts", table.parts, allowed="1",

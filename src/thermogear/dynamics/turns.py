@@ -270,6 +270,9 @@ least."""
 ALIKE = 0.01
 """Relative difference of greatest forces up to which the motions of two starts are one (chosen: ten
 times what :data:`REPEATED` leaves; a second motion differs by tens of percent)."""
+UNBOUNDED = 100.0
+"""Force over its mean from which a motion that does not repeat itself counts as growing without end
+(chosen: flanks that hammer stay below some tens)."""
 FAR_THROW = 3.0
 """Static deflections from which the second run of a part begins, the first from one."""
 _WIDTH = 32  # parts are filled up to a multiple of it: the same code, and digits, for each

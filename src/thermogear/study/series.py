@@ -14,7 +14,7 @@ from thermogear.base.errors import InputError
 from thermogear.base.excitation import Excitations
 from thermogear.case.case import GearCase
 from thermogear.case.flanks import deviations
-from thermogear.dynamics.turns import SLOWEST_PART, PartTables, follow_parts
+from thermogear.dynamics.turns import SLOWEST_PART, UNBOUNDED, PartTables, follow_parts
 from thermogear.gears.deviations import Deviation
 from thermogear.gears.turn import turn_period
 from thermogear.mesh.series import SeriesMesh, followed_periods, series_mesh
@@ -108,7 +108,8 @@ class SeriesMotion:
     ``mesh_force_min`` [N], < 0 on the back flanks; each over the last turn that was followed, also
     where that does not repeat another: ``repeats``. ``alike``: both starts of a part end on one
     motion that repeats. All parts at the first damping ratio, the first :data:`AT_BOUNDS` at the
-    others: nan for the rest, which does not repeat.
+    others: nan for the rest, which does not repeat. A motion that grows without end has the dynamic
+    factor :data:`~thermogear.dynamics.turns.UNBOUNDED`.
     """
 
     speed: Floats
@@ -167,6 +168,7 @@ def series_motion(
         most = newton * np.maximum(motions.greatest, -motions.least)
         factor[at], least[at] = most / load, newton * motions.least
         lost[at], repeats[at], alike[at] = motions.lost, motions.repeats, motions.alike
+    factor[~repeats & (factor > UNBOUNDED)] = UNBOUNDED
     slow = rate > 2.0 * np.pi / SLOWEST_PART
     for figure in (factor, lost, least):
         figure[:, slow] = np.nan
@@ -194,11 +196,20 @@ class SeriesPoint:
         return np.asarray(np.isfinite(self.motion.dynamic_factor).any(axis=2).sum(axis=1))
 
     @property
+    def jammed(self) -> NDArray[np.bool_]:
+        """Which parts jam somewhere in what is followed of their turn."""
+        return np.asarray(self.mesh.half_backlash.min(axis=1) <= 0.0)
+
+    @property
     def errors(self) -> tuple[Floats, Floats]:
-        """Static errors [m] peak to peak, over the whole turn and repeated with the mesh."""
+        """Static errors [m] peak to peak, over the whole turn and repeated with the mesh.
+
+        nan of parts that are jammed.
+        """
         error = self.mesh.transmission_error
         mean = error.reshape(len(error), self.mesh.mesh_periods, -1).mean(axis=1)
-        return self.mesh.peak_to_peak, np.ptp(mean, axis=1)
+        turn, mesh = self.mesh.peak_to_peak, np.ptp(mean, axis=1)
+        return np.where(self.jammed, np.nan, turn), np.where(self.jammed, np.nan, mesh)
 
 
 @dataclass(frozen=True, eq=False)

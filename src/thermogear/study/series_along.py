@@ -150,6 +150,7 @@ def band_notices(case: GearCase, parts: int, data: Dataset) -> Iterator[Notice]:
         bad=float(bad.max()) if known else None,
         speed=float(worst["series_worst_speed"]) if known else None,
         pairs=int(worst["series_parting_parts"]) if known else None,
+        moving=int(worst["series_parts"]) if known else None,
         slow=float(slow.max()) if slow.size else None,
     )
 
@@ -198,6 +199,7 @@ def at_points(family: GearFamily, rows: Floats, parts: int, alive: Alive) -> Arr
     return dict(zip(names, table, strict=True))
 
 
-def sweep_notice(case: GearCase, parts: int) -> Notice:
-    """What the columns of a series are, and what the others are of."""
-    return Notice.of("sweep_of_a_series", **_about(case, parts))
+def sweep_notice(case: GearCase, parts: int, names: Sequence[str]) -> Notice:
+    """What columns of a series over the parameters ``names`` are, and what the others are of."""
+    varied = {name.removeprefix("flanks."): None for name in names if name.startswith("flanks.")}
+    return Notice.of("sweep_of_a_series", **_about(case, parts) | varied)

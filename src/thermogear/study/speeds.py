@@ -24,7 +24,7 @@ from thermogear.base.vocabulary import NO_COUNT, label
 from thermogear.case.points import Points, points_of
 from thermogear.case.response import Recording, respond
 from thermogear.case.turn_response import DIGITS, turn_lanes, turn_tables
-from thermogear.dynamics.turns import follow_turns
+from thermogear.dynamics.turns import UNBOUNDED, follow_turns
 
 LOWEST, HIGHEST, STEP = 0.05, 1.8, 0.025
 """Mesh over natural frequency, and the step of it. At the lowest the twentieth harmonic of the
@@ -232,10 +232,12 @@ def _over_the_turn(points: Points, starts: Floats) -> dict[str, Floats]:
         motions = follow_turns(tables, turn_lanes(here).take(each), begun)
         newton = here.stiffness[each] * here.length[each]
         force = newton[:, None] * motions.force
+        factor = np.abs(force).max(axis=1) / here.force[each]
+        endless = (motions.period == 0) & (factor > UNBOUNDED)
         columns = {
             "lane": index[each],
             "frequency_ratio": (here.mesh_frequency / here.rate)[each],
-            "dynamic_factor": np.abs(force).max(axis=1) / here.force[each],
+            "dynamic_factor": np.where(endless, np.nan, factor),
             "dte_peak_to_peak": here.length[each] * np.ptp(motions.travel, axis=1),
             "contact_loss_share": motions.lost,
             "mesh_force_min": force[:, 1],

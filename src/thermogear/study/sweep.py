@@ -131,7 +131,7 @@ class SweepPlan:
 
     def finish(self, data: Dataset) -> Dataset:
         case = self.family.case
-        of_series = [sweep_notice(case, self.parts)] if self.parts > 1 else []
+        of_series = [sweep_notice(case, self.parts, self.family.names)] if self.parts > 1 else []
         return over_turn(data, case).assign_attrs(
             bundle=self.family.bundle,
             state=self.family.state.stored,

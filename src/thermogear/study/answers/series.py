@@ -14,8 +14,10 @@ from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.limits import LIMITS, OPEN, PARTING
 from thermogear.base.units import RPM
 from thermogear.base.vocabulary import label
+from thermogear.dynamics.turns import UNBOUNDED
 from thermogear.results.answer import Answer
 from thermogear.results.result import Notice
+from thermogear.study.answers import steady
 from thermogear.study.answers.asked import Asked, answer, undecided
 from thermogear.study.answers.moving import (
     ERROR,
@@ -29,6 +31,35 @@ from thermogear.study.answers.moving import (
 )
 from thermogear.study.series import BAND, SeriesPoint, Spread, middle_and_worst
 from thermogear.study.speeds import LOST, peaks
+
+# --- backlash -----------------------------------------------------------------------------------
+
+
+def gap(asked: Asked) -> Iterator[Answer]:
+    """What is left of the backlash of one part, and of those of the series."""
+    yield from steady.gap(asked)
+    for point, parts in asked.series.items():
+        jammed, count = parts.jammed, len(parts.jammed)
+        hits = int(np.count_nonzero(jammed))
+        possible = 100.0 * proportion(hits, of=count).high
+        least = 2e6 * parts.mesh.half_backlash.min(axis=1)
+        figures: dict[str, Any] = Spread.of(least[~jammed]).figures("left")
+        figures |= {"jammed": hits, "parts": count, "possible": possible}
+        sentence = "{jammed} of {parts} pairs of the class jam hot"
+        if hits < count:
+            sentence += (
+                "; of the others {left_low:.0f} to {left_high:.0f µm} are left in {held:.0f %}"
+            )
+        share, most = 100.0 * hits / count, LIMITS["parting_pairs"].most
+        verdict = _unsure(share, possible, most)
+        if verdict:
+            sentence += "; not decided, as so few pairs do not exclude {possible:.0f %} that jam"
+        units = {name: "µm" for name in figures if name.startswith("left_")}
+        yield answer(
+            steady.GAP, "series_backlash", f"{sentence}.", share, limit="parting_pairs",
+            verdict=verdict, at=asked.at(point), figures=figures, units=units,
+        )  # fmt: skip
+
 
 # --- speeds -------------------------------------------------------------------------------------
 
@@ -215,7 +246,7 @@ def errors(asked: Asked) -> Iterator[Answer]:
         figures |= turn.figures("turn", 1e6) | mesh.figures("mesh", 1e6)
         gears = asked.case.pair
         figures |= {
-            "parts": int(parts.counts[0]), "periods": parts.mesh.mesh_periods,
+            "parts": int(np.isfinite(parts.errors[0]).sum()), "periods": parts.mesh.mesh_periods,
             "of_turn": math.lcm(gears.pinion.teeth, gears.wheel.teeth),
         }  # fmt: skip
         followed = ", by {periods} of them," * (not parts.mesh.whole)
@@ -330,5 +361,6 @@ def notice(asked: Asked) -> Notice:
         torque=float(asked.case.stated.torque[point]) if several else None,
         answered=None if answered == asked.count else answered,
         points=asked.count,
+        unbounded=UNBOUNDED if np.nanmax(parts.motion.dynamic_factor) >= UNBOUNDED else None,
         periods=None if parts.mesh.whole else parts.mesh.mesh_periods,
     )

@@ -42,7 +42,8 @@ MAKERS = (
 
 
 OF_A_SERIES = {
-    moving.speeds: series.speeds, moving.loads: series.loads, moving.errors: series.errors,
+    steady.gap: series.gap, moving.speeds: series.speeds, moving.loads: series.loads,
+    moving.errors: series.errors,
 }  # fmt: skip
 """What answers in their place where the case is one of a series."""
 
@@ -82,7 +83,7 @@ def answers(case: GearCase, *, progress: Progress = silent) -> Result:
 
 def groups(asked: Asked) -> dict[str, Callable[[], Dataset]]:
     """What makes the groups behind the answers: ``series``, or the ``speeds`` of one part."""
-    if asked.series.get(asked.hardest) is not None:
+    if asked.series:
         return {"series": partial(series.data, asked)}
     speeds = None if asked.in_series else asked.speeds
     return {} if speeds is None else {"speeds": lambda: speeds.data}
@@ -93,9 +94,9 @@ def notices(case: GearCase, asked: Asked) -> Iterator[Notice]:
     count = case.stated.speed.size
     if count > MOST_POINTS:
         yield Notice.of("some_points_answered", answered=MOST_POINTS, points=count)
-    if asked.series.get(asked.hardest) is not None:
+    if asked.series:
         yield series.notice(asked)
-    elif case.accuracy is not None:
+    elif case.accuracy is not None and not asked.in_series:
         yield Notice.of("flanks_are_one_drawing", accuracy=case.accuracy)
     if not asked.in_series and asked.speeds is not None:
         looked = asked.speeds.column("pinion_speed")
