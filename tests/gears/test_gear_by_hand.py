@@ -55,7 +55,7 @@ def test_a_pair_that_another_unloads_leaves_the_contact(run) -> None:  # type: i
         gap, linear = rng.uniform(0.0, 1.0, 4), np.full(4, 0.05)
         force = np.zeros(4)
         springs = compliance + np.diag(linear)
-        delta, _, settled = run(1.0, True, gap, springs, 1.0, np.ones((4, 7)), np.zeros(6), force)
+        delta, _, settled = run(1.0, gap, springs, 1.0, np.ones((4, 7)), np.zeros(6), force)
         assert settled
         assert force.sum() == pytest.approx(1.0, rel=1e-9)
         slack = springs @ force + gap - delta

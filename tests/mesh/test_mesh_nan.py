@@ -74,8 +74,8 @@ def test_one_lost_point_costs_the_others_nothing(
     whole = mesh_cycle(rig, hot_rig, path_positions=11, mesh_positions=16)
     known = mesh_system.MeshSystem.solve
 
-    def loses_the_second(self, asked, by_load):  # type: ignore[no-untyped-def]
-        force, delta, stiffness, settled = known(self, asked, by_load)
+    def loses_the_second(self, loads):  # type: ignore[no-untyped-def]
+        force, delta, stiffness, settled = known(self, loads)
         for values in (force, delta, stiffness):
             values[1] = NAN
         settled[1] = False
