@@ -181,6 +181,7 @@ RESULTS: dict[str, str] = {
     "scuffing_safety": "",
     "surface_temperature": "K",
     "thermal_reduction": "",
+    "thesis_half_backlash": "m",
 }
 
 # constants with units: the source's units are checked by hand where the formula is tested

@@ -13,6 +13,7 @@ from thermogear.heat.thesis_profile import (
     flank_growth_as_printed,
     profile_as_printed,
     thesis_flank_growth,
+    thesis_half_backlash,
 )
 
 LAM, COLD = 11.5e-6, ZERO_CELSIUS + 20.0
@@ -105,3 +106,9 @@ def test_repaired_profile_grows_by_the_normal_growth() -> None:
     turned = RADII * (angle - PINION.half_thickness_angle(RADII))
     normal = (r - RADII) * np.sin(alpha) + turned * np.cos(alpha)
     assert normal == pytest.approx(flank_growth(PINION, hot, RADII), abs=1e-16)
+
+
+def test_thesis_backlash_as_printed() -> None:
+    assert thesis_half_backlash(125e-6, deformation_1=10e-6, deformation_2=30e-6) == pytest.approx(
+        105e-6, rel=1e-14
+    )

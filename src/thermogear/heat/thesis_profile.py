@@ -50,6 +50,22 @@ def thesis_flank_growth(gear: Gear, field: RadialField, radius: ArrayLike) -> Fl
     return np.asarray(own + _stretch(gear, field, r) / cosine)
 
 
+def thesis_half_backlash(
+    half_backlash: ArrayLike, *, deformation_1: ArrayLike, deformation_2: ArrayLike
+) -> Floats:
+    """b' = (2 b - Delta f1 - Delta f2)/2 [m], as printed.
+
+    ``half_backlash`` b [m], ``deformation_1``, ``_2`` [m]. No housing, and the flanks' growth
+    is halved: right only if Delta f meant both flanks of a tooth together.
+
+    >>> b = thesis_half_backlash(60e-6, deformation_1=20e-6, deformation_2=10e-6)
+    >>> f"{1e6 * b:.1f} um"
+    '45.0 um'
+    """
+    lost = np.asarray(deformation_1, dtype=float) + np.asarray(deformation_2)
+    return np.asarray(0.5 * (2.0 * np.asarray(half_backlash) - lost))
+
+
 def flank_growth_as_printed(
     gear: Gear, field: RadialField, radius: ArrayLike, *, thickness_at: ArrayLike | None = None
 ) -> Floats:
