@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from thermogear.base.display import SPEED as SHOWN_SPEED
 from thermogear.base.errors import InputError
 from thermogear.base.progress import Progress
 from thermogear.base.units import RPM
@@ -36,7 +36,7 @@ def supplies(command: Any, *, speeds: bool = False) -> Any:
             "1500, or '25 Hz'",
             metavar="RPM",
             multiple=speeds,
-            units={"rpm": 1.0, "Hz": 60.0, "rad/s": SHOWN_SPEED(1.0)},
+            units={"rpm": 1.0, "Hz": 60.0, "rad/s": 30.0 / math.pi},
         ),
         click.option(
             "--channel",

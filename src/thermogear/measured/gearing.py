@@ -156,8 +156,9 @@ def find_gearing(
 def _words(gearing: Gearing, told_as: float) -> tuple[str, ...]:
     """The evidence, places times ``told_as``."""
     heights = ", ".join(f"{height:.1f}" for height in gearing.harmonics)
+    kind = "line" if gearing.teeth is None else "mesh line"
     words = [
-        f"mesh line near {gearing.mesh_frequency * told_as:.6f} cycles/sample: harmonics "
+        f"{kind} near {gearing.mesh_frequency * told_as:.6f} cycles/sample: harmonics "
         f"1..{len(gearing.harmonics)} stand {heights} times over the floor (mean of channels)"
     ]
     words += [
