@@ -92,16 +92,16 @@ def test_an_oil_too_cold_for_convection_is_refused_by_its_field() -> None:
 
 
 def test_what_never_closes_is_recorded_long_enough_to_be_told_again() -> None:
-    """Near no load flanks bounce without end: loads a ten-thousandth apart have one dynamic factor
-    but for the scatter of a chaotic motion's greatest, and a second motion leaves a jump open."""
+    """Near no load flanks bounce: a load a ten-thousandth higher has the same dynamic factor, and
+    a second motion that does not settle leaves a jump open."""
     found = []
-    for torque in ("0.01 N m", "0.010001 N m", "0.010002 N m"):
+    for torque in ("0.01 N m", "0.010001 N m"):
         changes = [f'operating.torque=["{torque}"]', 'operating.speed=["1000 rpm"]']
         case = load_example("rig", changes)
         assert isinstance(case, GearCase)
         found.append({one.name: one for one in answers(case).answers})
     factors = [one["dynamic_factor"].value for one in found]
-    assert np.std(factors, ddof=1) < 0.02 * np.mean(factors)
+    assert factors[0] == pytest.approx(factors[1], rel=0.02)
     for one in found:
         assert one["coexisting"].verdict == OPEN
         assert one["coexisting"].figures["open"] > 0

@@ -83,14 +83,14 @@ class Swelling:
         scale = 1.0 if self.frequency is None else self.frequency / self.position
         unit = "cycles/sample" if self.frequency is None else "Hz"
         powers = ", ".join(f"{p:.0f}" for p in self.powers)
-        said = (
+        between = (
             f"what is no line between {scale * self.low:.4g} and {scale * self.high:.4g} {unit} "
             f"in {self.channel} swells at {scale * self.position:.5g} {unit} "
             f"(envelope line, harmonics {powers} times noise)"
         )
         if self.order is None:
-            return f"{said}: impacts of a bearing or of a shaft, or a load that swings"
-        return f"{said}: {self.order:.3f} of the first shaft"
+            return f"{between}: impacts of a bearing or of a shaft, or a load that swings"
+        return f"{between}: {self.order:.3f} of the first shaft"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -126,22 +126,22 @@ def swellings_of(
     """
     share = CHANCE / len(channels)
     clear = [
-        (name, [one for one in envelope_rates(values[:_LONGEST], MOST) if one.chance < share])
+        (name, [line for line in envelope_rates(values[:_LONGEST], MOST) if line.chance < share])
         for name, values in zip(channels, table, strict=True)
     ]
-    name, rates = min(clear, key=lambda pair: min([1.0, *(one.chance for one in pair[1])]))
+    name, rates = min(clear, key=lambda pair: min([1.0, *(line.chance for line in pair[1])]))
     return tuple(
         Swelling(
             channel=name,
-            position=one.rate,
-            frequency=None if rate is None else one.rate * rate,
-            order=None if shaft is None else one.rate / shaft,
-            low=one.band[0],
-            high=one.band[1],
-            powers=one.powers,
-            chance=one.chance,
+            position=line.rate,
+            frequency=None if rate is None else line.rate * rate,
+            order=None if shaft is None else line.rate / shaft,
+            low=line.band[0],
+            high=line.band[1],
+            powers=line.powers,
+            chance=line.chance,
         )
-        for one in rates
+        for line in rates
     )
 
 
@@ -158,10 +158,10 @@ def defects_of(
     of the inner races cover at their places and one and two turns beside. Left out is a hit that
     chance explains in half of all records.
 
-    >>> own = BearingRates.of("6205", elements=9, ratio=7.938 / 38.5)
+    >>> bearing = BearingRates.of("6205", elements=9, ratio=7.938 / 38.5)
     >>> seen = [Swelling(channel="a", position=0.01, frequency=None, order=order, low=0.1, high=0.2,
     ...                  powers=(9.0,), chance=1e-6) for order in (3.40, 4.40)]
-    >>> [(one.part, one.side_lines) for one in defects_of(seen, [own])]
+    >>> [(hit.part, hit.side_lines) for hit in defects_of(seen, [bearing])]
     [('inner race', True)]
     """
     orders = np.array([rate.order for rate in swellings if rate.order is not None])
