@@ -31,8 +31,8 @@ LOWEST, HIGHEST, STEP = 0.05, 1.8, 0.025
 mesh meets the natural frequency: what those above it do, dies out within a mesh period."""
 RECORD = Recording(periods=8, samples=64)
 LONG = replace(RECORD, periods=2 * WATCHED)
-"""Of a chaotic motion: its greatest force over five loads a ten-thousandth apart differed by .7 % in
-records of 256 periods, by 3 % in those of 128, by some ten percent in those of eight."""
+"""Of a chaotic motion: its greatest force at five loads a ten-thousandth apart differed by .7 % in
+records of 256 periods, by 3 % in those of 128; in those of eight by some ten percent."""
 FARTHEST = 10.0
 """How far the case's own speeds may widen that range."""
 PEAK = 1.05
