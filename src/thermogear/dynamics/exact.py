@@ -103,7 +103,7 @@ def substeps(lanes: LaneTables, order: int = ORDER) -> Whole:
         "frequency",
         2.0 * np.pi / lanes.period[lane],
         why=f"the exact maps would need more than {counts[-1]} sub-steps a period",
-        fix="use method='rk4'",
+        fix="take a higher speed; in Python, method='rk4' takes any",
     )
 
 
