@@ -26,7 +26,7 @@ FLOORS = (
 
 CHANGING = {
     "LoadedModel", "answers", "campbell", "drawing", "loaded_contact", "modes", "read_rexs",
-    "sensitivity", "statics", "waterfall", "write_rexs",
+    "sensitivity", "statics", "waterfall",
 }  # fmt: skip
 """Public names whose arguments and stored names may change with any release."""
 

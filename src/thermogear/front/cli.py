@@ -56,7 +56,6 @@ GROUPS = {
         "versus": "Set two to six cases side by side.",
         "report": "Draw the page of stored results anew.",
         "import": "List a REXS model, or write one of its stages as a case.",
-        "export": "Write CASE and its results as a REXS model.",
     },
     "One pair": {
         "answers": "Answer the usual questions on CASE, each with a verdict.",
