@@ -19,7 +19,7 @@ import thermogear
 ROOT = Path(__file__).parents[1]
 SOURCE = ROOT / "src" / "thermogear"
 FLOORS = (
-    "front", "views", "thesis", "study", "case", "verify", "mesh", "heat", "shafts", "gears",
+    "front", "views", "thesis", "study", "case", "mesh", "heat", "shafts", "gears",
     "measured", "analysis", "dynamics", "signals", "results", "base",
 )  # fmt: skip
 

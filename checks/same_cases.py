@@ -281,7 +281,7 @@ COMMANDS = [
     *("statics", "modes", "campbell", "waterfall"),
     *("orbit", "lyapunov", "continue"),
     *("bifurcation", "map", "basins", "runup", "sweep"),
-    *("measure", "compare", "thesis", "sensitivity", "verify", "versus"),
+    *("measure", "compare", "thesis", "sensitivity", "versus"),
 ]
 SMALL_THESIS = (
     "-c 'from pathlib import Path; from thermogear.thesis import report; "
@@ -620,15 +620,7 @@ CASES = (
         ),
         {**MINE, "lines.csv": LINES, "record.csv": _table()},
     ),
-    # --- the thesis and finite elements
-    Case(
-        "verify",
-        (
-            "verify stiffness rig --positions 1 --json",
-            "verify stiffness own.toml --torque 40 --positions 1 --near stress --json",
-        ),
-        MINE,
-    ),
+    # --- the thesis
     Case("sensitivity", ("sensitivity rig --samples 8 -o out --json",)),
     Case("thesis", (SMALL_THESIS,)),
     Case("library", (f"-c {quote(LIBRARY)}",)),

@@ -29,7 +29,6 @@ from thermogear.front import (
     study_commands,
     sweep_commands,
     thesis_commands,
-    verify_commands,
     versus_commands,
 )
 from thermogear.front.lines import put_text, say, show_path, system_error, warnings_as_lines
@@ -89,7 +88,6 @@ GROUPS = {
     "Research": {
         "sensitivity": "Rank the inputs that decide the results.",
         "thesis": "Judge the claims of the thesis, or redo it for CASE.",
-        "verify": "Hold the models against finite elements.",
     },
 }
 """Commands as the help lists them: group -> name -> one sentence of at most 60 characters."""
@@ -282,7 +280,6 @@ for _list in (
     sweep_commands,
     measure_commands,
     thesis_commands,
-    verify_commands,
     versus_commands,
 ):
     for _command in _list.COMMANDS:
