@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -166,31 +165,20 @@ def _diagram(name: str, result: Result, pictures: Pictures) -> Told:
         why = "stopped before it" if result.interrupted else why
         return f"Not computed: {why}.", []
     states = json.loads(str(data.attrs["state_names"]))
-    rows = result.table("matches")[name]
     here = [state_of(data, place) for place in range(len(states))]
     ends = [exactly(float(v), 4) for v in shown(name, data[name][[0, -1]])]
     motions = [_shares(one) for one in here]
     told = [f"{state} {words}" for state, words in zip(states, motions, strict=True)]
     told = told if len(set(motions)) > 1 else [f"{' and '.join(states)} alike {motions[0]}"]
     counts = [f"{one.sizes.get('bifurcation', 0)} {s}" for s, one in zip(states, here, strict=True)]
-    matched = [row for row in rows if row["partner"] == "matched"]
-    hidden = sum(not row["drawn"] for row in matched)
-    told.append(
-        f"bifurcations: {', '.join(counts)}, {len(matched)} followed from one state to the other"
-        f"{f', {hidden} of them to a branch that is not drawn' * (hidden > 0)}"
-        if rows
-        else "no bifurcation was found"
-    )
+    table = overlay.table_of(data, states)
+    told.append(f"bifurcations: {', '.join(counts)}" if table.rows else "no bifurcation was found")
     if any(moves(one["status"]).any() for one in here):
         pictures.add(
             f"diagram-{name}", "Undeformed and hot", overlay.CAPTION, data, (),
-            lambda: overlay_picture(data, states, rows), wide=True,
+            lambda: overlay_picture(data, states), wide=True,
         )  # fmt: skip
-    blocks, kept = pictures.take(), [row for row in rows if row["partner"] != "not followed"]
-    if kept:
-        left = f" {len(rows) - len(kept)} more were not followed." * (len(kept) < len(rows))
-        both = Result.of("overlay", "", {"states": data}, matches=kept, states=states)
-        blocks.append(replace(overlay.table_of(both), caption=overlay.FOLLOWED + left))
+    blocks = [*pictures.take(), *[table] * bool(table.rows)]
     return _sentence([f"from {' to '.join(ends)} {PARAMETERS[name].shown}".strip(), *told]), blocks
 
 
@@ -283,11 +271,15 @@ READINGS = (
     Column("corrected", lambda row: celsius(row["temperature_K"])),
     Column("standard uncertainty", "uncertainty_K", 3, KELVIN),
 )
+DIAGRAMS = {
+    "damping_ratio": ("damping", "Damping"),
+    "pinion_speed": ("speed", "Speed"),
+    "stiffness_fluctuation": ("fluctuation", "Stiffness fluctuation"),
+}
+"""Parameter of a diagram: name and title of its section."""
 STEPS: tuple[tuple[str, str, Callable[[Result, Pictures], Told]], ...] = (
     ("temperature", "Gear temperature", _warming),
-    ("damping", "Damping", partial(_diagram, "damping_ratio")),
-    ("speed", "Speed", partial(_diagram, "pinion_speed")),
-    ("fluctuation", "Stiffness fluctuation", partial(_diagram, "stiffness_fluctuation")),
+    *((*names, partial(_diagram, parameter)) for parameter, names in DIAGRAMS.items()),
     ("friction", "Mixed and dry friction", _friction),
     ("records", "Records", _records),
     ("outlook", "Outlook", _outlook),
@@ -308,6 +300,10 @@ def _numbers(result: Result, findings: dict[str, str]) -> dict[str, Any]:
         **by_name(_hot(result.groups["mesh"]), (*OPERATING, key("frequency_ratio"))),
         "findings": findings,
         "temperature": [in_full(there, place) for place in rows_along(row, "gear_temperature")],
-        "bifurcations": result.table("matches"),
+        "bifurcations": {
+            name: overlay.located(data, json.loads(str(data.attrs["state_names"])))
+            for name in DIAGRAMS
+            if (data := result.group(f"diagrams/{name}")) is not None
+        },
         "left_out": result.rows("left_out"),
     }
