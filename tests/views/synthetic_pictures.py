@@ -238,7 +238,6 @@ def of_surveys() -> dict[str, Picture]:
         "contact-phase": loaded.over_phase(contact),
         "contact-path": loaded.along_path(contact, json.loads(points)),
         "double-contact": loaded.double_contact(apart, 1.0, "double_contact_length"),
-        "iso": loaded.iso(made("load", "load", "loaded_stiffness", "iso_stiffness")),
         "relief-error": relief.error(pairs),
         "relief-stiffness": relief.stiffness(pairs),
         "relief-load": relief.over_load(pairs, 1.5),
