@@ -1,9 +1,9 @@
-"""The steps of the thesis for any gear pair: heat, bifurcations, friction, records, its outlook.
+"""The steps of the thesis for any gear pair: heat, bifurcations, friction, records.
 
 One operating point under one bundle: its motion over gear temperatures, its bifurcations over
 damping, speed and stiffness fluctuation undeformed and hot, its friction mixed and dry, and its
 records beside both states. The tree is that of a run of this point (:mod:`thermogear.study.run`)
-and ``diagrams/PARAMETER``, ``comparison``, ``play``.
+and ``diagrams/PARAMETER``, ``comparison``.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from thermogear.measured.comparison import result_of
 from thermogear.results.beside import from_data
 from thermogear.results.result import Notice, Result
 from thermogear.study.compare import compare
-from thermogear.study.diagrams import Train, case_diagram, overlaid
+from thermogear.study.diagrams import case_diagram, overlaid
 from thermogear.study.notices import friction_notices
 from thermogear.study.run import run
 
@@ -46,8 +46,6 @@ stiffness: the second and third superharmonic resonance, the main one, and the t
 PARTS = (0.1, 0.9)
 """Fluctuations of the mesh stiffness, as parts of the one at which it would reach zero: the
 thesis's amplitudes 0.1 to 0.9, which reach zero at 1."""
-PLAYS = np.array([0.0, 20e-6, 40e-6, 60e-6])
-"""Play of all bearings [m]: none, and that of new to worn ball bearings of 30 to 50 mm bore."""
 
 
 def thesis_pair(
@@ -84,10 +82,6 @@ def thesis_pair(
         for name, axis in _axes(alone, point, values).items():
             groups[f"diagrams/{name}"] = _overlaid(alone, name, axis, progress).data
             computed.append(name)
-        if case.train is not None:
-            # the drive train hot over the play of all its bearings, up and down
-            plan = case_diagram(alone, "bearings.all.play", PLAYS, branch_period=0, train=Train())
-            groups["play"] = gather(plan, progress=partial(progress, "bearing play"))
     except KeyboardInterrupt:
         cut = True
     told = [
