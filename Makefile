@@ -14,7 +14,7 @@ BENCH_STAMP := .bench-venv/.installed
 AUDIT_BIN := .audit-venv/bin
 AUDIT_STAMP := .audit-venv/.installed
 
-.PHONY: audit bench bench-coordinates bench-geared bench-measure bench-paths bench-shafts bench-train-map check chromium clean compile demo friction-evidence house licences lint lock look lowest mutate release-check same sbom test trial-answers trial-app trial-attacks trial-base-sets trial-branches trial-coverage trial-damage trial-defects trial-experiment trial-heat trial-hostile trial-kills trial-labels trial-located trial-long trial-matched trial-pairs trial-public trial-series trial-shafts trial-stamps trial-swings trial-trains trial-turn trial-turning trial-verdicts unit
+.PHONY: audit bench bench-coordinates bench-geared bench-measure bench-paths bench-shafts bench-train-map check chromium clean compile demo friction-evidence house licences lint lock look lowest mutate release-check same sbom test trial-answers trial-app trial-attacks trial-base-sets trial-branches trial-coverage trial-damage trial-defects trial-experiment trial-heat trial-hostile trial-kills trial-labels trial-located trial-long trial-pairs trial-public trial-series trial-shafts trial-stamps trial-swings trial-trains trial-turn trial-turning trial-verdicts unit
 
 demo: $(STAMP)  ## the main job: the rig's case file to a report
 	$(BIN)/thermogear example rig > .venv/rig.toml
@@ -160,9 +160,6 @@ trial-labels: $(STAMP)  ## 2 000 random motions: every label put to another test
 
 trial-located: $(STAMP)  ## located bifurcations of random drive trains against a fine sweep, cost of a proof; docs/trial_located.md
 	@$(BIN)/python checks/trial_located.py
-
-trial-matched: $(STAMP)  ## bifurcations with heat on and off: pairs by order against pairs by following, ten minutes; docs/trial_matched.md
-	@$(BIN)/python checks/trial_matched.py
 
 trial-trains: $(STAMP)  ## 200 random drive trains: every label asked four ways, 40 by another integration, some hours; TRAINS="--count 20" for a short one; docs/trial_trains.md
 	@OPENBLAS_NUM_THREADS=1 $(BIN)/python -W ignore checks/trial_trains.py $(TRAINS)

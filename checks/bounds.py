@@ -21,7 +21,7 @@ ROOT = Path(__file__).parents[1]
 PLACE = ROOT / ".bounds-venv"
 PAGE = ROOT / "docs" / "bounds.md"
 UV = ROOT / ".venv" / "bin" / "uv"
-EXTRAS = ("measure", "fe", "sensitivity", "app", "cad")
+EXTRAS = ("measure", "sensitivity", "app", "cad")
 TOOLS = ("pytest", "pytest-xdist", "hypothesis", "axe-core-python")
 """What the tests need beside the package; always the newest, no bound of ours."""
 QUICK = (
@@ -43,7 +43,6 @@ QUICK = (
     "tests/results/test_workers.py",
     "tests/study/test_sensitivity.py",
     "tests/study/test_warm_up_study.py",
-    "tests/verify/test_elements.py",
     "tests/views/test_netcdf.py",
     "tests/views/test_report.py",
     "tests/front/test_cli.py",

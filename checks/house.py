@@ -19,14 +19,14 @@ import thermogear
 ROOT = Path(__file__).parents[1]
 SOURCE = ROOT / "src" / "thermogear"
 FLOORS = (
-    "front", "views", "thesis", "study", "case", "verify", "mesh", "heat", "shafts", "gears",
+    "front", "views", "thesis", "study", "case", "mesh", "heat", "shafts", "gears",
     "measured", "analysis", "dynamics", "signals", "results", "base",
 )  # fmt: skip
 
 
 CHANGING = {
     "LoadedModel", "answers", "campbell", "drawing", "loaded_contact", "modes", "read_rexs",
-    "sensitivity", "statics", "waterfall", "write_rexs",
+    "sensitivity", "statics", "waterfall",
 }  # fmt: skip
 """Public names whose arguments and stored names may change with any release."""
 

@@ -14,7 +14,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import splu
+from skfem import LinearForm, helpers
 
+from finite_elements.elements import ReferencePatch
+from finite_elements.sector import united
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, require_choice
 from thermogear.gears.elements import Integers
@@ -29,8 +32,6 @@ from thermogear.gears.tooth_mesh import (
     tooth_mesh,
 )
 from thermogear.heat.expansion import BORES, RadialField
-from thermogear.verify.elements import ReferencePatch, library
-from thermogear.verify.sector import united
 
 
 def flank_radii(gear: Gear, count: int = 7) -> Floats:
@@ -57,13 +58,12 @@ def _arcs(gear: Gear, radius: Floats, density: Density) -> tuple[Floats, Integer
 
 def thermal_load(patch: ReferencePatch, strain: Callable[[Floats, Floats], Floats]) -> Floats:
     """Nodal forces of a free thermal strain, ``strain(x, y)``, unit modulus, plane stress."""
-    fe, helpers = library(), library("skfem.helpers")
     stress = 1.0 / (1.0 - patch.poisson)
 
     def work(v: Any, w: Any) -> Any:
         return stress * strain(w.x[0], w.x[1]) * helpers.div(v)
 
-    return patch._ours(fe.LinearForm(work).assemble(patch._basis))
+    return patch._ours(LinearForm(work).assemble(patch._basis))
 
 
 def finite_flank_growth(

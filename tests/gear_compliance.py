@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from finite_elements.contact import NEAR, held_in
+from finite_elements.sector import FlankSector
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, require_choice
 from thermogear.gears.geometry import Gear
 from thermogear.gears.tooth_mesh import Density
-from thermogear.verify.contact import NEAR, held_in
-from thermogear.verify.sector import FlankSector
 
 
 def gear_compliance(
@@ -24,7 +24,7 @@ def gear_compliance(
 
     Tooth, body with its bore held, and the local indentation, plane stress. t: tan(alpha_k) of
     the contacts, one axis; half_width: a [m] of the pressure; density: of the mesh; near:
-    see :data:`~thermogear.verify.contact.NEAR`. The
+    see :data:`~finite_elements.contact.NEAR`. The
     deflection is the mean over the contact, weighted by the pressure. Raises InputError for a
     contact nearer than a to an end of the flank, and when scikit-fem is missing.
     """

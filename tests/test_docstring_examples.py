@@ -33,7 +33,6 @@ WITHOUT = {
     "case.duty.read_duty": "reads a file; docs/howto/warm_up.md shows one",
     "case.duty.read_measured": "reads a file; docs/howto/warm_up.md shows one",
     "case.rexs.container.read_rexs": "reads a file; docs/howto/rexs.md shows one",
-    "case.rexs.writing.write_rexs": "writes a file; docs/howto/rexs.md shows one",
     "measured.readers.read_record": "reads a file; docs/tutorials/own_record.md shows one",
     "measured.reduction.measure": "needs a record; docs/tutorials/own_record.md shows one",
     "base.plan.slices": "needs a plan of minutes; docs/howto/long_runs.md shows one",

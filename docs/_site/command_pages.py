@@ -14,7 +14,7 @@ ready-made one as ``thermogear example`` lists them.
 
 
 def every_command() -> dict[str, click.Command]:
-    """Commands by their words: "run", "verify stiffness", ..."""
+    """Commands by their words: "run", "new", ..."""
     found: dict[str, click.Command] = {}
 
     def walk(group: click.Group, words: tuple[str, ...]) -> None:

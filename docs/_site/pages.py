@@ -31,7 +31,6 @@ FLOORS = {
     "gears": "geometry, contact, loaded contact, deviations, stiffness",
     "heat": "lubricant, friction, temperature, thermal deformation",
     "mesh": "the choices of the mesh model, the quasi-static cycle, the heat balance",
-    "verify": "finite-element checks",
     "case": "what a case file holds: schema, units, defaults, families of operating points",
     "results": "what is stored: results, files, stores of long work, workers",
     "study": "one module for each study: run, motion, orbit, branches, sweeps, comparisons",

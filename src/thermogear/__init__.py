@@ -66,7 +66,6 @@ _HOME = {
     "sweep": "thermogear.study.sweep",
     "load_case": "thermogear.case.case",
     "read_rexs": "thermogear.case.rexs.container",
-    "write_rexs": "thermogear.case.rexs.writing",
     "family": "thermogear.case.family",
     "run": "thermogear.study.run",
     "drawing": "thermogear.study.drawing",

@@ -194,6 +194,18 @@ def test_a_chamfer_of_the_tip_is_that_of_the_flanks_or_of_the_diameters(
     assert relief.length == pytest.approx(rolled(0.0581) - rolled(0.056), rel=1e-11)
 
 
+def test_teeth_that_do_not_go_with_their_root_diameter_are_refused(tmp_path: Path) -> None:
+    """Two teeth more by hand: the root diameter leaves a tool without room for its round."""
+    parts, links = one_stage()
+    parts = replaced(parts, 7, ("root_diameter", "mm", 46.75), ("number_of_teeth", "none", 23))
+    # h_aP0 = z/2 - d_f/(2 m) + x = 11.5 - 9.35 + 0.2
+    assert refused(put(tmp_path, xml(parts, links))) == (
+        "cylindrical_gear 7.number_of_teeth: got 23 beside a root_diameter of 46.75 mm; a tool "
+        "that reaches 2.35 modules has no room for its round of 0.3 modules; teeth and diameters "
+        "that go together"
+    )
+
+
 def test_a_generated_shift_moves_the_root_and_not_the_flank(tmp_path: Path) -> None:
     parts, links = one_stage()
     parts.append(

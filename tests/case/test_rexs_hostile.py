@@ -165,11 +165,6 @@ def long_code(folder: Path) -> Path:
     return put(folder, text.replace("CODED", '<array code="float64">AAAA</array>'))
 
 
-def not_our_case(folder: Path) -> Path:
-    parts, links = one_stage()
-    return put(folder, xml(replaced(parts, 1, ("custom_thermogear_case", "none", "{}")), links))
-
-
 HOSTILE: dict[str, tuple[Made, str]] = {
     "entity expansion": (laughs, "line 1: REXS file: got a DOCTYPE; allowed none"),
     "external entity": (external, "line 1: REXS file: got a DOCTYPE; allowed none"),
@@ -198,7 +193,6 @@ HOSTILE: dict[str, tuple[Made, str]] = {
     "other XML": (other_xml, "REXS file: got the element 'html'; allowed 'model'"),
     "tables where lists belong": (list_for_model, "components: got"),
     "bytes that are no numbers": (long_code, "coded array: got 3 bytes"),
-    "a case that is none": (not_our_case, "custom_thermogear_case: got no case of thermogear"),
 }
 
 

@@ -1,4 +1,4 @@
-"""``thermogear import`` and ``export``: gearbox files in and out."""
+"""``thermogear import``: gearbox files in."""
 
 from __future__ import annotations
 
@@ -9,13 +9,9 @@ import pytest
 
 from own_rexs import one_stage, put, replaced, xml
 from said import numbers
-from thermogear.base.display import kind_in_words
-from thermogear.case.case import gear_case, load_case
+from thermogear.case.case import load_case
 from thermogear.case.duty import read_duty
-from thermogear.case.rexs.exporting import kept_alone
 from thermogear.front.cli import main
-from thermogear.gears.deviations import PitchError
-from thermogear.gears.turn import Eccentricity
 
 Capture = pytest.CaptureFixture[str]
 
@@ -118,42 +114,6 @@ def test_several_stages_want_a_number(tmp_path: Path, capsys: Capture) -> None:
     path = put(tmp_path, xml(parts, links))
     assert main(["import", str(path), "-o", str(tmp_path / "mine.toml")]) == 2
     assert "--stage: got nothing; allowed 1..2; the file has several" in capsys.readouterr().err
-
-
-def test_there_and_back(tmp_path: Path, capsys: Capture) -> None:
-    path = put(tmp_path, xml(*one_stage()))
-    first, file, second = (tmp_path / name for name in ("a.toml", "b.rexsz", "c.toml"))
-    assert main(["import", str(path), "-o", str(first)]) == 0
-    assert main(["export", str(first), "-o", str(file), "--rexs", "2.0.0"]) == 0
-    assert capsys.readouterr().out.splitlines()[-1] == str(file)
-    assert main(["import", str(file), "-o", str(second)]) == 0
-    one, two = (load_case(each) for each in (first, second))
-    assert one.data == two.data  # type: ignore[union-attr]
-
-
-def test_an_export_says_what_other_programs_do_not_see(tmp_path: Path, capsys: Capture) -> None:
-    tooth = "gears.pinion.teeth_differ=[{tooth=3, index='5 um'}]"
-    given = ["--set", tooth, "--set", "gears.pinion.eccentricity.amount=4 um"]
-    given += ["--set", "gears.marks=[2, 1]"]
-    plain, whole = tmp_path / "a.rexs", tmp_path / "b.rexs"
-    assert main(["export", "fzg-c", "-o", str(plain)]) == 0
-    assert capsys.readouterr().out.splitlines() == [str(plain)]
-    assert main(["export", "fzg-c", "-o", str(whole), *given]) == 0
-    line, path = capsys.readouterr().out.splitlines()
-    kinds = [Eccentricity("pinion", amount=0.0, angle=0.0), PitchError("pinion", (0.0,))]
-    assert line.rpartition(": ")[2].split(", ") == [*map(kind_in_words, kinds), "marks"]
-    assert path == str(whole)
-    assert kept_alone(gear_case(load_case("motor-train")))[:2] == ["shafts", "bearings"]
-
-
-def test_an_export_with_overrides(tmp_path: Path, capsys: Capture) -> None:
-    file = tmp_path / "b.rexs"
-    given = ["--set", "operating.torque=100 N m", "--set", "operating.speed=1000 rpm"]
-    assert main(["export", "fzg-c", "-o", str(file), *given]) == 0
-    assert main(["import", str(file), "--stage", "1"]) == 0
-    assert 'torque = "100 N m"' in capsys.readouterr().out
-    assert main(["export", "table-4.2", "-o", str(tmp_path / "c.rexs")]) == 2
-    assert "kind = 'dimensionless'" in capsys.readouterr().err
 
 
 def test_teeth_of_one_gear_alone(tmp_path: Path, capsys: Capture) -> None:

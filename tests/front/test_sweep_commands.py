@@ -51,23 +51,28 @@ def test_bifurcation_with_and_without_heat_in_one_table(cases, tmp_path):
         "--branch-period", 1, "--against", "eps_T=0.02", "--against", "b=0.8",
         "-o", tmp_path / "d", "--json", "--csv", tmp_path / "both.csv",
     )  # fmt: skip
-    (row,) = [r for r in found["moved"] if r["kind"] == "period doubling" and r["period"] == 1]
-    assert row["one"] == pytest.approx(0.17004302692235368, abs=1e-9)
-    assert row["other"] == pytest.approx(0.174447855, abs=1e-8)
-    assert row["moved"] == pytest.approx(row["other"] - row["one"], abs=1e-15)
-    assert (row["partner"], row["drawn"]) == ("matched", True)
+    one, other = (
+        [
+            row["value"]
+            for row in found[side]["bifurcations"]
+            if row["kind"] == "period doubling" and row["period"] == 1
+        ]
+        for side in ("one", "other")
+    )
+    assert one == pytest.approx([0.17004302692235368], abs=1e-9)
+    assert other == pytest.approx([0.174447855], abs=1e-8)
     assert found["states"][1] == "eps_T=0.02, b=0.8"
     assert [found[side]["points"] for side in ("one", "other")] == [6, 6]
     points = pd.read_csv(tmp_path / "both.csv")
     assert dict(points["state"].value_counts()) == dict.fromkeys(found["states"], 6)
     events = pd.read_csv(tmp_path / "d" / "overlay_bifurcations.csv")
-    flips = events[events["kind"] == "period doubling"]
-    assert float(flips["moved by"].iloc[0]) == pytest.approx(row["moved"], rel=1e-8)
+    flips = events[(events["kind"] == "period doubling") & (events["period"] == 1)]
+    assert flips["state"].tolist() == found["states"]
     assert (tmp_path / "d" / "one" / "report.html").exists()
     page = (tmp_path / "d" / "overlay.html").read_text(encoding="utf-8")
     assert page.count("<figure") == 1
     table = [line for line in page_of(open_results(tmp_path / "d")).lines() if "doubling" in line]
-    assert re.split(r" {2,}", table[0].strip())[1:3] == ["1", "0.170043027"]
+    assert re.split(r" {2,}", table[0].strip())[2:4] == ["1", "0.17004303"]
 
 
 def test_play_of_a_train_is_swept_in_one_command(tmp_path):

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from finite_elements.elements import ReferencePatch
 from thermogear.base.errors import InputError
 from thermogear.gears.elements import Patch
 from thermogear.gears.geometry import Gear, Rack
@@ -26,7 +27,6 @@ from thermogear.gears.root_stress import (
 from thermogear.gears.tooth import section_angle
 from thermogear.gears.tooth_mesh import cells_of, halved
 from thermogear.gears.tooth_table import MATES, Sector
-from thermogear.verify.elements import ReferencePatch
 
 RIG = GearPair(Gear(25, 5e-3, bore_radius=20e-3), Gear(75, 5e-3, bore_radius=60e-3))
 SHIFTED = GearPair(Gear(25, 5e-3, profile_shift=0.8, bore_radius=20e-3), RIG.wheel)

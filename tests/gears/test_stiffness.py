@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from conftest import Compared
+from finite_elements import pair_stiffness as finite_stiffness
 from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.gears.geometry import Gear
 from thermogear.gears.pair import GearPair
@@ -19,7 +20,6 @@ from thermogear.gears.stiffness import (
     sainsot_compliance,
     yang_sun_stiffness,
 )
-from thermogear.verify import pair_stiffness as finite_stiffness
 
 
 def rig(face_width: float, bores: tuple[float, float]) -> GearPair:

@@ -1,20 +1,14 @@
-"""Two diagrams side by side: which bifurcation of one is which of the other."""
+"""Diagrams side by side, and maps computed in part."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-import xarray as xr
-from tests.analysis.test_event_curve import DOUBLING
-from tests.analysis.test_event_curve import FORCED as BENT
 
 from own_pair import OWN_PAIR
-from thermogear.analysis.bifurcations import FLIP, FOLD, GRAZING
 from thermogear.analysis.diagram import diagram_plan
-from thermogear.analysis.matched import BEYOND, JOINED, MATCHED, matches
 from thermogear.analysis.settle import PERIODIC
 from thermogear.base.errors import InputError
 from thermogear.base.plan import gather
@@ -24,71 +18,18 @@ from thermogear.case.case import load_case, load_example
 from thermogear.dynamics.models import TorsionalModel
 from thermogear.results.work import carry_out
 from thermogear.study import diagrams
-from thermogear.study.diagrams import case_map, whole_or_spared
+from thermogear.study.diagrams import case_map, overlaid, whole_or_spared
 from thermogear.views.plots.lost_contact import PARTED
+from thermogear.views.write import page_of
 
-SCALED = ("damping_ratio", "frequency", "stiffness_amplitude", "mean_force", "force_amplitude")
-
-
-def both(
-    model: TorsionalModel, other: TorsionalModel, values: Any, period: int = 1
-) -> tuple[list[xr.Dataset], tuple[Any, Any]]:
-    """Two diagrams over the frequency, and their families."""
-    plans = [diagram_plan(one, "frequency", values, branch_period=period) for one in (model, other)]
-    return [gather(plan, threads=1) for plan in plans], (plans[0].family, plans[1].family)
-
-
-def test_a_bifurcation_is_matched_by_following_it_not_by_its_order() -> None:
-    """Scaled by s in time, the equation is the same one: the flip and the fold move by s.
-
-    The flip's partner lies outside the range, and another flip inside it where it was: by their
-    order, and by the least way, the two would be a pair.
-    """
-    s = 1.05
-    model = DOUBLING
-    other = model.replace(
-        thermal_stiffness=s * s - 1.0,
-        **{n: s ** (1 if n == "damping_ratio" else 2) * getattr(model, n) for n in SCALED
-           if n != "frequency"},
-    )  # fmt: skip
-    data, families = both(model, other, np.linspace(1.2, 1.4, 5))
-    (row,) = matches(*data, families)
-    assert (row["kind"], row["period"], row["partner"], row["drawn"]) == (FLIP, 1, MATCHED, True)
-    assert row["other"] == pytest.approx(s * row["one"], rel=1e-9)
-    back = matches(*data[::-1], families[::-1])
-    assert [back[0]["one"], back[0]["other"]] == pytest.approx([row["other"], row["one"]])
-
-    data, families = both(model, other, np.linspace(1.26, 1.31, 5))
-    (row,) = matches(*data, families)
-    left = (1.31 - row["one"]) / ((s - 1.0) * row["one"])
-    assert (row["other"], row["partner"]) == (None, BEYOND)
-    assert row["share"] == pytest.approx(left, abs=0.05)
-
-
-def test_folds_that_meet_on_the_way_have_no_partner() -> None:
-    """Damping closes a bent resonance: both its folds end in one cusp, at one share of the way."""
-    data, families = both(BENT, BENT.replace(damping_ratio=0.12), np.linspace(0.4, 1.1, 8))
-    rows = [row for row in matches(*data, families, most=2) if row["kind"] == FOLD]
-    assert [row["partner"] for row in rows] == [JOINED]
-    (low, high) = sorted((rows[0]["one"], rows[0]["met"]))
-    folds = data[0]["bifurcation_value"].values[data[0]["bifurcation_kind"].values == 0]
-    assert [low, high] == pytest.approx(sorted(folds), rel=1e-9)
-    assert rows[0]["other"] is None
-    assert 0.0 < rows[0]["share"] < 1.0
-
-
-def test_a_diagram_against_itself_moves_nothing() -> None:
-    """Grazings too; what the other diagram has not drawn is said to be so."""
-    data, families = both(BENT, BENT, np.linspace(0.4, 1.1, 8))
-    rows = matches(*data, families)
-    assert {FOLD, GRAZING} <= {row["kind"] for row in rows}
-    assert {row["partner"] for row in rows} == {MATCHED}
-    assert max(abs(row["one"] - row["other"]) for row in rows) < 1e-9
-    bare = data[1].drop_isel(bifurcation=range(data[1].sizes["bifurcation"]))
-    undrawn = matches(data[0], bare, families)
-    assert [row["drawn"] for row in undrawn] == [False] * len(rows)
-    few = matches(*data, families, most=1)
-    assert [row["why"] for row in few if row["why"]] == [few[-1]["why"]] * (len(few) - 1)
+SCALED = ("damping_ratio", "stiffness_amplitude", "mean_force", "force_amplitude")
+DOUBLING = TorsionalModel(
+    damping_ratio=0.1535,
+    frequency=1.3,
+    stiffness_amplitude=0.335,
+    mean_force=0.017,
+    force_amplitude=-1.16,
+)
 
 
 PAIRS = (
@@ -162,7 +103,24 @@ def test_a_map_goes_on_as_it_was_begun_whatever_the_next_estimate_says(
         carry_out(plan, tmp_path / "m", threads=1)
 
 
-def test_diagrams_without_branches_have_no_points_that_moved():
-    """A KeyError ended the command line with --against and --branch-period 0."""
-    data, families = both(BENT, BENT, np.linspace(0.4, 1.1, 2), period=0)
-    assert matches(*data, families) == []
+def test_two_diagrams_side_by_side_keep_their_own_bifurcations() -> None:
+    """Scaled by s in time, the equation is the same one: its flip moves by s."""
+    s = 1.05
+    other = DOUBLING.replace(
+        thermal_stiffness=s * s - 1.0,
+        **{n: s ** (1 if n == "damping_ratio" else 2) * getattr(DOUBLING, n) for n in SCALED},
+    )
+    for period in (1, 0):
+        found = [
+            gather(diagram_plan(one, "frequency", np.linspace(1.2, 1.4, 5), branch_period=period),
+                   threads=1)
+            for one in (DOUBLING, other)
+        ]  # fmt: skip
+        page = page_of(overlaid("", ("as it is", "scaled"), found))
+        rows = [one for one in page.figures["one"]["bifurcations"] if period]
+        assert len(rows) == period
+        if rows:
+            (row,), (scaled,) = rows, page.figures["other"]["bifurcations"]
+            assert scaled["value"] == pytest.approx(s * row["value"], rel=1e-9)
+            table = page.tables()["overlay_bifurcations.csv"].splitlines()
+            assert [line.split(",")[0] for line in table] == ["state", "as it is", "scaled"]

@@ -32,9 +32,6 @@ pytestmark = pytest.mark.filterwarnings("ignore::thermogear.base.errors.Validity
 SMALL = ["grid.path_positions=21", "grid.mesh_positions=32", "simulation.periods=16",
          "simulation.samples=32", "grid.harmonics=8", "simulation.discard=100"]  # fmt: skip
 TWO_SPEEDS = 'operating.speed=["1500 rpm", "9000 rpm"]'
-FOLLOWED = {
-    "kind": "fold", "period": 1, "one": 0.05, "other": 0.06, "met": None, "share": 0.0, "why": "",
-}  # fmt: skip
 STEPS: dict[str, Any] = {"temperatures": (353.15, 393.15), "values": 5}
 
 
@@ -50,9 +47,8 @@ def prose(result: Result) -> str:
 
 @pytest.fixture(autouse=True, scope="module")
 def _told() -> Iterator[None]:
-    """Pictures in words, and few bifurcations followed: the words are the same."""
-    with in_words(), pytest.MonkeyPatch.context() as patch:
-        patch.setattr(study, "FOLLOWED", 1)
+    """Pictures in words."""
+    with in_words():
         yield
 
 
@@ -172,16 +168,6 @@ def test_pages_have_no_empty_table_and_speak_of_a_jam_where_one_is(
     assert numbers(told)[2:4] == pytest.approx(gaps, rel=5e-3)
     jams = sorted(row["jam_temperature"].values - 273.15)
     assert numbers(told)[4:6] == pytest.approx([jams[0], jams[-1]], abs=0.51)
-
-
-def test_a_bifurcation_followed_to_a_branch_that_is_not_drawn_is_counted(moving: Result) -> None:
-    every = {name: [] for name in moving.table("matches")}
-    rows = [{"partner": "matched", "drawn": drawn, **FOLLOWED} for drawn in (True, False, False)]
-    result = moving.with_(matches=every | {"damping_ratio": rows})
-    told = page_of(result).figures["findings"]["Damping"]
-    assert numbers(told)[-2:] == [3.0, 2.0]
-    result = moving.with_(matches=every | {"damping_ratio": rows[:1]})
-    assert numbers(page_of(result).figures["findings"]["Damping"])[-1] == 1.0
 
 
 def test_temperatures_that_a_material_does_not_have_are_left_out() -> None:

@@ -7,6 +7,8 @@ import pytest
 
 from checked_pairs import CheckedPair, far_pairs, own_pairs, published_pair, root_pairs
 from conftest import Compared
+from finite_elements import Density, check_stiffness, inner_phases, pair_stiffness
+from finite_elements.sector import FlankSector
 from finite_growth import finite_flank_growth, flank_radii
 from gear_compliance import gear_compliance
 from thermogear.base.errors import InputError
@@ -17,8 +19,6 @@ from thermogear.gears.mesh_system import LoadedModel
 from thermogear.gears.pair import GearPair
 from thermogear.gears.root_stress import root_table
 from thermogear.heat.expansion import RadialField, flank_growth
-from thermogear.verify import Density, check_stiffness, inner_phases, pair_stiffness
-from thermogear.verify.sector import FlankSector
 
 pytestmark = pytest.mark.slow
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from finite_elements.elements import ReferencePatch
+from finite_elements.sector import FlankSector
 from gear_compliance import gear_compliance
 from thermogear.base.errors import InputError
 from thermogear.gears.geometry import Gear, Rack
@@ -20,8 +21,6 @@ from thermogear.gears.tooth_mesh import (
     tooth_mesh,
 )
 from thermogear.gears.tooth_table import Sector
-from thermogear.verify.elements import ReferencePatch, library
-from thermogear.verify.sector import FlankSector
 
 pytestmark = pytest.mark.slow
 
@@ -203,12 +202,3 @@ class TestRefusals:
     def test_plane_state(self) -> None:
         with pytest.raises(InputError, match=r"near: got 'stres'; .* did you mean 'stress'"):
             gear_compliance(PINION, [0.3], A, near="stres")
-
-    def test_without_the_library(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        monkeypatch.setitem(sys.modules, "skfem", None)
-        with pytest.raises(InputError) as caught:
-            library()
-        assert str(caught.value) == (
-            "verify: got finite elements; the check needs skfem; "
-            "in the checkout of thermogear: python -m pip install '.[fe]'"
-        )

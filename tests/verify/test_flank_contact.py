@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from checked_pairs import corner_pairs, drawn_pairs
-from thermogear.verify import pair_stiffness
-from thermogear.verify.contact import FlankContact, closed
-from thermogear.verify.sector import FlankSector
+from finite_elements import pair_stiffness
+from finite_elements.contact import FlankContact, closed
+from finite_elements.sector import FlankSector
 
 pytestmark = pytest.mark.slow
 

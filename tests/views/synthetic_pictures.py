@@ -35,7 +35,6 @@ from thermogear.views.plots import (
     shafts,
     sweeps,
 )
-from thermogear.views.plots.one_motion import plane_picture
 
 SIZES = {
     "direction": 2, "start": 1, "damping_ratio": 5, "frequency": 4, "section": 3, "branch": 1,
@@ -239,7 +238,6 @@ def of_surveys() -> dict[str, Picture]:
         "contact-phase": loaded.over_phase(contact),
         "contact-path": loaded.along_path(contact, json.loads(points)),
         "double-contact": loaded.double_contact(apart, 1.0, "double_contact_length"),
-        "iso": loaded.iso(made("load", "load", "loaded_stiffness", "iso_stiffness")),
         "relief-error": relief.error(pairs),
         "relief-stiffness": relief.stiffness(pairs),
         "relief-load": relief.over_load(pairs, 1.5),
@@ -355,7 +353,7 @@ def of_claims() -> dict[str, Picture]:
     )
     return {
         "thesis-diagram": sweeps.over_each_other([diagram], ["without heat"]),
-        "overlay": sweeps.overlay_picture(diagram.expand_dims(state=2), ["undeformed", "hot"], ()),
+        "overlay": sweeps.overlay_picture(diagram.expand_dims(state=2), ["undeformed", "hot"]),
         "over-grid": claims.over_grid(given, "flash", "flash temperature [K]", KELVIN),
         "warming": claims.warming(multiplier),
         "experiment": claims.experiment(entry),
@@ -387,14 +385,6 @@ def of_sampled_rigs() -> dict[str, Picture]:
         "rig-factors": rig_trains.factors(data),
         "rig-ranks": rig_trains.ranks(data),
     }
-
-
-def of_planes() -> dict[str, Picture]:
-    about = {"kind": "fold", "first": "frequency", "second": "damping_ratio", "period": 1}
-    curve = made("point", "first", "second").assign(
-        stable=("point", np.array([1, 0])), asked=("point", np.array([1, 1]))
-    )
-    return {"event-plane": plane_picture([curve.assign_attrs(about)])}
 
 
 def of_moving_trains() -> dict[str, Picture]:
@@ -583,4 +573,4 @@ def of_dials() -> dict[str, Picture]:
 def every() -> dict[str, Picture]:
     """All of them by name."""
     gears = of_sweeps() | of_orbits() | of_surveys() | of_shafts()
-    return gears | of_claims() | of_sampled_rigs() | of_planes() | of_dials()
+    return gears | of_claims() | of_sampled_rigs() | of_dials()

@@ -29,7 +29,6 @@ from thermogear.front import (
     study_commands,
     sweep_commands,
     thesis_commands,
-    verify_commands,
     versus_commands,
 )
 from thermogear.front.lines import put_text, say, show_path, system_error, warnings_as_lines
@@ -56,7 +55,6 @@ GROUPS = {
         "versus": "Set two to six cases side by side.",
         "report": "Draw the page of stored results anew.",
         "import": "List a REXS model, or write one of its stages as a case.",
-        "export": "Write CASE and its results as a REXS model.",
     },
     "One pair": {
         "answers": "Answer the usual questions on CASE, each with a verdict.",
@@ -90,7 +88,6 @@ GROUPS = {
     "Research": {
         "sensitivity": "Rank the inputs that decide the results.",
         "thesis": "Judge the claims of the thesis, or redo it for CASE.",
-        "verify": "Hold the models against finite elements.",
     },
 }
 """Commands as the help lists them: group -> name -> one sentence of at most 60 characters."""
@@ -283,7 +280,6 @@ for _list in (
     sweep_commands,
     measure_commands,
     thesis_commands,
-    verify_commands,
     versus_commands,
 ):
     for _command in _list.COMMANDS:

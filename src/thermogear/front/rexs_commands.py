@@ -1,4 +1,4 @@
-"""``import`` and ``export``: gearbox models of REXS in, cases out as models."""
+"""``import``: gearbox models of REXS as cases."""
 
 from __future__ import annotations
 
@@ -134,33 +134,5 @@ def _list(model: Model, file: str, *, as_json: bool) -> None:
         click.echo(f"\nnext: thermogear import {printable(file)} --stage {able[0]} -o mine.toml")
 
 
-@click.command()
-@delivery.case
-@click.option("-o", "--output", required=True, metavar="FILE", help="New .rexs, .rexsj or .rexsz.")
-@delivery.overrides
-@click.option(
-    "--rexs",
-    "version",
-    type=click.Choice(["1.4", "1.5", "1.6", "1.7", "2.0.0"]),
-    default="1.7",
-    show_default=True,
-    help="Version of REXS.",
-)
-def export(case: str, output: str, overrides: tuple[str, ...], version: str) -> None:
-    """Write CASE and its quasi-static results as a REXS model.
-
-    The ending of FILE says the container: .rexs XML, .rexsj JSON, .rexsz zip. `thermogear import`
-    gives the same case back, bit for bit.
-    """
-    from thermogear.case.rexs.exporting import kept_alone
-    from thermogear.case.rexs.writing import write_rexs
-
-    read = delivery.load_gears(case, overrides)
-    path = write_rexs(read, output, version=version)
-    if alone := ", ".join(kept_alone(read)):
-        click.echo(f"  REXS has no name for, so in custom_thermogear_case alone: {alone}")
-    show_path(path)
-
-
-COMMANDS: tuple[click.Command, ...] = (import_, export)
+COMMANDS: tuple[click.Command, ...] = (import_,)
 """For the main group to register."""

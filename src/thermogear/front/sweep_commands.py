@@ -108,7 +108,7 @@ _but = click.option(
               help="Follow branches of orbits up to this period; 0: none.")  # fmt: skip
 @click.option("--against", multiple=True, metavar="NAME=VALUE",
               help="A second diagram with these numbers changed (state=VALUE for a gear case); "
-              "both in one picture and one table; bifurcations are followed.")  # fmt: skip
+              "both in one picture and one table.")  # fmt: skip
 @_train
 @_common
 def bifurcation(
@@ -165,10 +165,7 @@ def bifurcation(
     words = (state.words, other_state.words)
     if read.kind != "gear":
         words = (", ".join(but) or "as in the case", ", ".join((*but, *texts)))
-    delivery.deliver(
-        lambda report: overlaid(read.title, words, plans, found, progress=report), output,
-        as_json=as_json,
-    )  # fmt: skip
+    delivery.deliver(lambda _: overlaid(read.title, words, found), output, as_json=as_json)
 
 
 @click.command("map")

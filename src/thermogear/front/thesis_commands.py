@@ -59,8 +59,8 @@ def thesis(
 
     Without CASE sections 2 to 6: what is said, what is computed as in the thesis and consistently,
     a verdict, its argument and the code behind it. With CASE the thesis's steps for one operating
-    point of it: gear temperatures, damping, speed and stiffness fluctuation, friction, records,
-    outlook. Ctrl+C keeps what is finished.
+    point of it: gear temperatures, damping, speed and stiffness fluctuation, friction and
+    records. Ctrl+C keeps what is finished.
     """
     if case is not None:
         if experiment is not None:

@@ -16,12 +16,10 @@ from thermogear.analysis.branches import with_branches_of_states
 from thermogear.analysis.diagram import BRANCH_PERIOD, DIAGRAM_RULE, DiagramPlan, diagram_plan
 from thermogear.analysis.family import Family
 from thermogear.analysis.maps import MAP_RULE, MapPlan, map_plan
-from thermogear.analysis.matched import MOST_FOLLOWED, matches
 from thermogear.analysis.settle import Rule
 from thermogear.analysis.stacked import StackedPlan
 from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.errors import InputError
-from thermogear.base.progress import Progress, silent
 from thermogear.base.stores import read_manifests
 from thermogear.case.base import Case
 from thermogear.case.case import GearCase, gear_case
@@ -215,18 +213,12 @@ def case_basins(
 def overlaid(
     title: str,
     words: Sequence[str],
-    plans: Sequence[DiagramPlan],
     found: Sequence[Dataset],
-    *,
-    most: int = MOST_FOLLOWED,
-    progress: Progress = silent,
 ) -> Result:
-    """Two diagrams over the same values as one result, with every bifurcation followed between.
+    """Two diagrams over the same values as one result.
 
-    ``words`` name their states, ``found`` is what their ``plans`` gave. The group "states" has the
-    axis ``state``; branches and bifurcations carry ``branch_state`` and ``bifurcation_state``.
-    ``rows("matches")`` are those of :func:`~thermogear.analysis.matched.matches`, of which ``most``
-    are followed.
+    ``words`` name their states, ``found`` holds the diagrams. The group "states" has the axis
+    ``state``; branches and bifurcations carry ``branch_state`` and ``bifurcation_state``.
     """
     import xarray as xr
 
@@ -243,9 +235,5 @@ def overlaid(
     name = str(data.attrs["parameter"])
     if "bifurcation_kind" in one and "bifurcation_kind" in other:
         data = with_branches_of_states(data, dict(enumerate(found)), str(data[name].attrs["units"]))
-    rows = matches(
-        one, other, (plans[0].family, plans[1].family), most=most,
-        progress=lambda done, count: progress("bifurcations followed", done, count),
-    )  # fmt: skip
     notices = chain.from_iterable(map(from_data, found, words))
-    return Result.of("overlay", title, {"states": data}, notices, matches=rows, states=words)
+    return Result.of("overlay", title, {"states": data}, notices, states=words)

@@ -1,9 +1,9 @@
-"""The steps of the thesis for any gear pair: heat, bifurcations, friction, records, its outlook.
+"""The steps of the thesis for any gear pair: heat, bifurcations, friction, records.
 
 One operating point under one bundle: its motion over gear temperatures, its bifurcations over
 damping, speed and stiffness fluctuation undeformed and hot, its friction mixed and dry, and its
 records beside both states. The tree is that of a run of this point (:mod:`thermogear.study.run`)
-and ``diagrams/PARAMETER``, ``comparison``, ``play``.
+and ``diagrams/PARAMETER``, ``comparison``.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from thermogear.measured.comparison import result_of
 from thermogear.results.beside import from_data
 from thermogear.results.result import Notice, Result
 from thermogear.study.compare import compare
-from thermogear.study.diagrams import Train, case_diagram, overlaid
+from thermogear.study.diagrams import case_diagram, overlaid
 from thermogear.study.notices import friction_notices
 from thermogear.study.run import run
 
@@ -46,11 +46,6 @@ stiffness: the second and third superharmonic resonance, the main one, and the t
 PARTS = (0.1, 0.9)
 """Fluctuations of the mesh stiffness, as parts of the one at which it would reach zero: the
 thesis's amplitudes 0.1 to 0.9, which reach zero at 1."""
-PLAYS = np.array([0.0, 20e-6, 40e-6, 60e-6])
-"""Play of all bearings [m]: none, and that of new to worn ball bearings of 30 to 50 mm bore."""
-FOLLOWED = 12
-"""Bifurcations of each diagram that are followed from one state to the other, grazings last: a
-second of processor time each, about."""
 
 
 def thesis_pair(
@@ -82,28 +77,23 @@ def thesis_pair(
         progress=progress,
     )
     groups, cut = {**ran.groups, **beside.groups}, False
-    matches: dict[str, list[dict[str, Any]]] = {}
+    computed: list[str] = []
     try:
         for name, axis in _axes(alone, point, values).items():
-            both = _overlaid(alone, name, axis, progress)
-            groups[f"diagrams/{name}"] = both.data
-            matches[name] = both.rows("matches")
-        if case.train is not None:
-            # the drive train hot over the play of all its bearings, up and down
-            plan = case_diagram(alone, "bearings.all.play", PLAYS, branch_period=0, train=Train())
-            groups["play"] = gather(plan, progress=partial(progress, "bearing play"))
+            groups[f"diagrams/{name}"] = _overlaid(alone, name, axis, progress).data
+            computed.append(name)
     except KeyboardInterrupt:
         cut = True
     told = [
         notice
-        for name in matches
+        for name in computed
         for notice in from_data(groups[f"diagrams/{name}"][["status"]], PARAMETERS[name].words)
     ]
     if case.train is not None:
         told.insert(0, Notice.of("gears_on_rigid_bearings"))
     notices = (*told, *friction_notices(alone, groups))
     return replace(ran, kind="thesis-pair", groups=groups, notices=notices).with_(
-        interrupted=cut, left_out=left_out, matches=matches, conclusion=beside.text("conclusion")
+        interrupted=cut, left_out=left_out, conclusion=beside.text("conclusion")
     )
 
 
@@ -165,7 +155,7 @@ def _axes(case: GearCase, point: Points, count: int) -> dict[str, Floats]:
 
 
 def _overlaid(case: GearCase, name: str, values: Floats, progress: Progress) -> Result:
-    """The diagrams over one parameter, undeformed and hot, with their bifurcations matched."""
+    """The diagrams over one parameter, undeformed and hot."""
     states = (UNDEFORMED, HOT)
     plans = [case_diagram(case, name, values, state=state) for state in states]
     found = [
@@ -173,4 +163,4 @@ def _overlaid(case: GearCase, name: str, values: Floats, progress: Progress) -> 
         for plan, state in zip(plans, states, strict=True)
     ]
     words = [state.words for state in states]
-    return overlaid(case.title, words, plans, found, most=FOLLOWED, progress=progress)
+    return overlaid(case.title, words, found)

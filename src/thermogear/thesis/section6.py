@@ -118,7 +118,7 @@ _ROWS = (
     ("6.2.1", "6, conclusion 2", "statement", "Heat reduces the backlash.",
      lambda e: judged(e, "3.1.1"), ("thermogear.mesh.clearance.Clearance",), "gap-temperature"),
     ("6.2.2", "6, conclusion 2", "statement", "Heat raises the mesh stiffness slightly.",
-     lambda e: judged(e, "3.2.7"), ("thermogear.mesh.cycle.mesh_cycle",), "stiffness-bars"),
+     lambda e: judged(e, "3.2.7"), ("thermogear.mesh.cycle.mesh_cycle",), "stiffness-0"),
     ("6.2.3", "6, conclusion 2", "statement", "The dimensionless model captures both effects.",
      _captures, ("thermogear.study.run.run",), ""),
     ("6.3.1", "6, conclusion 3", "statement",

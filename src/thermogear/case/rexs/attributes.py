@@ -11,7 +11,6 @@ import re
 from dataclasses import dataclass
 
 from thermogear.base.errors import InputError, short
-from thermogear.base.units import ZERO_CELSIUS
 from thermogear.case.rexs.model import Attribute, Component, Model
 from thermogear.case.units import KINDS, convert
 
@@ -151,7 +150,7 @@ MEANINGS: dict[str, Meaning] = (
         ),
         _NUMBER,
     )
-    | dict.fromkeys(("temperature_lubricant", "bulk_temperature"), _TEMPERATURE)
+    | dict.fromkeys(("temperature_lubricant",), _TEMPERATURE)
     | dict.fromkeys(("operating_time_fraction", "load_duration_fraction"), _SHARE)
     | dict.fromkeys(("operating_time", "load_duration"), _HOURS)
     | {
@@ -186,17 +185,12 @@ LATER: dict[str, tuple[str, ...]] = {
 }
 """Names the same thing has in other versions."""
 
-TRUTHS = (
+WORDS = (
     "is_driving_gear",
     "defines_torque",
     "transmits_torque",
     "defines_speed",
     "radial_force_absorption",
-)
-"""Attributes that are true or false, or 1 or 0."""
-
-WORDS = (
-    *TRUTHS,
     "number_of_teeth",
     "tolerance_class_according_to_iso_1328_2013",
     "tooth_thickness_deviation_tolerance_series_din_3967_1978",
@@ -212,19 +206,10 @@ WORDS = (
 )
 """Attributes that are counts, texts and truths."""
 
-EARLIER = {other: name for name, names in LATER.items() for other in names}
-"""The name that :data:`MEANINGS` and :data:`WORDS` have for those of other versions."""
+USED = {*MEANINGS, *WORDS}.union(*LATER.values())
+"""Every attribute that is read."""
 
-USED = {*MEANINGS, *WORDS, *EARLIER} - {"bulk_temperature"}
-"""Every attribute that is read; the temperature of the teeth is written alone."""
-
-Plain = str | float | list[float]
-"""A value however it is written: a text or a truth, a number or several in SI."""
 _NUMBER_TEXT = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,4})?")
-OURS = "custom_thermogear_"
-"""Begins attributes of ours."""
-CASE = f"{OURS}case"
-"""The attribute that holds a whole case."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -316,21 +301,6 @@ class Reader:
             raise InputError(where, short(found.value), allowed="a whole number")
         return int(value)
 
-    def plain_value(self, component: Component, found: Attribute) -> Plain:
-        """What an attribute says however it is written: numbers in SI, else the text."""
-        means = MEANINGS.get(EARLIER.get(found.id, found.id))
-        several = found.value if isinstance(found.value, list) else [found.value]
-        where, text = _where(component, found), str(found.value).strip()
-        if found.id in TRUTHS:
-            return {"1": "true", "0": "false"}.get(text, text.lower())
-        try:
-            if means is None:
-                return finite(text, where)
-            read = [self._converted(found, finite(one, where), means, where) for one in several]
-            return read[0].si if len(read) == 1 else [one.si for one in read]
-        except InputError:
-            return text
-
     def _converted(self, found: Attribute, value: float, means: Meaning, where: str) -> Read:
         schema = means.unit_in(self.model.after)
         unit = (found.unit or "").strip()
@@ -403,29 +373,3 @@ def in_si(value: float, unit: str, means: Meaning, where: str) -> Read:
             why=f"{short(unit)} is none",
         ) from error
     return Read(si=si, number=factor * value, unit=ours)
-
-
-# --- writing --------------------------------------------------------------------------------
-
-_RENAMED = {
-    "arithmetic_average_roughness_flank": "arithmetic_mean_roughness_flank_iso_4287_1997",
-    "tip_radius_factor": "tip_corner_radius_factor_reference_profile",
-    "tolerance_class_according_to_iso_1328_2013": "global_tolerance_class_iso_1328_2013",
-}
-
-
-def spelled(name: str, version: str) -> str:
-    """The name an attribute has in a ``version`` that is written."""
-    return _RENAMED.get(name, name) if version.startswith("2") else name
-
-
-def from_si(si: float, means: Meaning, version: tuple[int, ...]) -> tuple[float, str]:
-    """An SI number in the unit of REXS, rounded to 12 digits, and that unit."""
-    unit = means.unit_in(version)
-    factor, ours = _SPELLED[unit]
-    value = si
-    if ours == "degC":
-        value = si - ZERO_CELSIUS
-    elif means.kind not in (PURE, "power"):
-        value = si / convert(1.0, ours, KINDS[means.kind])
-    return float(f"{value / factor:.13g}"), unit

@@ -237,31 +237,13 @@ def gear_data_of(model: Model, stage: Component, gear: Component) -> Component |
     )
 
 
-def parts_of(model: Model, stage: Stage) -> dict[str, Component]:
-    """The components that a stage takes its case from, by their place in it."""
-    shafts, loads = shafts_of_gears(model), loads_of_shafts(model)
-    parts = {"stage": stage.component, "oil": lubricant_of(model, stage.component)}
-    for kind in ("gear_unit", "gear_casing"):
-        parts[kind] = next(iter(model.of_type(kind)), None)
-    for place, gear in enumerate(stage.gears, start=1):
+def parts_of(model: Model, stage: Stage) -> list[Component]:
+    """The components that a stage takes its case from, but shafts, loads and casing."""
+    parts = [stage.component, lubricant_of(model, stage.component)]
+    for gear in stage.gears:
         flanks = flanks_of(model, gear)
-        mine: dict[str, Component | None] = {
-            "gear": gear,
-            "tool": tool_of(model, gear, flanks),
-            "data": gear_data_of(model, stage.component, gear),
-            "material": next(iter(model.referenced(gear.id, "material")), None),
-            "shaft": model.at(shafts.get(gear.id)),
-        }
-        several = [("load", load) for load in loads.get(shafts.get(gear.id, -1), ())]
-        settings = settings_of(model, gear, flanks)
-        several += [
-            ("settings", step) for step in settings if step.type == "manufacturing_settings"
-        ]
-        for side, flank in flanks.items():
-            mine[side] = flank
-            for relief in model.referenced(flank.id, "tip_relief", "root_relief"):
-                several.append((f"{side} {relief.type}", relief))
-        for name, part in several:
-            mine[name if name not in mine else f"{name} {len(mine)}"] = part
-        parts |= {f"{name} {place}": part for name, part in mine.items()}
-    return {name: part for name, part in parts.items() if part is not None}
+        parts += [gear, tool_of(model, gear, flanks), gear_data_of(model, stage.component, gear)]
+        parts += [*settings_of(model, gear, flanks), *model.referenced(gear.id, "material")[:1]]
+        for flank in flanks.values():
+            parts += model.referenced(flank.id, "tip_relief", "root_relief")
+    return [part for part in parts if part is not None]

@@ -2,93 +2,34 @@
 
 from __future__ import annotations
 
-import json
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import accumulate
-from typing import Any
 
 from thermogear.base.errors import InputError, InputErrors, short
-from thermogear.base.toml import flat, overridden, tables
+from thermogear.base.toml import flat
 from thermogear.base.units import RPM
 from thermogear.case.assumptions import Assumption
-from thermogear.case.case import GearCase, case_of, gear_case, load_case
+from thermogear.case.case import GearCase, gear_case, load_case
 from thermogear.case.rexs import gearbox
-from thermogear.case.rexs.attributes import CASE, OURS, USED, Plain, Reader, plain
+from thermogear.case.rexs.attributes import USED, Reader, plain
 from thermogear.case.rexs.draft import Draft
 from thermogear.case.rexs.drive import Drive
-from thermogear.case.rexs.exporting import kept_alone
 from thermogear.case.rexs.gearbox import Stage
-from thermogear.case.rexs.lines import some, stored, toml
-from thermogear.case.rexs.model import MOST_LOAD_CASES, Component, Model
+from thermogear.case.rexs.lines import some, toml
+from thermogear.case.rexs.model import Component, Model
 from thermogear.case.rexs.shaft_train import without_train
 from thermogear.case.rexs.stage_case import draft, one_rack, require_spur
-from thermogear.case.rexs.values import (
-    TITLE,
-    Key,
-    Values,
-    alike,
-    shown,
-    values,
-)
 
 
-@dataclass(frozen=True)
-class Exported:
-    """A case that was exported: its tables, and a line for every value changed since then."""
-
-    data: dict[str, Any]
-    changed: list[str]
-
-
-def checked(stage: Stage, file: str | dict[str, Any]) -> GearCase:
-    """The case of a text or of its tables; what is impossible in it speaks of the stage."""
+def checked(stage: Stage, text: str) -> GearCase:
+    """The case of a text; what is impossible in it speaks of the stage."""
     try:
-        return gear_case(load_case(file) if isinstance(file, str) else case_of(file, "", ()))
+        return gear_case(load_case(text))
     except InputError as error:
         first = error.errors[0] if isinstance(error, InputErrors) else error
         raise first.under(stage.field) from error
-
-
-def exported(reader: Reader, stage: Stage) -> Exported | None:
-    """The case that a stage was exported from; None in others."""
-    holders = (stage.component, *reader.model.of_type("gear_unit"))
-    holder = next((part for part in holders if CASE in part.attributes), None)
-    if holder is None:
-        return None
-    try:
-        kept = json.loads(str(holder.attributes[CASE].value))
-        changes = tuple((str(path), str(text)) for path, text in kept["overrides"])
-        data = overridden(tables("case", str(kept["text"])), changes)
-        old = {
-            Key(min(abs(load), MOST_LOAD_CASES), str(part), str(name)): _plain(value)
-            for load, part, name, value in kept["values"]
-        }
-    except (ValueError, KeyError, TypeError, RecursionError) as cause:
-        raise InputError(
-            f"{holder.called}.{CASE}",
-            "no case of thermogear",
-            fix=f"take the attribute {CASE} out of the file",
-        ) from cause
-    return Exported(data, list(_changes(reader, stage, old)))
-
-
-def _plain(value: Any) -> Plain:
-    if isinstance(value, list):
-        return [float(item) for item in value]
-    return value if isinstance(value, str) else float(value)
-
-
-def _changes(reader: Reader, stage: Stage, old: Values) -> Iterator[str]:
-    """A line for every value that is not as it was when a case was exported."""
-    model, parts = reader.model, gearbox.parts_of(reader.model, stage)
-    title = {key: name for key, name in old.items() if key == TITLE}
-    now = title | values(reader, stage)  # a name that is gone was none to change
-    for key in old | now:
-        if not alike(old.get(key), now.get(key)):
-            got, was = (shown(of.get(key), key, model) for of in (now, old))
-            yield f"{key.called(parts, model.version)}: got {got}; it was {was} when exported"
 
 
 @dataclass(frozen=True)
@@ -102,8 +43,7 @@ class Found:
 
 @dataclass(frozen=True)
 class Imported:
-    """A stage as a case: the ``text`` of the case file, what could not be used, notes on units
-    and on what was changed of a case since it was exported.
+    """A stage as a case: the ``text`` of the case file, what could not be used, notes on units.
 
     ``duty``: the load spectrum as the table that `thermogear warmup --duty` reads; empty without
     times of the load cases.
@@ -166,7 +106,7 @@ def left_out(
     names: dict[str, set[str]] = {}
     for one in model.components.values():
         if one.id in known - silent:
-            mine = {name for name in one.attributes if name not in USED and OURS not in name}
+            mine = {name for name in one.attributes if name not in USED}
             names[one.type] = names.get(one.type, set()) | mine
         elif one.id not in silent:
             parts[one.type] += 1
@@ -218,11 +158,6 @@ def imported(
     """
     reader = Reader(model)
     one = chosen(model, stage)
-    kept, notes = exported(reader, one), []
-    if kept is not None:
-        if not kept.changed:
-            return _as_exported(reader, one, kept.data, {"speed": speed, "torque": torque})
-        notes = [*kept.changed, _like_any_other(checked(one, kept.data))]
     made = draft(reader, one, speed, torque)
     one_rack(made)
     if made.train:
@@ -233,29 +168,8 @@ def imported(
     shapes = _modifications(model, made)
     unused = [*made.unused, *shapes]
     unused += left_out(model, [*_used(model, one), *made.train, *made.seats], told=shapes.values())
-    text = _fresh(made, [*_head(model, one, unused), *map(flat, notes)])
-    return Imported(text, tuple(unused), (*reader.said, *notes), _duty(made))
-
-
-def _as_exported(
-    reader: Reader, stage: Stage, data: dict[str, Any], given: dict[str, str | None]
-) -> Imported:
-    """The case that an unchanged file was exported from, at the load that is ``given``."""
-    loads = [(f"operating.{name}", text) for name, text in given.items() if text is not None]
-    data = overridden(data, tuple(loads))
-    checked(stage, data)
-    unused = left_out(reader.model, _used(reader.model, stage))
-    text = stored(data, _head(reader.model, stage, unused))
-    return Imported(text, tuple(unused), tuple(reader.said))
-
-
-def _like_any_other(case: GearCase) -> str:
-    """What a changed file loses of the case that it was exported from."""
-    lost = ", ".join(kept_alone(case)) or "nothing"
-    return (
-        f"{CASE}: the file was changed and is read like any other, oil and materials by their "
-        f"constants; left out beside them: {lost}"
-    )
+    text = _fresh(made, _head(model, one, unused))
+    return Imported(text, tuple(unused), tuple(reader.said), _duty(made))
 
 
 def _head(model: Model, stage: Stage, unused: list[str]) -> list[str]:
@@ -298,7 +212,7 @@ def _defaults(made: Draft, found: Iterable[Assumption]) -> list[tuple[str, str]]
 def _used(model: Model, stage: Stage) -> list[Component]:
     """The components that a stage takes its case from."""
     whole = model.of_type("shaft", "external_load", "gear_unit", "gear_casing")
-    return [*gearbox.parts_of(model, stage).values(), *whole]
+    return [*gearbox.parts_of(model, stage), *whole]
 
 
 _MODIFICATIONS = (

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
-from thermogear.base.toml import heading, line, quoted
+from thermogear.base.toml import heading, line
 
 READ, DERIVED, DEFAULT, GIVEN = "read", "derived", "default", "given"
 """In the file as it is; computed from what is there; left to the package; said by the user."""
@@ -53,25 +53,6 @@ def toml(lines: Iterable[Line], head: Iterable[str], defaults: Iterable[tuple[st
             head_line = heading(f"[{listed[1]}]" if listed else name)
             found += ["", *([head_line] if name else []), *tables[name]]
     return "\n".join(found) + "\n"
-
-
-def stored(data: dict[str, Any], head: Iterable[str]) -> str:
-    """The tables ``data`` of a case as they were exported."""
-    found = [f"# {text}" for text in head]
-    _walk(data, (), found)
-    return "\n".join(found) + "\n"
-
-
-def _walk(table: dict[str, Any], above: tuple[str, ...], found: list[str]) -> None:
-    plain = {k: v for k, v in table.items() if not isinstance(v, dict) or above == ("ours",)}
-    if above and (plain or not table):
-        found += ["", heading(".".join(quoted(key) for key in above))]
-    for key, value in plain.items():
-        note = "" if above[:1] == ("ours",) else f"{READ}: as it was exported"
-        found.append(line(key, value, note))
-    for key, value in table.items():
-        if key not in plain:
-            _walk(value, (*above, key), found)
 
 
 _ORDER = ("", "gears", "materials", "housing", "oil", "operating", "temperatures", "backlash")

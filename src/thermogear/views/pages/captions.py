@@ -130,26 +130,15 @@ def kinematics(data: Dataset, fastest: int) -> str:
 def load_share(data: Dataset, bundles: Mapping[str, Any]) -> str:
     """Of the share of one tooth pair."""
     here = hot_state(data).isel(operating=0)
-    s, points = data["path_position"].values, path_points(data)
     if "line_load" in here and not np.any(here["line_load"].values > 0.0):
         return "Without load: the shares that a light one would have."
-    alone = (here["load_share"].values > 0.999).all(axis=0)
-    if not alone.any():
-        words = "More than one pair carries all along the path"
-    else:
-        pitch = pitch_inside(data) and bool(np.interp(points["C"], s, alone.astype(float)) > 0.5)
-        low, high = (number(MILLIMETRE(float(s[alone][end])), 4) for end in (0, -1))
-        words = f"One pair carries everything from {low} to {high} mm"
-        words += ", about the pitch point" if pitch else ""
-        words += "; towards A and E two share the force"
     how = {
         name: SHARING[str(bundles[name]["sharing"])]
         for name in names_of(data, "bundle")
         if str(bundles.get(name, {}).get("sharing")) in SHARING
     }
-    return (
-        f"{where(data, 'load_share')}{words}. {_sentence(how, 'How they share it') if how else ''}"
-    )
+    words = "Where the share is 1 one pair carries everything; elsewhere several do."
+    return f"{where(data, 'load_share')}{words} {_sentence(how, 'How') if how else ''}"
 
 
 def friction(data: Dataset, bundle: int, bundles: Mapping[str, Any]) -> str:
@@ -158,7 +147,6 @@ def friction(data: Dataset, bundle: int, bundles: Mapping[str, Any]) -> str:
     name = names_of(data, "bundle")[bundle]
     own = own_law(here, "friction_coefficient")
     kelley = here["friction_coefficient_mixed"].values
-    values = here["friction_coefficient"].values if own else kelley
     known = bool(np.isfinite(kelley).any())
     law = bundles.get(name, {}).get("friction", "another law")
     parts = [f"Lines: {law}, by which the case computes"] if own else []
@@ -170,13 +158,6 @@ def friction(data: Dataset, bundle: int, bundles: Mapping[str, Any]) -> str:
     words = [f"Bundle {name}, hot. {'; '.join(parts)}; dry, a constant."]
     if spread := band_words(here):
         words.append(spread)
-    drawn = [o for o in chosen(len(values)) if np.isfinite(values[o]).any()]
-    tops = {top_of(data, values[o]) for o in drawn}
-    if tops == {PLACES["C"]}:
-        words.append("The law would diverge at the pitch point, where nothing slides.")
-    slower = _falls_with_speed(here, values)
-    if slower:
-        words.append(slower)
     return " ".join([*words, regimes(here)]).strip()
 
 
@@ -196,17 +177,6 @@ def band_words(here: Dataset) -> str:
     if "friction_outside_range" in here and (here["friction_outside_range"].values == 1).any():
         words += "; the case's own law is outside its range in places"
     return f"{words}."
-
-
-def _falls_with_speed(here: Dataset, values: NDArray[np.float64]) -> str:
-    """How the mean coefficient goes with speed, where points differ in their speed alone."""
-    speed, torque = here["pinion_speed"].values, here["pinion_torque"].values
-    if np.unique(speed).size < 2 or np.unique(torque).size > 1 or not np.isfinite(values).all():
-        return ""
-    steps = np.diff(values.mean(axis=-1)[np.argsort(speed)])
-    if np.all(steps < 0.0):
-        return "It falls as the speed rises."
-    return "It rises with the speed." if np.all(steps > 0.0) else ""
 
 
 def flash(data: Dataset, name: str) -> str:
@@ -241,10 +211,6 @@ def growth(data: Dataset) -> str:
     hot = hot_state(data)
     words = where(hot, "deformation_sum")
     here = hot.isel(operating=told_operating(data))
-    first, second = (here[f"{gear}_deformation"].values for gear in ("pinion", "wheel"))
-    finite = np.isfinite(first).all() and np.isfinite(second).all()
-    if finite and np.array_equal(first.argmin(axis=-1), second.argmax(axis=-1)):
-        words += "Where the pinion's flank grows least the wheel's grows most."
     for b, name in enumerate(names_of(data, "bundle")):
         values = MICROMETRE(here["deformation_sum"].values[b])
         if np.isfinite(values).all():
@@ -340,33 +306,6 @@ def stiffness(mesh: Dataset, bundle: int) -> str:
     if not np.isfinite(change):
         return words
     return f"{words}Hot against undeformed the mean changes by {change:+.1f} %.".replace("-", "−")
-
-
-def bars(mesh: Dataset) -> str:
-    """Of mean and swing of the stiffness: what heat does in each bundle."""
-    names = names_of(mesh, "bundle")
-    springs, softer = [], []
-    for b, name in enumerate(names):
-        here = mesh.isel(bundle=b, operating=told_operating(mesh))
-        cold, hot = here.isel(state=0), here.isel(state=-1)
-        if "thermal_stiffness" in here and bool((hot["thermal_stiffness"] > 0.0).any()):
-            springs.append(name)
-        # the teeth's own bending tells the modulus from all that deforms with it
-        teeth = [
-            f"{gear}_{part}_stiffness"
-            for gear in ("pinion", "wheel")
-            for part in ("bending", "gear")
-            if f"{gear}_{part}_stiffness" in here
-        ]
-        fallen = any(bool((hot[n] < cold[n]).all()) for n in teeth)
-        if fallen and float(hot["mean_stiffness"]) < float(cold["mean_stiffness"]):
-            softer.append(name)
-    words = f"{where(mesh, 'mean_stiffness')}Undeformed beside hot."
-    if softer:
-        words += f" Young's modulus falls with heat, and the stiffness with it ({softer[0]})."
-    if springs:
-        words += f" Heat adds a spring ({springs[0]})."
-    return words
 
 
 def one_pair(mesh: Dataset) -> str:

@@ -168,12 +168,6 @@ def heat(results: Result, pictures: Pictures) -> Section | None:
                 captions.profile(factor, "printed" in kinds, at),
                 profile, needs, lambda p=place: deformation.profile(profile, p),  # type: ignore[misc]
             )  # fmt: skip
-            pictures.add(
-                f"profile-growth-{place}", f"How far the {gear}'s hot flank stands off",
-                "The same displacement in true size, measured along the normal of the involute.",
-                profile, needs,
-                lambda p=place: deformation.profile_growth(profile, p),  # type: ignore[misc]
-            )  # fmt: skip
     intro = Text(
         "The body's temperature makes the flanks grow; the flash is too shallow to. Growth is "
         "counted along the line of action, relative to the tooth's own centre line, before the "
@@ -234,10 +228,6 @@ def springs(results: Result, pictures: Pictures) -> Section | None:
             lambda p=place: stiffness.over_phase(mesh, p),  # type: ignore[misc]
         )  # fmt: skip
     first = mesh.isel(operating=0) if "operating" in mesh.dims else mesh
-    pictures.add(
-        "stiffness-bars", "Mean and swing", captions.bars(mesh),
-        mesh, ("mean_stiffness", "peak_to_peak_stiffness"), lambda: stiffness.bars(mesh),
-    )  # fmt: skip
     if "pair_stiffness" in mesh:
         pictures.add(
             "stiffness-pair", "Stiffness of one tooth pair", captions.one_pair(mesh),
@@ -324,12 +314,6 @@ def row(results: Result, pictures: Pictures) -> Section | None:
                 lambda b=b, o=o: temperature.views(data, bundle=b, operating=o),  # type: ignore[misc]
                 wide=True,
             )  # fmt: skip
-    swing = "peak_to_peak_displacement"
-    pictures.add(
-        "row-swing", "Swing of the motion over temperature",
-        "Peak to peak of the relative displacement at every gear temperature.",
-        data, (swing,), lambda: temperature.over_temperature(data, swing),
-    )  # fmt: skip
     blocks: list[Block] = [Text(captions.row_intro(data, ", ".join(words)))]
     drawn = pictures.take()
     table = tables.motion_proofs(data, "gear_temperature", words)

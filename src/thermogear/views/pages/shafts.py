@@ -88,7 +88,11 @@ def _statics(result: Result) -> Page:
             partial(plots.loads, rings),
             wide=True,
         ),
-        *([] if np.isnan(plots.internal_clearance(rings).values).all() else [_clearances(rings)]),
+        *(
+            []
+            if np.isnan(rings["radial_internal_clearance"].values).all()
+            else [_clearances(rings)]
+        ),
         Shown(
             "deflection",
             f"Deflection at {names[last]}",
@@ -146,7 +150,7 @@ RINGS = (
 
 def _static_tables(result: Result) -> list[Table]:
     rings = result.groups["bearings"]
-    rings = rings.assign(clearance=plots.internal_clearance(rings))
+    rings = rings.assign(clearance=rings["radial_internal_clearance"])
     of_mesh = rows_along(result.groups["statics"], "state", "operating")
     of_rings = rows_along(rings, "state", "operating", "bearing")
     return [
@@ -255,7 +259,7 @@ def criticals(result: Result) -> Iterator[dict[str, Any]]:
     every = mean.assign(
         low=low["critical_speed"],
         high=high["critical_speed"],
-        lift_off=(force.dims, plots.lift_offs(data)[:, 1]),
+        lift_off=(force.dims, data["lift_off_speed"].values[:, 1]),
         greatest_force=inside.max(["line", "mode"]).fillna(0.0),
         mode_name=modes["mode_name"],
         place=("state", np.arange(data.sizes["state"])),

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermogear.base.arrays import Dataset
-from thermogear.base.display import MICROMETRE, MILLIMETRE, PERCENT, SPEED, exactly, number, span
+from thermogear.base.display import MICROMETRE, PERCENT, SPEED, exactly, number, span
 from thermogear.base.vocabulary import is_known
 
 
@@ -109,17 +108,6 @@ def relief_loads(data: Dataset) -> str:
 # --- loaded contact -----------------------------------------------------------------------
 
 
-def contact_phase(data: Dataset) -> str:
-    """Of stiffness and error over a mesh period."""
-    mean = data.sel(temperature="hot")["tangent_stiffness"].mean("mesh_phase").values
-    words = "Tangent and secant stiffness are kept apart"
-    return words + ("; the contact hardens with load." if _rises(mean) else ".")
-
-
-def _rises(values: NDArray[np.float64]) -> bool:
-    return values.size > 1 and bool(np.all(np.diff(values) > 0.0))
-
-
 def contact_path(data: Dataset) -> str:
     """Of load share and pressure along the path."""
     loads = [exactly(float(data["load"][end])) for end in (0, -1)]
@@ -142,25 +130,6 @@ def contact_path(data: Dataset) -> str:
     )
 
 
-def double_contact(data: Dataset) -> str:
-    """Of the length of double contact of unequally hot gears."""
-    length = MILLIMETRE(data["double_contact_length"].values)
-    apart = data["temperature_difference"].values
-    equal = length[int(np.argmin(np.abs(apart)))]
-    least = np.unravel_index(int(np.argmin(length - equal)), length.shape)
-    if length[least] >= equal[least[1]] - 1e-6:
-        return "A base-pitch difference between the gears costs no double contact here."
-    left, whole = number(float(length[least])), number(float(equal[least[1]]))
-    degrees = float(apart[least[0]])
-    unequal = f"{abs(degrees):.0f} K {'hotter' if degrees > 0.0 else 'colder'}"
-    return (
-        "A base-pitch difference between gears of unequal temperature leaves one pair unloaded "
-        f"until the teeth bend enough: with the pinion {unequal} than the wheel double contact "
-        f"is {left} mm long at {number(float(data['load'][least[1]]), 2)} N m, instead of {whole} "
-        "mm."
-    )
-
-
 def uneven_stiffness(data: Dataset) -> str:
     """Of the mean stiffness of unequally hot gears."""
     mean, apart = data["mean_stiffness"].values, data["temperature_difference"].values
@@ -171,13 +140,3 @@ def uneven_stiffness(data: Dataset) -> str:
 
 def _percent(value: float) -> str:
     return "0" if abs(value) < 0.5 else f"{value:+.0f}".replace("-", "−")
-
-
-def uneven_error(data: Dataset) -> str:
-    """Of the transmission error of unequally hot gears."""
-    error = data["peak_to_peak_error"].values
-    apart = data["temperature_difference"].values
-    most = float(np.abs(apart).max())
-    ends = [error[int(np.argmin(np.abs(apart - sign * most)))] for sign in (1.0, -1.0)]
-    mirror = np.allclose(ends[0], ends[1], rtol=1e-3, atol=0.0)
-    return f"A hotter pinion and a hotter wheel are {'' if mirror else 'not '}mirror images."

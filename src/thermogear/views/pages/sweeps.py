@@ -216,7 +216,7 @@ def _points(data: Dataset, result: Result) -> Section:
         blocks.append(_motions(data))
     if has_lost(data):
         blocks.append(declared("What loses contact.", LOST_AT, lost_rows(data)))
-    columns, found = _bifurcations(data)
+    columns, found = bifurcations(data)
     if found:
         blocks.append(declared("Located bifurcations", columns, found))
         kinds = {columns[0].figure(row) for row in found}
@@ -395,7 +395,7 @@ def _series(data: Dataset) -> list[dict[str, Any]]:
     return rows_along(data.assign(named), "state", "damping")
 
 
-def _bifurcations(data: Dataset) -> tuple[list[Column], list[dict[str, Any]]]:
+def bifurcations(data: Dataset) -> tuple[list[Column], list[dict[str, Any]]]:
     """Columns and rows of the located bifurcations; no rows where none were looked for."""
     if "bifurcation_kind" not in data:
         return [], []
@@ -453,7 +453,7 @@ def numbers(result: Result) -> dict[str, Any]:
             found["lines"] = [in_full(LINES, row) for row in _turn_lines(data)]
             found["mesh_periods"] = int(data.attrs["mesh_periods"])
     if kind in ("diagram", "run-up"):
-        columns, rows = _bifurcations(data)
+        columns, rows = bifurcations(data)
         found["bifurcations"] = [in_full(columns, row) for row in rows]
     seconds = result.text("seconds")
     return found | {"rule": _rule(data)} | ({"seconds": float(seconds)} if seconds else {})

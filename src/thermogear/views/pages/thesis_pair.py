@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -13,7 +12,6 @@ import numpy as np
 from thermogear.base.arrays import Dataset
 from thermogear.base.display import (
     CELSIUS,
-    KELVIN,
     MICROMETRE,
     PERCENT,
     SPEED,
@@ -28,14 +26,10 @@ from thermogear.results.result import Result
 from thermogear.results.tables import rows_of
 from thermogear.views.columns import Column, by_name, declared, in_full, key, rows_along
 from thermogear.views.page import Block, Gallery, Page, Pictures, Section, Text
-from thermogear.views.pages import captions, gear_sections, overlay
+from thermogear.views.pages import gear_sections, overlay
 from thermogear.views.pages.background import background
-from thermogear.views.pages.findings import finding, lost_words
 from thermogear.views.pages.record_tables import comparison_table
 from thermogear.views.pages.survey import OPERATING
-from thermogear.views.pages.sweeps import LOST_DIAGRAM, lost_table
-from thermogear.views.plots import laws
-from thermogear.views.plots.lost_contact import forces_picture
 from thermogear.views.plots.motion import label_of, moving
 from thermogear.views.plots.parameters import shown
 from thermogear.views.plots.sweeps import CLASSES, classes_of, overlay_picture, state_of
@@ -166,31 +160,20 @@ def _diagram(name: str, result: Result, pictures: Pictures) -> Told:
         why = "stopped before it" if result.interrupted else why
         return f"Not computed: {why}.", []
     states = json.loads(str(data.attrs["state_names"]))
-    rows = result.table("matches")[name]
     here = [state_of(data, place) for place in range(len(states))]
     ends = [exactly(float(v), 4) for v in shown(name, data[name][[0, -1]])]
     motions = [_shares(one) for one in here]
     told = [f"{state} {words}" for state, words in zip(states, motions, strict=True)]
     told = told if len(set(motions)) > 1 else [f"{' and '.join(states)} alike {motions[0]}"]
     counts = [f"{one.sizes.get('bifurcation', 0)} {s}" for s, one in zip(states, here, strict=True)]
-    matched = [row for row in rows if row["partner"] == "matched"]
-    hidden = sum(not row["drawn"] for row in matched)
-    told.append(
-        f"bifurcations: {', '.join(counts)}, {len(matched)} followed from one state to the other"
-        f"{f', {hidden} of them to a branch that is not drawn' * (hidden > 0)}"
-        if rows
-        else "no bifurcation was found"
-    )
+    table = overlay.table_of(data, states)
+    told.append(f"bifurcations: {', '.join(counts)}" if table.rows else "no bifurcation was found")
     if any(moves(one["status"]).any() for one in here):
         pictures.add(
             f"diagram-{name}", "Undeformed and hot", overlay.CAPTION, data, (),
-            lambda: overlay_picture(data, states, rows), wide=True,
+            lambda: overlay_picture(data, states), wide=True,
         )  # fmt: skip
-    blocks, kept = pictures.take(), [row for row in rows if row["partner"] != "not followed"]
-    if kept:
-        left = f" {len(rows) - len(kept)} more were not followed." * (len(kept) < len(rows))
-        both = Result.of("overlay", "", {"states": data}, matches=kept, states=states)
-        blocks.append(replace(overlay.table_of(both), caption=overlay.FOLLOWED + left))
+    blocks = [*pictures.take(), *[table] * bool(table.rows)]
     return _sentence([f"from {' to '.join(ends)} {PARAMETERS[name].shown}".strip(), *told]), blocks
 
 
@@ -229,68 +212,22 @@ def _records(result: Result, pictures: Pictures) -> Told:
     return result.text("conclusion"), [comparison_table(data)]
 
 
-def _outlook(result: Result, pictures: Pictures) -> Told:
-    """Film regime, play of bearings, sensors: what the thesis leaves to later work."""
-    path = result.groups["path"].isel(bundle=0, state=-1)
-    if np.isfinite(path["film_parameter"].values).any():
-        pictures.add(
-            "film-path", "Film parameter along the path",
-            "Least film thickness over the combined rms roughness; below 1 boundary, from 3 on a "
-            "full film.",
-            path, (), lambda: laws.film(path),
-        )  # fmt: skip
-    film = captions.regimes(path) or "The film is not known: the heat does not settle."
-    play = result.group("play")
-    # nothing but a stop leaves the play of a drive train out
-    why = "stopped before it" if result.table("train") else "the case has no [[shafts]]"
-    words = f"The play of bearings is not varied: {why}."
-    if play is not None:
-        words = f"Over the play of all bearings: {lost_words(play)} {finding(play)}"
-        pictures.add(
-            "play", "Forces over the play of all bearings", LOST_DIAGRAM, play, (),
-            lambda: forces_picture(play), wide=True,
-        )  # fmt: skip
-    sensors, table = _sensors(result)
-    blocks = [*pictures.take(), *([lost_table(play)] if play is not None else []), *table]
-    return f"{film} {words} {sensors}", blocks
-
-
-def _sensors(result: Result) -> Told:
-    balance = result.group("balance")
-    read = [] if balance is None else json.loads(str(balance.attrs["readings"]))
-    if balance is None or not read:
-        return (
-            "The case has no thermometer reading; [gearbox.readings] corrects one and holds the "
-            "heat balance to it."
-        ), []
-    off = span([one["temperature_K"] - one["indicated_K"] for one in read])
-    gap = _micro(balance.isel(bundle=0, operating=0), "half_backlash_uncertainty")
-    return (
-        f"Readings: {len(read)}, corrected by {off} K; what stays uncertain of them moves the half "
-        f"backlash by {gap} µm (standard uncertainty)."
-    ), [declared("Readings.", READINGS, read, names=2)]
-
-
 FRICTION_TABLE = (
     Column("friction", "friction"),
     Column("mean coefficient", "mean"),
     Column("greatest flash temperature [K]", "flash"),
 )
-READINGS = (
-    Column("node", lambda row: row["node"].replace("_", " ")),
-    Column("kind", "kind"),
-    Column("shown", lambda row: celsius(row["indicated_K"])),
-    Column("corrected", lambda row: celsius(row["temperature_K"])),
-    Column("standard uncertainty", "uncertainty_K", 3, KELVIN),
-)
+DIAGRAMS = {
+    "damping_ratio": ("damping", "Damping"),
+    "pinion_speed": ("speed", "Speed"),
+    "stiffness_fluctuation": ("fluctuation", "Stiffness fluctuation"),
+}
+"""Parameter of a diagram: name and title of its section."""
 STEPS: tuple[tuple[str, str, Callable[[Result, Pictures], Told]], ...] = (
     ("temperature", "Gear temperature", _warming),
-    ("damping", "Damping", partial(_diagram, "damping_ratio")),
-    ("speed", "Speed", partial(_diagram, "pinion_speed")),
-    ("fluctuation", "Stiffness fluctuation", partial(_diagram, "stiffness_fluctuation")),
+    *((*names, partial(_diagram, parameter)) for parameter, names in DIAGRAMS.items()),
     ("friction", "Mixed and dry friction", _friction),
     ("records", "Records", _records),
-    ("outlook", "Outlook", _outlook),
 )
 
 
@@ -308,6 +245,10 @@ def _numbers(result: Result, findings: dict[str, str]) -> dict[str, Any]:
         **by_name(_hot(result.groups["mesh"]), (*OPERATING, key("frequency_ratio"))),
         "findings": findings,
         "temperature": [in_full(there, place) for place in rows_along(row, "gear_temperature")],
-        "bifurcations": result.table("matches"),
+        "bifurcations": {
+            name: overlay.located(data, json.loads(str(data.attrs["state_names"])))
+            for name in DIAGRAMS
+            if (data := result.group(f"diagrams/{name}")) is not None
+        },
         "left_out": result.rows("left_out"),
     }

@@ -14,7 +14,7 @@ from thermogear.views.columns import OF_STATE, Column, declared, rows_along
 from thermogear.views.moving import Dial
 from thermogear.views.page import Block, Pictures, Section, Table, Text
 from thermogear.views.picture import Axis, Panel, Picture
-from thermogear.views.plots.shafts import empty, in_rows, internal_clearance
+from thermogear.views.plots.shafts import empty, in_rows
 from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
 from thermogear.views.style import (
     ABOVE,
@@ -179,7 +179,7 @@ def _tables(data: Dataset) -> list[Table]:
     columns: tuple[Column, ...] = RINGS
     if "journal_path" in data:
         columns += PATHS
-        data = data.assign(clearance=internal_clearance(data))
+        data = data.assign(clearance=data["radial_internal_clearance"])
     caption = "The bearings in motion; a clearance below zero is a preload, a spring has none."
     flanks = rows_along(labelled(data), "state", "operating")
     rings = rows_along(data, "state", "operating", "bearing")
@@ -314,7 +314,7 @@ def _in_clearance(here: Dataset, bearing: int) -> Panel:
     """Clearance circles, orbits and the direction of the load of one bearing."""
     states = names_of(here, "state")
     path = MICROMETRE(here["journal_path"].values[:, bearing])
-    free = 0.5 * MICROMETRE(internal_clearance(here).values[:, bearing])
+    free = 0.5 * MICROMETRE(here["radial_internal_clearance"].values[:, bearing])
     far = float(np.nanmax(np.hypot(path[:, 0], path[:, 1]), initial=0.0))
     most = max(far, float(np.nanmax(free, initial=0.0))) or 1.0
     panel = Panel(*_axes("", ROOM * most), names_of(here, "bearing")[bearing], equal=True)

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from thermogear.base.arrays import Dataset
-from thermogear.base.display import MICROMETRE, MILLIMETRE
+from thermogear.base.display import MILLIMETRE
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.curves import along_path, hot_state
 from thermogear.views.style import HOT, INK, OKABE_ITO, QUIET, bundle_line, names_of
@@ -83,19 +83,3 @@ def profile(data: Dataset, gear: int) -> Picture:
         x, y = np.concatenate([-x, x[::-1]]), np.concatenate([y, y[::-1]])
         panel.curve(x, y, colour=colour, dash=dash, width=width, label=words)
     return Picture([[panel]], size=(4.9, 4.3))
-
-
-def profile_growth(data: Dataset, gear: int) -> Picture:
-    """How far each hot profile stands off the cold involute, along the flank's normal."""
-    panel = Panel(Axis("radius on the flank r [mm]"), Axis("distance from the cold involute [µm]"))
-    here = data.isel(gear=gear)
-    x0, y0 = here["involute_x"].values, here["involute_y"].values
-    across, along = (np.gradient(part, edge_order=2) for part in (x0, y0))
-    length = np.hypot(across, along)
-    for kind, (words, colour, dash, _) in hot_profiles(data).items():
-        dx = here[f"{kind}_x"].values - x0
-        dy = here[f"{kind}_y"].values - y0
-        off = MICROMETRE(dx * along - dy * across) / length
-        panel.curve(MILLIMETRE(np.hypot(x0, y0)), off, colour=colour, dash=dash, label=words)
-    panel.y.low = min(0.0, panel.extent("y")[0])
-    return Picture([[panel]])

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from thermogear.base.arrays import DataArray, Dataset, Floats
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.display import HERTZ, MICROMETRE, MILLIMETRE, PERCENT, SPEED, display
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import (
@@ -159,17 +159,10 @@ def loads(data: Dataset) -> Picture:
     return Picture([[panel]], size=(WIDE, 3.2))
 
 
-def internal_clearance(data: Dataset) -> DataArray:
-    """Radial internal clearance [m], the whole play; older versions stored half of it."""
-    if "radial_internal_clearance" in data:
-        return data["radial_internal_clearance"]
-    return 2.0 * data["radial_clearance"]
-
-
 def clearances(data: Dataset) -> Picture:
     """Radial internal clearance of every bearing, cold and hot; below zero it is a preload."""
     panel = Panel(Axis(""), Axis("radial internal clearance [µm]"))
-    _at_bearings(panel, data, MICROMETRE(internal_clearance(data).values), 0.0)
+    _at_bearings(panel, data, MICROMETRE(data["radial_internal_clearance"].values), 0.0)
     panel.line(y=0.0, colour=QUIET, width=1.0, dash=(4.0, 3.0))
     return Picture([[panel]], size=(WIDE, 3.0))
 
@@ -239,15 +232,6 @@ def energies(table: Dataset, state: int) -> Picture:
     return Picture([[panel]], size=(WIDE, 0.28 * len(parts) + 1.0), left=2.2)
 
 
-def lift_offs(critical: Dataset) -> Any:
-    """Speed [rad/s] from which each resonance lifts a bearing off or parts the teeth; nan: never.
-
-    Older versions did not ask.
-    """
-    absent = np.nan * critical["resonant_force"]
-    return critical.get("lift_off_speed", absent).values
-
-
 def not_valid(speed: float) -> str:
     """What stands in place of the force of a resonance that lifts off from ``speed`` [rad/s] on."""
     return f"not valid: lifts off from {SPEED(speed):.0f} rpm"
@@ -260,7 +244,7 @@ def campbell(data: Dataset, critical: Dataset, speeds: Sequence[float]) -> Pictu
     panels = []
     states = names_of(data, "state")
     inside = critical["critical_speed"].values <= data["pinion_speed"].values[-1]
-    force, lifts = critical["resonant_force"].values, lift_offs(critical)
+    force, lifts = critical["resonant_force"].values, critical["lift_off_speed"].values
     known = np.where(inside & np.isfinite(force), force, np.nan)
     most = max(float(np.nanmax(known, initial=0.0)), 1e-12)
     for state, name in enumerate(states):

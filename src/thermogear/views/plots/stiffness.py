@@ -75,28 +75,3 @@ def parts(data: Dataset, bundle: int) -> Picture:
     series = shown(here, "pair_stiffness")
     panel.curve(x, series, colour=INK, width=2.4, label="pair (series)")
     return Picture([[panel]])
-
-
-def bars(data: Dataset) -> Picture:
-    """Mean and peak-to-peak mesh stiffness of every bundle, undeformed beside hot, with values."""
-    bundles, states = names_of(data, "bundle"), names_of(data, "state")
-    places = np.arange(len(bundles), dtype=float)
-    width = 0.8 / max(len(states), 1)
-    titles = {"mean_stiffness": "time mean", "peak_to_peak_stiffness": "peak to peak"}
-    panels = []
-    for name, title in titles.items():
-        x = Axis("bundle of choices", ticks=places, names=[plain(one[:18]) for one in bundles])
-        values = shown(data.isel(operating=0).transpose("state", ...), name)
-        y = Axis("mesh stiffness k [10⁸ N/m]", low=0.0, high=1.176 * float(np.nanmax(values)))
-        panel = Panel(x, y, title)
-        for i, state in enumerate(states):
-            panel.bars(
-                places + (i - 0.5 * (len(states) - 1)) * width,
-                values[i],
-                width=0.92 * width,
-                colour=STATES.get(state, INK),
-                words=[f"{value:.2f}" for value in values[i]],
-                label=plain(state),
-            )
-        panels.append(panel)
-    return Picture([panels])

@@ -12,7 +12,7 @@ from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.display import CELSIUS, KILONEWTON, MICROMETRE, PERCENT, Display
 from thermogear.base.vocabulary import ASSUMED, STATUS, UNDEFORMED, of_turn
 from thermogear.views.picture import Axis, Panel, Picture
-from thermogear.views.plots.parameters import axis_words, parameter_of, shown
+from thermogear.views.plots.parameters import axis_words, shown
 from thermogear.views.plots.spectrum import MESH_ORDERS, SHAFT_ORDERS, shaft_orders
 from thermogear.views.style import (
     COLD,
@@ -134,38 +134,22 @@ def _above_exponent(top: Panel, low: Panel) -> Picture:
     )
 
 
-def overlay_picture(data: Dataset, states: Sequence[str], matches: Rows) -> Picture:
+def overlay_picture(data: Dataset, states: Sequence[str]) -> Picture:
     """The diagrams of all ``states`` over each other; see :func:`over_each_other`."""
     each = [state_of(data, place) for place in range(len(states))]
-    return over_each_other(each, states, matches)
+    return over_each_other(each, states)
 
 
-def over_each_other(each: Sequence[Dataset], states: Sequence[str], matches: Rows = ()) -> Picture:
-    """Orbit diagrams over each other, a colour for each state, up and down alike.
-
-    A thin line leads from a bifurcation of the first to the same one of the second.
-    """
+def over_each_other(each: Sequence[Dataset], states: Sequence[str]) -> Picture:
+    """Orbit diagrams over each other, a colour for each state, up and down alike."""
     name = _parameter(each[0])
-    values = each[0][name]
     top = Panel(Axis(), Axis("X at phase 0 [–]"))
     low = Panel(_along(each[0], name), Axis("exponent λ₁ [–]"))
     colours = (HOT, COLD) if states[-1] == UNDEFORMED else (COLD, HOT, MIXED)
     for here, words, colour in zip(each, states, colours, strict=False):
         _sections(top, low, here, colour=colour, label=words, opacity=0.5)
         _branches(top, here, name, colour)
-    for match in matches:
-        if match["kind"] in DRAWN and match["drawn"] and match["partner"] == "matched":
-            ends = [match["one"], match["other"]]
-            up = [_height(here, value) for here, value in zip(each, ends, strict=True)]
-            at = parameter_of(name, values).show(np.array(ends))
-            top.curve(at, up, colour=OKABE_ITO[3], width=0.8, order=4)
     return _above_exponent(top, low)
-
-
-def _height(data: Dataset, value: float) -> float:
-    """X of the bifurcation at a value of the parameter."""
-    place = int(np.argmin(np.abs(data["bifurcation_value"].values - value)))
-    return float(data["bifurcation_x"].values[place])
 
 
 def state_of(data: Dataset, place: int) -> Dataset:

@@ -5,12 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from thermogear.base.arrays import Dataset
-from thermogear.base.display import CELSIUS, celsius, display
+from thermogear.base.display import celsius, display
 from thermogear.views.picture import Axis, Panel, Picture
-from thermogear.views.plots.curves import axis_of, draw_by_both
 from thermogear.views.plots.motion import draw_loop, label_of, moving, orbit_of
 from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
-from thermogear.views.style import FAINT, INK, QUIET, WIDE, chosen, ramp
+from thermogear.views.style import FAINT, INK, WIDE, chosen, ramp
 
 MOST_COLUMNS = 6
 HIGHEST_ORDER = 4.0
@@ -73,15 +72,3 @@ def _still(one: Dataset) -> str:
     if str(one["label"].item()) == "jammed" and np.isfinite(jam):
         return f"no gap left:\njams at {celsius(jam)}"
     return label_of(one)
-
-
-def over_temperature(row: Dataset, name: str) -> Picture:
-    """The swing of the motion over the gears' temperature: speeds by colour, bundles by line."""
-    panel = Panel(axis_of("gear_temperature"), Axis("displacement, peak to peak [µm]"))
-    x = CELSIUS(row["gear_temperature"].values)
-    draw_by_both(panel, row, name, x, marker="circle", size=4)
-    low, high = panel.extent("y")
-    panel.y.low, panel.y.high = min(0.0, low), max(high, 1.05 * high)
-    if not panel.marks:
-        panel.text(0.5, 0.5, "no motion at any temperature", at="panel", size=9.0, colour=QUIET)
-    return Picture([[panel]], legend=2)

@@ -1,7 +1,7 @@
 """Mesh stiffness, deflection and load shares of a pair from finite elements of both whole gears.
 
-Both gears are sectors with finely divided flanks (:mod:`thermogear.verify.sector`) in frictionless
-contact (:mod:`thermogear.verify.contact`). Body and tooth stand in plane stress. A line contact is
+Both gears are sectors with finely divided flanks (:mod:`finite_elements.sector`) in frictionless
+contact (:mod:`finite_elements.contact`). Body and tooth stand in plane stress. A line contact is
 far wider than deep, so that the material around it stands in plane strain, by default as far as
 the tooth's axis: the state that Weber and Banaschek's law supposes, whose difference between both
 plane states is added to each pair of teeth. ``near="stress"`` leaves that out; it makes steel
@@ -17,6 +17,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike
 
+from finite_elements.contact import NEAR, FlankContact
+from finite_elements.sector import FlankSector
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError, require_choice
 from thermogear.gears.contact import hertz_half_width
@@ -24,8 +26,6 @@ from thermogear.gears.deviations import FlankShape
 from thermogear.gears.geometry import Gear
 from thermogear.gears.pair import GearPair
 from thermogear.gears.tooth_mesh import Density
-from thermogear.verify.contact import NEAR, FlankContact
-from thermogear.verify.sector import FlankSector
 
 _MOST_ROWS = 900
 """Elements along a flank that a mesh may have."""
@@ -82,7 +82,7 @@ def pair_stiffness(
     the pinion's torque over r_b1; density: of the meshes; near: plane state around the contacts;
     deviations: of the drive flanks; corners: contact beyond A and E too, of tip edges rounded by
     ``edge_radius`` [m] of pinion and wheel. The deflection counts from the touch of perfect
-    involutes. Raises InputError for a load that is not positive and when scikit-fem is missing.
+    involutes. Raises InputError for a load that is not positive.
     """
     if not (np.isfinite(normal_force) and normal_force > 0.0):
         raise InputError("normal_force", f"{normal_force} N", allowed="> 0, finite")

@@ -14,6 +14,7 @@ import numpy as np
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
+from finite_elements.elements import ReferencePatch
 from thermogear.base.arrays import Floats
 from thermogear.gears.elements import Integers, quadratic
 from thermogear.gears.geometry import Gear
@@ -26,7 +27,6 @@ from thermogear.gears.tooth_mesh import (
     graded,
     tooth_mesh,
 )
-from thermogear.verify.elements import ReferencePatch
 
 MATES = 5
 """Farthest neighbours, in pitches, whose coupling is kept."""

@@ -1,7 +1,6 @@
 """Plane-stress finite elements on curved nine-node quadrilaterals, by scikit-fem.
 
 Everything is for unit modulus and unit width; compliances are divided by E b afterwards.
-scikit-fem belongs to the extra ``[fe]`` and is imported when the first mesh is made.
 """
 
 from __future__ import annotations
@@ -11,16 +10,12 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+import skfem
 from scipy.sparse import csc_matrix
+from skfem import helpers
 
 from thermogear.base.arrays import Floats
-from thermogear.base.errors import of_extra
 from thermogear.gears.elements import Integers, Patch
-
-
-def library(name: str = "skfem") -> Any:
-    """scikit-fem, or one line that says what to install."""
-    return of_extra(name, "fe", field="verify", got="finite elements", use="the check")
 
 
 class ReferencePatch(Patch):
@@ -33,11 +28,10 @@ class ReferencePatch(Patch):
 
     @cached_property
     def _mesh(self) -> Any:
-        fe = library()
         corners = self.cells[:, [0, 0, 2, 2], [0, 2, 2, 0]]
         used, flat = np.unique(corners, return_inverse=True)
-        linear = fe.MeshQuad(self.nodes[used].T.copy(), flat.reshape(corners.shape).T.copy())
-        mesh = fe.MeshQuad2.from_mesh(linear)
+        linear = skfem.MeshQuad(self.nodes[used].T.copy(), flat.reshape(corners.shape).T.copy())
+        mesh = skfem.MeshQuad2.from_mesh(linear)
         places = np.array(mesh.doflocs)
         for local, column in enumerate(self._local_order().T):
             places[:, mesh.dofs.element_dofs[local]] = self.nodes[column].T
@@ -48,15 +42,14 @@ class ReferencePatch(Patch):
         corner = {0: (0, 0), 1: (0, 2), 2: (2, 2), 3: (2, 0)}
         sides = [
             ((corner[a][0] + corner[b][0]) // 2, (corner[a][1] + corner[b][1]) // 2)
-            for a, b in library().MeshQuad.elem.refdom.facets
+            for a, b in skfem.MeshQuad.elem.refdom.facets
         ]
         rows, columns = zip(*corner.values(), *sides, (1, 1), strict=True)
         return np.asarray(self.cells[:, rows, columns])
 
     @cached_property
     def _basis(self) -> Any:
-        fe = library()
-        return fe.Basis(self._mesh, fe.ElementVector(fe.ElementQuad2()), intorder=4)
+        return skfem.Basis(self._mesh, skfem.ElementVector(skfem.ElementQuad2()), intorder=4)
 
     @cached_property
     def _places(self) -> Integers:
@@ -76,7 +69,6 @@ class ReferencePatch(Patch):
 
         ``strained`` (x, y, radius) [m]: a disc that stands in plane strain instead.
         """
-        fe, helpers = library(), library("skfem.helpers")
         nu = self.poisson
         stress, shear = nu / (1.0 - nu**2), 0.5 / (1.0 + nu)
         strain = nu / ((1.0 + nu) * (1.0 - 2.0 * nu))
@@ -94,6 +86,6 @@ class ReferencePatch(Patch):
             shape = helpers.ddot(fields[one], fields[other])
             return parts[one] * traces[other] + 2.0 * shear * shape
 
-        theirs = fe.BilinearForm(energy).assemble(self._basis).tocsr()
+        theirs = skfem.BilinearForm(energy).assemble(self._basis).tocsr()
         order = self._places.ravel()
         return csc_matrix(theirs[order][:, order])

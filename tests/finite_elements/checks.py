@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from finite_elements.stiffness import pair_stiffness
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.gears.deviations import FlankShape
 from thermogear.gears.loaded import LoadedModel, loaded_contact
 from thermogear.gears.pair import GearPair
 from thermogear.gears.tooth_mesh import Density
-from thermogear.verify.stiffness import pair_stiffness
 
 
 def inner_phases(pair: GearPair, each: int = 3) -> Floats:
@@ -107,7 +107,7 @@ def check_stiffness(
     normal_force: F_n [N] > 0; phase: positions in periods from A, by default
     :func:`inner_phases`; density, near: of the finite elements; deviations: of the flanks;
     corners: sharp tip corners touch beyond A and E, in both; model: other choices of the loaded
-    contact. Raises as :func:`~thermogear.verify.stiffness.pair_stiffness`.
+    contact. Raises as :func:`~finite_elements.stiffness.pair_stiffness`.
     """
     phi = inner_phases(pair) if phase is None else np.atleast_1d(np.asarray(phase, dtype=float))
     finite = pair_stiffness(

@@ -23,6 +23,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from finite_elements.sector import FlankSector
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import ConvergenceError
 from thermogear.gears.deviations import GEARS, FlankShape
@@ -30,7 +31,6 @@ from thermogear.gears.geometry import Gear
 from thermogear.gears.pair import GearPair
 from thermogear.gears.tooth import flank_point
 from thermogear.gears.tooth_table import indentation
-from thermogear.verify.sector import FlankSector
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 _ROUNDS = 60
