@@ -36,6 +36,7 @@ from thermogear.case.charts import Chart, charts, enclosed
 from thermogear.case.dimensionless import Point, points_of
 from thermogear.case.dimensionless_schema import DimensionlessFile
 from thermogear.case.examples import example_text
+from thermogear.case.faults import fault_words, whole_turn
 from thermogear.case.flanks import (
     accuracy,
     all_deviations,
@@ -222,6 +223,27 @@ class GearCase(Case):
         """The number, from 1, in the file of the ``place``-th tooth, from 0, that meshes."""
         teeth = (self.pair.pinion if gear == "pinion" else self.pair.wheel).teeth
         return (first_tooth(self.file, gear) + place) % teeth + 1
+
+    def faults(self) -> list[str]:
+        """The faults that act in this case, in words.
+
+        A mean tooth has no fault of one tooth, nominal flanks have none at all.
+        """
+        gears = self.file.gears
+        return [
+            words
+            for fault, words in zip(self.file.faults, self.all_faults, strict=True)
+            if gears.part == "case" and not (whole_turn(fault) and gears.period == "mesh")
+        ]
+
+    @property
+    def all_faults(self) -> list[str]:
+        """Every fault that the file states, in words."""
+        return [fault_words(fault) for fault in self.file.faults]
+
+    def sound(self) -> GearCase:
+        """The case without its faults; the case itself where it has none."""
+        return self._with("faults", "[]") if self.file.faults else self
 
     def mean_tooth(self) -> GearCase:
         """The case over one mesh period, with the deviations that all teeth share.

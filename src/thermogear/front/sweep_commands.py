@@ -382,13 +382,13 @@ def _choice(
 
 
 def _of_mean_tooth(case: Any, options: dict[str, Any]) -> Any:
-    """The case with the mean tooth of its gears, unless it states its period; a notice says so."""
-    from thermogear.study.declared import mean_tooth_notices
+    """The case with the mean tooth of its gears, unless it states its period; notices say so."""
+    from thermogear.study.declared import fault_notices, mean_tooth_notices
 
     if case.kind != "gear":
         return case
     taken = case.unless_stated("period", "mesh")
-    options["notices"] = tuple(mean_tooth_notices(case, taken))
+    options["notices"] = (*fault_notices(taken), *mean_tooth_notices(case, taken))
     return taken
 
 
@@ -426,7 +426,8 @@ def _compute(plan: Plan, directory: Path, title: str, options: dict[str, Any]) -
 
         about = {name: value for name, value in about_store(directory).items() if name != "title"}
         result = finished(data, title).with_(**about, seconds=round(time.monotonic() - begun, 3))
-        result = replace(result, notices=(*options.get("notices", ()), *result.notices))
+        told = (*options.get("notices", ()), *result.notices)
+        result = replace(result, notices=tuple(dict.fromkeys(told)))
         write(delivery.without_hidden(page_of(result)), directory)
     except KeyboardInterrupt:
         if not last:

@@ -23,6 +23,7 @@ from thermogear.case.case import DimensionlessCase, GearCase
 from thermogear.case.dimensionless import Point
 from thermogear.case.one_point import OnePoint, of_numbers
 from thermogear.results.result import Result
+from thermogear.study.declared import fault_notices
 from thermogear.study.event_plane import Plane, one_mass
 from thermogear.study.orbit import complex_rows, found, orbit_of
 
@@ -72,7 +73,7 @@ def branch_results(
     orbit, _ = orbit_of(point, period, transient=transient, model=models(begin))
     legs, cut = walked(orbit, varied, models, begin=begin, to=to, switch=switch, progress=progress)
     curves: list[EventCurve] = []
-    notices = lost_notices(legs)
+    notices = [*(fault_notices(point.gears) if point.points.gears else ()), *lost_notices(legs)]
     if plane is not None and not cut:
         branches = [leg.branch for leg in legs]
         curves, told, cut = plane.followed(branches, varied, (begin, to), progress)
