@@ -103,7 +103,7 @@ def _spall(fault: FaultTable, pair: GearPair, force: float) -> Deviation | None:
         whole, pocket = (Pocket(gear, radius=radius, length=length, depth=d) for d in (0.0, depth))
         return _on_tooth(whole, pocket, fault, pair)
     spall = Spall(gear, tooth=fault.place, radius=radius, length=length, width_share=width)
-    least = floor_reached(pair, force, width)
+    least = floor_reached(pair, force, width_share=width)
     if depth < least:
         raise InputError(
             "depth",

@@ -169,13 +169,13 @@ class Spall(Damage):
         return inside * more, np.zeros((*t.shape, t.shape[-1]))
 
 
-def floor_reached(pair: GearPair, normal_force: float, width_share: float) -> float:
+def floor_reached(pair: GearPair, normal_force: float, *, width_share: float) -> float:
     """Depth [m] down to which a pocket's floor carries too: 2 F/(pi b E*)/(1 - w).
 
     normal_force F [N] on one tooth pair; ``width_share`` w < 1 of the face width.
 
     >>> pair = GearPair(Gear(20, 4e-3, face_width=20e-3), Gear(40, 4e-3, face_width=20e-3))
-    >>> f"{1e6 * floor_reached(pair, 4e3, 0.5):.2f} um"
+    >>> f"{1e6 * floor_reached(pair, 4e3, width_share=0.5):.2f} um"
     '2.25 um'
     """
     approach = 2.0 * normal_force / (np.pi * pair.face_width * pair_reduced_modulus(pair))
