@@ -48,7 +48,7 @@ def spalled(pair: GearPair, name: str, *, radius: float, length: float) -> tuple
     >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
     >>> ends = spalled(pair, "pinion", radius=40e-3, length=2e-3)
     >>> [f"{1e3 * rho:.2f} mm" for rho in ends]
-    ['10.57 mm', '16.20 mm']
+    ['10.58 mm', '16.20 mm']
     """
     gear, ends = pair.gear(name), flank_ends(pair)[GEARS.index(name)]
     low, high = (math.hypot(gear.base_radius, rho) for rho in ends)
@@ -74,7 +74,7 @@ class Pocket(FlankShape):
     >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
     >>> pocket = Pocket("pinion", radius=40e-3, length=2e-3, depth=0.1e-3)
     >>> (1e6 * pocket.taken_off(pair, pair.path.c + np.array([0.0, 2.5e-3, 4e-3]))).round(1)
-    array([100. ,   4.2,   0. ])
+    array([100. ,   6.9,   0. ])
     """
 
     gear: str
@@ -228,7 +228,7 @@ def worn(
 
     >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
     >>> f"{1e6 * worn(pair, 'pinion', 4e3, coefficient=1e-17, meshes=1e6).added.min():.2f} um"
-    '-1.36 um'
+    '-3.22 um'
     """
     radius, work = wear_work(pair, name, normal_force)
     scale = coefficient * meshes if depth is None else depth / float(work.max())

@@ -340,7 +340,7 @@ def way_across(gear: Gear, angle: float) -> float:
     ``angle`` [rad] to the tooth's axis: 100 % of a crack.
 
     >>> f"{1e3 * way_across(Gear(20, 4e-3), math.radians(45.0)):.2f} mm"
-    '11.25 mm'
+    '11.00 mm'
     """
     profile = Profile(gear)
     r, phi = (float(at) for at in profile.fillet(np.asarray(profile.start)))
