@@ -190,3 +190,10 @@ def test_one_crack_and_one_break_of_a_tooth() -> None:
     with pytest.raises(InputError, match=r"faults\[1\]: got a second break of tooth 47"):
         faulty(of("chip"), gone)
     assert len(faulty(of("chip"), of("missing"), of("crack")).faults()) == 3
+
+
+def test_some_tooth_must_touch() -> None:
+    gone = [f'kind = "missing"\ngear = "pinion"\ntooth = {n}' for n in (4, 5, 6)]
+    assert len(faulty(*gone[:2]).faults()) == 2
+    with pytest.raises(InputError, match="faults: got so many broken teeth side by side"):
+        faulty(*gone)

@@ -263,3 +263,17 @@ def test_a_spall_is_a_narrower_contact() -> None:
         )
         approach = 2.0 * LOAD / (math.pi * PAIR.face_width * reduced)
         assert two - one == pytest.approx(approach * w / (1.0 - w), rel=1e-9)
+
+
+@pytest.mark.parametrize("name", SIZES)
+def test_the_tangent_is_the_slope_of_the_load(name: str) -> None:
+    """So that force and deflection have an energy: central differences of the whole mesh."""
+    phase = np.linspace(0.1, 1.6, 7)  # while the damaged tooth meshes
+    step = 1e-3
+    low, middle, high = (
+        solve_mesh(PAIR, LOAD * (1.0 + part), phase, deviations=[SIZES[name]])
+        for part in (-step, 0.0, step)
+    )
+    slope = 2.0 * step * LOAD / (high.deflection - low.deflection)
+    assert middle.tangent == pytest.approx(slope, rel=1e-4)
+    assert middle.force.sum(axis=-1) == pytest.approx(LOAD, rel=1e-9)

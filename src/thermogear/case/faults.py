@@ -11,6 +11,7 @@ from thermogear.base.errors import InputError
 from thermogear.case.fault_schema import FaultTable
 from thermogear.case.schema import GearFile
 from thermogear.case.units import shown
+from thermogear.gears.candidates import mesh_points
 from thermogear.gears.deviations import Deviation, FlankTable, PitchError
 from thermogear.gears.flank_damage import (
     OneTooth,
@@ -22,10 +23,13 @@ from thermogear.gears.flank_damage import (
 )
 from thermogear.gears.pair import GearPair
 from thermogear.gears.tooth_damage import Chip, Crack, Damage, MissingTooth, way_across
-from thermogear.gears.turn import Eccentricity
+from thermogear.gears.touch import first_touch
+from thermogear.gears.turn import Eccentricity, turn_period
 
 _ONCE = {"crack": "crack", "chip": "break", "missing": "break"}
 """Kinds of which a tooth has one; a chipped tooth cannot be missing."""
+EVERY = 8
+"""Positions of a mesh period at which some tooth must touch."""
 _NAMES = {"radius": "diameter", "error": "amount", "meshes": "revolutions"}
 """Fields of the file by the names that the gears have for them."""
 
@@ -37,6 +41,7 @@ def fault_deviations(file: GearFile, pair: GearPair) -> Iterator[Deviation]:
     not, a second crack or break of one tooth, and what the teeth cannot have.
     """
     seen: set[tuple[str, str, int]] = set()
+    damaged: list[Deviation] = []
     for number, fault in enumerate(file.faults):
         field, teeth = f"faults[{number}]", pair.gear(fault.gear).teeth
         if fault.place >= teeth:
@@ -58,8 +63,19 @@ def fault_deviations(file: GearFile, pair: GearPair) -> Iterator[Deviation]:
             inner = "share" if inner == "depth" and fault.share is not None else inner
             error.got = f"a radius of {error.got}" if inner == "radius" else error.got
             raise error.named(f"{field}.{_NAMES.get(inner, inner)}") from error
+        if isinstance(deviation, Damage):
+            damaged.append(deviation)
         if deviation is not None:
             yield deviation
+    phases = np.arange(EVERY * turn_period(pair, damaged).mesh_periods) / EVERY
+    touched = first_touch(mesh_points(pair, phases if damaged else [0.0]), damaged).gap.min(axis=1)
+    if not np.isfinite(touched).all():
+        raise InputError(
+            "faults",
+            "so many broken teeth side by side that none carries",
+            allowed="a tooth that touches at every position of the turn",
+            fix="leave one out",
+        )
 
 
 def _deviation(fault: FaultTable, file: GearFile, pair: GearPair) -> Deviation | None:
