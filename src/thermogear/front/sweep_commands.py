@@ -426,8 +426,8 @@ def _compute(plan: Plan, directory: Path, title: str, options: dict[str, Any]) -
 
         about = {name: value for name, value in about_store(directory).items() if name != "title"}
         result = finished(data, title).with_(**about, seconds=round(time.monotonic() - begun, 3))
-        told = (*options.get("notices", ()), *result.notices)
-        result = replace(result, notices=tuple(dict.fromkeys(told)))
+        notices = (*options.get("notices", ()), *result.notices)
+        result = replace(result, notices=tuple(dict.fromkeys(notices)))
         write(delivery.without_hidden(page_of(result)), directory)
     except KeyboardInterrupt:
         if not last:

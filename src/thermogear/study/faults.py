@@ -110,19 +110,17 @@ def fault_motions(
     if case.models[0].stiffness != "loaded":
         raise InputError("model.stiffness", case.models[0].stiffness, allowed="loaded")
     at = case.stated
-    pairs = np.broadcast_arrays(
+    operating = np.broadcast_arrays(
         at.speed if speed is None else speed, at.torque if torque is None else torque
     )
-    rows = np.stack([np.ravel(values).astype(float) for values in pairs], axis=1)
-    found = []
-    for one in (case, case.sound()):
-        flanks = one.deviations if part is None else series_parts(one, part + 1)[part]
-        made = replace(one, deviations=flanks)
-        found.append((made, family(made, ("pinion_speed", "pinion_torque"), state=state)(rows)))
-    turn = max(points.mesh_periods for _, points in found)
-    faulty, sound = (
-        _motions(one, over_turns(points, turn), rows, samples) for one, points in found
-    )
+    rows = np.stack([np.ravel(values).astype(float) for values in operating], axis=1)
+    both = []
+    for pair in (case, case.sound()):
+        flanks = pair.deviations if part is None else series_parts(pair, part + 1)[part]
+        drawn = replace(pair, deviations=flanks)
+        both.append(family(drawn, ("pinion_speed", "pinion_torque"), state=state)(rows))
+    turn = max(points.mesh_periods for points in both)
+    faulty, sound = (_motions(case, over_turns(points, turn), rows, samples) for points in both)
     return tuple(map(FaultMotion, faulty, sound))
 
 
@@ -142,16 +140,16 @@ def over_turns(points: Points, mesh_periods: int) -> Points:
 
 def _spread(coefficients: Complexes, times: int) -> Complexes:
     """Fourier coefficients of a period of so many as they have."""
-    found = np.zeros((len(coefficients), (coefficients.shape[1] - 1) * times + 1), complex)
-    found[:, ::times] = coefficients
-    return found
+    spread = np.zeros((len(coefficients), (coefficients.shape[1] - 1) * times + 1), complex)
+    spread[:, ::times] = coefficients
+    return spread
 
 
 def _motions(case: GearCase, points: Points, rows: Floats, samples: int) -> list[TurnMotion]:
     """The motion at each of ``points``, which have the speeds and torques of ``rows``."""
     turn, teeth = points.mesh_periods, (case.pair.pinion.teeth, case.pair.wheel.teeth)
     whole = np.full(turn * samples, np.nan)
-    found = [
+    recorded = [
         TurnMotion(
             speed=float(speed), torque=float(torque), status=STATUS[status], mesh_periods=turn,
             teeth=teeth, samples=samples, turns=1, repeats=False, acceleration=whole,
@@ -171,10 +169,10 @@ def _motions(case: GearCase, points: Points, rows: Floats, samples: int) -> list
                 tables, lane, motions.state[number], turns=max(repeats, 1), samples=samples
             )
             curves = _curves(point, x, max(repeats, 1))
-            found[place] = replace(
-                found[place], turns=max(repeats, 1), repeats=repeats > 0, **curves
+            recorded[place] = replace(
+                recorded[place], turns=max(repeats, 1), repeats=repeats > 0, **curves
             )
-    return found
+    return recorded
 
 
 def _curves(point: Points, x: Floats, turns: int) -> dict[str, Floats]:

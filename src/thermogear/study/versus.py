@@ -368,8 +368,8 @@ def _notices(
     if own is not None:
         yield Notice.of("bundles_paired", bundles=[name[0] for name in own], cases=titles)
     for case, title in zip(cases, titles, strict=True):
-        told = map(Notice.stored, json.loads(case.texts.get("notices", "[]")))
-        for notice in (each for each in told if each.code.startswith("fault_")):
+        notices = map(Notice.stored, json.loads(case.texts.get("notices", "[]")))
+        for notice in (each for each in notices if each.code.startswith("fault_")):
             yield replace(notice, text=f"{title}: {notice.text}")
     has = np.asarray(data["present"].values, dtype=bool)
     for c, title in enumerate(titles):
