@@ -133,6 +133,16 @@ def test_notices_say_what_acts_and_what_is_left_out() -> None:
     assert "do not feel shapes of flanks" in next(fault_notices(textbook)).text
 
 
+def test_run_ups_take_the_turn_of_a_fault_and_the_mean_tooth_of_what_is_made() -> None:
+    case = faulty(of("crack"))
+    assert case.over_speeds() is case
+    assert case.unless_stated("period", "mesh").period.mesh_periods == 1
+    stated = gear_case(load_case(case.text, {"gears.period": "mesh"}))
+    assert stated.over_speeds().faults() == []
+    made = gear_case(load_case(TEXT + "[[gears.wheel.teeth_differ]]\ntooth = 7\nindex = '15 um'\n"))
+    assert made.over_speeds().period.mesh_periods == 1
+
+
 def test_several_depths_are_an_override() -> None:
     case = gear_case(load_case(faulty(of("crack")).text, {"faults.0.depth": "1 mm"}))
     assert case.faults() == ["crack of 1 mm at 45 deg, pinion tooth 3"]

@@ -263,6 +263,14 @@ class GearCase(Case):
             return self
         return self._with(f"gears.{field}", value)
 
+    def over_speeds(self) -> GearCase:
+        """The case as run-ups and sweeps take it: over one mesh period unless it states otherwise.
+
+        Over the turn with a fault of one tooth, which is stated to be seen.
+        """
+        faulty = any(whole_turn(fault) for fault in self.file.faults)
+        return self if faulty else self.unless_stated("period", "mesh")
+
     def assemblies(self) -> tuple[GearCase, ...]:
         """The case put together in every way that makes a difference, its own marks first.
 

@@ -276,7 +276,7 @@ def runup(
     from thermogear.study.run_up import run_up_plan
 
     read = delivery.load_gears(case, options["overrides"])
-    _of_mean_tooth(read, options)
+    _of_mean_tooth(read, options, over_speeds=True)
     speeds = grid("rpm", rpm) * RPM
     bundle, state = _choice(read, options)
     if hot and options["state"] is not None:
@@ -305,7 +305,7 @@ def sweep(
     from thermogear.study.sweep import sweep_plan
 
     read = delivery.load_gears(case, options["overrides"])
-    _of_mean_tooth(read, options)
+    _of_mean_tooth(read, options, over_speeds=True)
     axes = parse_axes(read, over)
     delivery.heat_once(axes, options["state"])
     bundle, state = _choice(read, options)
@@ -381,13 +381,13 @@ def _choice(
 # --- running ------------------------------------------------------------------------------
 
 
-def _of_mean_tooth(case: Any, options: dict[str, Any]) -> Any:
+def _of_mean_tooth(case: Any, options: dict[str, Any], *, over_speeds: bool = False) -> Any:
     """The case with the mean tooth of its gears, unless it states its period; notices say so."""
     from thermogear.study.declared import fault_notices, mean_tooth_notices
 
     if case.kind != "gear":
         return case
-    taken = case.unless_stated("period", "mesh")
+    taken = case.over_speeds() if over_speeds else case.unless_stated("period", "mesh")
     options["notices"] = (*fault_notices(taken), *mean_tooth_notices(case, taken))
     return taken
 
