@@ -167,7 +167,16 @@ def damages_of(deviations: Iterable[Deviation]) -> tuple[Damage, ...]:
 def as_damaged(
     points: MeshPoints, deviations: Iterable[Deviation], extended: bool = True
 ) -> MeshPoints:
-    """The candidates where damaged teeth among ``deviations`` touch; as they are if they do so."""
+    """The candidates where damaged teeth among ``deviations`` touch; as they are if they do so.
+
+    ``extended``: edges touch off the path too. Only chips move a point.
+
+    >>> from thermogear.gears.candidates import mesh_points
+    >>> points = mesh_points(GearPair(Gear(20, 4e-3), Gear(40, 4e-3)), [1.2])
+    >>> chipped = as_damaged(points, [Chip("pinion", height=2e-3)])
+    >>> (points.broken, int(chipped.broken.max()))  # 2: on the pinion's edge
+    (None, 2)
+    """
     for damage in damages_of(deviations) if points.broken is None else ():
         points = damage.touching(points, extended)
     return points
