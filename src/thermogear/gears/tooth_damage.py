@@ -172,7 +172,7 @@ def as_damaged(
     ``extended``: edges touch off the path too. Only chips move a point.
 
     >>> from thermogear.gears.candidates import mesh_points
-    >>> points = mesh_points(GearPair(Gear(20, 4e-3), Gear(40, 4e-3)), [1.2])
+    >>> points = mesh_points(GearPair(Gear(20, 4e-3), Gear(40, 4e-3)), [1.4])
     >>> chipped = as_damaged(points, [Chip("pinion", height=2e-3)])
     >>> (points.broken, int(chipped.broken.max()))  # 2: on the pinion's edge
     (None, 2)
