@@ -447,8 +447,8 @@ SEVERAL = {
         "title = 'x'\n\"a\\nb\" = 3\n",
         [
             "line 2: 'a\\nb': got an unknown key; the case file does not have it; known: backlash, "
-            "bearings, discs, draw, dynamics, flanks, gearbox, gears, grid, housing, inertia, "
-            "kind, load, materials, model, motor, oil, operating, ours, sensors, shafts, "
+            "bearings, discs, draw, dynamics, faults, flanks, gearbox, gears, grid, housing, "
+            "inertia, kind, load, materials, model, motor, oil, operating, ours, sensors, shafts, "
             "simulation, temperatures, title, train, transmission_error",
             "gears: got nothing; needed; add the table [gears]",
             "operating: got nothing; needed; add the table [operating]",

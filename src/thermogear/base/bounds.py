@@ -162,6 +162,7 @@ RACK = Bounds(low=0.0, high=5.0, unit="modules", si="modules")
 PRESSURE_ANGLE = _degrees(10.0, 35.0)
 ANGLE_ERROR = _degrees(-1.1, 1.1)
 CRACK_ANGLE = _degrees(45.0, 90.0)
+SHARE = Bounds(low=0.0, high=1.0, unit="", si="")
 
 BODY = Bounds(low=-70.0, high=600.0, unit="degC", si="K", zero=ZERO_CELSIUS)
 """Gears, oil or housing. The bounds are ours: wide enough for any gearbox, narrow enough to notice

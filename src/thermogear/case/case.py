@@ -36,6 +36,7 @@ from thermogear.case.charts import Chart, charts, enclosed
 from thermogear.case.dimensionless import Point, points_of
 from thermogear.case.dimensionless_schema import DimensionlessFile
 from thermogear.case.examples import example_text
+from thermogear.case.faults import fault_words, whole_turn
 from thermogear.case.flanks import (
     accuracy,
     all_deviations,
@@ -223,6 +224,27 @@ class GearCase(Case):
         teeth = (self.pair.pinion if gear == "pinion" else self.pair.wheel).teeth
         return (first_tooth(self.file, gear) + place) % teeth + 1
 
+    def faults(self) -> list[str]:
+        """The faults that act in this case, in words.
+
+        A mean tooth has no fault of one tooth, nominal flanks have none at all.
+        """
+        gears = self.file.gears
+        return [
+            words
+            for fault, words in zip(self.file.faults, self.all_faults, strict=True)
+            if gears.part == "case" and not (whole_turn(fault) and gears.period == "mesh")
+        ]
+
+    @property
+    def all_faults(self) -> list[str]:
+        """Every fault that the file states, in words."""
+        return [fault_words(fault) for fault in self.file.faults]
+
+    def sound(self) -> GearCase:
+        """The case without its faults; the case itself where it has none."""
+        return self._with("faults", "[]") if self.file.faults else self
+
     def mean_tooth(self) -> GearCase:
         """The case over one mesh period, with the deviations that all teeth share.
 
@@ -240,6 +262,14 @@ class GearCase(Case):
         if same or not self.deviations or field in self.file.gears.model_fields_set:
             return self
         return self._with(f"gears.{field}", value)
+
+    def over_speeds(self) -> GearCase:
+        """The case as run-ups and sweeps take it: over one mesh period unless it states otherwise.
+
+        Over the turn with a fault of one tooth, which is stated to be seen.
+        """
+        faulty = any(whole_turn(fault) for fault in self.file.faults)
+        return self if faulty else self.unless_stated("period", "mesh")
 
     def assemblies(self) -> tuple[GearCase, ...]:
         """The case put together in every way that makes a difference, its own marks first.

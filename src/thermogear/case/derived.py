@@ -163,6 +163,7 @@ def _operating(case: GearCase) -> list[Fact]:
 def _held(case: GearCase) -> list[Fact]:
     """What is known beforehand of temperatures that are computed, and of the flanks."""
     listed = [_deviation(deviation) for deviation in case.deviations]
+    listed += [Fact("faults", words, "stated") for words in case.all_faults]
     if left := len(case.all_deviations) - len(case.deviations):
         listed.append(Fact(FLANKS, "left out of the nominal flanks", left))
     single = case.file.flanks is not None and case.file.flanks.teeth == "measured"

@@ -12,6 +12,7 @@ from thermogear.base.arrays import Floats
 from thermogear.base.display import in_words
 from thermogear.base.errors import InputError
 from thermogear.case.charts import Chart
+from thermogear.case.faults import fault_deviations
 from thermogear.case.flank_schema import PARTS, ToothProfilesTable, ToothTable
 from thermogear.case.schema import GearFile, GearTable
 from thermogear.gears.candidates import mesh_points
@@ -65,7 +66,7 @@ def deviations(
 def all_deviations(
     file: GearFile, pair: GearPair, measured: Sequence[Chart] = ()
 ) -> tuple[Deviation, ...]:
-    """Every deviation that the file gives, pinion's first, ``measured`` flanks among them.
+    """Every deviation that the file gives, pinion's first, ``measured`` flanks and faults too.
 
     Teeth are numbered as they mesh, from the one that is marked. What
     does not fit the gears (a relief longer than the active profile, pitch errors that are not one
@@ -100,7 +101,7 @@ def all_deviations(
         except InputError as error:
             of_case = error.field.startswith(("gears.", "flanks."))
             raise error.named(error.field if of_case else f"flanks.{chart.gear}") from error
-    given += _graded(file, pair)
+    given += [*_graded(file, pair), *fault_deviations(file, pair)]
     first = {gear: first_tooth(file, gear) for gear in GEARS}
     return tuple(numbered_from(pair, deviation, **first) for deviation in given)
 
@@ -165,6 +166,11 @@ def require_meshing(
     stated = [f"gears.{worst.gear}.{name}" for name in names if getattr(table, name)]
     if getattr(file.flanks, worst.gear, None):
         stated.append(f"flanks.{worst.gear}")
+    stated += [
+        f"faults[{number}].amount"
+        for number, fault in enumerate(file.faults)
+        if fault.amount and fault.gear == worst.gear
+    ]
     if left.min() <= 0.0 and stated:  # what is drawn from a class may jam: the study says so
         raise InputError(
             stated[0],

@@ -19,6 +19,7 @@ from thermogear.base.errors import InputError
 from thermogear.base.toml import at_the_ends
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.case.dimensionless_schema import DimensionlessFile, SimulationTable
+from thermogear.case.fault_schema import MOST_FAULTS, FaultTable
 from thermogear.case.fields import (
     BODY,
     FOLLOW,
@@ -718,6 +719,9 @@ class GearFile(Table):
     backlash: BacklashTable = BacklashTable()
     dynamics: DynamicsTable = DynamicsTable()
     flanks: FlanksTable | None = Field(default=None, title="left out: an accuracy class")
+    faults: Annotated[tuple[FaultTable, ...], Field(max_length=MOST_FAULTS)] = Field(
+        default=(), title="cracked, broken, worn or misplaced teeth; none"
+    )
     transmission_error: TransmissionErrorTable | None = Field(
         default=None, title="left out: that of the flanks alone"
     )
@@ -746,7 +750,9 @@ class GearFile(Table):
             data = {"flanks": {}, **data}
         if data.get("shafts"):
             data = at_the_ends({"train": {}, **data})
-        for name, most in (("bearings", MOST_BEARINGS), ("discs", MOST_DISCS)):
+        for name, most in (
+            ("bearings", MOST_BEARINGS), ("discs", MOST_DISCS), ("faults", MOST_FAULTS),
+        ):  # fmt: skip
             require_few(data.get(name), name, most)
         return data
 

@@ -72,6 +72,7 @@ KINDS: dict[str, Kind] = {
         Kind("torsional stiffness", "N m/rad", "N m/rad", "20000 N m/rad", ("newton", "pound")),
         Kind("torsional damping", "N m s/rad", "N m s/rad", "1 N m s/rad", ("newton", "pound")),
         Kind("unbalance", "kg m", "g mm", "20 g mm"),
+        Kind("wear coefficient", "m^2/N", "m^2/N", "1e-17 m^2/N"),
     )
 }
 
@@ -102,6 +103,7 @@ _USUAL: dict[str, dict[str, float]] = {
     "torsional stiffness": {"N m/rad": 1.0},
     "torsional damping": {"N m s/rad": 1.0},
     "unbalance": {"kg m": 1.0, "g mm": 1e-6},
+    "wear coefficient": {"m^2/N": 1.0, "mm^2/N": 1e-6},
 }
 """Units of nearly every file, by their factor to SI: bit for bit what pint makes of
 them, without loading it, which takes longer than many a command."""

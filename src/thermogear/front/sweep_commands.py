@@ -273,7 +273,7 @@ def runup(
     from thermogear.study.run_up import run_up_plan
 
     read = delivery.load_gears(case, options["overrides"])
-    _of_mean_tooth(read, options)
+    _of_mean_tooth(read, options, over_speeds=True)
     speeds = grid("rpm", rpm) * RPM
     bundle, state = _choice(read, options)
     if hot and options["state"] is not None:
@@ -302,7 +302,7 @@ def sweep(
     from thermogear.study.sweep import sweep_plan
 
     read = delivery.load_gears(case, options["overrides"])
-    _of_mean_tooth(read, options)
+    _of_mean_tooth(read, options, over_speeds=True)
     axes = parse_axes(read, over)
     delivery.heat_once(axes, options["state"])
     bundle, state = _choice(read, options)
@@ -378,14 +378,14 @@ def _choice(
 # --- running ------------------------------------------------------------------------------
 
 
-def _of_mean_tooth(case: Any, options: dict[str, Any]) -> Any:
-    """The case with the mean tooth of its gears, unless it states its period; a notice says so."""
-    from thermogear.study.declared import mean_tooth_notices
+def _of_mean_tooth(case: Any, options: dict[str, Any], *, over_speeds: bool = False) -> Any:
+    """The case with the mean tooth of its gears, unless it states its period; notices say so."""
+    from thermogear.study.declared import fault_notices, mean_tooth_notices
 
     if case.kind != "gear":
         return case
-    taken = case.unless_stated("period", "mesh")
-    options["notices"] = tuple(mean_tooth_notices(case, taken))
+    taken = case.over_speeds() if over_speeds else case.unless_stated("period", "mesh")
+    options["notices"] = (*fault_notices(taken), *mean_tooth_notices(case, taken))
     return taken
 
 
@@ -423,7 +423,8 @@ def _compute(plan: Plan, directory: Path, title: str, options: dict[str, Any]) -
 
         about = {name: value for name, value in about_store(directory).items() if name != "title"}
         result = finished(data, title).with_(**about, seconds=round(time.monotonic() - begun, 3))
-        result = replace(result, notices=(*options.get("notices", ()), *result.notices))
+        notices = (*options.get("notices", ()), *result.notices)
+        result = replace(result, notices=tuple(dict.fromkeys(notices)))
         write(delivery.without_hidden(page_of(result)), directory)
     except KeyboardInterrupt:
         if not last:

@@ -33,8 +33,8 @@ from thermogear.gears.stiffness import (
     yang_sun_stiffness,
 )
 from thermogear.gears.tooth import STARTS, flank_point, unit_compliance
-from thermogear.gears.tooth_damage import Damage
-from thermogear.gears.tooth_table import PLANES, tooth_table
+from thermogear.gears.tooth_damage import Damage, as_damaged, damages_of
+from thermogear.gears.tooth_table import MATES, PLANES, tooth_table
 from thermogear.gears.touch import Touch, first_touch
 from thermogear.gears.turn import ToothShapes
 
@@ -137,11 +137,15 @@ class Drawn(NamedTuple):
 
 @lru_cache(maxsize=32)
 def as_drawn(
-    pair: GearPair, phases: bytes, flank: str, model: LoadedModel, damage: Damage | None = None
+    pair: GearPair,
+    phases: bytes,
+    flank: str,
+    model: LoadedModel,
+    damages: tuple[Damage, ...] = (),
 ) -> Drawn:
     """Remembered: a heat balance, a row of temperatures, a sweep ask for the same places."""
     points = mesh_points(pair, np.frombuffer(phases), flank, model.extended)
-    points = points if damage is None else damage.touching(points, model.extended)
+    points = as_damaged(points, damages, model.extended)
     at = points.point
     gears, strings = (pair.pinion, pair.wheel), (at.pinion, at.wheel)
     # a candidate that misses the flank (it never carries) at its end
@@ -165,13 +169,42 @@ def as_drawn(
         compliance(gear, t, angle, sign, model)
         for gear, t, angle, sign in zip(gears, parameters, angles, (-1, 1), strict=True)
     ]
-    if damage is not None:
+    for damage in damages:
         i = GEARS.index(damage.gear)
         more = damage.softer(points.contacts, parameters[i], angles[i], model.plane)
         parts[i] = parts[i][0] + more[0], parts[i][1] + more[1]
     tooth, body = (np.stack(part) for part in zip(*parts, strict=True))
     lever = at.lever[..., None]
     return Drawn(tooth / at.lever**2, body / (lever * at.lever[..., None, :]), places)
+
+
+def _with_damages(
+    points: MeshPoints,
+    sound: Drawn,
+    place: NDArray[np.int64],
+    damages: tuple[Damage, ...],
+    model: LoadedModel,
+) -> tuple[Drawn, NDArray[np.int64]]:
+    """``sound`` and behind it what damaged teeth change, and the place of each position in both.
+
+    A place is one fraction of a mesh period and, of each damage, how far its tooth is: it comes
+    again with every turn of that gear, and where no damage is felt it is that of sound teeth.
+    """
+    contacts = points.contacts
+    pitches = np.stack([damage.pitches(contacts) for damage in damages], axis=1)
+    felt = np.any(np.abs(pitches) <= MATES, axis=2)
+    far = 1 + max(contacts.pair.pinion.teeth, contacts.pair.wheel.teeth)
+    rows = np.flatnonzero(np.any(felt, axis=1))
+    states = np.column_stack([place, np.where(felt, pitches[:, :, 0], far)])[rows]
+    if not rows.size:
+        return sound, place
+    _, first, which = np.unique(states, axis=0, return_index=True, return_inverse=True)
+    phases = contacts.phase[rows[first]].tobytes()
+    damaged = as_drawn(contacts.pair, phases, contacts.flank, model, damages)
+    place = place.copy()
+    place[rows] = len(sound.places) + np.ravel(which)
+    tooth, body = (np.concatenate(two, axis=1) for two in zip(sound[:2], damaged[:2], strict=True))
+    return Drawn(tooth, body, np.concatenate([sound.places, damaged.places])), place
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -215,14 +248,15 @@ class MeshSystem:
         """Geometry, unit compliances and gaps; see :func:`loaded_contact` for the arguments.
 
         load [N]: its Hertzian half width averages the flanks' shapes; touch: of all deviations,
-        where it is known.
+        where it is known; damage: one beside those among the deviations.
         """
+        damages = damages_of(deviations if damage is None else (*deviations, damage))
         points = mesh_points(pair, phase, flank, model.extended)
         once, place = points.fractions
-        if damage is not None:  # of one tooth: no two mesh periods are alike
-            points = damage.touching(points, model.extended)
-            once, place = points, np.arange(len(points.s))
-        drawn = as_drawn(pair, once.contacts.phase.tobytes(), flank, model, damage)
+        drawn = as_drawn(pair, once.contacts.phase.tobytes(), flank, model)
+        if damages:
+            points = as_damaged(points, damages, model.extended)
+            drawn, place = _with_damages(points, drawn, place, damages, model)
         positions, count = points.s.shape
         gap, edge = touch or _pressed_touch(points, deviations, load)
         lead = np.broadcast_shapes(

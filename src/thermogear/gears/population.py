@@ -32,6 +32,7 @@ from thermogear.gears.deviations import (
 )
 from thermogear.gears.graded_flanks import trace_figures
 from thermogear.gears.pair import GearPair
+from thermogear.gears.tooth_damage import Damage
 from thermogear.gears.turn import Eccentricity, ToothShapes
 
 MEASURED_TEETH = 4
@@ -211,7 +212,7 @@ def measured(
 ) -> GearFigures:
     """The named gear of ``pair`` with its ``deviations``, measured about its bore on one side.
 
-    Those of the mate, and what belongs to no gear, are left aside.
+    Those of the mate, what belongs to no gear, and broken teeth are left aside.
 
     >>> pair = GearPair(Gear(20, 3e-3), Gear(40, 3e-3))
     >>> figures = measured(pair, "wheel", [Eccentricity("wheel", amount=10e-6, angle=0.0)])
@@ -219,7 +220,11 @@ def measured(
     '21.28 um'
     """
     at = _probe(pair, name, flank)
-    mine = [one for one in deviations if getattr(one, "gear", None) == name]
+    mine = [
+        one
+        for one in deviations
+        if getattr(one, "gear", None) == name and not isinstance(one, Damage)
+    ]
     return _figures(pair, name, -sum((one.gap(at)[:, 0] for one in mine), np.zeros(at.s.size)))
 
 

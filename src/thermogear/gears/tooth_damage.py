@@ -1,4 +1,4 @@
-"""One tooth that differs from all others: cracked at its root, or its tip broken off.
+"""One tooth that differs from all others: cracked at its root, its tip broken off, or missing.
 
 The gear is a ring of equal sectors, solved as in :mod:`thermogear.gears.tooth_table`, of which one
 has another tooth; only that sector is solved again. With K_s the stiffness of a sector at its two
@@ -8,7 +8,8 @@ sides and K_n that of the ring's harmonic n, the whole ring yields there by
 
 so that all other sectors resist with K_rest = G^-1 - K_s, and a damaged one moves by
 (K_s' + K_rest)^-1. What a crack adds is taken between two meshes that differ by it alone. Damage
-goes through the whole face width; a crack does not grow. The gear's other teeth are sound.
+goes through the whole face width but where a crack says so; a crack does not grow. Several damaged
+teeth of a gear add up, each as if all others were sound.
 Checked by ``tests/gears/test_tooth_damage.py``: no depth, reciprocity, energy, growth with the
 depth, the edge crack of a half plane, and finite elements not written here.
 """
@@ -16,7 +17,8 @@ depth, the edge crack of a half plane, and finite elements not written here.
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
+from abc import abstractmethod
+from collections.abc import Iterable
 from dataclasses import KW_ONLY, dataclass, replace
 from functools import lru_cache
 
@@ -29,7 +31,7 @@ from thermogear.base.arrays import Floats
 from thermogear.base.errors import GeometryError, InputError, require_choice
 from thermogear.gears.candidates import MeshPoints
 from thermogear.gears.corner import contact_point, off_path
-from thermogear.gears.deviations import GEARS, Contacts
+from thermogear.gears.deviations import GEARS, Contacts, Deviation, ToothDeviation
 from thermogear.gears.elements import Integers
 from thermogear.gears.geometry import Gear, millimetres
 from thermogear.gears.pair import GearPair
@@ -67,16 +69,29 @@ class DamagedTable:
     sound: ToothTable
     alike: ToothTable
     added: Floats
+    width_share: float = 1.0
 
     def more(self, t: Floats, pitches: Integers) -> Floats:
         """What the crack adds between places ``t`` of teeth so many ``pitches`` ahead of it.
 
-        Shapes (..., place) -> (..., place, place); 0 beyond :data:`MATES`.
+        Shapes (..., place) -> (..., place, place); 0 beyond :data:`MATES`. A crack through a share
+        w of the face width: slices in parallel, cracked and sound ones, yield C more with
+
+            1/(C_s + C) = (1 - w)/C_s + w/(C_s + C_w),
+
+        C_s the sound tooth's own compliance, C_w what the crack adds through the whole width. That
+        is the most it can be: slices that hold on to each other yield less. What it adds on
+        neighbours falls with the root of both teeth's own parts, so that it stays reciprocal.
         """
         series = chebyshev.chebvander(self.alike.place(t), COUPLED)
         at, near = np.clip(pitches + MATES, 0, 2 * MATES), abs(pitches) <= MATES
         between = self.added[at[..., :, None], at[..., None, :]]
         out = np.einsum("...ja,...jkab,...kb->...jk", series, between, series)
+        if (w := self.width_share) < 1.0:
+            whole = np.einsum("...a,ab,...b->...", series, self.added[MATES, MATES], series)
+            sound = sum(self.alike.self_compliance(t))
+            part = np.sqrt(w * sound / (sound + (1.0 - w) * np.maximum(whole, 0.0)))
+            out *= part[..., :, None] * part[..., None, :]
         return np.asarray(out * near[..., :, None] * near[..., None, :])
 
     def self_compliance(self, t: ArrayLike) -> tuple[Floats, Floats]:
@@ -99,10 +114,11 @@ class DamagedTable:
 
 
 @dataclass(frozen=True)
-class Damage(ABC):
+class Damage(ToothDeviation):
     """What differs at one ``tooth`` of one ``gear``, "pinion" or "wheel".
 
-    Teeth are numbered as in a mesh: number 0 enters at phase 0, number n at phase n.
+    Teeth are numbered as in a mesh: number 0 enters at phase 0, number n at phase n. Among the
+    deviations of a mesh it acts whenever that tooth, or one up to ``MATES`` pitches from it, does.
     """
 
     gear: str
@@ -114,25 +130,71 @@ class Damage(ABC):
         if not isinstance(self.tooth, int | np.integer):
             raise InputError("damage.tooth", repr(self.tooth), allowed="a whole number")
 
+    def gap(self, at: Contacts) -> Floats:
+        """None: the flank is where it was."""
+        return np.zeros_like(at.s)
+
+    def mean(self) -> Deviation:
+        """A whole tooth: damage of one tooth is no mean of all."""
+        return Chip(self.gear, height=0.0)
+
     def touching(self, points: MeshPoints, extended: bool) -> MeshPoints:
         """The candidates as they are: the flank is whole."""
         return points
-
-    @abstractmethod
-    def table(self, gear: Gear, plane: str = "stress") -> DamagedTable:
-        """The compliances of the tooth and of its neighbours."""
-
-    def _pitches(self, contacts: Contacts) -> Integers:
-        """(position, pair): how many pitches ahead of this tooth, towards its loaded flank."""
-        teeth = contacts.pair.gear(self.gear).teeth
-        behind = (contacts.tooth(self.gear) - self.tooth + teeth // 2) % teeth - teeth // 2
-        return np.asarray(-behind if self.gear == "pinion" else behind)
 
     def softer(
         self, contacts: Contacts, t: Floats, angle: Floats, plane: str
     ) -> tuple[Floats, Floats]:
         """What the gear yields more, times E b: (position, pair) and (position, pair, pair)."""
-        table, pitches = self.table(contacts.pair.gear(self.gear), plane), self._pitches(contacts)
+        return np.zeros_like(t), np.zeros((*t.shape, t.shape[-1]))
+
+    def pitches(self, contacts: Contacts) -> Integers:
+        """(position, pair): how many pitches ahead of this tooth, towards its loaded flank."""
+        teeth = contacts.pair.gear(self.gear).teeth
+        behind = (contacts.tooth(self.gear) - self.tooth + teeth // 2) % teeth - teeth // 2
+        return np.asarray(-behind if self.gear == "pinion" else behind)
+
+
+def damages_of(deviations: Iterable[Deviation]) -> tuple[Damage, ...]:
+    """The damaged teeth among ``deviations``.
+
+    >>> damages_of([Chip("pinion", height=0.0), Crack("wheel", depth=1e-3)])[0].gear
+    'wheel'
+    """
+    return tuple(d for d in deviations if isinstance(d, Damage) and d.differs)
+
+
+def as_damaged(
+    points: MeshPoints, deviations: Iterable[Deviation], extended: bool = True
+) -> MeshPoints:
+    """The candidates where damaged teeth among ``deviations`` touch; as they are if they do so.
+
+    ``extended``: edges touch off the path too. Only chips move a point.
+
+    >>> from thermogear.gears.candidates import mesh_points
+    >>> points = mesh_points(GearPair(Gear(20, 4e-3), Gear(40, 4e-3)), [1.4])
+    >>> chipped = as_damaged(points, [Chip("pinion", height=2e-3)])
+    >>> (points.broken, int(chipped.broken.max()))  # 2: on the pinion's edge
+    (None, 2)
+    """
+    for damage in damages_of(deviations) if points.broken is None else ():
+        points = damage.touching(points, extended)
+    return points
+
+
+@dataclass(frozen=True)
+class ShapedDamage(Damage):
+    """Damage whose tooth is solved by finite elements of its own shape."""
+
+    @abstractmethod
+    def table(self, gear: Gear, plane: str = "stress") -> DamagedTable:
+        """The compliances of the tooth and of its neighbours."""
+
+    def softer(
+        self, contacts: Contacts, t: Floats, angle: Floats, plane: str
+    ) -> tuple[Floats, Floats]:
+        """What the gear yields more, times E b: (position, pair) and (position, pair, pair)."""
+        table, pitches = self.table(contacts.pair.gear(self.gear), plane), self.pitches(contacts)
         body = table.more(t, pitches)
         # a crack at the root of the other flank is pressed shut
         body *= contacts.flank == "drive"
@@ -143,13 +205,15 @@ class Damage(ABC):
 
 
 @dataclass(frozen=True)
-class Crack(Damage):
+class Crack(ShapedDamage):
     """A straight, open crack from the 30-degree point of the drive flank's fillet into the gear.
 
     depth: its length [m] >= 0; angle [rad] to the tooth's axis, 45 to 90 degrees, by default 45:
     90 goes straight across the tooth. Under a load on the back flank it is shut and does nothing.
     Refused beyond 0.51 of the way across the tooth or 0.255 of that down to the bore,
-    and where no sound mesh follows it (long ones at 45 degrees below about 20 teeth).
+    and where no sound mesh follows it (long ones at 45 degrees below about 20 teeth). width_share:
+    of the face width it goes through, 0 to 1; below 1 it adds no more than
+    :meth:`DamagedTable.more` says.
 
     >>> gear = Gear(20, 4e-3)
     >>> t = math.tan(gear.pressure_angle)
@@ -161,21 +225,29 @@ class Crack(Damage):
     _: KW_ONLY
     depth: float
     angle: float = math.radians(45.0)
+    width_share: float = 1.0
 
     def __post_init__(self) -> None:
         super().__post_init__()
         bounds.DEPTH.require("crack.depth", self.depth)
         bounds.CRACK_ANGLE.require("crack.angle", self.angle)
+        bounds.SHARE.require("crack.width_share", self.width_share)
+
+    @property
+    def differs(self) -> bool:
+        """Whether there is any."""
+        return self.depth > 0.0 and self.width_share > 0.0
 
     def table(self, gear: Gear, plane: str = "stress") -> DamagedTable:
         """The compliances of the tooth and its neighbours, remembered by the gear's shape."""
         sound = tooth_table(gear, plane)
         depth = float(f"{self.depth / gear.module:.12g}")
-        return DamagedTable(sound, sound, _added(Shape.of(gear, plane), depth, self.angle))
+        added = _added(Shape.of(gear, plane), depth, self.angle)
+        return DamagedTable(sound, sound, added, self.width_share)
 
 
 @dataclass(frozen=True)
-class Chip(Damage):
+class Chip(ShapedDamage):
     """A tooth whose tip is broken off, flat, ``height`` [m] below the tip circle.
 
     Its flanks end there in a sharp edge, which touches the mate like that of a tip; nothing above
@@ -192,6 +264,11 @@ class Chip(Damage):
     def __post_init__(self) -> None:
         super().__post_init__()
         bounds.DEPTH.require("chip.height", self.height)
+
+    @property
+    def differs(self) -> bool:
+        """Whether there is any."""
+        return self.height > 0.0
 
     def left(self, gear: Gear) -> Gear:
         """A gear whose teeth all are as this one; GeometryError where no flank would be left."""
@@ -216,22 +293,47 @@ class Chip(Damage):
 
     def touching(self, points: MeshPoints, extended: bool) -> MeshPoints:
         """The candidates, those of this tooth beyond the break on its edge."""
-        contacts = points.contacts
+        contacts, before = points.contacts, points.broken
         gears = [contacts.pair.gear(name) for name in GEARS]
         i = GEARS.index(self.gear)
         gears[i] = self.left(gears[i])
         broken = _Meshing(gears[0], gears[1], contacts.pair.centre_distance)
-        there = contact_point(broken, contacts.s, extended)
-        here = self._pitches(contacts) == 0
-        point = type(there)(
-            *(np.where(here, new, old) for new, old in zip(there, points.point, strict=True))
-        )
-        beyond = here & off_path(broken, contacts.s)[1 - i]
+        whole = np.zeros(contacts.s.shape, np.int8) if before is None else before
+        # two broken teeth that meet: the edge of the one that was looked at first
+        here = (self.pitches(contacts) == 0) & (whole == 0)
+        s = contacts.s[here]
+        there = contact_point(broken, s, extended)
+        point = type(there)(*(np.array(values) for values in points.point))
+        for values, new in zip(point, there, strict=True):
+            values[here] = new
+        beyond = whole.copy()
+        beyond[here] = off_path(broken, s)[1 - i] * (2 - i)
         return points._replace(
             point=point,
             contacts=contacts._replace(pinion=point.pinion, wheel=point.wheel),
-            broken=np.asarray(beyond * (2 - i), dtype=np.int8),
+            broken=beyond,
         )
+
+
+@dataclass(frozen=True)
+class MissingTooth(Damage):
+    """A tooth broken off at its root: neither of its flanks touches anything.
+
+    Its neighbours carry for it, off the path on their tips' edges: the gears fall behind by as
+    much as an edge is open there. They yield as if the stump were a whole tooth.
+
+    >>> MissingTooth("pinion", tooth=3).differs
+    True
+    """
+
+    @property
+    def differs(self) -> bool:
+        """Always."""
+        return True
+
+    def gap(self, at: Contacts) -> Floats:
+        """e = inf: it never touches."""
+        return np.where(self.pitches(at) == 0, np.inf, 0.0)
 
 
 class _Meshing(GearPair):
@@ -239,6 +341,19 @@ class _Meshing(GearPair):
 
     def __post_init__(self) -> None:
         """Both gears are those of a pair that was looked at."""
+
+
+def way_across(gear: Gear, angle: float) -> float:
+    """Way [m] across a tooth at its root between the 30-degree points, 2 x_root/sin(angle).
+
+    ``angle`` [rad] to the tooth's axis: 100 % of a crack.
+
+    >>> f"{1e3 * way_across(Gear(20, 4e-3), math.radians(45.0)):.2f} mm"
+    '11.00 mm'
+    """
+    profile = Profile(gear)
+    r, phi = (float(at) for at in profile.fillet(np.asarray(profile.start)))
+    return 2.0 * r * math.sin(phi) / math.sin(angle)
 
 
 def _meshed(gear: Gear, poisson: float, depth: float, angle: float) -> tuple[Sector, Sector]:
@@ -251,7 +366,7 @@ def _meshed(gear: Gear, poisson: float, depth: float, angle: float) -> tuple[Sec
     r, phi = (float(at) for at in profile.fillet(np.asarray(profile.start)))
     mouth = r * np.array([math.sin(phi), math.cos(phi)])
     across, down = math.sin(angle), max(math.cos(angle), 1e-9)
-    most = DEEPEST * min(2.0 * mouth[0] / across, 0.5 * (r - gear.bore_radius) / down)
+    most = DEEPEST * min(way_across(gear, angle), 0.5 * (r - gear.bore_radius) / down)
     if not depth <= most:
         raise GeometryError(
             "crack.depth",

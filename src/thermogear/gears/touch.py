@@ -26,6 +26,7 @@ from thermogear.gears.candidates import MeshPoints
 from thermogear.gears.corner import ContactPoint, contact_point, flank_ends, off_path
 from thermogear.gears.deviations import GEARS, Deviation, FlankShape
 from thermogear.gears.pair import GearPair
+from thermogear.gears.tooth_damage import as_damaged
 from thermogear.gears.turn import ToothShapes
 
 _REACH = 0.05
@@ -86,6 +87,7 @@ def first_touch(
     >>> f"{first_touch(mesh_points(pair, [0.1])).gap.min():.3f} m"
     '0.000 m'
     """
+    points = as_damaged(points, deviations)
     contacts, (once, place) = points.contacts, points.fractions
     shapes: list[FlankShape | ToothShapes] = []
     rest: list[Floats] = []
@@ -114,13 +116,22 @@ def first_touch(
             gap, edge = (_shaped if hashable else _shaped.__wrapped__)(*given)
             if points.shared:
                 gap, edge = gap[..., place, :], edge[..., place, :]
-    if points.broken is not None:
-        # on the edge of the break, what is taken off counts where that edge is
-        there = sum((d.gap(contacts) for d in shapes), start=points.point.gap)
-        gap = np.where(points.broken, there, gap)
-        edge = np.where(points.broken, points.broken, edge)
+    gap, edge = _on_breaks(points, shapes, gap, edge)
     whole = np.asarray(sum(rest, start=gap))
     return Touch(whole, np.broadcast_to(edge, whole.shape))
+
+
+def _on_breaks(
+    points: MeshPoints,
+    shapes: Sequence[FlankShape | ToothShapes],
+    gap: Floats,
+    edge: NDArray[np.int8],
+) -> Touch:
+    """On the edge of a break, what is taken off counts where that edge is."""
+    if points.broken is None or not points.broken.any():
+        return Touch(gap, edge)
+    there = sum((d.gap(points.contacts) for d in shapes), start=points.point.gap)
+    return Touch(np.where(points.broken, there, gap), np.where(points.broken, points.broken, edge))
 
 
 def touch_of_parts(
@@ -129,7 +140,8 @@ def touch_of_parts(
     """:func:`first_touch` of many parts, arrays (part, position, pair), for each of ``spreads``.
 
     Each part with its own deviations, those of one operating point; what several parts have in
-    common, the same object, is looked at once. A part hangs on no other.
+    common, the same object, is looked at once. A part hangs on no other. Damaged teeth are those of
+    the first part in all of them.
 
     >>> from thermogear.gears.candidates import mesh_points
     >>> pair = GearPair(Gear(20, 3e-3), Gear(40, 3e-3))
@@ -137,6 +149,7 @@ def touch_of_parts(
     >>> touch.gap.shape == (2, *mesh_points(pair, [0.25, 0.5]).s.shape)
     True
     """
+    points = as_damaged(points, parts[0] if parts else ())
     contacts = points.contacts
     pair, size = contacts.pair, contacts.s.shape
     whole = len(parts), *size
@@ -163,8 +176,10 @@ def touch_of_parts(
     for touch, spread in zip(touches, spreads, strict=True):
         if acting:
             pinion, wheel = _of_all(pair, acting, spread)
-            gap, touch.edge[drawn] = _touched(points, pinion, wheel, extended)
-            touch.gap[drawn] += gap
+            every = _touched(points, pinion, wheel, extended)
+            for n, shapes_of_part, gap, edge in zip(drawn, acting, *every, strict=True):
+                gap, touch.edge[n] = _on_breaks(points, shapes_of_part, gap, edge)
+                touch.gap[n] += gap
     return touches
 
 

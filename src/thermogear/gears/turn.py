@@ -30,6 +30,7 @@ from thermogear.gears.deviations import (
     ToothDeviation,
 )
 from thermogear.gears.pair import GearPair
+from thermogear.gears.tooth_damage import Damage
 
 T = TypeVar("T")
 
@@ -197,6 +198,8 @@ def numbered_from(
     first = pinion if deviation.gear == "pinion" else wheel
     if isinstance(deviation, PitchError):
         return replace(deviation, errors=_rolled(deviation.errors, first))
+    if isinstance(deviation, Damage):
+        return replace(deviation, tooth=(deviation.tooth - first) % pair.gear(deviation.gear).teeth)
     if isinstance(deviation, ToothShapes):
         return replace(deviation, shapes=_rolled(deviation.shapes, first))
     if isinstance(deviation, Eccentricity):

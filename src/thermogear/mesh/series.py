@@ -11,6 +11,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, reduce
+from itertools import groupby
 
 import numpy as np
 
@@ -21,6 +22,7 @@ from thermogear.gears.loaded import LEAST_LINE_LOAD
 from thermogear.gears.mesh_system import MeshSystem, pressed_spread
 from thermogear.gears.pair import GearPair
 from thermogear.gears.stiffness import Moduli
+from thermogear.gears.tooth_damage import damages_of
 from thermogear.gears.touch import Touch, touch_of_parts
 from thermogear.gears.turn import numbered_from, turn_period
 from thermogear.mesh.clearance import Clearance
@@ -123,8 +125,8 @@ def series_mesh(
     :data:`SELDOM`: from mesh period ``start``
     of each part on, 0 by default. Where they are not the whole turn the springs have
     :data:`AHEAD` more before them, from which a motion can settle. Parts hang on each other in no
-    digit. Textbook springs do not
-    feel deviations; their errors are those without load.
+    digit; those in a row whose damaged teeth have the same numbers are solved together. Textbook
+    springs do not feel deviations; their errors are those without load.
     """
     pair, phase = hot.pair, np.arange(positions) / positions
     turn = max((turn_period(pair, part).mesh_periods for part in parts), default=1)
@@ -137,9 +139,12 @@ def series_mesh(
     every = turn_phases(periods + ahead, phase)
     if hot.model.stiffness == "loaded":
         step = max(BLOCK // every.size, 1)
+        # parts side by side share their damaged teeth, numbers and all
         blocks = [
-            _curves(hot, numbered[first : first + step], every)
-            for first in range(0, len(parts), step)
+            _curves(hot, several[first : first + step], every)
+            for _, group in groupby(numbered, damages_of)
+            for several in [list(group)]
+            for first in range(0, len(several), step)
         ]
     else:
         blocks = [_alone(hot, part, phase, periods + ahead) for part in numbered]
@@ -181,7 +186,7 @@ def _curves(
         shape=(len(parts),),
         phase=phase,
         moduli=(_flat(elastic.moduli[0]), _flat(elastic.moduli[1])),
-        deviations=(),
+        deviations=damages_of(parts[0]),
         model=hot.model.loaded,
         flank="drive",
         touch=pressed,

@@ -22,6 +22,7 @@ from thermogear.case.dimensionless import Point
 from thermogear.case.one_point import OnePoint, of_numbers
 from thermogear.dynamics.return_map import MovedMap
 from thermogear.results.result import Result
+from thermogear.study.declared import fault_notices
 from thermogear.study.orbit import complex_rows, found, orbit_of
 
 STEPS = 1000
@@ -63,6 +64,7 @@ def branch_results(
     require_depth(switch)
     orbit, _ = orbit_of(point, period, transient=transient, model=models(begin))
     legs, cut = walked(orbit, varied, models, begin=begin, to=to, switch=switch, progress=progress)
+    notices = [*(fault_notices(point.gears) if point.points.gears else ()), *lost_notices(legs)]
     summary = summary_of(point.title, varied, legs, (begin, to), cut)
     summary["parameters"] = point.parameters
     groups = {f"branch_{i}": dataset(leg, varied.unit) for i, leg in enumerate(legs)}
@@ -70,7 +72,7 @@ def branch_results(
         summary["mesh_periods"] = point.points.mesh_periods
         for group in groups.values():
             group.attrs["mesh_periods"] = point.points.mesh_periods
-    return found("branch", groups, summary, lost_notices(legs), interrupted=cut)
+    return found("branch", groups, summary, notices, interrupted=cut)
 
 
 def lost_notices(legs: Sequence[Leg]) -> list[Notice]:

@@ -28,6 +28,7 @@ from thermogear.measured.record import Record
 from thermogear.measured.reduction import Measurement, measure
 from thermogear.results.result import Notice, Result
 from thermogear.study.case_runs import CaseRuns
+from thermogear.study.declared import fault_notices
 from thermogear.study.series import Spread
 
 Simulated: TypeAlias = str | Path | Case | Result | Mapping[str, LineTable]
@@ -290,8 +291,8 @@ def case_lines(
     Of a series the models are the median of its parts, u_input the greatest change that one makes.
     """
     runs = CaseRuns.of(case).at_speeds(speeds)
-    notices: list[Notice] = []
     stated, drawings = runs.case({}), runs.drawings()
+    notices = [*fault_notices(stated)]
     if stated.series > 1:  # steps and tolerances are tried on one part
         runs = replace(runs, kept={**runs.kept, **drawings[0]})
     alone = _tables(runs, {})

@@ -57,7 +57,7 @@ class Study:
     ``home``: module and name of the function that carries it out; ``of``: what it is a study of,
     the gears or one point of a case. A directory of results may be left out where there are words
     on it, ``stores``. ``mean_tooth``: it takes one mesh period of gears whose teeth differ,
-    "always" or "unless stated" otherwise by the case.
+    "always" or "unless stated" otherwise by the case. ``sound``: it leaves the case's faults out.
     """
 
     kind: ClassVar[str]
@@ -65,12 +65,19 @@ class Study:
     of: ClassVar[str]
     stores: ClassVar[str]
     mean_tooth: ClassVar[str]
+    sound: ClassVar[bool]
 
     def __init_subclass__(
-        cls, kind: str, home: str, of: str = "gears", stores: str = "", mean_tooth: str = ""
+        cls,
+        kind: str,
+        home: str,
+        of: str = "gears",
+        stores: str = "",
+        mean_tooth: str = "",
+        sound: bool = False,
     ) -> None:
         cls.kind, cls.home, cls.of, cls.stores = kind, home, of, stores
-        cls.mean_tooth = mean_tooth
+        cls.mean_tooth, cls.sound = mean_tooth, sound
 
     def __post_init__(self) -> None:
         for each in fields(self):  # type: ignore[arg-type]  # subclasses are dataclasses
@@ -102,6 +109,22 @@ class Study:
         return {name: value for name, value in plain if value is not None}
 
 
+def fault_notices(case: GearCase, *, sound: bool = False, about: str = "") -> Iterator[Notice]:
+    """The faults that a study of ``case`` takes, and those of its file that it leaves out.
+
+    ``sound``: it takes none of them; ``about``: which of its parts that is said of.
+    """
+    from thermogear.base.notice import Notice
+
+    acting = [] if sound else case.faults()
+    if acting:
+        deaf = [model.name for model in case.models if model.stiffness != "loaded"]
+        yield Notice.of("fault_taken", about=about, faults="; ".join(acting), deaf=deaf or None)
+    left = [words for words in case.all_faults if words not in acting]
+    if left:
+        yield Notice.of("fault_left_out", about=about, faults="; ".join(left))
+
+
 def mean_tooth_notices(case: GearCase, taken: GearCase) -> Iterator[Notice]:
     """That a study has ``taken`` the mean tooth of a ``case`` whose teeth differ."""
     from thermogear.base.notice import Notice
@@ -127,15 +150,18 @@ def declared(study: type[Study]) -> Callable[[Callable[P, Result]], Callable[P, 
             if study.of == "gears":
                 from thermogear.case.case import gear_case
 
-                case = gear_case(given[subject])
+                given_case = gear_case(given[subject])
+                case = taken = given_case.sound() if study.sound else given_case
                 if study.mean_tooth:
                     always = study.mean_tooth == "always"
                     taken = case.mean_tooth() if always else case.unless_stated("period", "mesh")
-                    given[subject] = taken
-                    notices = tuple(mean_tooth_notices(case, taken))
-            elif study.mean_tooth and given[subject].operating is not None:
+                given[subject] = taken
+                faults = fault_notices(given_case if study.sound else taken, sound=study.sound)
+                notices = (*faults, *mean_tooth_notices(case, taken))
+            elif given[subject].operating is not None:
                 case = given[subject].gears
-                notices = tuple(mean_tooth_notices(case, case.mean_tooth()))
+                taken = case.mean_tooth() if study.mean_tooth else case
+                notices = (*fault_notices(taken), *mean_tooth_notices(case, taken))
             result = function(*bound.args, **bound.kwargs).with_(asked=asked.asked({}))
             return replace(result, notices=(*notices, *result.notices))
 
@@ -403,7 +429,7 @@ class WarmUpSurvey(Study, kind="warmup", home="thermogear.study.warm_up:warm_up_
 
 
 @dataclass(frozen=True, kw_only=True)
-class ReliefSurvey(Study, kind="relief", home="thermogear.study.relief:relief_survey"):
+class ReliefSurvey(Study, kind="relief", sound=True, home="thermogear.study.relief:relief_survey"):
     """Find the tip relief that makes CASE's hot pair run most evenly under load.
 
     Of a class: the least mean error within the mesh periods over 16 parts of the series, judged by
@@ -480,6 +506,7 @@ class Sensitivity(
     Study,
     kind="sensitivity",
     mean_tooth="unless stated",
+    sound=True,
     home="thermogear.study.sensitivity:sensitivity_around",
     stores="Store the study and its page in DIR.",
 ):

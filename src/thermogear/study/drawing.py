@@ -18,7 +18,7 @@ from thermogear.case.thermal_state import UNDEFORMED as COLD
 from thermogear.mesh.drawing import PHASES, drawn_gears
 from thermogear.mesh.model import MeshModel
 from thermogear.results.result import Notice, Result
-from thermogear.study.declared import mean_tooth_notices
+from thermogear.study.declared import fault_notices, mean_tooth_notices
 
 KIND = "drawing"
 MOST = 6
@@ -99,6 +99,7 @@ def _drawn(
 
 def _flank_notices(case: GearCase) -> Iterator[Notice]:
     """Which of the case's deviations and teeth are drawn."""
+    yield from fault_notices(case.mean_tooth())
     yield from mean_tooth_notices(case, case.mean_tooth())
     if case.file.gears.part == "nominal":
         others = {kind_in_words(d) for d in case.all_deviations if d not in case.deviations}

@@ -17,6 +17,7 @@ from thermogear.case.case import GearCase
 from thermogear.heat.friction import LUBRICATED, beyond
 from thermogear.results.beside import from_data, with_notices
 from thermogear.results.result import Notice, Result, stored_dataset
+from thermogear.study.declared import fault_notices
 
 
 def finished(data: Dataset, title: str = "") -> Result:
@@ -97,7 +98,8 @@ def difference_notices(data: Dataset) -> Iterator[Notice]:
 
 
 def range_notices(case: GearCase, data: Dataset) -> Iterator[Notice]:
-    """Contact, the back side, and where the case's speeds lie."""
+    """Faults, contact, the back side, and where the case's speeds lie."""
+    yield from fault_notices(case)
     yield from contact_notices(data)
     yield from from_data(data)
     ratio = data["frequency_ratio"].values if "frequency_ratio" in data else np.empty(0)

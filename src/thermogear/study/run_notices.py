@@ -24,6 +24,7 @@ from thermogear.gears.iso6336 import iso6336_stiffness
 from thermogear.results.beside import from_data
 from thermogear.results.result import Notice
 from thermogear.results.tables import rows_along
+from thermogear.study.declared import fault_notices
 from thermogear.study.measured_flanks import measured_notices
 from thermogear.study.notices import friction_notices, heat_notices, jam_notices, turn_notices
 
@@ -52,6 +53,7 @@ def _point(here: Dataset | Mapping[str, Any], form: str = ".0f") -> str:
 def notices(case: GearCase, groups: Mapping[str, Dataset]) -> Iterator[Notice]:
     """What a reader should know before the pictures, most important first."""
     mesh = groups["mesh"]
+    yield from fault_notices(case)
     yield from _computed(case, groups)
     yield from _jammed(case, mesh)
     yield from _deviations(case)

@@ -453,7 +453,7 @@ def run_up_plan(
 ) -> RunUpPlan:
     """The plan of :func:`run_up`; ``block`` speeds are computed, and given out, together."""
     whole = gear_case(case)
-    case = whole.unless_stated("period", "mesh")
+    case = whole.over_speeds()
     axis = np.sort(axis_values("speeds", speeds))
     given = (UNDEFORMED, HOT) if temperatures is None else map(ThermalState.of, temperatures)
     states = tuple(_held(case, state) for state in given)

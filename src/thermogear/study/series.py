@@ -16,6 +16,7 @@ from thermogear.case.case import GearCase
 from thermogear.case.flanks import deviations
 from thermogear.dynamics.turns import SLOWEST_PART, UNBOUNDED, PartTables, follow_parts
 from thermogear.gears.deviations import Deviation
+from thermogear.gears.tooth_damage import damages_of
 from thermogear.gears.turn import turn_period
 from thermogear.mesh.series import SeriesMesh, followed_periods, series_mesh
 from thermogear.mesh.thermal import HotPair
@@ -234,6 +235,8 @@ class Series:
         if turn == periods:
             return cls(case, parts, periods, None)
         start = np.random.default_rng(case.seed).integers(turn, size=len(parts))
+        if damages_of(parts[0]):  # the same tooth in all parts, which are solved together then
+            start[:] = start[0]
         return cls(case, parts, periods, tuple(start.tolist()))
 
     def some(self, which: slice) -> Series:

@@ -162,7 +162,7 @@ def sweep_plan(
 ) -> SweepPlan:
     """The plan of :func:`sweep`."""
     whole = gear_case(case)
-    case = whole.unless_stated("period", "mesh")
+    case = whole.over_speeds()
     if not axes:
         raise InputError("axes", "none", allowed="at least one parameter")
     named = _by_long_names(axes)

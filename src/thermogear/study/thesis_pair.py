@@ -31,6 +31,7 @@ from thermogear.measured.comparison import result_of
 from thermogear.results.beside import from_data
 from thermogear.results.result import Notice, Result
 from thermogear.study.compare import compare
+from thermogear.study.declared import fault_notices
 from thermogear.study.diagrams import case_diagram, overlaid
 from thermogear.study.notices import friction_notices
 from thermogear.study.run import run
@@ -91,7 +92,7 @@ def thesis_pair(
     ]
     if case.train is not None:
         told.insert(0, Notice.of("gears_on_rigid_bearings"))
-    notices = (*told, *friction_notices(alone, groups))
+    notices = (*fault_notices(alone), *told, *friction_notices(alone, groups))
     return replace(ran, kind="thesis-pair", groups=groups, notices=notices).with_(
         interrupted=cut, left_out=left_out, conclusion=beside.text("conclusion")
     )

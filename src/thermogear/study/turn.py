@@ -105,12 +105,17 @@ def _teeth(case: GearCase, mesh: LoadedMesh) -> Dataset:
         gap = np.broadcast_to(sum(gaps), points.s.shape)[:, rank]
         # the tooth at the pitch point is the one that entered last
         gap = gap[np.argsort(points.contacts.tooth(gear)[:, rank])]
+        place = np.where(np.isfinite(gap), -gap, np.nan)  # a missing tooth is nowhere
         mates = contacts.tooth(other).ravel()[worst]
         number = [case.tooth_number(gear, n) for n in range(count)]
         columns = {
             "gear": ([gear] * count, "", "gear"),
             "number": (number, "1", "number of the tooth in the case file"),
-            "index_error": (gap.mean() - gap, "m", "drive flank at the pitch point, from the mean"),
+            "index_error": (
+                place - np.nanmean(place),
+                "m",
+                "drive flank at the pitch point, from the mean",
+            ),
             "load_carried": (carried / carried.mean(), "1", "load times time, over the mean"),
             "greatest_share": (most, "1", "greatest share of the load"),
             "contact_pressure": (

@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 from collections import Counter
 from collections.abc import Hashable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -367,6 +367,10 @@ def _notices(
     titles = [str(title) for title in data["case"].values]
     if own is not None:
         yield Notice.of("bundles_paired", bundles=[name[0] for name in own], cases=titles)
+    for case, title in zip(cases, titles, strict=True):
+        notices = map(Notice.stored, json.loads(case.texts.get("notices", "[]")))
+        for notice in (each for each in notices if each.code.startswith("fault_")):
+            yield replace(notice, text=f"{title}: {notice.text}")
     has = np.asarray(data["present"].values, dtype=bool)
     for c, title in enumerate(titles):
         for code, name, axis in (("bundles", "bundle", 2), ("operating", "point", 1)):

@@ -17,6 +17,7 @@ from thermogear.case.dials import dials, drawing
 from thermogear.case.thermal_state import HOT
 from thermogear.front.app.given import Given
 from thermogear.front.app.wire import PARTS, Export, Post, Show
+from thermogear.study.declared import fault_notices
 
 if TYPE_CHECKING:
     from thermogear.case.case import GearCase
@@ -52,6 +53,7 @@ class Desk:
         if of > MOST_LIVE:
             seen = case.mean_tooth()
             told.append(f"The teeth differ over {of} mesh periods: here is their mean tooth alone")
+        told += [one.text for one in fault_notices(seen)]
         self.post("now", self._now(case, show, told))
         look = Look(self.given, seen, show, alive, self.kept, case)
         # what takes long is emptied, so that nothing old stands beside new dials

@@ -19,7 +19,7 @@ from thermogear.base.vocabulary import STATUS, STILL, label, moves
 from thermogear.case.case import GearCase
 from thermogear.dynamics.ladder import Engine
 from thermogear.results.result import Notice
-from thermogear.study.declared import mean_tooth_notices
+from thermogear.study.declared import fault_notices, mean_tooth_notices
 from thermogear.study.shafts.moving import MovingTrain, moving, rubbing
 from thermogear.study.shafts.record import (
     PERIODS,
@@ -157,7 +157,8 @@ def train_motion(
             out.append(moved(case, one, coordinates=coordinates))
         found.append(out)
     progress("motion of the train", len(states) * len(chosen), len(states) * len(chosen))
-    return _table(case, found), [*mean_tooth_notices(whole, case), *_told(found)]
+    faults = fault_notices(case, about="motion of the train")
+    return _table(case, found), [*faults, *mean_tooth_notices(whole, case), *_told(found)]
 
 
 def _table(case: GearCase, found: Sequence[Sequence[Moved]]) -> Dataset:

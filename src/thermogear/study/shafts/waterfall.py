@@ -46,6 +46,7 @@ from thermogear.dynamics.geared_map import GearedMap
 from thermogear.dynamics.ladder import Engine, Steps
 from thermogear.results.result import Result
 from thermogear.results.work import Report, carry_out
+from thermogear.study.declared import fault_notices
 from thermogear.study.notices import finished
 from thermogear.study.shafts.campbell import critical_speeds
 from thermogear.study.shafts.moving import MovingTrain, moving, rubbing
@@ -387,6 +388,7 @@ class WaterfallPlan:
         )
         of_series = [Notice.of("train_of_one_pair", parts=self.case.series)]
         notices = [
+            *fault_notices(self.case),
             *of_series * (self.case.series > 1),
             Notice.of("one_point_all_through", duration=self.duration),
             Notice.of("train_reduced", coordinates=size, error=error),

@@ -1,0 +1,194 @@
+"""Faults out of the case file: what they are to the mesh, and in words."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from thermogear.base.errors import InputError
+from thermogear.case.fault_schema import FaultTable
+from thermogear.case.schema import GearFile
+from thermogear.case.units import shown
+from thermogear.gears.candidates import mesh_points
+from thermogear.gears.deviations import Deviation, FlankTable, PitchError
+from thermogear.gears.flank_damage import (
+    OneTooth,
+    Pocket,
+    Spall,
+    floor_reached,
+    spalled,
+    worn,
+)
+from thermogear.gears.pair import GearPair
+from thermogear.gears.tooth_damage import Chip, Crack, Damage, MissingTooth, way_across
+from thermogear.gears.touch import first_touch
+from thermogear.gears.turn import Eccentricity, turn_period
+
+_ONCE = {"crack": "crack", "chip": "break", "missing": "break"}
+"""Kinds of which a tooth has one; a chipped tooth cannot be missing."""
+EVERY = 8
+"""Positions of a mesh period at which some tooth must touch."""
+_NAMES = {"radius": "diameter", "error": "amount", "meshes": "revolutions"}
+"""Fields of the file by the names that the gears have for them."""
+
+
+def fault_deviations(file: GearFile, pair: GearPair) -> Iterator[Deviation]:
+    """What the faults of a file do to the teeth of ``pair``, numbered as in the file.
+
+    A fault of no size is none. InputError under the field of the file for a tooth that there is
+    not, a second crack or break of one tooth, and what the teeth cannot have.
+    """
+    seen: set[tuple[str, str, int]] = set()
+    damaged: list[Deviation] = []
+    for number, fault in enumerate(file.faults):
+        field, teeth = f"faults[{number}]", pair.gear(fault.gear).teeth
+        if fault.place >= teeth:
+            why = f"the {fault.gear} has no more teeth"
+            raise InputError(f"{field}.tooth", fault.tooth, allowed=f"1..{teeth}", why=why)
+        here = (_ONCE.get(fault.kind, ""), fault.gear, fault.place)
+        if here in seen and here[0]:
+            got = f"a second {here[0]} of tooth {fault.place + 1} of the {fault.gear}"
+            raise InputError(field, got, allowed="one of a tooth", fix="leave one out")
+        seen.add(here)
+        try:
+            deviation = _deviation(fault, file, pair)
+            if isinstance(deviation, Crack):
+                deviation.table(pair.gear(fault.gear))
+            elif isinstance(deviation, Damage):
+                deviation.require_fits(pair)
+        except InputError as error:
+            inner = error.field.rpartition(".")[2]
+            inner = "share" if inner == "depth" and fault.share is not None else inner
+            error.got = f"a radius of {error.got}" if inner == "radius" else error.got
+            raise error.named(f"{field}.{_NAMES.get(inner, inner)}") from error
+        if isinstance(deviation, Damage):
+            damaged.append(deviation)
+        if deviation is not None:
+            yield deviation
+    phases = np.arange(EVERY * turn_period(pair, damaged).mesh_periods) / EVERY
+    touched = first_touch(mesh_points(pair, phases if damaged else [0.0]), damaged).gap.min(axis=1)
+    if not np.isfinite(touched).all():
+        raise InputError(
+            "faults",
+            "so many broken teeth side by side that none carries",
+            allowed="a tooth that touches at every position of the turn",
+            fix="leave one out",
+        )
+
+
+def _deviation(fault: FaultTable, file: GearFile, pair: GearPair) -> Deviation | None:
+    gear, tooth = fault.gear, fault.place
+    width = 1.0 if fault.width_share is None else fault.width_share
+    if fault.kind == "missing":
+        return MissingTooth(gear, tooth=tooth)
+    if fault.kind == "eccentricity":
+        return Eccentricity(gear, amount=fault.amount or 0.0, angle=fault.angle or 0.0)
+    if fault.kind == "pitch":
+        errors = [0.0] * pair.gear(gear).teeth
+        errors[tooth] = fault.amount or 0.0
+        return PitchError(gear, tuple(errors))
+    if fault.kind == "crack":
+        depth = fault.depth
+        if fault.share is not None:
+            depth = fault.share * way_across(pair.gear(gear), fault.slope)
+        crack = Crack(gear, tooth=tooth, depth=depth or 0.0, angle=fault.slope, width_share=width)
+        return crack if crack.differs else None
+    if fault.kind == "chip":
+        chip = Chip(gear, tooth=tooth, height=fault.height or 0.0)
+        chip.left(pair.gear(gear))
+        return chip if chip.differs else None
+    force = max(file.operating.torque) / pair.pinion.base_radius
+    return (_spall if fault.kind == "spall" else _wear)(fault, pair, force)
+
+
+def _spall(fault: FaultTable, pair: GearPair, force: float) -> Deviation | None:
+    """A pocket as wide as the face, or one beside which the rest of the face carries ``force``."""
+    gear, depth, length = fault.gear, fault.depth or 0.0, fault.length or 0.0
+    width = 1.0 if fault.width_share is None else fault.width_share
+    if fault.diameter is not None:
+        radius = 0.5 * fault.diameter
+    else:
+        string = pair.path.c if gear == "pinion" else pair.line_of_action - pair.path.c
+        radius = math.hypot(pair.gear(gear).base_radius, string)
+    spalled(pair, gear, radius=radius, length=length)
+    if 0.0 in (depth, width):
+        return None
+    if width == 1.0:
+        whole, pocket = (Pocket(gear, radius=radius, length=length, depth=d) for d in (0.0, depth))
+        return _on_tooth(whole, pocket, fault, pair)
+    spall = Spall(gear, tooth=fault.place, radius=radius, length=length, width_share=width)
+    least = floor_reached(pair, force, width_share=width)
+    if depth < least:
+        raise InputError(
+            "depth",
+            shown(depth, "length"),
+            allowed=f">= {shown(least, 'length', 3)}",
+            why="under the greatest torque its floor would carry too",
+            fix="leave width_share out, or make it smaller",
+        )
+    return spall
+
+
+def _wear(fault: FaultTable, pair: GearPair, force: float) -> Deviation | None:
+    size = fault.depth if fault.depth is not None else fault.revolutions
+    if not size or not force:
+        return None
+    made = worn(
+        pair, fault.gear, force, depth=fault.depth,
+        coefficient=fault.coefficient or 0.0, meshes=fault.revolutions or 0.0,
+    )  # fmt: skip
+    if fault.tooth is None:
+        return made
+    whole = FlankTable(
+        fault.gear, radius=made.radius, added=np.zeros_like(made.added), flank="drive"
+    )
+    return _on_tooth(whole, made, fault, pair)
+
+
+def _on_tooth(
+    whole: FlankTable | Pocket, damaged: FlankTable | Pocket, fault: FaultTable, pair: GearPair
+) -> OneTooth:
+    shapes = [whole] * pair.gear(fault.gear).teeth
+    shapes[fault.place] = damaged
+    return OneTooth(fault.gear, tuple(shapes))
+
+
+def fault_words(fault: FaultTable) -> str:
+    """A fault with its size and place, as notices name it.
+
+    >>> table = FaultTable(kind="crack", gear="pinion", tooth=3, depth="2 mm")
+    >>> fault_words(table)
+    'crack of 2 mm at 45 deg, pinion tooth 3'
+    """
+
+    def length(value: float | None) -> str:
+        size = value or 0.0
+        return shown(size, "length", 3, unit="um" if 0.0 < abs(size) < 1e-4 else "mm")
+
+    wide = "" if fault.width_share in (None, 1.0) else f", {fault.width_share:g} of the face width"
+    turns = f"over {fault.revolutions or 0.0:g} turns"
+    of_share = None if fault.share is None else f"{fault.share:g} of the way across"
+    angle = shown(fault.slope, "angle", 3)
+    sizes = {
+        "crack": f"{of_share or length(fault.depth)} at {angle}{wide}",
+        "chip": length(fault.height),
+        "missing": "",
+        "spall": f"{length(fault.length)} x {length(fault.depth)}{wide}",
+        "wear": length(fault.depth)
+        if fault.depth is not None
+        else f"{shown(fault.coefficient or 0.0, 'wear coefficient')} {turns}",
+        "pitch": length(fault.amount),
+        "eccentricity": length(fault.amount),
+    }
+    size = sizes[fault.kind]
+    name = {"missing": "missing tooth", "pitch": "pitch error"}.get(fault.kind, fault.kind)
+    every = fault.kind == "eccentricity" or (fault.kind == "wear" and fault.tooth is None)
+    where = fault.gear if every else f"{fault.gear} tooth {fault.place + 1}"
+    return f"{name}{f' of {size}' if size else ''}, {where}"
+
+
+def whole_turn(fault: FaultTable) -> bool:
+    """Whether a fault is one tooth's, or the turn's, so that a mean tooth does not have it."""
+    return not (fault.kind == "wear" and fault.tooth is None)
