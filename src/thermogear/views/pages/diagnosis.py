@@ -118,14 +118,14 @@ def summary(found: dict[str, Any]) -> str:
         "changed": f"Changed: {last['beyond']} of {last['indicators']} indicators are beyond their "
         f"limits, most on the {last['shaft']}.",
     }[last["verdict"]]
-    spare = (
-        ""
-        if not found["baseline"]
-        else f" In at most {100 * found['alarm']:g} % of healthy records any of them would be, "
-        f"where logarithms scatter normally from record to record; of single healthy averages "
-        f"fewer than {100 * found['averages_beyond']:.2g} % are above all {found['averages']} of "
-        "the baseline (95 %)."
-    )
+    spare = ""
+    if len(found["baseline"]) > 1:
+        spare = (
+            f" In at most {100 * found['alarm']:g} % of healthy records would any of them be beyond "
+            "its limit, where logarithms scatter normally from record to record; fewer than "
+            f"{100 * found['averages_beyond']:.2g} % of healthy averages are above all "
+            f"{found['averages']} of the baseline (95 %)."
+        )
     return f"{last['record']}: {rest}{spare} {_where(found, last)}".rstrip()
 
 
@@ -134,7 +134,13 @@ def _where(found: dict[str, Any], last: dict[str, Any]) -> str:
     for place in found["places"]:
         if place["record"] == last["record"] and place["shaft"] == last["shaft"] and place["named"]:
             alike = " Its delay is alike in two mesh harmonics or more." if place["alike"] else ""
-            zero = "from the tacho's pulse on" if place["marked"] else "tooth 1 is arbitrary"
+            zero = (
+                "tooth 1 is arbitrary"
+                if not place["marked"]
+                else "from the tacho's pulse on"
+                if place["shaft"] == "pinion"
+                else "from the first pulse of this record on"
+            )
             return (
                 f"It is greatest at tooth {place['tooth']} of the {place['shaft']} ({zero}), in "
                 f"{place['agreeing']} of {place['averages']} averages.{alike}"
