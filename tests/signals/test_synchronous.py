@@ -120,7 +120,8 @@ def test_noise_has_no_impulsive_band_and_ringing_impacts_have() -> None:
     ringing = np.exp(-(time % 800) / 40.0) * np.sin(2 * np.pi * 0.3 * (time % 800))
     x = ringing + 0.1 * drawn.normal(size=time.size)
     band = impulsive_band(kurtogram(x), samples=x.size)
-    assert band is not None and band.low <= 0.3 <= band.high
+    assert band is not None
+    assert band.low <= 0.3 <= band.high
     rates = envelope_spectrum(x, low=band.low, high=band.high)
     place, level = rates.level(0.98 / 800, 1.02 / 800)
     assert place == pytest.approx(1 / 800, rel=0.03)
