@@ -28,7 +28,7 @@ POWERS = (4, 6, 8)
 
 
 def moments(x: np.ndarray) -> list[float]:
-    return [float(normalised_moment(x, power)) for power in POWERS]
+    return [float(normalised_moment(x, power=power)) for power in POWERS]
 
 
 def test_moments_of_known_waves() -> None:
@@ -68,16 +68,16 @@ def test_moments_of_noise_of_a_burst_in_noise_and_of_a_modulated_sine() -> None:
 
 def test_moments_are_those_of_scipy() -> None:
     x = np.random.default_rng(12).gamma(2.0, size=(3, 700))
-    assert normalised_moment(x, 4) == pytest.approx(stats.kurtosis(x, axis=-1, fisher=False))
+    assert normalised_moment(x, power=4) == pytest.approx(stats.kurtosis(x, axis=-1, fisher=False))
     for power in POWERS:
         scaled = stats.moment(x, power, axis=-1) / np.var(x, axis=-1) ** (power / 2)
-        assert normalised_moment(x, power) == pytest.approx(scaled)
+        assert normalised_moment(x, power=power) == pytest.approx(scaled)
 
 
 def test_scatter_of_moments_under_noise() -> None:
     x = np.random.default_rng(13).normal(size=(2000, 2000))
     for power, room in ((4, 0.06), (6, 0.15)):
-        drawn = float(np.std(normalised_moment(x, power)))
+        drawn = float(np.std(normalised_moment(x, power=power)))
         assert drawn == pytest.approx(moment_scatter(power, count=2000), rel=room)
 
 
@@ -106,7 +106,7 @@ def test_na4_steps_where_the_variance_does() -> None:
     last = [float(na4(rows)[-1]) for rows in noise]
     assert abs(float(np.mean(last)) - closed) < 4 * float(stats.sem(last))
     one = noise[0, 0]
-    assert float(na4(one)[0]) == pytest.approx(float(normalised_moment(one, 4)))
+    assert float(na4(one)[0]) == pytest.approx(float(normalised_moment(one, power=4)))
 
 
 def test_sidebands_and_depths_of_a_known_modulation() -> None:
@@ -124,7 +124,9 @@ def test_energy_ratio_is_the_root_of_the_ratio_of_powers() -> None:
     x = np.cos(40 * TURN) + 0.5 * np.cos(TURN) + 0.2 * np.cos(41 * TURN) + 0.3 * np.cos(47 * TURN)
     parts = separated(x, mesh_order=40)
     closed = np.sqrt(0.3**2 / (1.0 + 0.5**2 + 0.2**2))
-    assert float(energy_ratio(parts.difference, parts.regular)) == pytest.approx(closed)
+    assert float(energy_ratio(difference=parts.difference, regular=parts.regular)) == pytest.approx(
+        closed
+    )
     assert float(np.std(parts.residual)) == pytest.approx(np.sqrt((0.2**2 + 0.3**2) / 2))
     assert float(crest_factor(np.cos(TURN))) == pytest.approx(np.sqrt(2.0))
 

@@ -123,7 +123,7 @@ def test_noise_has_no_impulsive_band_and_ringing_impacts_have() -> None:
     assert band is not None
     assert band.low <= 0.3 <= band.high
     rates = envelope_spectrum(x, low=band.low, high=band.high)
-    place, level = rates.level(0.98 / 800, 1.02 / 800)
+    place, level = rates.level(low=0.98 / 800, high=1.02 / 800)
     assert place == pytest.approx(1 / 800, rel=0.03)
     assert level > 20.0
 

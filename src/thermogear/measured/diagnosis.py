@@ -373,7 +373,7 @@ def _bearing_lines(
     heard = zip(channels, spectra, strict=True)
     for (channel, spectrum), (shaft, bearing), part in product(heard, bearings, PARTS):
         rate = bearing.order(part) * ratio[shaft]
-        place, level = spectrum.level((1.0 - SLIP) * rate, (1.0 + SLIP) * rate)
+        place, level = spectrum.level(low=(1.0 - SLIP) * rate, high=(1.0 + SLIP) * rate)
         windows += max(1.0, 2.0 * SLIP * rate / spectrum.position[0])
         lines.append(
             BearingLine(
@@ -413,7 +413,7 @@ def raw_values(record: InAngle) -> dict[str, Floats]:
         speeds.append(velocity_rms(si, rate=rate, low=low, high=high, integrations=power))
     centred = record.table - record.table.mean(axis=-1, keepdims=True)
     return {
-        "raw_kurtosis": normalised_moment(record.table, 4),
+        "raw_kurtosis": normalised_moment(record.table, power=4),
         "raw_crest": crest_factor(centred),
         "velocity_rms": np.array(speeds),
     }

@@ -25,14 +25,14 @@ GAUSS = {4: (3.0, 24.0), 6: (15.0, 6120.0), 8: (105.0, 1663200.0)}
 """Power -> normalised moment of Gaussian noise and its variance times the samples."""
 
 
-def normalised_moment(x: ArrayLike, power: int) -> Floats:
+def normalised_moment(x: ArrayLike, *, power: int) -> Floats:
     """N^(p/2 - 1) sum (x - mean)^p/(sum (x - mean)^2)^(p/2), p = ``power``: (...).
 
     p = 4: kurtosis (not excess); of the difference signal p = 4, 6, 8 are FM4, M6A, M8A.
     Gaussian noise: 3, 15, 105; a sine 1.5, 2.5, 4.375; a square wave 1.
     Sources: Stewart 1977 (FM4); Martin 1989, Int. Conf. Cond. Monit. (M6A, M8A).
 
-    >>> [round(float(normalised_moment(np.cos(0.02 * np.pi * np.arange(100)), p)), 3)
+    >>> [round(float(normalised_moment(np.cos(0.02 * np.pi * np.arange(100)), power=p)), 3)
     ...  for p in (4, 6, 8)]
     [1.5, 2.5, 4.375]
     """
@@ -103,18 +103,20 @@ def na4(residual: ArrayLike) -> Floats:
     """
     rows = np.atleast_2d(finite_record(residual))
     centred = rows - rows.mean(axis=-1, keepdims=True)
-    return na4_of_moments(np.mean(centred**4, axis=-1), np.mean(centred**2, axis=-1))
+    return na4_of_moments(
+        fourth=np.mean(centred**4, axis=-1), variance=np.mean(centred**2, axis=-1)
+    )
 
 
 def na4_of_moments(
-    fourth: ArrayLike, variance: ArrayLike, *, healthy: float | None = None
+    *, fourth: ArrayLike, variance: ArrayLike, healthy: float | None = None
 ) -> Floats:
     """NA4 of runs by the ``fourth`` central moment and the ``variance`` of each residual: (run,).
 
     ``healthy``: the mean variance of healthy runs in place of that of the runs up to each; it does
     not grow with the fault. Source of that form: Decker and Zakrajsek 1999, NASA TM-209046.
 
-    >>> na4_of_moments([1.5, 24.0], [1.0, 4.0], healthy=1.0)
+    >>> na4_of_moments(fourth=[1.5, 24.0], variance=[1.0, 4.0], healthy=1.0)
     array([ 1.5, 24. ])
     """
     spread = np.asarray(variance, dtype=float)
@@ -122,14 +124,14 @@ def na4_of_moments(
     return _ratio(fourth, (mean if healthy is None else np.full_like(mean, healthy)) ** 2)
 
 
-def energy_ratio(difference: ArrayLike, regular: ArrayLike) -> Floats:
+def energy_ratio(*, difference: ArrayLike, regular: ArrayLike) -> Floats:
     """std(d)/std(g): (...). What wears the whole gear moves power from g to d.
 
     Source: Swansson 1980; as MATLAB's gearConditionMetrics documents it. Of d and g of orders of
     their own it is the root of the ratio of powers, which the tests hold.
 
     >>> turn = 2 * np.pi * np.arange(64) / 64
-    >>> float(energy_ratio(0.1 * np.cos(5 * turn), np.cos(8 * turn)).round(6))
+    >>> float(energy_ratio(difference=0.1 * np.cos(5 * turn), regular=np.cos(8 * turn)).round(6))
     0.1
     """
     return _ratio(
@@ -149,7 +151,7 @@ def energy_operator(residual: ArrayLike) -> Floats:
     """
     r = finite_record(residual)
     psi = r**2 - np.roll(r, 1, axis=-1) * np.roll(r, -1, axis=-1)
-    return normalised_moment(psi, 4)
+    return normalised_moment(psi, power=4)
 
 
 def sideband_index(average: ArrayLike, *, mesh_order: int) -> Floats:
@@ -256,12 +258,12 @@ def gear_indicators(
         "residual_rms": np.std(parts.residual, axis=-1),
         "residual_fourth": np.mean(centred**4, axis=-1),
         "fm0": fm0(x, mesh_order=mesh_order, harmonics=min(MESH_HARMONICS, highest // mesh_order)),
-        "fm4": normalised_moment(parts.difference, 4),
-        "m6a": normalised_moment(parts.difference, 6),
-        "m8a": normalised_moment(parts.difference, 8),
-        "kurtosis": normalised_moment(x, 4),
+        "fm4": normalised_moment(parts.difference, power=4),
+        "m6a": normalised_moment(parts.difference, power=6),
+        "m8a": normalised_moment(parts.difference, power=8),
+        "kurtosis": normalised_moment(x, power=4),
         "crest": crest_factor(x - x.mean(axis=-1, keepdims=True)),
-        "energy_ratio": energy_ratio(parts.difference, parts.regular),
+        "energy_ratio": energy_ratio(difference=parts.difference, regular=parts.regular),
         "energy_operator": energy_operator(parts.residual),
         "sideband_index": sideband_index(x, mesh_order=mesh_order),
         "sideband_ratio": sideband_ratio(x, mesh_order=mesh_order),

@@ -107,7 +107,7 @@ class EnvelopeSpectrum:
     the ``floor`` of noise about each, as an amplitude.
 
     >>> place, ones = np.array([0.1, 0.2]), np.ones(2)
-    >>> EnvelopeSpectrum(position=place, amplitude=2 * ones, floor=ones).level(0.15, 0.3)
+    >>> EnvelopeSpectrum(position=place, amplitude=2 * ones, floor=ones).level(low=0.15, high=0.3)
     (0.2, 4.0)
     """
 
@@ -115,7 +115,7 @@ class EnvelopeSpectrum:
     amplitude: Floats
     floor: Floats
 
-    def level(self, low: float, high: float) -> tuple[float, float]:
+    def level(self, *, low: float, high: float) -> tuple[float, float]:
         """Position of the highest line between two positions, and its power over the floor's; nan
         and 0 where no line is there."""
         inside = np.flatnonzero((self.position >= low) & (self.position <= high))

@@ -148,7 +148,7 @@ def with_na4(rows: Sequence[Reduced], healthy: int) -> list[Reduced]:
         variances = [row[channel, shaft, "residual_rms"] ** 2 for row in found]
         fourths = np.concatenate([row[channel, shaft, name] for row in found])
         mean = float(np.mean(np.concatenate(variances[:healthy]))) if healthy else None
-        na4 = na4_of_moments(fourths, np.concatenate(variances), healthy=mean)
+        na4 = na4_of_moments(fourth=fourths, variance=np.concatenate(variances), healthy=mean)
         ends = np.cumsum([one.size for one in variances])[:-1]
         for row, part in zip(found, np.split(na4, ends), strict=True):
             row[channel, shaft, "na4"] = part

@@ -121,9 +121,9 @@ def summary(found: dict[str, Any]) -> str:
     spare = ""
     if len(found["baseline"]) > 1:
         spare = (
-            f" In at most {100 * found['alarm']:g} % of healthy records would any of them be beyond "
+            f" In at most {PERCENT(found['alarm']):g} % of healthy records would any of them be beyond "
             "its limit, where logarithms scatter normally from record to record; fewer than "
-            f"{100 * found['averages_beyond']:.2g} % of healthy averages are above all "
+            f"{PERCENT(found['averages_beyond']):.2g} % of healthy averages are above all "
             f"{found['averages']} of the baseline (95 %)."
         )
     return f"{last['record']}: {rest}{spare} {_where(found, last)}".rstrip()
