@@ -276,4 +276,4 @@ def _ratio(over: ArrayLike, under: ArrayLike) -> NDArray[np.float64]:
     """A quotient; nan where nothing is below the line."""
     top, bottom = np.asarray(over, dtype=float), np.asarray(under, dtype=float)
     whole = np.broadcast_to(bottom > 0.0, np.broadcast_shapes(top.shape, bottom.shape))
-    return np.divide(top, bottom, out=np.full(whole.shape, np.nan), where=whole)
+    return np.asarray(np.divide(top, bottom, out=np.full(whole.shape, np.nan), where=whole))

@@ -121,8 +121,8 @@ def summary(found: dict[str, Any]) -> str:
     spare = ""
     if len(found["baseline"]) > 1:
         spare = (
-            f" In at most {PERCENT(found['alarm']):g} % of healthy records would any of them be beyond "
-            "its limit, where logarithms scatter normally from record to record; fewer than "
+            f" In at most {PERCENT(found['alarm']):g} % of healthy records would any of them be "
+            "beyond its limit, where logarithms scatter normally from record to record; fewer than "
             f"{PERCENT(found['averages_beyond']):.2g} % of healthy averages are above all "
             f"{found['averages']} of the baseline (95 %)."
         )
