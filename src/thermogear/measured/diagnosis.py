@@ -214,7 +214,7 @@ def block_lengths(turns: int, *, period: int) -> tuple[int, int]:
     turns, and a fourth of them. At most eight blocks.
 
     >>> block_lengths(500, period=48), block_lengths(60, period=48), block_lengths(40, period=48)
-    ((480, 48), (48, 15), (40, 10))
+    ((480, 96), (48, 15), (40, 10))
     """
     least, most = BLOCKS
     periods = turns // period

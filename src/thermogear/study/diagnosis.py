@@ -179,8 +179,8 @@ def healthy_limit(baseline: Sequence[Floats], *, family: int, alarm: float = ALA
     Source: Hahn and Meeker 1991, Statistical Intervals, section 4.8.
 
     >>> rows = [np.array([1.0, 1.1]), np.array([1.2, 1.0]), np.array([1.05, 1.15])]
-    >>> f"{healthy_limit(rows, family=1).limit:.3f}"
-    '1.206'
+    >>> f"{healthy_limit(rows, family=4).limit:.3f}"
+    '1.313'
     """
     pooled = np.concatenate(baseline)
     pooled = pooled[np.isfinite(pooled)]
