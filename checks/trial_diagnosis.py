@@ -23,7 +23,7 @@ from thermogear.measured.record import Channel, Record
 from thermogear.study.diagnosis import diagnose
 
 DIPS = (0.1, 0.2, 0.4)
-"""Shares of its amplitude that the faulty tooth loses, with a delay of a twentieth of it [pitch]."""
+"""Shares of its amplitude that the faulty tooth loses; it is late by a twentieth [pitch]."""
 
 
 def read(gears: Gears, seed: int, own: int, **fault: float) -> InAngle:
