@@ -281,7 +281,7 @@ COMMANDS = [
     *("statics", "modes", "campbell", "waterfall"),
     *("orbit", "lyapunov", "continue"),
     *("bifurcation", "map", "basins", "runup", "sweep"),
-    *("measure", "compare", "thesis", "sensitivity", "versus"),
+    *("measure", "compare", "diagnose", "thesis", "sensitivity", "versus"),
 ]
 SMALL_THESIS = (
     "-c 'from pathlib import Path; from thermogear.thesis import report; "
@@ -597,6 +597,15 @@ CASES = (
             "measure record.wav --unit m/s^2 --scale 200 --method line --json -o sound",
         ),
         {"record.csv": _table(), "bare.csv": _bare(), "record.wav": _sound()},
+    ),
+    Case(
+        "diagnose",
+        (
+            "diagnose record.csv --teeth 25 --wheel-teeth 75 --speed 1000 --bearing 6205"
+            " --baseline louder.csv -o out --json",
+            "diagnose record.csv --teeth 25 --speed 1000",
+        ),
+        {"record.csv": _table(), "louder.csv": _table(gain=1.3)},
     ),
     Case(
         "measure-formats",

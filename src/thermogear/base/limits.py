@@ -201,3 +201,27 @@ NO_LIMIT = {
     "root_unknown": Limit("MPa", source="no fatigue strength is known of the material"),
 }
 """Of answers whose material has no bound in the table."""
+
+
+VIBRATION_ZONES: dict[str, tuple[float, float, float]] = {
+    "large rigid": (2.3e-3, 4.5e-3, 7.1e-3),
+    "large flexible": (3.5e-3, 7.1e-3, 11.0e-3),
+    "medium rigid": (1.4e-3, 2.8e-3, 4.5e-3),
+    "medium flexible": (2.3e-3, 4.5e-3, 7.1e-3),
+}
+"""Bounds A/B, B/C, C/D of the velocity's rms [m/s] on a bearing housing after ISO 10816-3, as two
+public programs have them (phonometry; predictive-maintenance-mcp); the standard itself was not
+read. Large: above 300 kW, medium: 15 to 300 kW; rigid: the support's lowest natural frequency is
+1.25 times the excitation's or more. ISO 20816-3:2022 has one zone in place of A and B."""
+
+
+def zone_of(velocity: float, machine: str) -> str:
+    """Zone A (new) to D (damage) of a ``velocity`` [m/s, rms 10 .. 1000 Hz] of a class of machine
+    in :data:`VIBRATION_ZONES`; "" where the velocity is not known.
+
+    >>> zone_of(3e-3, "medium rigid"), zone_of(math.nan, "medium rigid")
+    ('C', '')
+    """
+    if not math.isfinite(velocity):
+        return ""
+    return "ABCD"[sum(velocity > bound for bound in VIBRATION_ZONES[machine])]

@@ -21,6 +21,7 @@ from thermogear.base.parameters import long_name
 from thermogear.front import (
     app_command,
     delivery,
+    diagnose_command,
     draw_command,
     measure_commands,
     motion_commands,
@@ -84,6 +85,7 @@ GROUPS = {
     "Records": {
         "measure": "Read a record and print its lines with their uncertainty.",
         "compare": "Compare CASE with records or tables of lines.",
+        "diagnose": "Hold gears and bearings in records against a baseline.",
     },
     "Research": {
         "sensitivity": "Rank the inputs that decide the results.",
@@ -279,6 +281,7 @@ for _list in (
     motion_commands,
     sweep_commands,
     measure_commands,
+    diagnose_command,
     thesis_commands,
     versus_commands,
 ):

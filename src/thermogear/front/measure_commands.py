@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from thermogear.results.result import Result
 
 
-def supplies(command: Any, *, speeds: bool = False) -> Any:
+def reads(command: Any, *, speeds: bool = False) -> Any:
     """The options that supply what a file does not state; ``speeds``: --speed may be repeated."""
     return delivery.together(
         number("--rate", "Samples per second.", "> 0 samples/s", "25600", metavar="HZ"),
@@ -58,6 +58,23 @@ def supplies(command: Any, *, speeds: bool = False) -> Any:
             "300",
             metavar="RPM",
         ),
+        click.option(
+            "--decimal", type=click.Choice([".", ","]), help="Decimal sign of a text file."
+        ),
+        number(
+            "--limit",
+            "Most GiB that a packed file may become [32 times its size, 0.25..8].",
+            "> 0 GiB",
+            "4",
+            metavar="GIB",
+        ),
+    )(command)
+
+
+def supplies(command: Any, *, speeds: bool = False) -> Any:
+    """Those of :func:`reads`, and the options of what is read from a record."""
+    return delivery.together(
+        partial(reads, speeds=speeds),
         number(
             "--orders",
             "Order of the first shaft to read too. May be repeated.",
@@ -76,16 +93,6 @@ def supplies(command: Any, *, speeds: bool = False) -> Any:
         ),
         number("--harmonics", "Mesh harmonics to read [3].", "1..64", "3", whole=True),
         number("--sidebands", "Sidebands on each side to read [2].", "0..64", "2", whole=True),
-        click.option(
-            "--decimal", type=click.Choice([".", ","]), help="Decimal sign of a text file."
-        ),
-        number(
-            "--limit",
-            "Most GiB that a packed file may become [32 times its size, 0.25..8].",
-            "> 0 GiB",
-            "4",
-            metavar="GIB",
-        ),
         number(
             "--sensor-tolerance",
             "Relative standard uncertainty of the sensor.",
@@ -101,7 +108,7 @@ def supplies(command: Any, *, speeds: bool = False) -> Any:
     )(command)
 
 
-def _require_gear(teeth: int | None, *speeds: float | None) -> None:
+def require_gear(teeth: int | None, *speeds: float | None) -> None:
     """Refuse teeth and speeds that no gear has, before anything is read."""
     from thermogear.base.bounds import SPEED
     from thermogear.measured.reduction import require_teeth
@@ -140,7 +147,7 @@ def measure(
     Of several files, or of those in a directory, what changed against a baseline beyond its
     uncertainty, and trends; with --join they are one record.
     """
-    _require_gear(options["teeth"], options["speed"])
+    require_gear(options["teeth"], options["speed"])
     one = len(files) == 1 and not Path(files[0]).is_dir()
     if one and baseline is not None:
         raise InputError("--baseline", baseline, why="there is one record", fix="name several")
@@ -215,7 +222,7 @@ def compare(
     from thermogear.study.compare import compare as study
     from thermogear.study.compare import computes, own_teeth, speeds_of
 
-    _require_gear(options["teeth"], *speed)
+    require_gear(options["teeth"], *speed)
     read: Any = case
     if computes(case) and measured:
         read = delivery.load(case, overrides)
@@ -249,7 +256,7 @@ def compare(
         teeth = options["teeth"] or (own_teeth(read) if named else None)
         against: list[Any] = []
         for file, table, rpm in zip(named, tables, speeds, strict=True):
-            known = {**options, "teeth": teeth, "speed": rpm or (_one_speed(read) if at else None)}
+            known = {**options, "teeth": teeth, "speed": rpm or (case_speed(read) if at else None)}
             read_by = measured_by if len(named) == 1 else measured_among
             against.append(file if table else read_by(file, known))
         return result_of(
@@ -268,7 +275,7 @@ def compare(
     delivery.deliver(make, output, as_json=as_json)
 
 
-def _one_speed(case: Any) -> float | None:
+def case_speed(case: Any) -> float | None:
     """The speed [rpm] of a case that has one alone, by which a record's mesh line is found."""
     from thermogear.base import display
 

@@ -20,6 +20,11 @@ SIGN = "::"
 
 def measured_by(file: str, options: dict[str, Any]) -> Measurement:
     """One file with the options of the command."""
+    return _reduced(*read_by(file, options), options)
+
+
+def read_by(file: str, options: dict[str, Any]) -> tuple[Record, Record | None]:
+    """One file by the options that supply what it does not state, and the file of ``--tacho``."""
     from thermogear.measured.readers import read_record
 
     named, most = options["tacho"], _limit(options)
@@ -35,7 +40,9 @@ def measured_by(file: str, options: dict[str, Any]) -> Measurement:
         decimal=options["decimal"],
         limit=most,
     )
-    return _reduced(record, other, options)
+    if options["tacho_scale"] is not None:
+        return _as_speed(record, other, options["tacho_scale"])
+    return record, other
 
 
 def measured_among(file: str | Path, options: dict[str, Any]) -> Measurement:
@@ -73,6 +80,8 @@ def measured_run(
         record = record.supplied(tacho=found[0])
     if options["channels"] and how == "channels":
         record = only(record, options["channels"])
+    if options["tacho_scale"] is not None:
+        record, other = _as_speed(record, other, options["tacho_scale"])
     return _reduced(record, other, options)
 
 
@@ -162,9 +171,7 @@ def _reduced(record: Record, other: Record | None, options: dict[str, Any]) -> M
     from thermogear.measured.reduction import measure as reduce
     from thermogear.study.bearing_rates import bearing_rates
 
-    speed, scale = options["speed"], options["tacho_scale"]
-    if scale is not None:
-        record, other = _as_speed(record, other, scale)
+    speed = options["speed"]
     return reduce(
         record,
         teeth=options["teeth"],

@@ -1,0 +1,654 @@
+"""``diagnose``: what records say of gears and bearings, held against a baseline of one machine.
+
+No indicator has a limit that holds for every machine. Without a baseline there are values and no
+verdict; with one record of it the verdict stays open, since one assembly differs from the next.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from thermogear.analysis.order_statistics import proportion
+from thermogear.base.arrays import Dataset, Floats
+from thermogear.base.errors import InputError
+from thermogear.base.limits import zone_of
+from thermogear.base.progress import Progress, silent
+from thermogear.base.vocabulary import label
+from thermogear.measured.diagnosis import (
+    PINION,
+    SHAFTS,
+    WHEEL,
+    BearingLine,
+    Impacts,
+    InAngle,
+    ShaftAverage,
+    impacts,
+    raw_values,
+    shaft_average,
+)
+from thermogear.measured.swelling import BearingRates
+from thermogear.results.result import Notice, Result, now
+from thermogear.signals.indicators import (
+    demodulated_harmonics,
+    gear_indicators,
+    moment_scatter,
+    na4_of_moments,
+    tooth_deviations,
+)
+from thermogear.signals.synchronous import demodulated, separated, tooth_means
+
+INDICATORS = (
+    "fm0", "fm4", "na4", "energy_ratio", "sideband_ratio", "amplitude_depth", "phase_depth",
+    "rms", "residual_rms", "m6a", "m8a", "energy_operator", "kurtosis", "crest", "sideband_index",
+)  # fmt: skip
+"""Of every shaft, in the order of the table."""
+DECIDED = INDICATORS[:7]
+"""Those that are held against limits: ratios, which a change of gain leaves as they are. Those
+that say the same again, as M6A beside FM4, would only widen the limits of all."""
+ALARM = 0.05
+"""Chance of any false alarm over all that is decided of one record: chosen, as usual."""
+BY_CHANCE = 0.001
+"""Chance that as many averages have their greatest residual at one tooth, up to which the tooth is
+named (chosen)."""
+HEARD = 0.01
+"""Chance of a line of a bearing up to which it is told (chosen)."""
+CLEAR = 4.0
+"""Robust standard deviations of the other teeth from which a tooth's amplitude or timing counts as
+off (chosen)."""
+ALIKE = 0.5
+"""Relative difference of the delays of mesh harmonics up to which they are one delay (chosen)."""
+SPEEDS = 0.02
+"""Relative difference of speed from which a record is not like the baseline (chosen)."""
+MOST_DRAWN = 4096
+
+Key = tuple[str, str, str]
+"""Channel, shaft and indicator."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reduced:
+    """A record's ``values`` of every average by channel, shaft and indicator; its ``shafts``, what
+    else is heard (``impacts``), ``raw`` values by channel; the rest as in the record."""
+
+    name: str
+    channels: tuple[str, ...]
+    values: dict[Key, Floats]
+    shafts: tuple[ShaftAverage, ...]
+    impacts: Impacts
+    raw: dict[str, Floats]
+    speed: float
+    length: int
+    marked: bool
+    origin: str
+    noise: float
+    notices: tuple[Notice, ...]
+    unit: str
+
+
+def reduced(
+    record: InAngle,
+    name: str,
+    *,
+    teeth: tuple[int, int | None],
+    held: tuple[int, ...] = (),
+    bearings: Sequence[tuple[str, BearingRates]] = (),
+    band: tuple[float, float] | None = None,
+) -> Reduced:
+    """A record in angle as its averages, their indicators and what is heard beside them.
+
+    ``teeth`` of pinion and wheel; ``held`` turns of both shafts in the record that sets how long an
+    average is, () where it is this one. The wheel is left out where it turns fewer than four times.
+    """
+    notices = list(record.notices)
+    names = [PINION]
+    if teeth[1] is not None:
+        if record.length * teeth[0] >= 4 * teeth[1]:
+            names.append(WHEEL)
+        else:
+            turns = record.length * teeth[0] / teeth[1]
+            notices.append(Notice.of("few_turns_of_wheel", turns=turns))
+    given = dict(zip(SHAFTS, held, strict=False))
+    shafts = [shaft_average(record, one, teeth=teeth, turns=given.get(one)) for one in names]
+    values: dict[Key, Floats] = {}
+    for shaft in shafts:
+        rows = gear_indicators(
+            shaft.blocks, mesh_order=shaft.teeth, highest=shaft.highest, step=shaft.step
+        )
+        for place, channel in enumerate(record.channels):
+            lost = np.nan if channel in record.withheld else 1.0
+            values |= {(channel, shaft.name, k): lost * row[place] for k, row in rows.items()}
+    return Reduced(
+        name=name,
+        channels=record.channels,
+        values=values,
+        shafts=tuple(shafts),
+        impacts=impacts(record, teeth=teeth[0], mate=teeth[1], bearings=bearings, band=band),
+        raw=raw_values(record),
+        speed=record.speed,
+        length=record.length,
+        marked=record.marked,
+        origin=record.origin,
+        noise=record.noise,
+        notices=tuple(notices),
+        unit=record.record.channel(record.channels[0]).unit or "",
+    )
+
+
+def with_na4(rows: Sequence[Reduced], healthy: int) -> list[Reduced]:
+    """The records with NA4: over the variance of the first ``healthy`` of them, else over that of
+    all averages up to each, in the order of the records."""
+    found = [dict(row.values) for row in rows]
+    for channel, shaft, name in rows[0].values:
+        if name != "residual_fourth" or any((channel, shaft, name) not in row for row in found):
+            continue
+        variances = [row[channel, shaft, "residual_rms"] ** 2 for row in found]
+        fourths = np.concatenate([row[channel, shaft, name] for row in found])
+        mean = float(np.mean(np.concatenate(variances[:healthy]))) if healthy else None
+        na4 = na4_of_moments(fourth=fourths, variance=np.concatenate(variances), healthy=mean)
+        ends = np.cumsum([one.size for one in variances])[:-1]
+        for row, part in zip(found, np.split(na4, ends), strict=True):
+            row[channel, shaft, "na4"] = part
+    return [replace(row, values=values) for row, values in zip(rows, found, strict=True)]
+
+
+# --- limits --------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, kw_only=True)
+class Healthy:
+    """What a baseline says of one indicator: the ``least`` and the ``greatest`` of its averages,
+    and the ``limit`` (infinite where one record tells no scatter from record to record)."""
+
+    least: float
+    greatest: float
+    limit: float
+
+
+def healthy_limit(baseline: Sequence[Floats], *, family: int, alarm: float = ALARM) -> Healthy:
+    """The limit of an indicator by the averages of each of B healthy records.
+
+    ln L = mean y + t s sqrt(1 + 1/B), y = ln of each record's median, s their standard deviation,
+    t Student's quantile of ``alarm``/``family`` with B - 1 degrees: the one-sided prediction limit
+    of one more record, so that of a ``family`` of indicators any is beyond with a chance of at most
+    ``alarm`` (Bonferroni) where logarithms scatter normally. L is never below the greatest average
+    of the baseline. Range: B >= 2; one record knows nothing of the scatter, its limit is infinite.
+    Source: Hahn and Meeker 1991, Statistical Intervals, section 4.8.
+
+    >>> rows = [np.array([1.0, 1.1]), np.array([1.2, 1.0]), np.array([1.05, 1.15])]
+    >>> f"{healthy_limit(rows, family=4).limit:.3f}"
+    '1.313'
+    """
+    pooled = np.concatenate(baseline)
+    pooled = pooled[np.isfinite(pooled)]
+    known = [np.median(row[np.isfinite(row)]) for row in baseline if np.isfinite(row).any()]
+    medians = np.array([median for median in known if median > 0.0])
+    if not medians.size:
+        return Healthy(least=np.nan, greatest=np.nan, limit=np.nan)
+    limit = np.inf
+    if medians.size > 1:
+        from scipy import stats
+
+        logs, count = np.log(medians), medians.size
+        t = float(stats.t.isf(alarm / family, count - 1))
+        limit = float(np.exp(logs.mean() + t * logs.std(ddof=1) * np.sqrt(1.0 + 1.0 / count)))
+    greatest = float(pooled.max())
+    return Healthy(least=float(pooled.min()), greatest=greatest, limit=max(limit, greatest))
+
+
+def trend_of(values: Sequence[float]) -> tuple[float, float]:
+    """Relative change from record to record after Theil and Sen, and the chance of as clear a trend
+    in records that do not change (Mann-Kendall: Kendall's tau with their order, two-sided, exact).
+
+    >>> slope, chance = trend_of([1.0, 1.1, 1.25, 1.3, 1.4])
+    >>> f"{slope:.2f}, {chance:.3f}"
+    '0.08, 0.017'
+    """
+    from scipy import stats
+
+    y = np.asarray(values, dtype=float)
+    order = np.arange(float(y.size))
+    slope = float(stats.theilslopes(y, order).slope) / float(np.median(y))
+    return slope, float(stats.kendalltau(order, y).pvalue)
+
+
+# --- where ---------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, kw_only=True)
+class Place:
+    """The tooth (from 1) of a ``shaft`` where the difference signal of a ``channel`` is greatest.
+
+    ``agreeing`` of ``averages`` have it there, by chance as many with ``chance``; of each mesh
+    harmonic the change of ``amplitude`` [-] and the ``delay`` [pitches] there against the other
+    teeth (0 where it is less than 4 of their standard deviations). ``alike``: two harmonics or more
+    have one delay.
+    """
+
+    channel: str
+    shaft: str
+    tooth: int
+    agreeing: int
+    averages: int
+    chance: float
+    amplitude: tuple[float, ...]
+    delay: tuple[float, ...]
+    alike: bool
+
+
+def place_of(shaft: ShaftAverage, channel: int, name: str) -> Place:
+    """Where on a shaft a channel's difference signal is greatest, with its evidence."""
+    from scipy import stats
+
+    teeth, average = shaft.teeth, shaft.average[channel]
+
+    def energy(signal: Floats) -> Floats:
+        parts = separated(signal, mesh_order=teeth, highest=shaft.highest, step=shaft.step)
+        return tooth_means(parts.difference**2, teeth=teeth)
+
+    tooth = int(np.argmax(energy(average)))
+    places = np.argmax(energy(shaft.blocks[channel]), axis=-1)
+    agreeing = int(np.count_nonzero(places == tooth))
+    near = [(tooth + off) % teeth for off in (-1, 0, 1)]
+    amplitudes, delays = [], []
+    for k in demodulated_harmonics(mesh_order=teeth, highest=shaft.highest):
+        a = demodulated(average, mesh_order=teeth, harmonic=k)
+        phase = np.angle(a * np.conj(a.mean())) / (2.0 * np.pi * k)
+        size = tooth_means(np.abs(a) / np.median(np.abs(a)), teeth=teeth) - 1.0
+        amplitudes.append(_beyond(size, near))
+        delays.append(_beyond(-tooth_means(phase, teeth=teeth), near))
+    seen = np.array([delay for delay in delays if delay != 0.0])
+    alike = seen.size >= 2 and bool(np.ptp(seen) <= ALIKE * np.abs(seen).max())
+    return Place(
+        channel=name,
+        shaft=shaft.name,
+        tooth=tooth + 1,
+        agreeing=agreeing,
+        averages=places.size,
+        chance=float(stats.binom.sf(agreeing - 1, places.size, 1.0 / teeth)),
+        amplitude=tuple(amplitudes),
+        delay=tuple(delays),
+        alike=alike,
+    )
+
+
+def _beyond(values: Floats, near: Sequence[int]) -> float:
+    """The value, less the median of all, that is farthest off near a tooth; 0: none is clear."""
+    deviation = np.abs(tooth_deviations(values))
+    best = max(near, key=lambda place: float(deviation[place]))
+    return float(values[best] - np.median(values)) if deviation[best] > CLEAR else 0.0
+
+
+# --- the study -----------------------------------------------------------------------------------
+
+Source = tuple[str, Callable[[], InAngle]]
+"""The name of a record and what reads it into its angle."""
+NO_BASELINE, ONE_BASELINE, CHANGED, OPEN, UNCHANGED = (
+    "no baseline", "one baseline record", "changed", "undecided", "no change",
+)  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class Judged:
+    """A tested record beside the limits: its ``medians`` by key, those ``beyond`` their limit and
+    those ``above`` every healthy average, the ``verdict``, where the change is (``places``)."""
+
+    name: str
+    medians: dict[Key, float]
+    beyond: tuple[Key, ...]
+    above: tuple[Key, ...]
+    verdict: str
+    places: tuple[Place, ...]
+
+
+def diagnose(
+    records: Sequence[Source],
+    baseline: Sequence[Source] = (),
+    *,
+    teeth: tuple[int, int | None],
+    bearings: Sequence[tuple[str, BearingRates]] = (),
+    band: tuple[float, float] | None = None,
+    machine: str | None = None,
+    progress: Progress = silent,
+) -> Result:
+    """Averages, indicators and envelopes of ``records``, held against those of a ``baseline``.
+
+    ``teeth`` of pinion and wheel (None: not known); ``bearings``: (shaft, rates); ``band`` [orders
+    of the pinion] to demodulate; ``machine``: a class of
+    :data:`~thermogear.base.limits.VIBRATION_ZONES` for the velocity's zone. A record that cannot be
+    read is left out with a notice where others are left. Raises InputError where none is.
+    """
+    notices: list[Notice] = []
+    rows: list[Reduced] = []
+    counts = []
+    for sources in (baseline, records):
+        before, first = len(rows), None
+        for name, read in sources:
+            held = tuple(shaft.held for shaft in rows[0].shafts) if rows else ()
+            try:
+                rows.append(
+                    reduced(read(), name, teeth=teeth, held=held, bearings=bearings, band=band)
+                )
+            except InputError as error:
+                first = first or error
+                notices.append(Notice.of("record_left_out", record=name, reason=str(error)))
+            progress("records", len(rows), len(baseline) + len(records))
+        counts.append(len(rows) - before)
+        if first is not None and counts[-1] == 0:
+            raise first
+    healthy, tested = counts[0], with_na4(rows, counts[0])[counts[0] :]
+    base = with_na4(rows, healthy)[:healthy]
+    limits = _limits(base, tested)
+    judged = [_judged(row, limits, healthy) for row in tested]
+    notices += _notices(base, tested, teeth)
+    return Result.of(
+        "diagnosis",
+        f"{len(tested)} record{'s' * (len(tested) > 1)}"
+        + (f" against {healthy} of the same machine" if healthy else ""),
+        _groups(tested, judged, limits),
+        dict.fromkeys(notices),
+        created=now(),
+        unit=tested[-1].unit,
+        figures=_figures(base, tested, judged, limits, machine),
+    )
+
+
+def _limits(base: Sequence[Reduced], tested: Sequence[Reduced]) -> dict[Key, Healthy]:
+    """What the baseline says of every indicator that it and a tested record have."""
+    keys = [key for key in tested[-1].values if key[2] in INDICATORS]
+    shared = [key for key in keys if base and all(key in row.values for row in base)]
+    if base and not shared:
+        got = ", ".join(tested[-1].channels)
+        known = ", ".join(base[0].channels)
+        raise InputError("--baseline", f"channels {known}", why=f"the record has {got}")
+    family = sum(key[2] in DECIDED for key in shared)
+    return {key: healthy_limit([row.values[key] for row in base], family=family) for key in shared}
+
+
+def _judged(row: Reduced, limits: dict[Key, Healthy], healthy: int) -> Judged:
+    known = sorted(
+        (key for key in row.values if key[2] in INDICATORS),
+        key=lambda key: (SHAFTS.index(key[1]), INDICATORS.index(key[2])),
+    )
+    values = {key: row.values[key][np.isfinite(row.values[key])] for key in known}
+    medians = {key: float(np.median(v)) if v.size else np.nan for key, v in values.items()}
+    decided = [key for key in limits if key[2] in DECIDED and key in medians]
+    beyond = tuple(key for key in decided if medians[key] > limits[key].limit)
+    above = tuple(key for key in decided if medians[key] > limits[key].greatest)
+    verdict = NO_BASELINE if not healthy else UNCHANGED
+    if healthy and above:
+        verdict = CHANGED if beyond else OPEN
+    if healthy == 1:
+        verdict = ONE_BASELINE
+    places = []
+    for shaft in row.shafts:
+        keys = [key for key in medians if key[1] == shaft.name]
+        ranks = {
+            key: medians[key] / (limits[key].greatest if key in limits else 1.0)
+            for key in keys
+            if (key[2] in DECIDED if limits else key[2] == "fm4") and np.isfinite(medians[key])
+        }
+        channel = max(ranks, key=lambda key: ranks[key], default=(row.channels[0],))[0]
+        places.append(place_of(shaft, row.channels.index(channel), channel))
+    return Judged(
+        name=row.name,
+        medians=medians,
+        beyond=beyond,
+        above=above,
+        verdict=verdict,
+        places=tuple(places),
+    )
+
+
+def changed_shaft(
+    judged: Judged, limits: dict[Key, Healthy], shafts: Sequence[ShaftAverage]
+) -> str:
+    """The shaft on which most changed, "" where none did.
+
+    Of shafts of which any indicator is beyond its limit the one that is furthest beyond; one whose
+    orders are its mate's, all or every second, only where the mate, which is told apart, is not.
+    """
+    excess: dict[str, float] = {}
+    for key in judged.beyond:
+        over = float(np.log(judged.medians[key] / limits[key].limit))
+        excess[key[1]] = max(excess.get(key[1], 0.0), over)
+    own = {shaft.name for shaft in shafts if shaft.step is None or shaft.step > 2}
+    return max(excess, key=lambda name: (name in own, excess[name]), default="")
+
+
+def _notices(
+    base: Sequence[Reduced], tested: Sequence[Reduced], teeth: tuple[int, int | None]
+) -> list[Notice]:
+    """What must be known of the averages, and of the records themselves."""
+    last = tested[-1]
+    told: list[Notice] = []
+    if teeth[1] is None:
+        told.append(Notice.of("wheel_teeth_not_stated"))
+    for shaft in last.shafts:
+        if shaft.step is not None and shaft.step < shaft.teeth:
+            told.append(
+                Notice.of(
+                    "orders_of_both_shafts", shaft=shaft.name, step=shaft.step, twice=2 * shaft.step
+                )
+            )
+        if shaft.leakage and shaft.leakage[1] > 1e-6:
+            told.append(
+                Notice.of(
+                    "mate_leaks",
+                    shaft=shaft.name,
+                    turns=shaft.block_turns,
+                    share=shaft.leakage[1],
+                )
+            )
+    if not last.marked:
+        told.append(Notice.of("tooth_one_arbitrary", origin=last.origin))
+    speed = float(np.median([row.speed for row in base])) if base else np.nan
+    for row in tested:
+        if abs(row.speed / speed - 1.0) > SPEEDS:
+            told.append(Notice.of("other_speed", record=row.name, speed=row.speed, baseline=speed))
+    named: dict[Notice, list[str]] = {}
+    for row in (*base, *tested):
+        for notice in row.notices:
+            named.setdefault(notice, []).append(row.name)
+    several = len(base) + len(tested) > 1
+    return told + [n.of_files(names) if several else n for n, names in named.items()]
+
+
+def _groups(
+    tested: Sequence[Reduced], judged: Sequence[Judged], limits: dict[Key, Healthy]
+) -> dict[str, Dataset]:
+    """Group ``indicators`` (record, row), and of the last record each shaft's turn, the envelope
+    that is clearest, and the cepstra."""
+    keys = list(judged[-1].medians)
+    blank = Healthy(least=np.nan, greatest=np.nan, limit=np.nan)
+    healthy = [limits.get(key, blank) for key in keys]
+    bounds = [
+        one.limit if key[2] in DECIDED else np.nan for key, one in zip(keys, healthy, strict=True)
+    ]
+    value = [[each.medians.get(key, np.nan) for key in keys] for each in judged]
+    beyond = [[float(key in each.beyond) for key in keys] for each in judged]
+    last = tested[-1]
+    indicators = label(
+        {
+            "indicator_value": (("record", "row"), value, "", "median of the averages"),
+            "indicator_beyond": (("record", "row"), beyond, "1", "beyond its limit"),
+            "healthy_least": (("row",), [one.least for one in healthy], "", "of the baseline"),
+            "healthy_greatest": (
+                ("row",),
+                [one.greatest for one in healthy],
+                "",
+                "of the baseline",
+            ),
+            "indicator_limit": (("row",), bounds, "", "limit"),
+        }
+    ).assign_coords(
+        record=[row.name for row in tested],
+        channel=("row", [key[0] for key in keys]),
+        shaft=("row", [key[1] for key in keys]),
+        indicator=("row", [key[2] for key in keys]),
+    )
+    groups = {"indicators": indicators}
+    for shaft in last.shafts:
+        groups[shaft.name] = _turn(shaft, last.channels)
+    heard = last.impacts
+    clear = int(np.argmax([np.max(one.amplitude / one.floor) for one in heard.spectra]))
+    spectrum = heard.spectra[clear]
+    shown = spectrum.position <= _highest_shown(heard)
+    half = heard.cepstrum.shape[-1] // 2
+    count = min(half, MOST_DRAWN)
+    groups["envelope"] = label(
+        {
+            "envelope_amplitude": (("line",), spectrum.amplitude[shown], "1", "over the mean"),
+            "envelope_floor": (("line",), spectrum.floor[shown], "1", "of noise"),
+            "envelope_order": (("line",), spectrum.position[shown], "1", "order of the pinion"),
+        }
+    ).assign_attrs(channel=last.channels[clear])
+    quefrency = np.arange(1, count) / heard.per_turn
+    groups["cepstrum"] = label(
+        {
+            "cepstrum": (("channel", "quefrency"), heard.cepstrum[:, 1:count], "1", "cepstrum"),
+            "turns": (("quefrency",), quefrency, "1", "turns of the pinion"),
+        }
+    ).assign_coords(channel=list(last.channels))
+    return groups
+
+
+def _highest_shown(heard: Impacts) -> float:
+    """The order up to which an envelope is drawn: past the highest rate that was looked for."""
+    return max([10.0, *(1.5 * line.order for line in heard.lines if np.isfinite(line.order))])
+
+
+def _turn(shaft: ShaftAverage, channels: Sequence[str]) -> Dataset:
+    """One turn of a shaft: average, difference, and each mesh harmonic's amplitude and phase."""
+    parts = separated(shaft.average, mesh_order=shaft.teeth, highest=shaft.highest, step=shaft.step)
+    harmonics = demodulated_harmonics(mesh_order=shaft.teeth, highest=shaft.highest)
+    bands = [demodulated(shaft.average, mesh_order=shaft.teeth, harmonic=k) for k in harmonics]
+    count = shaft.average.shape[-1]
+    a = np.array(bands).reshape(-1, len(channels), count)
+    mean = a.mean(axis=-1, keepdims=True)
+    axes = ("harmonic", "channel", "sample")
+    return label(
+        {
+            "average": (axes[1:], shaft.average, "", "synchronous average"),
+            "difference": (axes[1:], parts.difference, "", "difference signal"),
+            "mesh_amplitude": (axes, np.abs(a), "", "amplitude of the mesh harmonic"),
+            "mesh_phase_error": (axes, np.angle(a * np.conj(mean)), "rad", "its phase"),
+            "teeth_turned": (("sample",), np.arange(count) * shaft.teeth / count, "1", "tooth"),
+        }
+    ).assign_coords(channel=list(channels), harmonic=list(harmonics))
+
+
+def _figures(
+    base: Sequence[Reduced],
+    tested: Sequence[Reduced],
+    judged: Sequence[Judged],
+    limits: dict[Key, Healthy],
+    machine: str | None,
+) -> dict[str, Any]:
+    """Plain figures: verdicts, where, bearings, trends, severity, and how averages were made."""
+    last = tested[-1]
+    pooled = sum(row.shafts[0].blocks.shape[1] for row in base)
+    known = {line.bearing + line.shaft + line.part for row in base for line in row.impacts.lines
+             if line.chance <= HEARD}  # fmt: skip
+    family = [key for key in limits if key[2] in DECIDED]
+    return {
+        "verdicts": [
+            {
+                "record": each.name,
+                "verdict": each.verdict,
+                "shaft": changed_shaft(each, limits, row.shafts),
+                "beyond": len(each.beyond),
+                "above": len(each.above),
+                "indicators": len(family),
+            }
+            for each, row in zip(judged, tested, strict=True)
+        ],
+        "baseline": [row.name for row in base],
+        "alarm": ALARM,
+        "averages": pooled,
+        "averages_beyond": proportion(0, of=pooled).high if pooled else None,
+        "places": [
+            {
+                "record": each.name,
+                **{name: getattr(place, name) for name in Place.__dataclass_fields__},
+                "named": place.chance <= BY_CHANCE,
+                "marked": row.marked,
+            }
+            for each, row in zip(judged, tested, strict=True)
+            for place in each.places
+        ],
+        "bearings": [
+            {
+                "record": row.name,
+                **{name: getattr(line, name) for name in BearingLine.__dataclass_fields__},
+                "in_baseline": line.bearing + line.shaft + line.part in known,
+            }
+            for row in tested
+            for line in row.impacts.lines
+            if line.chance <= HEARD
+        ],
+        "bands": [
+            {
+                "channel": channel,
+                "low": band.low,
+                "high": band.high,
+                "kurtosis": band.kurtosis,
+                "chosen": chosen,
+            }
+            for channel, band, chosen in zip(
+                last.channels, last.impacts.bands, last.impacts.chosen, strict=True
+            )
+        ],
+        "raw": [
+            {
+                "record": row.name,
+                "channel": channel,
+                **{name: float(values[place]) for name, values in row.raw.items()},
+                "zone": zone_of(row.raw["velocity_rms"][place], machine) if machine else "",
+            }
+            for row in tested
+            for place, channel in enumerate(row.channels)
+        ],
+        "shafts": [_about(shaft) for shaft in last.shafts],
+        "trends": _trends(judged),
+        "speed": last.speed if np.isfinite(last.speed) else None,
+        "angle": last.origin,
+        "angle_noise": last.noise,
+        "machine": machine or "",
+    }
+
+
+def _about(shaft: ShaftAverage) -> dict[str, Any]:
+    """How a shaft's averages were made, and what was taken out of its residual."""
+    parts = separated(shaft.average, mesh_order=shaft.teeth, highest=shaft.highest, step=shaft.step)
+    return {
+        "shaft": shaft.name,
+        "teeth": shaft.teeth,
+        "turns": shaft.turns,
+        "block_turns": shaft.block_turns,
+        "blocks": int(shaft.blocks.shape[1]),
+        "highest": shaft.highest,
+        "leakage": shaft.leakage[1] if shaft.leakage else None,
+        "removed": list(parts.removed),
+        "removed_sidebands": list(parts.removed_sidebands),
+        "scatter": moment_scatter(4, count=max(1, 2 * parts.kept)),
+        "hunting": shaft.step == shaft.teeth,
+    }
+
+
+def _trends(judged: Sequence[Judged]) -> list[dict[str, Any]]:
+    """Of three records or more what rises or falls, with its chance times what was looked at."""
+    if len(judged) < 3:
+        return []
+    keys = [key for key in judged[-1].medians if key[2] in DECIDED]
+    found: list[dict[str, Any]] = []
+    for key in keys:
+        values = [each.medians.get(key, np.nan) for each in judged]
+        if np.all(np.isfinite(values)) and np.median(values) > 0.0:
+            slope, chance = trend_of(values)
+            row = dict(zip(("channel", "shaft", "indicator"), key, strict=True))
+            found.append({**row, "trend": slope, "chance": min(1.0, chance * len(keys))})
+    return [row for row in found if row["chance"] <= ALARM]
