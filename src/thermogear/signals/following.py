@@ -365,7 +365,7 @@ def _edge(values: Floats, frequency: float, length: float, last: float) -> tuple
         begun, _ = _path(values[after], frequency, length, last=last)
         back = float(min(cut, piece)) - 1.0
         ends = np.array([cut - 1.0, cut])
-        found.append(np.array([ended(back), begun(0.0)]) - finer(ends))
+        found.append(np.array([ended(np.array(back)), begun(np.array(0.0))]) - finer(ends))
     if not found:
         return _HALF, 1.0
     errors = np.asarray(found) - np.rint(found)
