@@ -77,7 +77,8 @@ class Gearing:
     the mesh line there, or no other number fits a known speed. ``turning``: the line of
     a shaft of known speed [turns/sample], where there is one. ``rank_of``: 2 or 3 where the line is
     that harmonic of another as clear, which no shaft's is (a gear has more than three teeth), else
-    0; ``off``: how many times the speed given would fit, else 1.
+    0; ``off``: how many times the speed given would fit, else 1; ``rival``: the teeth that a known
+    speed names alone, where others are given.
     """
 
     mesh_frequency: float
@@ -89,6 +90,7 @@ class Gearing:
     turning: float | None = None
     rank_of: int = 0
     off: float = 1.0
+    rival: int | None = None
 
     @property
     def shaft(self) -> float | None:
@@ -209,13 +211,55 @@ class _Search:
         lines.sort(key=lambda line: -line.score)
         close = [line for line in lines if abs(line.line / place - 1.0) <= _CLOSE]
         close = [line for line in close if line.heights[0] > _THERE][:1]
-        tried = [self.of(line)[0] for line in (lines[:_RIVALS] if self.teeth else [])]
-        gearing = next((trial for trial in tried if trial.confirmed), None)
-        if gearing is None and close:
-            gearing, *_ = self.of(close[0])
-        if gearing is None:
+        tried = lines[:_RIVALS] if self.teeth else []
+        found = next((line for line in tried if self.of(line)[0].confirmed), None)
+        found = found or next(iter(close), None)
+        if found is None:
             return None
-        return replace(gearing, teeth=self.teeth, rank_of=self._rank(gearing))
+        gearing, *_ = self.of(found)
+        gearing = replace(gearing, rank_of=self._rank(gearing))
+        return gearing if self.teeth is None else self._held(gearing, found, place / self.teeth)
+
+    def _held(self, gearing: Gearing, line: _Line, shaft: float) -> Gearing:
+        """The ``line`` that teeth and speed given put there, held against all other lines.
+
+        It is undecided where the speed alone names other teeth, where it is a harmonic, and where
+        it is no clearest line without the sidebands of the teeth, or lower than those about it.
+        """
+        named = self.named(shaft)
+        own = [one for one in named if one.teeth == self.teeth]
+        if own or not (named or gearing.rank_of) and self._is_middle(line):
+            return replace((own or [gearing])[0], teeth=self.teeth)
+        gearing = replace((named or [gearing])[0], teeth=None, confirmed=False)
+        if named:
+            return replace(gearing, rival=named[0].teeth)
+        off, other = self.misread(shaft)
+        return (
+            gearing
+            if other is None or other.teeth != self.teeth
+            else replace(other, teeth=None, confirmed=False, off=off)
+        )
+
+    def _is_middle(self, line: _Line) -> bool:
+        """Whether a line is the clearest and none tells of other teeth than those given, or has
+        their sidebands and is higher than these."""
+        gearing, sharp, ranks = self.of(line)
+        if not gearing.confirmed or self.teeth is None:
+            return line is self.lines[0] or not gearing.families
+        over = [
+            sharp.at(rank) - max(height for _, height in _beside(sharp, rank, self.teeth))
+            for rank in ranks
+        ]
+        return float(np.mean(over)) > 0.0
+
+    def misread(self, shaft: float) -> tuple[float, Gearing | None]:
+        """How many times as fast a ``shaft`` must be that its gear is named, as where a rate is
+        wrong, and the gearing; 1 and None where none is, or several are."""
+        for off in _WRONG:
+            named = self.named(off * shaft)
+            if len(named) == 1:
+                return off, named[0]
+        return 1.0, None
 
     def _rank(self, gearing: Gearing) -> int:
         """2 or 3 where the line is that harmonic of the clearest one, which is as high, else 0."""
@@ -242,8 +286,7 @@ class _Search:
         named = self.named(shaft)
         if len(named) == 1:
             return named[0]
-        wrong = () if named else _WRONG
-        off = next((off for off in wrong if len(self.named(off * shaft)) == 1), 1.0)
+        off = 1.0 if named else self.misread(shaft)[0]
         turns, height = self.raw.peak(shaft, reach=int(_CLOSE * shaft * self.raw.per_unit))
         seen = off == 1.0 and height > _THERE
         return replace(gearing, off=off, turning=turns if seen else None)
@@ -331,7 +374,7 @@ def _is_alone(sharp: Prominence, ranks: Sequence[int], teeth: int, *, cycles: fl
         return False
     away, over = [], []
     for rank in ranks:
-        beside = [sharp.peak(rank + n / teeth, reach=1) for n in (-3, -2, -1, 1, 2, 3)]
+        beside = _beside(sharp, rank, teeth)
         below, above = beside[2], beside[3]
         if min(below[1], above[1]) > _STANDS:
             away.append(0.5 * (above[0] - below[0]))
@@ -339,6 +382,11 @@ def _is_alone(sharp: Prominence, ranks: Sequence[int], teeth: int, *, cycles: fl
     off = abs(float(np.mean(away)) - 1.0 / teeth) * sharp.per_unit if away else np.inf
     least = _OVER if len(ranks) == _AROUND else _FEWER_OVER
     return bool(off < _EXACT and min(over) > 0.0 and np.mean(over) > least)
+
+
+def _beside(sharp: Prominence, rank: int, teeth: int) -> list[tuple[float, float]]:
+    """Place and height of the three lines to each side of a mesh harmonic, in its own angle."""
+    return [sharp.peak(rank + n / teeth, reach=1) for n in (-3, -2, -1, 1, 2, 3)]
 
 
 def _clear(sharp: Prominence, ranks: Sequence[int], distance: float) -> list[bool]:
