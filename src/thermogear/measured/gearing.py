@@ -53,7 +53,7 @@ _OVER, _FEWER_OVER = (
     0.7,
 )  # ln: of three mesh harmonics, of fewer, over the lines beside; chosen
 _TRIED_LINES = 8
-_WRONG = (2.0, 0.5, 10.0, 0.1, 2.56, 1.0 / 2.56)  # times a rate that is stated wrong
+_WRONG = (2.0, 0.5, 1.25, 0.8, 10.0, 0.1, 2.56, 1.0 / 2.56)  # times a rate that is stated wrong
 _WHOLE = 0.02  # of a turn
 _STEADY = 0.02  # cycles: a thirtieth of its height beside the third harmonic
 
@@ -75,7 +75,8 @@ class Gearing:
     ``teeth`` of the gear on the first shaft whose mesh line it is, None where that is undecided: it
     has their sidebands (``confirmed``, of those given), or teeth and speed given, or a tacho, put
     the mesh line there, or no other number fits a known speed. ``turning``: the line of
-    a shaft of known speed [turns/sample], where there is one. ``rank_of``: 2 or 3 where the line is
+    a shaft of known speed [turns/sample], where there is one, ``turning_half_width`` a bin
+    [turns/sample] where the mesh line is none of its multiples, else 0. ``rank_of``: 2 or 3 where the line is
     that harmonic of another as clear, which no shaft's is (a gear has more than three teeth), else
     0; ``off``: how many times the speed given would fit, else 1; ``rival``: the teeth that a known
     speed names alone, where others are given.
@@ -91,11 +92,20 @@ class Gearing:
     rank_of: int = 0
     off: float = 1.0
     rival: int | None = None
+    turning_half_width: float = 0.0
 
     @property
     def shaft(self) -> float | None:
         """The first shaft's [turns/sample]; None: not known."""
         return self.turning if self.teeth is None else self.mesh_frequency / self.teeth
+
+    def at(self, mesh: float) -> Gearing:
+        """The same with the mesh line, known better, at ``mesh`` [cycles/sample]: a shaft of which
+        it is a multiple turns with it."""
+        turning = self.turning
+        if turning is not None and not self.turning_half_width:
+            turning *= mesh / self.mesh_frequency
+        return replace(self, mesh_frequency=mesh, turning=turning)
 
     def kind(self, rank: int) -> tuple[str, str]:
         """Kind and name of the line's harmonic ``rank``: "mesh", "shaft" or "line".
@@ -106,19 +116,22 @@ class Gearing:
         """
         if self.teeth is not None:
             return "mesh", f"mesh x {rank}"
-        order = shaft_order(self.mesh_frequency, shaft=self.turning)
+        order = (
+            0 if self.turning_half_width else shaft_order(self.mesh_frequency, shaft=self.turning)
+        )
         return ("shaft", f"shaft x {rank * order}") if order else ("line", f"line x {rank}")
 
 
-def shaft_order(place: float, *, shaft: float | None) -> int:
+def shaft_order(place: float, *, shaft: float | None, width: float = 0.0) -> int:
     """The multiple of a ``shaft`` [turns/sample] that a line at ``place`` [cycles/sample] is,
-    within 2 % of a turn; 0: none.
+    within 2 % of a turn or, where that is less, ``width`` of the place; 0: none.
 
     >>> shaft_order(0.0305, shaft=0.01), shaft_order(0.03, shaft=0.01)
     (0, 3)
     """
     order = 0.0 if shaft is None else place / shaft
-    return round(order) if abs(order - round(order)) < _WHOLE else 0
+    within = min(_WHOLE, width / shaft if shaft and width else _WHOLE)
+    return round(order) if abs(order - round(order)) < within else 0
 
 
 def find_gearing(
@@ -288,8 +301,15 @@ class _Search:
             return named[0]
         off = 1.0 if named else self.misread(shaft)[0]
         turns, height = self.raw.peak(shaft, reach=int(_CLOSE * shaft * self.raw.per_unit))
-        seen = off == 1.0 and height > _THERE
-        return replace(gearing, off=off, turning=turns if seen else None)
+        if off != 1.0 or height <= _THERE:
+            return replace(gearing, off=off)
+        # the order of a line is whole where the shaft's own line, known to a quarter of a bin, says
+        width = _EXACT / self.raw.per_unit
+        order = shaft_order(
+            gearing.mesh_frequency, shaft=turns, width=width * gearing.mesh_frequency / turns
+        )
+        turning = gearing.mesh_frequency / order if order else turns
+        return replace(gearing, turning=turning, turning_half_width=0.0 if order else 4.0 * width)
 
     def named(self, shaft: float) -> list[Gearing]:
         """The gearings with each line that is the mesh line of a whole number of teeth on a

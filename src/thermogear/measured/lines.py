@@ -70,8 +70,9 @@ class MeasuredLine:
 
     @property
     def is_reading(self) -> bool:
-        """Whether the line was asked for, or its interval is no wider than itself."""
-        return self.kind == "order" or not self.half_width > 1.0
+        """Whether the line was asked for, or stands over the floor with an interval no wider than
+        itself."""
+        return self.kind == "order" or not (self.half_width > 1.0 or self.prominence < 1.0)
 
     @property
     def acceleration_g(self) -> float:
@@ -210,7 +211,7 @@ def other_lines(
         if size < least or len(found) == _OTHERS:
             break
         if not explained(place) and 3.0 * width < place < 0.5 - 3.0 * width:
-            order = shaft_order(place, shaft=shaft)
+            order = shaft_order(place, shaft=shaft, width=width)
             name = f"line at {place / mesh:.4g} {'mesh' if gearing.teeth else 'times line x 1'}"
             name = name if shaft is None else f"order {place / shaft:.4g}"
             kind, name = ("shaft", f"shaft x {order}") if order else ("line", name)
@@ -250,6 +251,8 @@ def channel_lines(
     shaft = (gearing.shaft if gearing else None) or float("nan")
     speed = 2 * np.pi * rate * shaft if in_hertz else float("nan")
     share = turns.half_width / turns.frequency if turns else float("nan")
+    if gearing is not None and gearing.teeth is None and gearing.turning:
+        share += gearing.turning_half_width / gearing.turning
     for want in wanted:
         reach = want.half_width * rate
         line = through.read(want.position * rate, half_width=reach, window=chain.window)

@@ -188,6 +188,7 @@ def measure(
             notices,
             expected=expected,
             teeth=teeth,
+            rate=record.rate,
             shaft=_turns(record, speed),
         )
         teeth = teeth or (gearing.teeth if gearing else None)
@@ -198,13 +199,13 @@ def measure(
     if gearing is not None and turns is None:
         turns = mesh_turns(table, gearing, teeth=teeth, harmonics=harmonics)
         # in a resampled record the lines stand at multiples of this mean and nowhere else
-        gearing = replace(gearing, mesh_frequency=turns.frequency)
+        gearing = gearing.at(turns.frequency)
         turns = replace(turns, half_width=turns.half_width + through.turned)
     if gearing is not None:
         few = few_turns(gearing, teeth=teeth, samples=table.shape[-1])
         notices += few
         sidebands = 0 if few else sidebands
-        undecided = speed_undecided(gearing, given[0])
+        undecided = speed_undecided(gearing, *given)
         doubt = check_rate(
             record,
             gearing,
