@@ -76,10 +76,10 @@ class Gearing:
     has their sidebands (``confirmed``, of those given), or teeth and speed given, or a tacho, put
     the mesh line there, or no other number fits a known speed. ``turning``: the line of
     a shaft of known speed [turns/sample], where there is one, ``turning_half_width`` a bin
-    [turns/sample] where the mesh line is none of its multiples, else 0. ``rank_of``: 2 or 3 where the line is
-    that harmonic of another as clear, which no shaft's is (a gear has more than three teeth), else
-    0; ``off``: how many times the speed given would fit, else 1; ``rival``: the teeth that a known
-    speed names alone, where others are given.
+    [turns/sample] where the mesh line is none of its multiples, else 0. ``rank_of``: 2 or 3 where
+    the line is that harmonic of another as clear, which no shaft's is (a gear has more than three
+    teeth), else 0; ``off``: how many times the speed given would fit, else 1; ``rival``: the teeth
+    that a known speed names alone, where others are given.
     """
 
     mesh_frequency: float
@@ -241,7 +241,7 @@ class _Search:
         """
         named = self.named(shaft)
         own = [one for one in named if one.teeth == self.teeth]
-        if own or not (named or gearing.rank_of) and self._is_middle(line):
+        if own or not (named or gearing.rank_of or not self._is_middle(line)):
             return replace((own or [gearing])[0], teeth=self.teeth)
         gearing = replace((named or [gearing])[0], teeth=None, confirmed=False)
         if named:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.bounds import MOST_TEETH, PULSES
+from thermogear.base.bounds import MOST_TEETH, PULSES, SPEED
 from thermogear.base.errors import InputError, short
 from thermogear.measured.chain import METHODS, Chain
 from thermogear.measured.changing import (
@@ -165,6 +165,9 @@ def measure(
     if len(chosen[0]) > LONGEST:
         notices.append(Notice.of("record_cut", used=LONGEST, samples=len(chosen[0])))
     given = teeth, speed
+    if speed is None and record.speed is not None and SPEED.least < record.speed <= SPEED.most:
+        speed = record.speed
+        notices.append(Notice.of("speed_of_file", speed=speed))
     expected = expected_mesh(record, teeth, speed)
     changing, said = read_in_angle(
         record,

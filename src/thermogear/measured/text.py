@@ -274,7 +274,7 @@ def _record(
     for i, column in zip(keep, columns, strict=True):
         strange = layout.strange.get(i, "")
         channel = Channel(layout.names[i], column, layout.units[i], strange=strange)
-        place, signal = 0, Stated(channel, header)
+        place, signal = 0, Stated(channel, header, speeds=tuple(layout.speeds))
         if waves is not None and i in waves.columns:
             wave = waves.columns[i]
             base = wave.base(layout.names[i]) if header is UNSTATED else header
