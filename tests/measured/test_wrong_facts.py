@@ -22,7 +22,8 @@ def signal() -> np.ndarray:
     swell = 1.0 + 0.2 * np.cos(TURN * turns + 1.0) + 0.1 * np.cos(TURN * 2 * turns + 2.0)
     lines = [swell / k * np.cos(TURN * k * TEETH * turns + k) for k in (1, 2, 3)]
     shaft = 0.3 * np.cos(TURN * turns)
-    return np.sum(lines, axis=0) + shaft + 0.1 * random.normal(size=turns.size)
+    noise = 0.1 * random.normal(size=turns.size)
+    return np.asarray(np.sum(lines, axis=0) + shaft + noise)
 
 
 VALUES = signal()

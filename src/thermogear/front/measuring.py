@@ -159,10 +159,13 @@ def measured_files(
 
 def _reduced(record: Record, other: Record | None, options: dict[str, Any]) -> Measurement:
     from thermogear.measured.chain import Chain
+    from thermogear.measured.parts import later
     from thermogear.measured.reduction import measure as reduce
     from thermogear.study.bearing_rates import bearing_rates
 
     speed, scale = options["speed"], options["tacho_scale"]
+    if options["start"] is not None:
+        record = later(record, options["start"])
     if scale is not None:
         record, other = _as_speed(record, other, scale)
     return reduce(

@@ -163,7 +163,9 @@ def measure(
     chosen = chosen_channels(record, channels, notices)
     through = passed(chosen, LONGEST)
     if len(chosen[0]) > LONGEST:
-        notices.append(Notice.of("record_cut", used=LONGEST, samples=len(chosen[0])))
+        seconds = None if record.rate is None else LONGEST / record.rate
+        told = Notice.of("record_cut", used=LONGEST, samples=len(chosen[0]), seconds=seconds)
+        notices.append(told)
     given = teeth, speed
     if speed is None and record.speed is not None and SPEED.least < record.speed <= SPEED.most:
         speed = record.speed
