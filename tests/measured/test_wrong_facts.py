@@ -7,6 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from thermogear.base.errors import InputError
+from thermogear.measured.parts import later
 from thermogear.measured.readers import read_record
 from thermogear.measured.record import Channel, Record
 from thermogear.measured.reduction import Measurement, measure
@@ -99,3 +101,11 @@ def test_a_speed_above_the_columns_of_a_text(tmp_path: Path) -> None:
     rows = "\n".join(f"{k / RATE:.9f},{VALUES[k]:.6f}" for k in range(1000))
     path.write_text(f"# shaft speed: 1494 rpm\ntime [s],a [g]\n{rows}\n")
     assert read_record(path).speed == pytest.approx(TURN * SHAFT)
+
+
+def test_a_later_piece_of_a_record_keeps_its_time() -> None:
+    whole = Record((Channel("a", np.arange(1000.0), "g"),), "made", 100.0, "made", start=2.0)
+    piece = later(whole, 4.0)
+    assert (piece.start, piece.samples, piece.channels[0].values()[0]) == (6.0, 600, 400.0)
+    with pytest.raises(InputError, match=r"start: got 10 s; allowed 0\.\.10 s"):
+        later(whole, 10.0)

@@ -164,7 +164,7 @@ def _reduced(record: Record, other: Record | None, options: dict[str, Any]) -> M
     from thermogear.study.bearing_rates import bearing_rates
 
     speed, scale = options["speed"], options["tacho_scale"]
-    if options["start"] is not None:
+    if options.get("start") is not None:
         record = later(record, options["start"])
     if scale is not None:
         record, other = _as_speed(record, other, scale)

@@ -258,7 +258,7 @@ class _Search:
         their sidebands and is higher than these."""
         gearing, sharp, ranks = self.of(line)
         if not gearing.confirmed or self.teeth is None:
-            return line is self.lines[0] or not gearing.families
+            return line == self.lines[0] or not gearing.families
         over = [
             sharp.at(rank) - max(height for _, height in _beside(sharp, rank, self.teeth))
             for rank in ranks
