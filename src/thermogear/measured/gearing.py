@@ -18,8 +18,8 @@ from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.measured.prominence import Prominence, prominence
 from thermogear.signals.following import follow_line
+from thermogear.signals.lines import line_spectrum
 from thermogear.signals.orders import resample_by_angle, samples_per_cycle
-from thermogear.signals.spectra import amplitude_spectrum
 
 LONGEST = 1 << 19
 """Samples that the search looks at, from the start of the record."""
@@ -217,6 +217,11 @@ class _Search:
         lines = [_line(self.raw, peak / self.raw.per_unit) for peak in peaks]
         return sorted(lines, key=lambda line: -line.score)
 
+    @cached_property
+    def heights(self) -> Floats:
+        """Amplitudes over the standard deviation (channel, bin)."""
+        return np.stack([line_spectrum(c, 1.0).hann / float(np.std(c)) for c in self.table])
+
     def near(self, place: float) -> Gearing | None:
         """The line that facts put at ``place`` [cycles/sample]; None: no line is there."""
         peaks = _peaks(self.raw, low=(1.0 - NEAR) * place, high=(1.0 + NEAR) * place)
@@ -355,7 +360,7 @@ class _Search:
     def _of(self, line: _Line) -> tuple[Gearing, Prominence, list[int]]:
         mesh = line.mesh
         sharp = replace(self.raw, per_unit=self.raw.per_unit * mesh)
-        angle = _angle(self.table, mesh)
+        angle = _angle(self.table, self.heights, mesh)
         if angle is not None:
             cycles, mesh = angle
             sharp = replace(sharp, per_unit=self.raw.per_unit * mesh)
@@ -500,32 +505,26 @@ def _line(raw: Prominence, near: float) -> _Line:
     )
 
 
-def _angle(table: Floats, mesh: float) -> tuple[Floats, float] | None:
-    """Cycles of the mesh line at each sample, and the mean mesh line."""
+def _angle(table: Floats, heights: Floats, mesh: float) -> tuple[Floats, float] | None:
+    """Cycles of the mesh line at each sample, and the mean mesh line, by the channel in which it is
+    highest."""
     half = max(_NARROW * mesh, 12.0 / table.shape[-1])
     if half > 0.2 * mesh:
         return None
-    heights = [
-        float(amplitude_spectrum(c - c.mean(), 1.0, "hann").amplitudes[_near(c.size, mesh)].max())
-        / float(np.std(c))
-        for c in table
-    ]
-    best = table[int(np.argmax(heights))]
+    centre = int(np.rint(mesh * table.shape[-1]))
+    near = heights[:, max(1, centre - 2) : centre + 3]
+    best = table[int(np.argmax(near.max(axis=-1)))]
     cycles = follow_line(best, 1.0, frequency=mesh, half_width=half, cut=False).cycles
     if np.any(np.diff(cycles) <= 0):
         return None
-    return cycles, float(np.polyfit(np.arange(cycles.size), cycles, 1)[0])
+    grid = np.arange(cycles.size) - 0.5 * (cycles.size - 1)
+    return cycles, float(grid @ cycles / (grid @ grid))
 
 
 def _wanders(cycles: Floats, mesh: float) -> bool:
     """Whether a line's cycles leave an even turning by what three times as many would show."""
     off = cycles - mesh * np.arange(cycles.size)
     return bool(np.ptp(off) > _STEADY)
-
-
-def _near(count: int, frequency: float) -> slice:
-    centre = int(np.rint(frequency * count))
-    return slice(max(1, centre - 2), centre + 3)
 
 
 def sides_of(*, teeth: int | None, rank: int, mesh: float) -> tuple[float, ...]:

@@ -209,7 +209,7 @@ def _envelope(
     kernel = _hann_kernel(length / 8.0)
     reach = kernel.size // 2
     size = max(64, int(np.ceil(count / length * _FINER)))
-    place = np.unique(np.rint(np.linspace(0, count - 1, min(size, count))).astype(np.int64))
+    place = np.rint(np.linspace(0, count - 1, min(size, count))).astype(np.int64)
     # at the kept samples alone, in blocks that memory holds
     away = reach - np.arange(kernel.size)
     wave = (kernel * np.exp(2j * np.pi * frequency * away)).view(float).reshape(-1, 2)
