@@ -250,9 +250,7 @@ def channel_lines(
     in_hertz = record.rate is not None
     shaft = (gearing.shaft if gearing else None) or float("nan")
     speed = 2 * np.pi * rate * shaft if in_hertz else float("nan")
-    share = turns.half_width / turns.frequency if turns else float("nan")
-    if gearing is not None and gearing.teeth is None and gearing.turning:
-        share += gearing.turning_half_width / gearing.turning
+    share = _speed_share(gearing, turns)
     for want in wanted:
         reach = want.half_width * rate
         line = through.read(want.position * rate, half_width=reach, window=chain.window)
@@ -355,6 +353,14 @@ def channel_lines(
             )
         )
     return found
+
+
+def _speed_share(gearing: Gearing | None, turns: MeshTurns | None) -> float:
+    """Relative half width of the shaft's speed: the mesh line's, and that of its own line."""
+    if gearing is None or turns is None:
+        return float("nan")
+    own = gearing.turning_half_width / (gearing.turning or 1.0)
+    return turns.half_width / turns.frequency + (own if gearing.teeth is None else 0.0)
 
 
 def jittered(position: ArrayLike, jitter: float) -> Floats:

@@ -162,14 +162,9 @@ def measure(
     notices = list(record.notices)
     chosen = chosen_channels(record, channels, notices)
     through = passed(chosen, LONGEST)
-    if len(chosen[0]) > LONGEST:
-        seconds = None if record.rate is None else LONGEST / record.rate
-        told = Notice.of("record_cut", used=LONGEST, samples=len(chosen[0]), seconds=seconds)
-        notices.append(told)
+    notices += _beyond(record)
     given = teeth, speed
-    if speed is None and record.speed is not None and SPEED.least < record.speed <= SPEED.most:
-        speed = record.speed
-        notices.append(Notice.of("speed_of_file", speed=speed))
+    speed = _known_speed(record, speed, notices)
     expected = expected_mesh(record, teeth, speed)
     changing, said = read_in_angle(
         record,
@@ -277,6 +272,22 @@ def measure(
         swellings=swellings,
         defects=defects_of(swellings, bearings),
     )
+
+
+def _beyond(record: Record) -> list[Notice]:
+    """What of a long record is not read."""
+    if record.samples <= LONGEST:
+        return []
+    seconds = None if record.rate is None else LONGEST / record.rate
+    return [Notice.of("record_cut", used=LONGEST, samples=record.samples, seconds=seconds)]
+
+
+def _known_speed(record: Record, given: float | None, notices: list[Notice]) -> float | None:
+    """The speed given [rad/s], else the one that the file states, which is told."""
+    if given is not None or record.speed is None or not 0.0 < record.speed <= SPEED.most:
+        return given
+    notices.append(Notice.of("speed_of_file", speed=record.speed))
+    return record.speed
 
 
 def _turns(record: Record, speed: float | None) -> float | None:
