@@ -246,7 +246,7 @@ class _Search:
         """
         named = self.named(shaft)
         own = [one for one in named if one.teeth == self.teeth]
-        if own or not (named or gearing.rank_of or not self._is_middle(line)):
+        if own or not (named or gearing.rank_of or not self._is_middle(line, shaft)):
             return replace((own or [gearing])[0], teeth=self.teeth)
         gearing = replace((named or [gearing])[0], teeth=None, confirmed=False)
         if named:
@@ -258,12 +258,13 @@ class _Search:
             else replace(other, teeth=None, confirmed=False, off=off)
         )
 
-    def _is_middle(self, line: _Line) -> bool:
-        """Whether a line is the clearest and none tells of other teeth than those given, or has
-        their sidebands and is higher than these."""
+    def _is_middle(self, line: _Line, shaft: float) -> bool:
+        """Whether a line has the sidebands of the teeth given and is higher than these; or else is
+        the clearest, or has none, and no other number of teeth is nearer at the speed given."""
         gearing, sharp, ranks = self.of(line)
         if not gearing.confirmed or self.teeth is None:
-            return line == self.lines[0] or not gearing.families
+            clear = line == self.lines[0] or not gearing.families
+            return clear and round(gearing.mesh_frequency / shaft) == self.teeth
         over = [
             sharp.at(rank) - max(height for _, height in _beside(sharp, rank, self.teeth))
             for rank in ranks
