@@ -205,7 +205,7 @@ def measure(
         few = few_turns(gearing, teeth=teeth, samples=table.shape[-1])
         notices += few
         sidebands = 0 if few else sidebands
-        undecided = speed_undecided(gearing, *given)
+        undecided = speed_undecided(gearing, given[0], speed=speed)
         doubt = check_rate(
             record,
             gearing,

@@ -47,7 +47,7 @@ def stated_gearing(
     return gearing
 
 
-def speed_undecided(gearing: Gearing, teeth: int | None, speed: float | None) -> Notice | None:
+def speed_undecided(gearing: Gearing, teeth: int | None, *, speed: float | None) -> Notice | None:
     """Where the line that is read may be the mesh line of another gear than that of the ``teeth``
     given, or none: the shaft's speed is withheld, though one is given [rad/s]."""
     if teeth is None or gearing.teeth is not None:

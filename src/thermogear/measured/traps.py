@@ -83,7 +83,7 @@ def is_tacho_name(name: str) -> bool:
     return bool(_TACHO.search(name[:_LONGEST]))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class SpeedFact:
     """What a file states of a shaft's speed: the ``name`` of the field, its ``value``, the speed
     [rad/s] where its unit is known."""
@@ -105,7 +105,7 @@ def speed_fact(name: str, value: float, said: str | None = None) -> SpeedFact | 
         return None
     turns = known is not None and kind_of(known) in ("speed", "frequency")
     speed = 2.0 * np.pi * value * factor_of(known) if known and turns else None
-    return SpeedFact(name, value, speed)
+    return SpeedFact(name=name, value=value, speed=speed)
 
 
 def is_rate_name(name: str) -> bool:
