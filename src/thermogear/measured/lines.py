@@ -70,7 +70,7 @@ class MeasuredLine:
 
     @property
     def is_reading(self) -> bool:
-        """Whether the line was asked for, or stands over the floor with an interval no wider than
+        """Whether the line was asked for, or is over the floor with an interval no wider than
         itself."""
         return self.kind == "order" or not (self.half_width > 1.0 or self.prominence < 1.0)
 
