@@ -10,7 +10,7 @@ from said import numbers
 from thermogear.measured.figures import figures
 from thermogear.measured.record import Channel, Record
 from thermogear.measured.reduction import Measurement, measure
-from thermogear.views.pages.record import headline
+from thermogear.views.pages.measured import headline
 
 RATE, SHAFT, TEETH = 8192.0, 29.667, 32
 SPEED = 2.0 * np.pi * SHAFT

@@ -472,10 +472,17 @@ def dressed(
     dims: str | tuple[str, ...], values: ArrayLike, unit: str = "", words: str = ""
 ) -> Variable:
     """A variable that is no part of the vocabulary, with its unit and long name where given."""
-    import xarray as xr
 
     told = {"units": unit, "long_name": words}
-    return xr.Variable(dims, np.asarray(values), {k: v for k, v in told.items() if v})
+    return _variable(dims, np.asarray(values), {k: v for k, v in told.items() if v})
+
+
+def _variable(dims: Any, values: NDArray[Any], told: dict[str, Any]) -> Variable:
+    """A variable of an array; of numbers and texts xarray need not look whether they are dask's,
+    which it would load."""
+    import xarray as xr
+
+    return xr.Variable(dims, values, told, fastpath=values.dtype.kind not in "OMm")
 
 
 def labelled(name: str, entry: Any) -> Variable:
@@ -488,10 +495,10 @@ def labelled(name: str, entry: Any) -> Variable:
     if told:
         return dressed(dims, values, *told)
     if name in FLAGS:
-        return xr.Variable(dims, np.asarray(values, np.int8), FLAGS[name]())
+        return _variable(dims, np.asarray(values, np.int8), FLAGS[name]())
     values = np.asarray(values)
     text = name not in QUANTITIES and values.dtype.kind in "UO"
-    return xr.Variable(dims, values, {} if text else attributes(name))
+    return _variable(dims, values, {} if text else attributes(name))
 
 
 def label(

@@ -91,6 +91,13 @@ def supplies(command: Any, *, speeds: bool = False) -> Any:
             help="Rolling bearing on the first shaft, as 6205: swelling noise is held against its "
             "rates [those of the catalogue]. May be repeated.",
         ),
+        number(
+            "--start",
+            "Read the record from there on [0 s]; 2097152 samples at most are reduced.",
+            "a time within the record, in seconds",
+            "60",
+            metavar="SECONDS",
+        ),
         number("--harmonics", "Mesh harmonics to read [3].", "1..64", "3", whole=True),
         number("--sidebands", "Sidebands on each side to read [2].", "0..64", "2", whole=True),
         number(

@@ -168,10 +168,13 @@ def measured_files(
 
 def _reduced(record: Record, other: Record | None, options: dict[str, Any]) -> Measurement:
     from thermogear.measured.chain import Chain
+    from thermogear.measured.parts import later
     from thermogear.measured.reduction import measure as reduce
     from thermogear.study.bearing_rates import bearing_rates
 
     speed = options["speed"]
+    if options.get("start") is not None:
+        record = later(record, options["start"])
     return reduce(
         record,
         teeth=options["teeth"],

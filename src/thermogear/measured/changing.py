@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import signal
 
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
@@ -21,6 +20,7 @@ from thermogear.measured.record import Notice, Record
 from thermogear.measured.shaft import VARIES, Shaft, given_shaft, locked, tracked_shaft
 from thermogear.measured.turns import MeshTurns
 from thermogear.measured.units import kind_of
+from thermogear.signals.filters import thinned
 from thermogear.signals.lines import line_spectrum
 from thermogear.signals.orders import resample_by_angle
 from thermogear.signals.slices import order_slices
@@ -47,7 +47,7 @@ def order_map(
     """
     values = straight[0]
     while per_turn % 2 == 0 and per_turn / 2 >= 3.4 * 1.3 * highest:
-        values = signal.resample_poly(values, 1, 2, window=("kaiser", 10.0))
+        values = thinned(values, 2)
         per_turn //= 2
     whole = values.size // per_turn
     window_turns = max(2, min(_TURNS, whole // 4))

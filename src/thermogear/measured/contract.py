@@ -23,6 +23,7 @@ from thermogear.measured.parts import common_span, cut, with_gaps
 from thermogear.measured.record import OTHER, Channel, Notice, Record
 from thermogear.measured.traps import (
     MOST_STAMPS,
+    SpeedFact,
     TimeBase,
     is_possible_rate,
     is_tacho_name,
@@ -48,7 +49,7 @@ class Stated:
 
     ``count``: samples promised, None where the file does not say; ``unscaled``: the scaling that
     the file asks for is not known here, so that the samples are the converter's numbers;
-    ``block``: which of several under one header.
+    ``block``: which of several under one header; ``speeds`` of a shaft that the file states.
     """
 
     channel: Channel
@@ -58,6 +59,7 @@ class Stated:
     count: int | None = None
     unscaled: bool = False
     block: int = 1
+    speeds: tuple[SpeedFact, ...] = ()
 
 
 def agreed(bases: Sequence[TimeBase], notices: list[Notice]) -> TimeBase:
@@ -197,13 +199,30 @@ def record_of_channels(
     groups = _groups(kept)
     chosen = next((g for g in groups if first in g), None) or max(groups, key=_weight)
     record = _joined(path, chosen, notes)
+    speed = _speed_of(stated, notes)
     others = [g for g in groups if g is not chosen and _own_time(g[0], chosen[0])]
     _tell_of_rest(groups, chosen, others, notes)
     return replace(
         record,
         notices=tuple(dict.fromkeys((*notes, *doubled))),
         others=tuple(_joined(path, group, []) for group in others),
+        speed=speed,
     )
+
+
+def _speed_of(stated: Sequence[Stated], notes: list[Notice]) -> float | None:
+    """The one speed of a shaft [rad/s] that a file states; what is not used is told."""
+    facts = dict.fromkeys(fact for signal in stated for fact in signal.speeds)
+    notes += [
+        Notice.of("speed_without_unit", name=fact.name, value=fact.value)
+        for fact in facts
+        if fact.speed is None
+    ]
+    known = {fact.speed: fact.name for fact in facts if fact.speed is not None}
+    if len(known) > 1:
+        notes.append(Notice.of("speeds_stated", names=[*known.values()], speeds=[*known]))
+        return None
+    return next(iter(known), None)
 
 
 def _as_read(signal: Stated) -> Stated:

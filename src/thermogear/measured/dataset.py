@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
+import pandas as pd
+import xarray as xr
 
 from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.vocabulary import label
@@ -12,7 +14,7 @@ from thermogear.measured.over_speed import OrderSlices
 from thermogear.measured.quantities import quantities
 from thermogear.measured.reduction import Measurement
 from thermogear.results.result import Result, now
-from thermogear.signals.spectra import amplitude_spectrum
+from thermogear.signals.lines import line_spectrum
 
 
 def slice_groups(found: OrderSlices) -> dict[str, Dataset]:
@@ -71,22 +73,27 @@ def result_of(found: Measurement) -> Result:
     are unknown stay empty."""
     channels = [found.record.channel(name) for name in found.channels]
     table = found.values[:, :_LONGEST]
-    spectrum = amplitude_spectrum(table - table.mean(axis=-1, keepdims=True), 1.0, "hann")
-    place, peaks = _peaks(spectrum.frequencies, spectrum.amplitudes)
+    amplitudes = np.stack([line_spectrum(values, 1.0).hann for values in table])
+    place, peaks = _peaks(np.arange(amplitudes.shape[-1]) / table.shape[-1], amplitudes)
     excerpt = min(_DRAWN, table.shape[-1])
-    names = ("channel",), np.asarray(found.channels)
+    names = np.asarray(found.channels)
+    # made by hand: xarray would load pint to see whether the names are numbers with units
+    index = xr.indexes.PandasIndex(
+        pd.Index(names, dtype=object), "channel", coord_dtype=names.dtype
+    )
+    by_channel = xr.Coordinates.from_xindex(index)
     groups = {
         "record": label(
             {"record_reading": (("channel", "sample"), table[:, :excerpt])},
             {"record_sample": (("sample",), found.start + np.arange(excerpt))},
-        ).assign_coords(channel=names),
+        ).assign_coords(by_channel),
         "spectrum": label(
             {"spectrum_reading": (("channel", "bin"), peaks)},
             {"spectrum_position": (("bin",), place)},
-        ).assign_coords(channel=names),
+        ).assign_coords(by_channel),
     }
     if found.values.shape[-1] > excerpt:
-        groups["whole"] = _pieces(found.values, found.start).assign_coords(channel=names)
+        groups["whole"] = _pieces(found.values, found.start).assign_coords(by_channel)
     if found.readings:
         groups["lines"] = _lines(found.readings)
     if found.slices is not None:
@@ -143,12 +150,8 @@ def _lines(lines: tuple[MeasuredLine, ...]) -> Dataset:
         stored: (("line",), np.array([getattr(line, own) for line in lines], dtype=float))
         for stored, own in names.items()
     }
-    return label(values).assign_coords(
-        channel=("line", [line.channel for line in lines]),
-        kind=("line", [line.kind for line in lines]),
-        name=("line", [line.name for line in lines]),
-        withheld=("line", [line.withheld for line in lines]),
-    )
+    texts = ("channel", "kind", "name", "withheld")
+    return label(values, {own: (("line",), [getattr(one, own) for one in lines]) for own in texts})
 
 
 def _peaks(place: Floats, amplitudes: Floats) -> tuple[Floats, Floats]:

@@ -254,7 +254,8 @@ def _proportions(through: Passed) -> None:
         straight = without_trend(values)
         moving = float(np.std(straight))
         mean = float(np.mean(values))
-        span = abs(float(np.polyfit(np.linspace(-0.5, 0.5, values.size), values, 1)[0]))
+        line = values[[0, -1]] - straight[[0, -1]]
+        span = abs(float(line[1] - line[0]))
         through.findings += [
             Notice.of(
                 "mean_taken_away" if name == "mean" else "trend_taken_away",

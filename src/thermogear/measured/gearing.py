@@ -18,8 +18,8 @@ from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.measured.prominence import Prominence, prominence
 from thermogear.signals.following import follow_line
+from thermogear.signals.lines import line_spectrum
 from thermogear.signals.orders import resample_by_angle, samples_per_cycle
-from thermogear.signals.spectra import amplitude_spectrum
 
 LONGEST = 1 << 19
 """Samples that the search looks at, from the start of the record."""
@@ -53,7 +53,7 @@ _OVER, _FEWER_OVER = (
     0.7,
 )  # ln: of three mesh harmonics, of fewer, over the lines beside; chosen
 _TRIED_LINES = 8
-_WRONG = (2.0, 0.5, 10.0, 0.1, 2.56, 1.0 / 2.56)  # times a rate that is stated wrong
+_WRONG = (2.0, 0.5, 1.25, 0.8, 10.0, 0.1, 2.56, 1.0 / 2.56)  # times a rate that is stated wrong
 _WHOLE = 0.02  # of a turn
 _STEADY = 0.02  # cycles: a thirtieth of its height beside the third harmonic
 
@@ -75,9 +75,11 @@ class Gearing:
     ``teeth`` of the gear on the first shaft whose mesh line it is, None where that is undecided: it
     has their sidebands (``confirmed``, of those given), or teeth and speed given, or a tacho, put
     the mesh line there, or no other number fits a known speed. ``turning``: the line of
-    a shaft of known speed [turns/sample], where there is one. ``rank_of``: 2 or 3 where the line is
-    that harmonic of another as clear, which no shaft's is (a gear has more than three teeth), else
-    0; ``off``: how many times the speed given would fit, else 1.
+    a shaft of known speed [turns/sample], where there is one, ``turning_half_width`` a bin
+    [turns/sample] where the mesh line is none of its multiples, else 0. ``rank_of``: 2 or 3 where
+    the line is that harmonic of another as clear, which no shaft's is (a gear has more than three
+    teeth), else 0; ``off``: how many times the speed given would fit, else 1; ``rival``: the teeth
+    that a known speed names alone, where others are given.
     """
 
     mesh_frequency: float
@@ -89,11 +91,21 @@ class Gearing:
     turning: float | None = None
     rank_of: int = 0
     off: float = 1.0
+    rival: int | None = None
+    turning_half_width: float = 0.0
 
     @property
     def shaft(self) -> float | None:
         """The first shaft's [turns/sample]; None: not known."""
         return self.turning if self.teeth is None else self.mesh_frequency / self.teeth
+
+    def at(self, mesh: float) -> Gearing:
+        """The same with the mesh line, known better, at ``mesh`` [cycles/sample]: a shaft of which
+        it is a multiple turns with it."""
+        turning = self.turning
+        if turning is not None and not self.turning_half_width:
+            turning *= mesh / self.mesh_frequency
+        return replace(self, mesh_frequency=mesh, turning=turning)
 
     def kind(self, rank: int) -> tuple[str, str]:
         """Kind and name of the line's harmonic ``rank``: "mesh", "shaft" or "line".
@@ -104,19 +116,22 @@ class Gearing:
         """
         if self.teeth is not None:
             return "mesh", f"mesh x {rank}"
-        order = shaft_order(self.mesh_frequency, shaft=self.turning)
+        order = (
+            0 if self.turning_half_width else shaft_order(self.mesh_frequency, shaft=self.turning)
+        )
         return ("shaft", f"shaft x {rank * order}") if order else ("line", f"line x {rank}")
 
 
-def shaft_order(place: float, *, shaft: float | None) -> int:
+def shaft_order(place: float, *, shaft: float | None, width: float = 0.0) -> int:
     """The multiple of a ``shaft`` [turns/sample] that a line at ``place`` [cycles/sample] is,
-    within 2 % of a turn; 0: none.
+    within 2 % of a turn or, where that is less, ``width`` of the place; 0: none.
 
     >>> shaft_order(0.0305, shaft=0.01), shaft_order(0.03, shaft=0.01)
     (0, 3)
     """
     order = 0.0 if shaft is None else place / shaft
-    return round(order) if abs(order - round(order)) < _WHOLE else 0
+    within = min(_WHOLE, width / shaft if shaft and width else _WHOLE)
+    return round(order) if abs(order - round(order)) < within else 0
 
 
 def find_gearing(
@@ -202,6 +217,11 @@ class _Search:
         lines = [_line(self.raw, peak / self.raw.per_unit) for peak in peaks]
         return sorted(lines, key=lambda line: -line.score)
 
+    @cached_property
+    def heights(self) -> Floats:
+        """Amplitudes over the standard deviation (channel, bin)."""
+        return np.stack([line_spectrum(c, 1.0).hann / float(np.std(c)) for c in self.table])
+
     def near(self, place: float) -> Gearing | None:
         """The line that facts put at ``place`` [cycles/sample]; None: no line is there."""
         peaks = _peaks(self.raw, low=(1.0 - NEAR) * place, high=(1.0 + NEAR) * place)
@@ -209,13 +229,56 @@ class _Search:
         lines.sort(key=lambda line: -line.score)
         close = [line for line in lines if abs(line.line / place - 1.0) <= _CLOSE]
         close = [line for line in close if line.heights[0] > _THERE][:1]
-        tried = [self.of(line)[0] for line in (lines[:_RIVALS] if self.teeth else [])]
-        gearing = next((trial for trial in tried if trial.confirmed), None)
-        if gearing is None and close:
-            gearing, *_ = self.of(close[0])
-        if gearing is None:
+        tried = lines[:_RIVALS] if self.teeth else []
+        found = next((line for line in tried if self.of(line)[0].confirmed), None)
+        found = found or next(iter(close), None)
+        if found is None:
             return None
-        return replace(gearing, teeth=self.teeth, rank_of=self._rank(gearing))
+        gearing, *_ = self.of(found)
+        gearing = replace(gearing, rank_of=self._rank(gearing))
+        return gearing if self.teeth is None else self._held(gearing, found, place / self.teeth)
+
+    def _held(self, gearing: Gearing, line: _Line, shaft: float) -> Gearing:
+        """The ``line`` that teeth and speed given put there, held against all other lines.
+
+        It is undecided where the speed alone names other teeth, where it is a harmonic, and where
+        it is no clearest line without the sidebands of the teeth, or lower than those about it.
+        """
+        named = self.named(shaft)
+        own = [one for one in named if one.teeth == self.teeth]
+        if own or not (named or gearing.rank_of or not self._is_middle(line, shaft)):
+            return replace((own or [gearing])[0], teeth=self.teeth)
+        gearing = replace((named or [gearing])[0], teeth=None, confirmed=False)
+        if named:
+            return replace(gearing, rival=named[0].teeth)
+        off, other = self.misread(shaft)
+        return (
+            gearing
+            if other is None or other.teeth != self.teeth
+            else replace(other, teeth=None, confirmed=False, off=off)
+        )
+
+    def _is_middle(self, line: _Line, shaft: float) -> bool:
+        """Whether a line has the sidebands of the teeth given and is higher than these; or else is
+        the clearest, or has none, and no other number of teeth is nearer at the speed given."""
+        gearing, sharp, ranks = self.of(line)
+        if not gearing.confirmed or self.teeth is None:
+            clear = line == self.lines[0] or not gearing.families
+            return clear and round(gearing.mesh_frequency / shaft) == self.teeth
+        over = [
+            sharp.at(rank) - max(height for _, height in _beside(sharp, rank, self.teeth))
+            for rank in ranks
+        ]
+        return float(np.mean(over)) > 0.0
+
+    def misread(self, shaft: float) -> tuple[float, Gearing | None]:
+        """How many times as fast a ``shaft`` must be that its gear is named, as where a rate is
+        wrong, and the gearing; 1 and None where none is, or several are."""
+        for off in _WRONG:
+            named = self.named(off * shaft)
+            if len(named) == 1:
+                return off, named[0]
+        return 1.0, None
 
     def _rank(self, gearing: Gearing) -> int:
         """2 or 3 where the line is that harmonic of the clearest one, which is as high, else 0."""
@@ -242,11 +305,17 @@ class _Search:
         named = self.named(shaft)
         if len(named) == 1:
             return named[0]
-        wrong = () if named else _WRONG
-        off = next((off for off in wrong if len(self.named(off * shaft)) == 1), 1.0)
+        off = 1.0 if named else self.misread(shaft)[0]
         turns, height = self.raw.peak(shaft, reach=int(_CLOSE * shaft * self.raw.per_unit))
-        seen = off == 1.0 and height > _THERE
-        return replace(gearing, off=off, turning=turns if seen else None)
+        if off != 1.0 or height <= _THERE:
+            return replace(gearing, off=off)
+        # the order of a line is whole where the shaft's own line, known to a quarter of a bin, says
+        width = _EXACT / self.raw.per_unit
+        order = shaft_order(
+            gearing.mesh_frequency, shaft=turns, width=width * gearing.mesh_frequency / turns
+        )
+        turning = gearing.mesh_frequency / order if order else turns
+        return replace(gearing, turning=turning, turning_half_width=0.0 if order else 4.0 * width)
 
     def named(self, shaft: float) -> list[Gearing]:
         """The gearings with each line that is the mesh line of a whole number of teeth on a
@@ -292,7 +361,7 @@ class _Search:
     def _of(self, line: _Line) -> tuple[Gearing, Prominence, list[int]]:
         mesh = line.mesh
         sharp = replace(self.raw, per_unit=self.raw.per_unit * mesh)
-        angle = _angle(self.table, mesh)
+        angle = _angle(self.table, self.heights, mesh)
         if angle is not None:
             cycles, mesh = angle
             sharp = replace(sharp, per_unit=self.raw.per_unit * mesh)
@@ -331,7 +400,7 @@ def _is_alone(sharp: Prominence, ranks: Sequence[int], teeth: int, *, cycles: fl
         return False
     away, over = [], []
     for rank in ranks:
-        beside = [sharp.peak(rank + n / teeth, reach=1) for n in (-3, -2, -1, 1, 2, 3)]
+        beside = _beside(sharp, rank, teeth)
         below, above = beside[2], beside[3]
         if min(below[1], above[1]) > _STANDS:
             away.append(0.5 * (above[0] - below[0]))
@@ -339,6 +408,11 @@ def _is_alone(sharp: Prominence, ranks: Sequence[int], teeth: int, *, cycles: fl
     off = abs(float(np.mean(away)) - 1.0 / teeth) * sharp.per_unit if away else np.inf
     least = _OVER if len(ranks) == _AROUND else _FEWER_OVER
     return bool(off < _EXACT and min(over) > 0.0 and np.mean(over) > least)
+
+
+def _beside(sharp: Prominence, rank: int, teeth: int) -> list[tuple[float, float]]:
+    """Place and height of the three lines to each side of a mesh harmonic, in its own angle."""
+    return [sharp.peak(rank + n / teeth, reach=1) for n in (-3, -2, -1, 1, 2, 3)]
 
 
 def _clear(sharp: Prominence, ranks: Sequence[int], distance: float) -> list[bool]:
@@ -432,32 +506,26 @@ def _line(raw: Prominence, near: float) -> _Line:
     )
 
 
-def _angle(table: Floats, mesh: float) -> tuple[Floats, float] | None:
-    """Cycles of the mesh line at each sample, and the mean mesh line."""
+def _angle(table: Floats, heights: Floats, mesh: float) -> tuple[Floats, float] | None:
+    """Cycles of the mesh line at each sample, and the mean mesh line, by the channel in which it is
+    highest."""
     half = max(_NARROW * mesh, 12.0 / table.shape[-1])
     if half > 0.2 * mesh:
         return None
-    heights = [
-        float(amplitude_spectrum(c - c.mean(), 1.0, "hann").amplitudes[_near(c.size, mesh)].max())
-        / float(np.std(c))
-        for c in table
-    ]
-    best = table[int(np.argmax(heights))]
+    centre = int(np.rint(mesh * table.shape[-1]))
+    near = heights[:, max(1, centre - 2) : centre + 3]
+    best = table[int(np.argmax(near.max(axis=-1)))]
     cycles = follow_line(best, 1.0, frequency=mesh, half_width=half, cut=False).cycles
     if np.any(np.diff(cycles) <= 0):
         return None
-    return cycles, float(np.polyfit(np.arange(cycles.size), cycles, 1)[0])
+    grid = np.arange(cycles.size) - 0.5 * (cycles.size - 1)
+    return cycles, float(grid @ cycles / (grid @ grid))
 
 
 def _wanders(cycles: Floats, mesh: float) -> bool:
     """Whether a line's cycles leave an even turning by what three times as many would show."""
     off = cycles - mesh * np.arange(cycles.size)
     return bool(np.ptp(off) > _STEADY)
-
-
-def _near(count: int, frequency: float) -> slice:
-    centre = int(np.rint(frequency * count))
-    return slice(max(1, centre - 2), centre + 3)
 
 
 def sides_of(*, teeth: int | None, rank: int, mesh: float) -> tuple[float, ...]:

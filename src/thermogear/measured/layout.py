@@ -13,7 +13,13 @@ from thermogear.measured.clock import comment_column
 from thermogear.measured.labview import Waves, waves_of
 from thermogear.measured.options import A_TEXT, ReadOptions, refused
 from thermogear.measured.record import Notice
-from thermogear.measured.traps import is_possible_rate, is_rate_name, split_unit
+from thermogear.measured.traps import (
+    SpeedFact,
+    is_possible_rate,
+    is_rate_name,
+    speed_fact,
+    split_unit,
+)
 from thermogear.measured.units import factor_of, kind_of, unit, unknown
 
 MOST_COLUMNS = 4096
@@ -29,7 +35,7 @@ class Layout:
     fields make one number. ``thousands``: the sign that groups digits, "" for none. ``skip``: lines
     before the first row. ``commented``: what follows the columns is a comment; ``clocks``: clock
     stamps are turned to seconds; ``waves``: what a LabVIEW header says;
-    ``strange``: units of columns that are none known.
+    ``strange``: units of columns that are none known; ``speeds`` of a shaft that it states.
     """
 
     separator: str | None
@@ -45,6 +51,7 @@ class Layout:
     strange: dict[int, str] = field(default_factory=dict, kw_only=True)
     clocks: bool = field(default=False, kw_only=True)
     waves: Waves | None = field(default=None, kw_only=True)
+    speeds: list[SpeedFact] = field(default_factory=list, kw_only=True)
     notices: list[Notice] = field(default_factory=list)
 
     def plain(self, line: str) -> str:
@@ -275,5 +282,7 @@ def _facts(layout: Layout, above: list[str]) -> None:
                 )
             elif is_possible_rate(float(number) * factor_of(said)):
                 layout.rate = float(number) * factor_of(said)
+        elif NUMBER.match(number) and (fact := speed_fact(key, float(number), unit(tail))):
+            layout.speeds.append(fact)
         elif key_name.strip().lower() in ("unit", "units", "单位") and unit(value):
             layout.units = [u or unit(value) for u in layout.units]

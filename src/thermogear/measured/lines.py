@@ -70,8 +70,9 @@ class MeasuredLine:
 
     @property
     def is_reading(self) -> bool:
-        """Whether the line was asked for, or its interval is no wider than itself."""
-        return self.kind == "order" or not self.half_width > 1.0
+        """Whether the line was asked for, or is over the floor with an interval no wider than
+        itself."""
+        return self.kind == "order" or not (self.half_width > 1.0 or self.prominence < 1.0)
 
     @property
     def acceleration_g(self) -> float:
@@ -210,7 +211,7 @@ def other_lines(
         if size < least or len(found) == _OTHERS:
             break
         if not explained(place) and 3.0 * width < place < 0.5 - 3.0 * width:
-            order = shaft_order(place, shaft=shaft)
+            order = shaft_order(place, shaft=shaft, width=width)
             name = f"line at {place / mesh:.4g} {'mesh' if gearing.teeth else 'times line x 1'}"
             name = name if shaft is None else f"order {place / shaft:.4g}"
             kind, name = ("shaft", f"shaft x {order}") if order else ("line", name)
@@ -249,7 +250,7 @@ def channel_lines(
     in_hertz = record.rate is not None
     shaft = (gearing.shaft if gearing else None) or float("nan")
     speed = 2 * np.pi * rate * shaft if in_hertz else float("nan")
-    share = turns.half_width / turns.frequency if turns else float("nan")
+    share = _speed_share(gearing, turns)
     for want in wanted:
         reach = want.half_width * rate
         line = through.read(want.position * rate, half_width=reach, window=chain.window)
@@ -352,6 +353,14 @@ def channel_lines(
             )
         )
     return found
+
+
+def _speed_share(gearing: Gearing | None, turns: MeshTurns | None) -> float:
+    """Relative half width of the shaft's speed: the mesh line's, and that of its own line."""
+    if gearing is None or turns is None:
+        return float("nan")
+    own = gearing.turning_half_width / (gearing.turning or 1.0)
+    return turns.half_width / turns.frequency + (own if gearing.teeth is None else 0.0)
 
 
 def jittered(position: ArrayLike, jitter: float) -> Floats:

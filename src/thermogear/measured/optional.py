@@ -24,7 +24,13 @@ from thermogear.base.errors import of_extra
 from thermogear.measured.contract import UNSTATED, Stated, record_of_channels, timed
 from thermogear.measured.options import ReadOptions, refused
 from thermogear.measured.record import Channel, Notice, Record, Samples
-from thermogear.measured.traps import TimeBase, is_time_name, longest_even, step_base
+from thermogear.measured.traps import (
+    TimeBase,
+    is_time_name,
+    longest_even,
+    speed_fact,
+    step_base,
+)
 from thermogear.measured.units import factor_of, kind_of, unit, unknown
 
 _UFF_AXES = {18: "frequency", 19: "speed", 20: "order"}
@@ -105,6 +111,8 @@ def _tdms(nptdms: ModuleType, path: Path) -> list[Stated]:
         if isinstance(step, float) and step > 0:
             base = step_base(step * factor, channel=item.name, start=start, origin=origin)
         name, label = f"{group.name}/{item.name}", facts.get("unit_string", "")
+        told = (whole.properties | group.properties | facts).items()
+        speeds = [speed_fact(key, one) for key, one in told if isinstance(one, (int, float))]
         stated.append(
             Stated(
                 _channel(name, values, str(label or facts.get("NI_UnitDescription", ""))),
@@ -112,6 +120,7 @@ def _tdms(nptdms: ModuleType, path: Path) -> list[Stated]:
                 axis=axis,
                 count=values.size + 1 if cut else None,
                 unscaled=_unscaled(nptdms, facts, group.properties, whole.properties),
+                speeds=tuple(filter(None, speeds)),
             )
         )
     return stated

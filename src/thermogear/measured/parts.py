@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from thermogear.measured.record import Channel, Samples
+from thermogear.base.errors import InputError
+from thermogear.measured.record import Channel, Record, Samples
 
 
 @dataclass(frozen=True)
@@ -71,6 +72,25 @@ def cut(channel: Channel, *, first: int, count: int) -> Channel:
         return channel
     samples: Samples = Joined((Part(channel.samples, first=first, stop=first + count),))
     return replace(channel, samples=samples)
+
+
+def later(record: Record, seconds: float) -> Record:
+    """The record from so many ``seconds`` after its first sample on.
+
+    Raises InputError where it has no rate or ends before.
+    """
+    if record.rate is None:
+        raise InputError("start", f"{seconds:g} s", why="no rate is known", fix="give --rate")
+    first = round(seconds * record.rate)
+    if not 0 <= first < record.samples:
+        length = record.samples / record.rate
+        raise InputError("start", f"{seconds:g} s", allowed=f"0..{length:.6g} s")
+    count = record.samples - first
+    return replace(
+        record,
+        channels=tuple(cut(channel, first=first, count=count) for channel in record.channels),
+        start=record.start + first / record.rate,
+    )
 
 
 def with_gaps(channel: Channel, gaps: Sequence[tuple[int, int]]) -> Channel:

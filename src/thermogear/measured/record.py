@@ -102,6 +102,7 @@ class Record:
     ``tacho`` names the tacho channel; ``notices`` are the traps met while reading; ``rate_doubt``:
     what contradicts the rate; ``rate_half_width`` [samples/s] of its 95 % interval, 0 where it is
     stated, ``rate_note``: how well time stamps tell it, and their ``jitter`` [rms, steps].
+    ``speed`` [rad/s] of a shaft that the file states;
     ``per_turn`` [samples/turn] where they are taken at even angles; ``others``:
     what the same file holds at other rates or times.
     """
@@ -118,6 +119,7 @@ class Record:
     rate_note: str = ""
     jitter: float = 0.0
     per_turn: float | None = None
+    speed: float | None = None
     others: tuple[Record, ...] = ()
 
     def __post_init__(self) -> None:

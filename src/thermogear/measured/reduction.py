@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.bounds import MOST_TEETH, PULSES
+from thermogear.base.bounds import MOST_TEETH, PULSES, SPEED
 from thermogear.base.errors import InputError, short
 from thermogear.measured.chain import METHODS, Chain
 from thermogear.measured.changing import (
@@ -162,9 +162,9 @@ def measure(
     notices = list(record.notices)
     chosen = chosen_channels(record, channels, notices)
     through = passed(chosen, LONGEST)
-    if len(chosen[0]) > LONGEST:
-        notices.append(Notice.of("record_cut", used=LONGEST, samples=len(chosen[0])))
+    notices += _beyond(record)
     given = teeth, speed
+    speed = _known_speed(record, speed, notices)
     expected = expected_mesh(record, teeth, speed)
     changing, said = read_in_angle(
         record,
@@ -188,6 +188,7 @@ def measure(
             notices,
             expected=expected,
             teeth=teeth,
+            rate=record.rate,
             shaft=_turns(record, speed),
         )
         teeth = teeth or (gearing.teeth if gearing else None)
@@ -198,13 +199,13 @@ def measure(
     if gearing is not None and turns is None:
         turns = mesh_turns(table, gearing, teeth=teeth, harmonics=harmonics)
         # in a resampled record the lines stand at multiples of this mean and nowhere else
-        gearing = replace(gearing, mesh_frequency=turns.frequency)
+        gearing = gearing.at(turns.frequency)
         turns = replace(turns, half_width=turns.half_width + through.turned)
     if gearing is not None:
         few = few_turns(gearing, teeth=teeth, samples=table.shape[-1])
         notices += few
         sidebands = 0 if few else sidebands
-        undecided = speed_undecided(gearing, given[0])
+        undecided = speed_undecided(gearing, given[0], speed=speed)
         doubt = check_rate(
             record,
             gearing,
@@ -271,6 +272,22 @@ def measure(
         swellings=swellings,
         defects=defects_of(swellings, bearings),
     )
+
+
+def _beyond(record: Record) -> list[Notice]:
+    """What of a long record is not read."""
+    if record.samples <= LONGEST:
+        return []
+    seconds = None if record.rate is None else LONGEST / record.rate
+    return [Notice.of("record_cut", used=LONGEST, samples=record.samples, seconds=seconds)]
+
+
+def _known_speed(record: Record, given: float | None, notices: list[Notice]) -> float | None:
+    """The speed given [rad/s], else the one that the file states, which is told."""
+    if given is not None or record.speed is None or not 0.0 < record.speed <= SPEED.most:
+        return given
+    notices.append(Notice.of("speed_of_file", speed=record.speed))
+    return record.speed
 
 
 def _turns(record: Record, speed: float | None) -> float | None:

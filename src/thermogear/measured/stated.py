@@ -29,10 +29,11 @@ def stated_gearing(
     *,
     expected: float | None,
     teeth: int | None,
+    rate: float | None,
     shaft: float | None = None,
 ) -> Gearing | None:
     """The line at the ``expected`` place [cycles/sample], where one is there; else what the lines
-    say, with the ``teeth`` given or the ``shaft`` of known speed [turns/sample]."""
+    say, with the ``teeth`` given or the ``shaft`` of known speed [turns/sample]; ``rate`` [1/s]."""
     within = expected is not None and 5.0 / table.shape[-1] < expected < 0.45
     try:
         gearing = find_gearing(list(table), expected if within else None, teeth=teeth, shaft=shaft)
@@ -41,13 +42,18 @@ def stated_gearing(
         return None
     notices += of_line(gearing)
     if gearing.off != 1.0:
-        notices.append(Notice.of("shaft_by_lines", ratio=gearing.off))
+        fitting = None if rate is None else rate / gearing.off
+        notices.append(Notice.of("shaft_by_lines", ratio=gearing.off, rate=rate, fitting=fitting))
     return gearing
 
 
-def speed_undecided(gearing: Gearing, teeth: int | None) -> Notice | None:
+def speed_undecided(gearing: Gearing, teeth: int | None, *, speed: float | None) -> Notice | None:
     """Where the line that is read may be the mesh line of another gear than that of the ``teeth``
-    given, or none: the shaft's speed is withheld."""
+    given, or none: the shaft's speed is withheld, though one is given [rad/s]."""
     if teeth is None or gearing.teeth is not None:
         return None
-    return Notice.of("shaft_speed_undecided", teeth=teeth, line=gearing.mesh_frequency)
+    line = gearing.mesh_frequency
+    if gearing.rival is not None:
+        return Notice.of("teeth_contradicted", teeth=teeth, named=gearing.rival, line=line)
+    by = "--speed" if speed is None else None
+    return Notice.of("shaft_speed_undecided", teeth=teeth, line=line, by=by)

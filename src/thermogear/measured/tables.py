@@ -16,10 +16,12 @@ from thermogear.measured.contract import Stated, agreed, record_of_channels, sta
 from thermogear.measured.options import ReadOptions, refused
 from thermogear.measured.record import Channel, Notice, Record, Samples
 from thermogear.measured.traps import (
+    SpeedFact,
     TimeBase,
     is_rate_name,
     is_step_name,
     is_time_name,
+    speed_fact,
     split_unit,
 )
 from thermogear.measured.units import factor_of, kind_of, unit, unknown
@@ -124,18 +126,23 @@ class _Told:
 
     channels: list[Channel] = field(default_factory=list)
     rates: list[tuple[str, TimeBase]] = field(default_factory=list)
+    speeds: list[SpeedFact] = field(default_factory=list)
     notes: list[Notice] = field(default_factory=list)
     complex: list[str] = field(default_factory=list)
     objects: list[str] = field(default_factory=list)
 
     def number(
-        self, name: str, value: Any, origin: str, *, scope: str, factor: float = 1.0
+        self, name: str, value: Any, origin: str, *, scope: str, said: str | None = None
     ) -> None:
-        """A rate, where ``name`` says so and ``value`` is a number of ``factor`` [1/s]."""
+        """A rate or a speed, where ``name`` says so and ``value`` is a number, of the unit ``said``
+        where there is one."""
         number = number_of(value)
         if number is None or number <= 0:
             return
-        rate = number * factor
+        if (fact := speed_fact(name, number, said)) is not None:
+            self.speeds.append(fact)
+            return
+        rate = number * (factor_of(said) if said and kind_of(said) == "frequency" else 1.0)
         if is_step_name(name):
             rate, origin = 1.0 / max(number, 1e-300), f"{origin} (a step, in seconds)"
         elif not is_rate_name(name):
@@ -157,10 +164,9 @@ class _Told:
         if array.data is None:
             self.objects.append(array.name)
         elif not sizes:
-            factor = factor_of(said) if said and kind_of(said) == "frequency" else 1.0
             value = array.data[()] if hasattr(array.data, "shape") else array.data
             origin = f"variable {array.name}"
-            self.number(leaf, value, origin, scope=_parent(array.name), factor=factor)
+            self.number(leaf, value, origin, scope=_parent(array.name), said=said)
         elif len(sizes) > 2 or max(sizes) < SHORTEST:
             return
         elif np.iscomplexobj(array.data):
@@ -192,7 +198,7 @@ class _Told:
             if scopes not in agreed_on:
                 bases = [base for scope, base in self.rates if scope in scopes or not scopes]
                 agreed_on[scopes] = agreed(bases, self.notes)
-            stated.append(Stated(channel, agreed_on[scopes]))
+            stated.append(Stated(channel, agreed_on[scopes], speeds=tuple(self.speeds)))
         return timed(stated, self.notes)
 
 

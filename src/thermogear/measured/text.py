@@ -41,9 +41,8 @@ from thermogear.measured.traps import MOST_STAMPS, is_tacho_name, is_time_name
 from thermogear.measured.units import counts_turns
 
 _HEAD = 1 << 16
-_LINES = 1 << 15  # rows parsed at once
-_CHARACTERS = 1 << 24  # of the rows parsed at once
-_LONGEST = 1 << 20  # characters of one line
+_LONGEST = 1 << 20
+"""Characters of one line, and of the rows parsed at once."""
 _BLOCK = re.compile(r" \(block \d+\)$")
 
 
@@ -140,20 +139,9 @@ def _encoding(path: Path) -> tuple[str, list[Notice]]:
 
 
 def _head(lines: io.TextIOWrapper) -> list[str]:
-    return [line.rstrip("\r\n") for line in _some(lines, 400, 4 * _HEAD)[0]]
-
-
-def _some(lines: io.TextIOWrapper, most: int, characters: int) -> tuple[list[str], bool]:
-    """The next lines, up to so many of them or of ``characters``, and whether the file ends."""
-    found: list[str] = []
-    size = 0
-    while len(found) < most and size < characters:
-        line = lines.readline(_LONGEST)
-        if not line:
-            return found, True
-        found.append(line)
-        size += len(line)
-    return found, False
+    """The first 400 lines, or those that begin within four times what tells the encoding."""
+    text = lines.read(4 * _HEAD)
+    return (text + lines.readline(_LONGEST)).split("\n")[:400]
 
 
 def _kept(layout: Layout, options: ReadOptions) -> tuple[list[int], tuple[str, ...]]:
@@ -183,40 +171,34 @@ def _kept(layout: Layout, options: ReadOptions) -> tuple[list[int], tuple[str, .
 def _tables(lines: io.TextIOWrapper, layout: Layout, path: Path) -> Iterator[Floats]:
     """Blocks of rows; the last row is held back until it is known to be whole."""
     number = layout.skip
-    while True:
-        block, last = _block(lines, path, number)
-        if not block:
-            return
-        if layout.clocks:
-            block = [without_clocks(line) for line in block]
-        if last:
-            _cut_end(block, layout)
-        if block:
-            yield _table(block, layout, path, number, last)
-        number += len(block)
-
-
-def _block(lines: io.TextIOWrapper, path: Path, number: int) -> tuple[list[str], bool]:
-    """The next rows, and whether the file ends with them."""
-    block, last = _some(lines, _LINES, _CHARACTERS)
-    for place, line in enumerate(block, start=number + 1):
-        if len(line) == _LONGEST and not line.endswith("\n"):
+    while text := lines.read(_LONGEST):
+        last = len(text) < _LONGEST
+        text += lines.readline(_LONGEST)
+        begin = text.rfind("\n", 0, -1) + 1
+        if len(text) - begin > _LONGEST:
+            place = number + text.count("\n", 0, begin) + 1
             raise refused(path, "text", f"line {place} is longer than {_LONGEST} characters")
-    return block, last
+        rows = text.count("\n")
+        if layout.clocks:
+            text = "\n".join(map(without_clocks, text.split("\n")))
+        if not text.endswith("\n"):
+            text = _cut_end(text, layout)
+        yield _table(text, layout, path, number, last)
+        number += rows
 
 
-def _cut_end(block: list[str], layout: Layout) -> None:
-    """Drop a last row that the end of the file has cut."""
-    if block[-1].endswith("\n") or len(block) < 2:
-        return
-    row = _fields(block[-1], layout)
-    lengths = [len(f[-1]) for f in (_fields(line, layout) for line in block[-200:-1]) if f]
+def _cut_end(text: str, layout: Layout) -> str:
+    """The rows without a last one that the end of the file has cut."""
+    above, _, end = text.rpartition("\n")
+    if not above:
+        return text
+    row = _fields(end, layout)
+    lengths = [
+        len(f[-1]) for f in (_fields(line, layout) for line in above.split("\n")[-199:]) if f
+    ]
     cut = len(row) < layout.columns or (lengths and len(row[-1]) < min(lengths))
-    if cut:
-        block.pop()
-        layout.notices.append(Notice.of("last_row_dropped"))
-    else:
-        layout.notices.append(Notice.of("last_row_unended"))
+    layout.notices.append(Notice.of("last_row_dropped" if cut else "last_row_unended"))
+    return above if cut else text
 
 
 def _fields(line: str, layout: Layout) -> list[str]:
@@ -229,30 +211,30 @@ def _fields(line: str, layout: Layout) -> list[str]:
     return cells
 
 
-def _table(block: list[str], layout: Layout, path: Path, number: int, last: bool) -> Floats:
+def _table(text: str, layout: Layout, path: Path, number: int, last: bool) -> Floats:
     if not layout.paired:
         try:
             used = range(layout.columns) if layout.commented else None
-            rows_plain = map(layout.plain, block)
+            lines = io.StringIO(layout.plain(text))
             table = np.loadtxt(
-                rows_plain, delimiter=layout.separator, ndmin=2, comments=None, usecols=used
+                lines, delimiter=layout.separator, ndmin=2, comments=None, usecols=used
             )
             if table.shape[1] == layout.columns:
                 return table
         except (ValueError, UserWarning):
             table = np.empty((0, 0))  # gaps, quotes or a broken row: cell by cell below
     rows: list[list[float]] = []
+    block = text.split("\n")
     for place, line in enumerate(block):
         cells = _fields(line, layout)
         if not any(cells):
             continue
         if len(cells) == layout.columns - 1 and layout.separator is not None:
-            raw = line.rstrip("\r\n")
-            fields = 0 if layout.paired else raw.count(layout.separator) + 1
-            if raw.endswith(layout.separator) or fields == layout.columns:
+            fields = 0 if layout.paired else line.count(layout.separator) + 1
+            if line.endswith(layout.separator) or fields == layout.columns:
                 cells.append("")  # an empty last cell, not a missing one
         if len(cells) != layout.columns:
-            if last and place == len(block) - 1:
+            if last and not any(block[place + 1 :]):
                 layout.notices.append(Notice.of("last_row_dropped"))
                 break
             raise refused(
@@ -292,7 +274,7 @@ def _record(
     for i, column in zip(keep, columns, strict=True):
         strange = layout.strange.get(i, "")
         channel = Channel(layout.names[i], column, layout.units[i], strange=strange)
-        place, signal = 0, Stated(channel, header)
+        place, signal = 0, Stated(channel, header, speeds=tuple(layout.speeds))
         if waves is not None and i in waves.columns:
             wave = waves.columns[i]
             base = wave.base(layout.names[i]) if header is UNSTATED else header

@@ -28,6 +28,12 @@ _RATE = re.compile(
 _DT = re.compile(
     r"^(dt|delta[ _]?t|[td][ _]?step|samp(?:ling|le)?[ _-]?(?:interval|period))$", re.I
 )
+_CODE = re.compile(r"^X\d+(?=RPM$)")  # of a record, before the name
+_SPEED = re.compile(
+    r"^(X\d+rpm|((shaft|motor|input|rotor|rotation(al)?|nominal|mean|pinion)[ _-]?)?"
+    r"(speed|rpm|rps|drehzahl|转速))$",
+    re.I,
+)
 _SUFFIX = re.compile(r"^(.*?)[ _](s|sec|ms|us|rpm|hz)$", re.I)
 """A unit behind an underscore: of times and speeds alone, where nothing else can be meant."""
 _LETTERS = ("h", "d")
@@ -75,6 +81,31 @@ def is_step_name(name: str) -> bool:
 def is_tacho_name(name: str) -> bool:
     """Whether a column's name says tacho or keyphasor."""
     return bool(_TACHO.search(name[:_LONGEST]))
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpeedFact:
+    """What a file states of a shaft's speed: the ``name`` of the field, its ``value``, the speed
+    [rad/s] where its unit is known."""
+
+    name: str
+    value: float
+    speed: float | None
+
+
+def speed_fact(name: str, value: float, said: str | None = None) -> SpeedFact | None:
+    """The speed that a field states, None where its name says no speed; ``said``: its unit.
+
+    >>> speed_fact("rpm", 60.0).speed.__round__(3), speed_fact("shaft_speed", 1500.0).speed
+    (6.283, None)
+    """
+    bare, known = split_unit(name)
+    known = known or said or unit(_CODE.sub("", bare))
+    if value <= 0.0 or not _SPEED.match(bare):
+        return None
+    turns = known is not None and kind_of(known) in ("speed", "frequency")
+    speed = 2.0 * np.pi * value * factor_of(known) if known and turns else None
+    return SpeedFact(name=name, value=value, speed=speed)
 
 
 def is_rate_name(name: str) -> bool:

@@ -6,12 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import fft, signal
+from scipy import fft
 
 from thermogear.base.arrays import Floats
 from thermogear.measured.chain import Turning
 from thermogear.measured.gearing import Gearing, sides_of
 from thermogear.measured.record import Notice
+from thermogear.signals.filters import thinned
 from thermogear.signals.following import (
     Followed,
     band_power,
@@ -37,7 +38,6 @@ _AS_FAR = 3.0  # times the distance of the first sidebands, up to which is looke
 _CLEAR = 3  # bins of a line's own lobe, Hann's window
 _CLEARLY = 3.0  # times the power of Q
 _THIN = 0.25  # cycles a sample, of the line while filters are tried
-_EVEN = ("kaiser", 10.0)  # its gain is even to 1.1e-5 up to 0.6 of half the rate
 _HELD = 1.0  # of the filter's half width: there its phase has taken the noise away
 
 
@@ -300,7 +300,7 @@ def _follow(
     orders = [one / frequency for one in beside]
     tried: list[tuple[float, Followed, MeshTurns]] = []
     every = max(1, int(_THIN / frequency))
-    thin = signal.resample_poly(values, 1, every, window=_EVEN) if every > 1 else values
+    thin = thinned(values, every)
     for half_width in filter_widths(spectrum, frequency, every=True):
         if spectrum.samples * half_width < 4.0 * spectrum.rate:
             continue

@@ -48,14 +48,14 @@ def stretched(
     flags as their words.
     """
     sizes = {dim: data.sizes[dim] for dim in dims}
-    return {
-        str(name): variable.to_base_variable()  # type: ignore[no-untyped-call]
-        .copy(data=made(variable.values))
-        .set_dims(sizes)
-        .values.ravel()
-        for name, variable in in_words(data).variables.items()
-        if set(variable.dims) <= set(sizes)
-    }
+    found = {}
+    for name, variable in in_words(data).variables.items():
+        if set(variable.dims) <= set(sizes):
+            own = [variable.dims.index(dim) for dim in sizes if dim in variable.dims]
+            sides = [sizes[dim] if dim in variable.dims else 1 for dim in sizes]
+            values = made(variable.values).transpose(own).reshape(sides)
+            found[str(name)] = np.broadcast_to(values, tuple(sizes.values())).ravel()
+    return found
 
 
 def rows_of(columns: Mapping[str, ArrayLike]) -> list[dict[str, Any]]:

@@ -122,7 +122,7 @@ def _clearest(
     """Bins (with their fractions) of the clearest rates in a band, and their harmonics' powers."""
     size = fft.next_fast_len(2 * band.size)
     squared = np.abs(fft.ifft(band, size)) ** 2
-    power = np.abs(fft.fft(squared)[: band.size]) ** 2
+    power = np.abs(fft.rfft(squared)[: band.size]) ** 2
     mean = np.maximum(fft.irfft(np.abs(fft.rfft(kept, size)) ** 2, size)[: band.size], 1.0)
     over = power / (mean * _NEIGHBOURS) * size**2
     # impacts that slip make noise of their own in the envelope: a rate must stand out of it

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy import signal
 
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
@@ -48,7 +48,9 @@ class BandPass:
     def coefficients(self) -> Floats:
         """The impulse response, symmetric."""
         return np.asarray(
-            signal.firwin(self.taps, self.band, pass_zero=False, fs=self.rate, window="hamming")
+            scipy.signal.firwin(
+                self.taps, self.band, pass_zero=False, fs=self.rate, window="hamming"
+            )
         )
 
     @property
@@ -82,4 +84,29 @@ def without_trend(x: ArrayLike) -> Floats:
     >>> without_trend([1.0, 3.0, 5.0]).round(9) + 0.0
     array([0., 0., 0.])
     """
-    return np.asarray(signal.detrend(finite_record(x), axis=-1, type="linear"))
+    values = finite_record(x)
+    ramp = np.arange(values.shape[-1]) - 0.5 * (values.shape[-1] - 1)
+    moved = values - values.mean(axis=-1, keepdims=True)
+    slope = moved @ ramp / float(ramp @ ramp)
+    return np.asarray(moved - slope[..., None] * ramp)
+
+
+def thinned(x: ArrayLike, every: int) -> Floats:
+    """Each ``every``-th sample of one channel, behind a filter that keeps its rate's half free.
+
+    ``x`` [any unit]; zeros stand beyond its ends. A windowed sinc of 20 ``every`` + 1 taps (Kaiser,
+    beta 10): even to 1.1e-5 up to 0.6 of half the new rate. Source: Oppenheim and Schafer,
+    Discrete-Time Signal Processing, window design and decimation.
+
+    >>> x = np.cos(2 * np.pi * 0.02 * np.arange(4000))
+    >>> bool(np.abs(thinned(x, 4) - x[::4])[20:-20].max() < 1e-4)
+    True
+    """
+    values, reach = finite_record(x), 10 * every
+    if every == 1:
+        return values
+    taps = np.sinc(np.arange(-reach, reach + 1) / every) * np.kaiser(2 * reach + 1, 10.0)
+    count = -(-values.size // every)
+    rows = np.pad(values, (reach, count * every - values.size + reach)).reshape(-1, every)
+    parts = np.pad(taps / taps.sum(), (0, every - 1)).reshape(-1, every)
+    return np.asarray(sum(rows[k : k + count] @ part for k, part in enumerate(parts)))

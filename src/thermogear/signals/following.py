@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy import interpolate, signal
 
 from thermogear.base.arrays import Complexes, Floats
 from thermogear.base.errors import InputError
@@ -34,6 +34,7 @@ _FEWER = 5
 _ALIKE = 1e-4  # cycles
 _EQUAL = 1e-8  # turns
 _BLOCK = 65536  # samples, of which all waves are held at once
+_HELD = 1 << 18  # samples of kernels that are held at once
 _LEAST = 1e-3  # of the largest: lines too near to each other share what they hold
 
 
@@ -165,14 +166,17 @@ def follow_line(
     last = min(length * 2.0, max(length, 2.0 / (WIDTHS[0] * frequency) * per_second))
     widest = min((abs(one - frequency) for one in beside), default=np.inf)
     last = min(max(last, 2.0 / widest * per_second), 0.25 * count)
-    cycles, whole = _path(values, frequency / per_second, length, last=last)
+    path, whole = _path(values, frequency / per_second, length, last=last)
+    grid = np.arange(float(count))
+    cycles = path(grid)
     if beside:
         ratios = [one / frequency for one in beside if 0.0 < one < 0.5 * per_second]
         near = widest / per_second * count < _NEAR
         for _ in range((_ROUNDS if cut else _FEWER) if near else 1):
             before = cycles
             values = record - _turning_with(record, cycles, ratios)
-            cycles, whole = _path(values, frequency / per_second, length, last=last)
+            path, whole = _path(values, frequency / per_second, length, last=last)
+            cycles = path(grid)
             if np.max(np.abs(cycles - before)) < _ALIKE:
                 break
     edge, degrees = _HALF, 1.0
@@ -203,17 +207,24 @@ def _envelope(
     its kernel, which the record's ends cut [samples]."""
     count = values.size
     kernel = _hann_kernel(length / 8.0)
-    turn = np.exp(-2j * np.pi * frequency * np.arange(count))
-    base = signal.oaconvolve((values - values.mean()) * turn, kernel, mode="same")
+    reach = kernel.size // 2
     size = max(64, int(np.ceil(count / length * _FINER)))
-    place = np.unique(np.rint(np.linspace(0, count - 1, min(size, count))).astype(np.int64))
+    place = np.rint(np.linspace(0, count - 1, min(size, count))).astype(np.int64)
+    # at the kept samples alone, in blocks that memory holds
+    away = reach - np.arange(kernel.size)
+    wave = (kernel * np.exp(2j * np.pi * frequency * away)).view(float).reshape(-1, 2)
+    around = np.lib.stride_tricks.sliding_window_view(
+        np.pad(values - values.mean(), reach), kernel.size
+    )
+    pieces = np.array_split(place, place.size * kernel.size // _HELD + 1)
+    base = np.concatenate([around[piece] @ wave for piece in pieces]).view(complex)[:, 0]
+    base *= np.exp(-2j * np.pi * frequency * place)
     # of the kernel what is inside the record
-    away = kernel.size // 2 - np.arange(kernel.size)
     sums = np.cumsum(np.insert([kernel, away * kernel], 0, 0.0, axis=1), axis=1)
-    last = place + kernel.size // 2 + 1
+    last = place + reach + 1
     ends = np.minimum(last, kernel.size), np.maximum(last - count, 0)
     weight, moment = sums[:, ends[0]] - sums[:, ends[1]]
-    return base[place] / weight, place, moment / weight
+    return base / weight, place, moment / weight
 
 
 @dataclass(frozen=True)
@@ -266,8 +277,10 @@ def _smoothed(envelope: Complexes, kernel: Floats, passes: int) -> tuple[Floats,
     return phase, size
 
 
-def _path(values: Floats, frequency: float, length: float, *, last: float) -> tuple[Floats, bool]:
-    """Cycles of the line at each sample, and whether it stayed within the filter.
+def _path(
+    values: Floats, frequency: float, length: float, *, last: float
+) -> tuple[Callable[[Floats], Floats], bool]:
+    """Cycles of the line at any samples, and whether it stayed within the filter.
 
     Caught by a kernel of ``length``, then followed by the longer ``last``, which the line no longer
     leaves and which lets less of other lines in. Sidebands that a filter takes unevenly, because
@@ -282,9 +295,8 @@ def _path(values: Floats, frequency: float, length: float, *, last: float) -> tu
         phase = quiet.values(quiet.values(phase))
         phase = phase + _smoothed(envelope * np.exp(-1j * phase), longer, _PASSES)[0]
     phase -= (phase[-1] - phase[0]) / (values.size - 1) * centre  # by their mean turning
-    grid = np.arange(values.size)
-    turned = interpolate.CubicSpline(place, phase / (2.0 * np.pi))(grid)
-    return frequency * grid + turned, bool(np.min(size) > 0.5 * np.median(size))
+    turned = scipy.interpolate.CubicSpline(place, phase / (2.0 * np.pi))
+    return lambda at: frequency * at + turned(at), bool(np.min(size) > 0.5 * np.median(size))
 
 
 def _turning_with(values: Floats, cycles: Floats, ratios: Sequence[float]) -> Floats:
@@ -351,7 +363,9 @@ def _edge(values: Floats, frequency: float, length: float, last: float) -> tuple
         before, after = slice(max(0, cut - piece), cut), slice(cut, cut + piece)
         ended, _ = _path(values[before], frequency, length, last=last)
         begun, _ = _path(values[after], frequency, length, last=last)
-        found.append((ended[-1] - finer[cut - 1], begun[0] - finer[cut]))
+        back = float(min(cut, piece)) - 1.0
+        ends = np.array([cut - 1.0, cut])
+        found.append(np.array([ended(np.array(back)), begun(np.array(0.0))]) - finer(ends))
     if not found:
         return _HALF, 1.0
     errors = np.asarray(found) - np.rint(found)

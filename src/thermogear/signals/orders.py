@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy import fft, ndimage
+from scipy import fft
 
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
@@ -83,7 +84,7 @@ def resample_by_angle(
     place = np.interp(wanted, turned, np.arange(turned.size))
     fine = _finer(values, 2)
     rows = [
-        ndimage.map_coordinates(row, 2.0 * place[None], order=5, mode="mirror")
+        scipy.ndimage.map_coordinates(row, 2.0 * place[None], order=5, mode="mirror")
         for row in fine.reshape(-1, fine.shape[-1])
     ]
     return np.reshape(rows, (*values.shape[:-1], place.size))

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import fft, signal, stats
+from scipy import fft, special
 
 from thermogear.base.arrays import Complexes, Floats
 from thermogear.base.errors import InputError
+from thermogear.signals.filters import thinned
 from thermogear.signals.interval import student
 from thermogear.signals.spectra import finite_record
 
@@ -101,8 +102,7 @@ def order_slices(
         samples_per_turn / (2 * coarser) >= max(_FINEST * highest, 16.0)
     ):
         coarser *= 2
-    if coarser > 1:  # a steep filter: 0.1 % up to 0.6 of half the new rate
-        values = signal.resample_poly(values, 1, coarser, window=("kaiser", 10.0))
+    values = thinned(values, coarser)  # a steep filter
     per_turn = samples_per_turn // coarser
     whole = values.size // per_turn
     others = _others(np.asarray(beside, dtype=float), wanted, 0.5 * per_turn)
@@ -324,7 +324,7 @@ def half_width_of(*, noise: ArrayLike, bias: ArrayLike) -> Floats:
     scale = np.maximum(np.asarray(noise, dtype=float), 1e-300)
     share = np.asarray(bias, dtype=float) / scale
     grid = np.linspace(0.0, 6.0, 241)
-    known = np.sqrt(stats.ncx2.ppf(0.95, 1.0, np.maximum(grid, 1e-6) ** 2))
+    known = np.sqrt(special.chndtrix(0.95, 1.0, np.maximum(grid, 1e-6) ** 2))
     return np.asarray(scale * np.where(share < 6.0, np.interp(share, grid, known), share + _ONE))
 
 
@@ -384,7 +384,7 @@ def greatest(amplitude: ArrayLike, *, half_width: ArrayLike) -> Greatest | None:
     count = int(np.count_nonzero(good))
     if count == 0:
         return None
-    wider = float(stats.t.isf(0.025 / count, _DEGREES) / stats.t.isf(0.025, _DEGREES))
+    wider = -float(special.stdtrit(_DEGREES, 0.025 / count)) / student(_DEGREES)
     a, h = np.where(good, a, -np.inf), np.where(good, h, 0.0)
     step = int(np.argmax(a))
     return Greatest(

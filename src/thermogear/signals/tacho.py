@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy import interpolate, ndimage
 
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
@@ -239,7 +239,7 @@ def _on_the_curve(times: Floats, numbers: Ints, grain: float) -> NDArray[np.bool
         for side in ((-4, -3, -2, -1), (1, 2, 3, 4)):
             off = np.fmin(off, _off_the_curve(t, n, side))
         off = off[2:-2]
-        around = ndimage.median_filter(off, size=17, mode="nearest")
+        around = scipy.ndimage.median_filter(off, size=17, mode="nearest")
         limit = np.maximum(max(0.01, edges), 8.0 * np.maximum(around, float(np.median(off))))
         # an outlier pulls its neighbours' curves by up to two thirds of what it is off itself
         highest = off >= np.max([np.pad(off, 2)[s : s + off.size] for s in (0, 1, 3, 4)], axis=0)
@@ -337,9 +337,9 @@ def _smooth(times: Floats, numbers: Floats) -> tuple[Callable[[Floats], Floats],
     slope = (y[-1] - y[0]) / (x[-1] - x[0])
     rest = y - y[0] - slope * (x - x[0])
     try:
-        spline = interpolate.make_smoothing_spline((x - x[0]) / step, rest)
+        spline = scipy.interpolate.make_smoothing_spline((x - x[0]) / step, rest)
     except (ValueError, np.linalg.LinAlgError):  # exactly straight
-        spline = interpolate.make_interp_spline((x - x[0]) / step, rest, k=3)
+        spline = scipy.interpolate.make_interp_spline((x - x[0]) / step, rest, k=3)
 
     def number_of(at: Floats) -> Floats:
         return np.asarray(y[0] + slope * (at - x[0]) + spline((at - x[0]) / step))
@@ -376,5 +376,5 @@ def speed_turns(
     inside = np.flatnonzero((at >= 0.0) & (at <= values.size - 1))
     if inside.size < 2:
         raise InputError("speed", "its samples", why="none lie within the record's time")
-    turned = interpolate.CubicSpline(centre, total)(at[inside])
+    turned = scipy.interpolate.CubicSpline(centre, total)(at[inside])
     return Turns(turns=np.asarray(turned - turned[0]), first=int(inside[0]), noise=0.0)

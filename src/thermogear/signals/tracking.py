@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy import interpolate, signal
 
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
@@ -48,9 +48,9 @@ class Path:
         """Cycles of the line at each of ``samples``, 0 at the first."""
         knots = self.at / samples
         spline = (
-            interpolate.make_smoothing_spline(knots, np.log(self.frequency))
+            scipy.interpolate.make_smoothing_spline(knots, np.log(self.frequency))
             if knots.size >= 5
-            else interpolate.make_interp_spline(knots, np.log(self.frequency), k=1)
+            else scipy.interpolate.make_interp_spline(knots, np.log(self.frequency), k=1)
         )
         grid = np.clip(np.arange(samples) / samples, knots[0], knots[-1])
         local = np.exp(spline(grid))
@@ -228,7 +228,7 @@ def _quiet(cycles: Floats) -> Floats:
         return cycles
     samples = np.interp(knots, cycles, np.arange(cycles.size))
     # a smooth rate between the knots: each a mean over the cycles around it
-    spline = interpolate.make_lsq_spline(
+    spline = scipy.interpolate.make_lsq_spline(
         np.arange(cycles.size)[:: max(1, cycles.size // 20_000)],
         cycles[:: max(1, cycles.size // 20_000)],
         np.concatenate([[0.0] * 4, samples[2:-2], [cycles.size - 1.0] * 4]),
@@ -304,7 +304,7 @@ def sharpness(x: ArrayLike) -> float:
     1.0
     """
     values = finite_record(x)
-    window = signal.get_window("hann", values.size)
+    window = np.hanning(values.size + 1)[:-1]
     power = np.abs(np.fft.rfft((values - values.mean()) * window)) ** 2
     total, held = float(power.sum()), 0.0
     for _ in range(LINES):

@@ -28,6 +28,7 @@ def line_table(result: Result, most: int | None = None) -> Table | None:
     if data is None:
         return None
     strongest = np.sort(np.argsort(-data["line_prominence"].values)[:most])
+    rows = rows_along(data, "line")
     columns = (
         Column("channel", "channel"),
         Column("line", "name"),
@@ -50,7 +51,7 @@ def line_table(result: Result, most: int | None = None) -> Table | None:
             "does not tell."
         ),
         columns,
-        rows_along(data.isel(line=strongest), "line"),
+        [rows[place] for place in strongest],
         names=2,
     )
 

@@ -136,11 +136,8 @@ def _spectrum(results: Result) -> Section | None:
         "Hann window over the whole record; of each run of bins the highest is drawn. A mark is "
         "above the curve where a line lies over several bins, as the speed or the load wanders."
     )
-    marked = None
-    if lines is not None:
-        marked = lines.where(lines["kind"] != "sideband", drop=True)
     pictures = Pictures()
-    make = partial(_drawn_spectrum, data, marked, scale, words, _unit(results))
+    make = partial(_drawn_spectrum, data, lines, scale, words, _unit(results))
     needs = ["spectrum_reading"]
     pictures.add("spectrum", "Spectrum with the lines found", caption, data, needs, make, wide=True)
     return Section("spectrum", "Spectrum", pictures.take(), folded=False)
@@ -168,17 +165,18 @@ def _spectrum_of_run(results: Result, data: Dataset, slices: Dataset) -> Section
 
 
 def _drawn_spectrum(
-    data: Dataset, marked: Dataset | None, scale: float, words: str, unit: str
+    data: Dataset, lines: Dataset | None, scale: float, words: str, unit: str
 ) -> Picture:
-    """Curves over ``spectrum_position`` times ``scale``, and marks of lines."""
+    """Curves over ``spectrum_position`` times ``scale``, and marks of lines but sidebands."""
     panel = Panel(Axis(words), Axis(f"amplitude (peak) [{unit}]", log="decades"))
     x = data["spectrum_position"].values * scale
     for channel, colour in zip(data["channel"].values[:4], _COLOURS, strict=False):
         values = data["spectrum_reading"].sel(channel=channel).values
         panel.curve(x[1:], values[1:], colour=colour, width=0.5, label=str(channel))
-    if marked is not None:
-        places = marked["line_position"].values * scale
-        readings, text = marked["line_reading"].values, "lines of the table"
+    if lines is not None:
+        marked = lines["kind"].values != "sideband"
+        places = lines["line_position"].values[marked] * scale
+        readings, text = lines["line_reading"].values[marked], "lines of the table"
         panel.points(places, readings, size=4, open=True, colour=INK, label=text)
     return Picture([[panel]], size=(WIDE, 3.6), legend=5)
 
