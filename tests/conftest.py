@@ -228,6 +228,17 @@ def drawn_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(page, "draw", once)
 
 
+COMMANDS_AND_STUDIES = {"checks", "docs", "front", "study", "thesis"}
+"""Folders of tests that ask what pages say; those of ``views`` ask how they are drawn."""
+
+
+@pytest.fixture(autouse=True)
+def _one_of_a_kind(request: pytest.FixtureRequest) -> None:
+    """Pages of commands and studies draw a picture of every kind once: :func:`drawn_once`."""
+    if request.path.parent.name in COMMANDS_AND_STUDIES:
+        request.getfixturevalue("drawn_once")
+
+
 _WARMED: dict[bytes, WarmUp] = {}
 """What :func:`warmed_once` has computed, by all that it was asked with."""
 

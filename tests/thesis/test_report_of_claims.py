@@ -214,7 +214,6 @@ def test_only_a_printed_error_that_no_rounding_gives_is_marked() -> None:
     assert data["printed"].values[place].tolist() == ["17.6", "18.5"]
 
 
-@pytest.mark.usefixtures("drawn_once")
 def test_ctrl_c_keeps_what_is_judged(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
@@ -249,7 +248,6 @@ def test_ctrl_c_keeps_what_is_judged(
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("drawn_once")
 def test_report_holds_every_claim_with_verdict_and_working_links(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, evidence: Evidence
 ) -> None:
