@@ -153,7 +153,7 @@ def train(eps: float, rpm: float = 1.0) -> Any:
 def test_a_neimark_sacker_point_in_a_second_parameter(compared: Compared) -> None:
     """Truth Q1 followed in speed, beside points located afresh at drawn speeds."""
     model, start, _ = train(0.05)
-    speeds = np.sort(np.random.default_rng(22).uniform(1.0, 1.008, 3))
+    speeds = np.sort(np.random.default_rng(22).uniform(1.0, 1.008, 2))
     branch = continuation(
         periodic_orbit(model, 1, start), "eps", 0.06, family=lambda e: train(e)[0], start=0.05
     )

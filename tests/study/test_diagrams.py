@@ -79,7 +79,8 @@ def test_folds_that_meet_on_the_way_have_no_partner() -> None:
 
 def test_a_diagram_against_itself_moves_nothing() -> None:
     """Grazings too; what the other diagram has not drawn is said to be so."""
-    data, families = both(BENT, BENT, np.linspace(0.4, 1.1, 8))
+    plan = diagram_plan(BENT, "frequency", np.linspace(0.4, 1.1, 8), branch_period=1)
+    data, families = [gather(plan, threads=1)] * 2, (plan.family, plan.family)
     rows = matches(*data, families)
     assert {FOLD, GRAZING} <= {row["kind"] for row in rows}
     assert {row["partner"] for row in rows} == {MATCHED}
