@@ -79,6 +79,8 @@ teeth = {teeth[1]}
 [operating]
 speed = "2000 rpm"
 torque = "{torque} N m"
+[flanks]
+parts = 16
 """
     case = gear_case(load_case(text))
     probe = run_ups(case, [200.0], {"damping_ratio": [0.07]}, state="undeformed")

@@ -36,9 +36,14 @@ wheel_bore = "80 degC"
 housing = "60 degC"
 [flanks]
 accuracy = 6
+parts = 16
 [operating]
 speed = "2400 rpm"
 torque = "60 N m"
+[grid]
+path_positions = 41
+mesh_positions = 48
+harmonics = 12
 """
 
 
