@@ -18,8 +18,8 @@ from thermogear.front.cli import main
 pytestmark = pytest.mark.slow
 
 CHANGES = (
-    "operating.speed=4500 rpm", "grid.mesh_positions=32", "grid.path_positions=21",
-    "grid.harmonics=8",
+    "operating.speed=4500 rpm", "grid.mesh_positions=48", "grid.path_positions=41",
+    "grid.harmonics=12",
 )  # fmt: skip
 RIG = ("rig", *(word for change in CHANGES for word in ("--set", change)))
 """The case of the page: on coarser grids than its own, so that the tests are quick."""
