@@ -208,7 +208,7 @@ def drawn_once(monkeypatch: pytest.MonkeyPatch) -> None:
     texts, tables and data are made again. That the same data draw the same is asked in ``views``.
     """
     from in_words import told
-    from thermogear.views import drawing
+    from thermogear.views import drawing, page, write
     from thermogear.views.picture import Picture
     from traits import traits
 
@@ -224,7 +224,16 @@ def drawn_once(monkeypatch: pytest.MonkeyPatch) -> None:
             _SHOWN.update(found)
         return _DRAWN[key]
 
-    monkeypatch.setattr(drawing, "image", once)
+    def of_a_kind(make: Callable[..., Any]) -> Callable[..., Any]:
+        def made(*given: Any, **how: Any) -> Any:
+            with pytest.MonkeyPatch.context() as patch:
+                patch.setattr(drawing, "image", once)
+                return make(*given, **how)
+
+        return made
+
+    monkeypatch.setattr(page, "draw", of_a_kind(page.draw))
+    monkeypatch.setattr(write, "put_picture", of_a_kind(write.put_picture))
 
 
 COMMANDS_AND_STUDIES = {"checks", "docs", "front", "study", "thesis"}
