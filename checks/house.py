@@ -10,6 +10,7 @@ import inspect
 import re
 import sys
 from collections import defaultdict
+from functools import cache
 from pathlib import Path
 
 import grimp
@@ -49,19 +50,31 @@ def statements(tree: ast.AST) -> int:
     )
 
 
+@cache
+def trees() -> dict[Path, tuple[str, ast.Module]]:
+    """File -> its text and its syntax tree."""
+    texts = {path: path.read_text(encoding="utf-8") for path in SOURCE.rglob("*.py")}
+    return {path: (text, ast.parse(text)) for path, text in texts.items()}
+
+
+@cache
+def graph() -> grimp.ImportGraph:
+    """Which module imports which."""
+    return grimp.build_graph("thermogear", cache_dir=None)
+
+
 def sizes() -> dict[str, dict[str, int]]:
     """Floor -> modules, lines, statements, nodes of the syntax tree, functions above the limit."""
     found = {}
     for floor in (*FLOORS, "."):
         paths = (SOURCE / floor).glob("*.py" if floor == "." else "**/*.py")
-        texts = [path.read_text(encoding="utf-8") for path in paths]
-        trees = [ast.parse(text) for text in texts]
-        nodes = [node for tree in trees for node in ast.walk(tree)]
+        modules = [trees()[path] for path in paths]
+        nodes = [node for _, tree in modules for node in ast.walk(tree)]
         functions = [n for n in nodes if isinstance(n, ast.FunctionDef | ast.AsyncFunctionDef)]
         found[floor] = {
-            "modules": len(texts),
-            "lines": sum(len(text.splitlines()) for text in texts),
-            "statements": sum(map(statements, trees)),
+            "modules": len(modules),
+            "lines": sum(len(text.splitlines()) for text, _ in modules),
+            "statements": sum(statements(tree) for _, tree in modules),
             "nodes": len(nodes),
             "long functions": sum(statements(n) > MOST_STATEMENTS for n in functions),
         }
@@ -70,12 +83,11 @@ def sizes() -> dict[str, dict[str, int]]:
 
 def imports() -> dict[str, list[str]]:
     """Floor -> the floors it imports, from the top down."""
-    graph = grimp.build_graph("thermogear", cache_dir=None)
     found: dict[str, set[str]] = defaultdict(set)
-    for module in graph.modules:
+    for module in graph().modules:
         parts = module.split(".")
         if len(parts) > 1:
-            for other in graph.find_modules_directly_imported_by(module):
+            for other in graph().find_modules_directly_imported_by(module):
                 below = other.split(".")
                 if len(below) > 1 and below[1] != parts[1]:
                     found[parts[1]].add(below[1])

@@ -9,7 +9,6 @@ import pickle
 import platform
 from collections import OrderedDict
 from collections.abc import Callable, Generator
-from contextlib import nullcontext
 from functools import partial
 from hashlib import sha256
 from importlib.metadata import version
@@ -20,7 +19,6 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as the command line does
 
 import numpy as np
 import pytest
-from markupsafe import Markup
 from numpy.typing import ArrayLike, NDArray
 
 from plain_numbers import told_as_text, told_in_csv
@@ -195,7 +193,7 @@ def at_length(
     return chosen
 
 
-_DRAWN: dict[tuple[str, str, str], Markup] = {}
+_DRAWN: dict[tuple[str, ...], bytes] = {}
 """What :func:`drawn_once` has drawn, of one test and of those before it."""
 _SHOWN: set[tuple[str, object]] = set()
 """The traits of the pictures that were drawn, not told."""
@@ -203,29 +201,50 @@ _SHOWN: set[tuple[str, object]] = set()
 
 @pytest.fixture
 def drawn_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Pages draw a picture of every kind, and tell the others by their texts.
+    """Pages and files draw a picture of every kind, and tell the others by their texts.
 
     Drawn is what has a mark, or a choice of one, that none before it had; the same data are taken
     again. For a test that asks what a page says, or whether a page made again is the same: its
     texts, tables and data are made again. That the same data draw the same is asked in ``views``.
     """
-    from in_words import in_words
-    from thermogear.views import page
+    from in_words import told
+    from thermogear.views import drawing, page, write
     from thermogear.views.picture import Picture
-    from thermogear.views.svg import draw
     from traits import traits
 
-    def once(picture: Picture, name: str, title: str) -> Markup:
+    draw = drawing.image
+
+    def once(picture: Picture, kind: str, *, salt: str = "", **how: Any) -> bytes:
         said = picture.to_json()
-        key = json.dumps(said), name, title
+        key = json.dumps(said), kind, salt, repr(how)
         if key not in _DRAWN:
-            found = set(traits(said))
-            with nullcontext() if found - _SHOWN else in_words():
-                _DRAWN[key] = draw(picture, name, title)
+            found = {(kind, one) for one in traits(said)}
+            make = draw if found - _SHOWN else told
+            _DRAWN[key] = make(picture, kind, salt=salt, **how)
             _SHOWN.update(found)
         return _DRAWN[key]
 
-    monkeypatch.setattr(page, "draw", once)
+    def of_a_kind(make: Callable[..., Any]) -> Callable[..., Any]:
+        def made(*given: Any, **how: Any) -> Any:
+            with pytest.MonkeyPatch.context() as patch:
+                patch.setattr(drawing, "image", once)
+                return make(*given, **how)
+
+        return made
+
+    monkeypatch.setattr(page, "draw", of_a_kind(page.draw))
+    monkeypatch.setattr(write, "put_picture", of_a_kind(write.put_picture))
+
+
+COMMANDS_AND_STUDIES = {"checks", "docs", "front", "study", "thesis"}
+"""Folders of tests that ask what pages say; those of ``views`` ask how they are drawn."""
+
+
+@pytest.fixture(autouse=True)
+def _one_of_a_kind(request: pytest.FixtureRequest) -> None:
+    """Pages of commands and studies draw a picture of every kind once: :func:`drawn_once`."""
+    if request.path.parent.name in COMMANDS_AND_STUDIES:
+        request.getfixturevalue("drawn_once")
 
 
 _WARMED: dict[bytes, WarmUp] = {}

@@ -22,6 +22,12 @@ def words_in(value: object) -> Iterator[str]:
             yield from words_in(one)
 
 
+def told(picture: Picture, kind: str, *, salt: str = "", **how: Any) -> bytes:
+    """In place of ``drawing.image``: an SVG of all the picture's texts."""
+    words = "".join(f"<text>{escape(one)}</text>" for one in words_in(picture.to_json()))
+    return f'<svg viewBox="0 0 1 1">{words}</svg>'.encode()
+
+
 @contextmanager
 def in_words() -> Iterator[None]:
     """Every picture is an SVG of all its texts: titles, axes, curves, letters, classes.
@@ -29,11 +35,6 @@ def in_words() -> Iterator[None]:
     What a reader reads of it is there but for the numbers at its axes; that every kind of picture
     can be drawn, and shows these texts, is asked in ``views``.
     """
-
-    def told(picture: Picture, kind: str, *, salt: str = "", **how: Any) -> bytes:
-        words = "".join(f"<text>{escape(one)}</text>" for one in words_in(picture.to_json()))
-        return f'<svg viewBox="0 0 1 1">{words}</svg>'.encode()
-
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(drawing, "image", told)
         yield

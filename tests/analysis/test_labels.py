@@ -164,7 +164,7 @@ def test_no_label_where_rounding_chooses_the_attractor():
 def test_random_points_keep_their_labels(at_length):
     """Doubling transient or sub-steps changes no label; under 2 % stay undecided."""
     rng = np.random.default_rng(7)
-    count = at_length(100, 500, "random motions with transients doubled")
+    count = at_length(50, 500, "random motions with transients doubled")
     model = TorsionalModel(
         damping_ratio=rng.uniform(0.02, 0.2, count),
         frequency=rng.uniform(0.3, 2.2, count),

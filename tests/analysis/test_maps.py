@@ -54,7 +54,7 @@ def test_every_point_computed_is_the_same_with_and_without_refinement():
 
 @pytest.mark.slow
 def test_four_times_fewer_periods_and_few_labels_changed(at_length):
-    count = at_length(64, 128, "points of each axis of a map")
+    count = at_length(40, 128, "points of each axis of a map")
     full = parameter_map(MODEL, axes(count), rule=MAP_RULE.full(), refine=False)
     fast = parameter_map(MODEL, axes(count), refine=True)
     assert fast.attrs["full_periods"] >= 4 * fast.attrs["total_periods"]

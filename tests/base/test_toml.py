@@ -35,13 +35,13 @@ _TABLES = st.recursive(
 )
 
 
-@settings(max_examples=150, deadline=None, derandomize=True)
+@settings(max_examples=60, deadline=None, derandomize=True)
 @given(_TABLES)
 def test_what_is_written_reads_back_the_same(data: dict[str, Any]) -> None:
     assert tomllib.loads(written(data)) == data
 
 
-@settings(max_examples=150, deadline=None, derandomize=True)
+@settings(max_examples=60, deadline=None, derandomize=True)
 @given(_PLAIN)
 def test_a_value_behind_set_reads_back_the_same(value: object) -> None:
     assert overridden({}, (("a.b", toml.given(value)),)) == {"a": {"b": value}}

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scripts import ROOT, script
 
-COUNT = 6
+COUNT = 3
 
 
 @pytest.mark.slow

@@ -8,7 +8,7 @@ from scripts import ROOT, script
 
 from said import numbers
 
-COUNT = 75
+COUNT = 40
 
 
 @pytest.mark.slow

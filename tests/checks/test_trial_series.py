@@ -12,8 +12,8 @@ from scripts import script
 @pytest.mark.slow
 def test_fresh_pairs_lie_in_the_stated_bands() -> None:
     trial = script("trial_series")
-    rows = [row for number in (6, 9) for row in trial.held(number, parts=32)]
-    assert len(rows) == 6
+    rows = list(trial.held(6, parts=32))
+    assert len(rows) == 3
     assert all(row.share.high > trial.LEAST and row.share.low < trial.MOST for row in rows)
     assert 0.8 < float(np.mean([row.share.value for row in rows])) < 1.0
 

@@ -1,4 +1,4 @@
-"""The trial of drive trains, a fiftieth of it: `make trial-trains` runs it whole."""
+"""The trial of drive trains, one of two hundred: `make trial-trains` runs it whole."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ TRIAL = script("trial_trains")
 
 @pytest.mark.slow
 def test_labels_of_random_trains_asked_otherwise(at_length: AtLength, compared: Compared) -> None:
-    count = at_length(2, 40, "random drive trains labelled in four ways")
+    count = at_length(1, 40, "random drive trains labelled in four ways")
     records = [TRIAL.labelled(number) for number in range(1, 1 + count)]
     undecided = [way for one in records for way in TRIAL.WAYS if one[way]["name"] == "undecided"]
-    # of a few trains one may be undecided in every way
-    assert len(undecided) <= max(0.05 * len(TRIAL.WAYS) * count, len(TRIAL.WAYS))
+    # of many trains one in twenty may be undecided; one alone may not
+    assert len(undecided) <= 0.05 * len(TRIAL.WAYS) * (count - 1)
     wrong = [
         (one["number"], way, words)
         for one in records
@@ -31,7 +31,7 @@ def test_labels_of_random_trains_asked_otherwise(at_length: AtLength, compared: 
         if way != "reduction" and not words.startswith(TRIAL.ONE_OPEN)
     ]
     compared("labels of drive trains", "longer transient, finer steps", len(wrong), 0.0)
-    some = TRIAL.chosen(records, count // 2)
+    some = TRIAL.chosen(records, -(-count // 2))
     complaints = [words for one in some if (words := TRIAL.checked(one))]
     assert complaints == []
     compared("labels of drive trains", "long independent integration", len(complaints), 0.0)

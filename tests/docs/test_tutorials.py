@@ -49,7 +49,7 @@ def test_a_tutorial_is_a_notebook_with_assertions(path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("drawn_once", "warmed_once")
+@pytest.mark.usefixtures("warmed_once")
 @pytest.mark.parametrize("path", notebooks(), ids=lambda path: path.stem)
 def test_a_tutorial_runs(
     path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

@@ -101,7 +101,7 @@ def test_friction_of_the_teeth_as_truth_h1(compared: Compared) -> None:
     rest = np.linalg.lstsq(
         outputs(p), np.array([row[0] for row in case["values"]["0"]]) @ np.eye(6), rcond=None
     )[0]
-    start = closing(p, Reference(p).after(np.r_[rest, np.zeros(5)], 30))
+    start = closing(p, Reference(p).after(np.r_[rest, np.zeros(5)], 2))
     count = 32
     times = np.arange(count) / (count * p.mesh_frequency)
     motion = Reference(p).states(start, times)[:, :5] @ outputs(p).T

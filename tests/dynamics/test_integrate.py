@@ -281,8 +281,8 @@ def test_tables_of_many_harmonics(count, compared):
     k = Periodic(1.0, tuple(0.25 / ranks * np.exp(0.7j * ranks)))
     force = Periodic(0.08, tuple(0.4 / ranks**1.5 * np.exp(-0.3j * ranks**2)))
     model = DeadZoneModel(damping_ratio=0.06, frequency=0.9, stiffness=k, force=force)
-    exact = simulate(model, periods=2)
-    reference = simulate(model, periods=2, method="adaptive")
+    exact = simulate(model, periods=1)
+    reference = simulate(model, periods=1, method="adaptive")
     assert exact.contact_losses.item() > 0
     compared(
         "exact maps with 12 and 40 harmonics",

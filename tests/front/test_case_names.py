@@ -164,7 +164,7 @@ def test_a_terminal_gets_no_raw_byte_of_a_case_s_names(
     case = written(tmp_path / "train.toml", named(text))
     ours, theirs = pty.openpty()
     process = subprocess.Popen(
-        [sys.executable, "-m", "thermogear", "statics", str(case), "-o", str(tmp_path / "out")],
+        [sys.executable, "-m", "thermogear", "check", str(case)],
         stdin=theirs, stdout=theirs, stderr=theirs,
     )  # fmt: skip
     os.close(theirs)

@@ -39,7 +39,6 @@ def rig(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-@pytest.mark.usefixtures("drawn_once")
 @pytest.mark.parametrize(
     "command", [pytest.param(c, marks=pytest.mark.slow) if c == "temperature" else c for c in EXTRA]
 )

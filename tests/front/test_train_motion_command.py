@@ -70,20 +70,20 @@ def test_the_train_of_a_run(case: GearCase) -> None:
 
 
 def test_waterfall_goes_on_where_it_was_stopped(case: GearCase, tmp_path: Path) -> None:
-    speeds = np.array([2300.0, 2350.0, 2400.0]) * RPM
-    whole = waterfall(case, speeds, duration=0.2).data
+    speeds = np.array([2300.0, 2400.0]) * RPM
+    whole = waterfall(case, speeds, duration=0.1).data
     store, calls = tmp_path / "own", 0
 
     def killed() -> None:
         nonlocal calls
         calls += 1
-        if calls > 8:
+        if calls > 5:
             raise Stopped
 
     with pytest.raises(Stopped):
-        waterfall(case, speeds, duration=0.2, store=store, threads=1, alive=killed)
-    other = waterfall(case, speeds, duration=0.2, store=store).data
-    again = waterfall(case, speeds, duration=0.2, store=store).data
+        waterfall(case, speeds, duration=0.1, store=store, threads=1, alive=killed)
+    other = waterfall(case, speeds, duration=0.1, store=store).data
+    again = waterfall(case, speeds, duration=0.1, store=store).data
     for name in ("mesh_force_rms", "bearing_force_line", "housing_rms"):
         assert np.array_equal(whole[name], other[name])
         assert np.array_equal(again[name], other[name])
@@ -95,7 +95,7 @@ def test_waterfall_leaves_a_store_a_page_and_numbers(
     train: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     out = tmp_path / "out"
-    words = ["waterfall", str(train), "-o", str(out), "--rpm", "2300:2400:2", "--seconds", "0.2"]
+    words = ["waterfall", str(train), "-o", str(out), "--rpm", "2300:2400:2", "--seconds", "0.1"]
     for change in CHANGES:
         words += ["--set", change]
     assert main([*words, "--json"]) == 0

@@ -137,12 +137,12 @@ class TestRandomGears:
     def pairs(cls) -> list[GearPair]:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ValidityWarning)
-            return random_pairs(1000)
+            return random_pairs(250)
 
     def test_contact_ratio_is_the_line_cut_by_the_tip_circles(
         self, pairs: list[GearPair], compared: Compared
     ) -> None:
-        assert sum(2 for _ in pairs) == 2000
+        assert len(pairs) == 250
         differences = []
         for pair in pairs:
             p, w, a = pair.pinion, pair.wheel, pair.centre_distance
@@ -161,7 +161,7 @@ class TestRandomGears:
             start = cut(np.array([a, 0.0]), w.tip_radius, -1.0)
             differences.append((end - start) / p.base_pitch - pair.contact_ratio)
         compared(
-            "contact ratio of 2000 random pairs",
+            "contact ratio of 250 random pairs",
             "line of action cut by the tip circles, by plane vectors",
             differences,
             1e-9,
@@ -211,7 +211,7 @@ class TestRandomGears:
 
     def test_flank_and_fillet_meet_with_one_tangent(self, pairs: list[GearPair]) -> None:
         plain = [pair.pinion for pair in pairs if not pair.pinion.undercut]
-        assert len(plain) > 500
+        assert len(plain) > 125
         for gear in plain[:300]:
             gamma, t = gear.junction
             x, y = gear.fillet.point(gamma)

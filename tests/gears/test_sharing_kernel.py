@@ -137,7 +137,7 @@ def test_half_widths_join_where_the_laws_meet() -> None:
 def test_nonlinear_contact_has_the_least_energy() -> None:
     """Energy with the integral of the contact's approach, minimised by another method."""
     nodes, weights = np.polynomial.legendre.leggauss(40)
-    for seed in range(6):
+    for seed in range(3):
         compliance, gap, _ = random_mesh(seed)
 
         def energy(f: np.ndarray, c=compliance, g=gap) -> float:

@@ -88,7 +88,7 @@ def test_malformed_files_make_no_traceback(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_more_malformed_files_make_no_traceback(tmp_path: Path, at_length: AtLength) -> None:
-    count = at_length(1000, 10_000, "record files, mutated")
+    count = at_length(400, 10_000, "record files, mutated")
     read, refusals = hammer(tmp_path, count, seed=2)
     assert read + len(refusals) == count
     assert [r for r in refusals if "\n" in r or len(r) > 500] == []

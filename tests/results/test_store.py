@@ -156,7 +156,7 @@ def test_second_writer_is_refused(tmp_path):
 
 @pytest.mark.slow
 def test_corruptions_are_repaired(tmp_path, at_length):
-    count = at_length(10, 100, "damages to a finished store")
+    count = at_length(6, 100, "damages to a finished store")
     found = trial("corruptions", tmp_path, count)
     assert found == {"repaired": count, "loud": 0, "silent": 0, "reader_silent": 0}
 
@@ -231,7 +231,7 @@ def trial(name: str, directory: Path, count: int = 1) -> dict:
 
 @pytest.mark.slow
 def test_kills_lose_nothing_that_is_finished(tmp_path, at_length):
-    count = at_length(20, 200, "kills of a run at random moments")
+    count = at_length(12, 200, "kills of a run at random moments")
     found = trial("kills", tmp_path, count)
     assert found["kills"] == count
     assert found["with_chunks"] > count // 4

@@ -14,15 +14,15 @@ def test_noise_has_no_rate_more_often_than_it_is_said() -> None:
     what so many records allow."""
     random = np.random.default_rng(41)
     chances = []
-    for number in range(80):
+    for number in range(40):
         noise = random.normal(size=12_000)
         if number % 2:
             noise = signal.lfilter([1.0], [1.0, -0.9], noise)
         found = envelope_rates(noise)[0]
         chances.append(found.chance)
     few = np.sum(np.array(chances) < 0.1)
-    assert few <= stats.binom.ppf(0.999, 80, 0.1)
-    assert min(chances) > 0.01 / 80
+    assert few <= stats.binom.ppf(0.999, 40, 0.1)
+    assert min(chances) > 0.01 / 40
 
 
 def _slipping(

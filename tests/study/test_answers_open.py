@@ -34,7 +34,9 @@ temperature = "80 degC"
 speed = "3000 rpm"
 torque = "80 N m"
 """
-SMALL = ("grid.path_positions=41", "grid.mesh_positions=48", "grid.harmonics=12")
+SMALL = (
+    "grid.path_positions=41", "grid.mesh_positions=48", "grid.harmonics=12", "flanks.parts=16",
+)  # fmt: skip
 WHOLE = ("backlash.direction=normal", "backlash.extent=total")
 
 

@@ -22,10 +22,10 @@ def test_a_sample_runs_as_if_alone() -> None:
     zeta = np.array([0.05, 0.07, 0.09])
     torque = np.array([90.0, 100.0, 110.0])
     samples = {"dynamics.damping_ratio": zeta, "torque": torque}
-    whole = run_ups(rig(), SPEEDS, samples, threads=2)
+    whole = run_ups(rig(), SPEEDS[::3], samples, threads=2)
     assert dict(whole.sizes)["sample"] == 3
     for place in range(3):
-        alone = run_ups(rig(), SPEEDS, {n: v[[place]] for n, v in samples.items()}, threads=1)
+        alone = run_ups(rig(), SPEEDS[::3], {n: v[[place]] for n, v in samples.items()}, threads=1)
         for name in whole.data_vars:
             one, many = alone[name].values[:, 0], whole[name].values[:, place]
             assert np.array_equal(one, many, equal_nan=one.dtype.kind == "f"), name
@@ -79,10 +79,12 @@ teeth = {teeth[1]}
 [operating]
 speed = "2000 rpm"
 torque = "{torque} N m"
+[flanks]
+parts = 16
 """
     case = gear_case(load_case(text))
     probe = run_ups(case, [200.0], {"damping_ratio": [0.07]}, state="undeformed")
-    speeds = np.linspace(0.4, 1.1, 8) * 200.0 / float(probe["frequency_ratio"].values[0, 0, 0])
+    speeds = np.linspace(0.4, 1.1, 4) * 200.0 / float(probe["frequency_ratio"].values[0, 0, 0])
     lanes = run_ups(case, speeds, {"damping_ratio": [0.07]}, state="undeformed")
     alone = run_up(case, speeds, temperatures=["undeformed"], branch_period=0).data
     for name in ("dte_peak_to_peak", "mesh_force_max"):

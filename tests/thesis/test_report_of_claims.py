@@ -86,8 +86,8 @@ def test_statements_are_shares_of_the_base_sets_that_meet_the_table(evidence: Ev
     columns = {name: np.array([s.values[name] for s in sets]) for name in base_sets.COLUMNS}
     for name, place in (("period-1", 0), ("chaotic", 1)):
         for row, ends in rows.ends.items():
-            some = {key: column[::16] for key, column in columns.items()}
-            some[motions.SWEPT[row]] = np.full(len(sets[::16]), ends[place])
+            some = {key: column[::32] for key, column in columns.items()}
+            some[motions.SWEPT[row]] = np.full(len(sets[::32]), ends[place])
             found = labels(TorsionalModel(**some), cap=4000, follow=4000, starts=2)
             assert {motion.name for motion in found} == {name}
     claims = {claim.number: claim for claim in section4.CLAIMS}
@@ -214,7 +214,6 @@ def test_only_a_printed_error_that_no_rounding_gives_is_marked() -> None:
     assert data["printed"].values[place].tolist() == ["17.6", "18.5"]
 
 
-@pytest.mark.usefixtures("drawn_once")
 def test_ctrl_c_keeps_what_is_judged(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
@@ -249,7 +248,6 @@ def test_ctrl_c_keeps_what_is_judged(
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("drawn_once")
 def test_report_holds_every_claim_with_verdict_and_working_links(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, evidence: Evidence
 ) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import subprocess
 import sys
@@ -47,16 +48,20 @@ def text(tmp_path_factory: pytest.TempPathFactory) -> str:
 
 
 @pytest.fixture
-def figures(monkeypatch: pytest.MonkeyPatch) -> dict[str, Figure]:
-    """Figures that a page draws, by name; the page itself gets none."""
-    found: dict[str, Figure] = {}
+def shown(monkeypatch: pytest.MonkeyPatch) -> dict[str, Picture]:
+    """Pictures that a page shows, by name; the page itself gets none."""
+    found: dict[str, Picture] = {}
 
     def keep(picture: Picture, name: str, title: str) -> Markup:
-        found[name] = drawing.draw(picture)
+        found[name] = picture
         return Markup("<svg></svg>")
 
     monkeypatch.setattr(pages, "draw", keep)
     return found
+
+
+DRAWN: set[str] = set()
+"""The data of the pictures whose layout was looked at."""
 
 
 def axes_of(figure: Figure) -> Iterator[object]:
@@ -124,11 +129,16 @@ def test_base_sets_are_said_to_be_none_of_the_rig(text: str) -> None:
 
 @pytest.mark.parametrize("jammed", [False, pytest.param(True, marks=pytest.mark.slow)])
 def test_every_axis_of_every_picture_is_labelled_and_nothing_is_cut_or_covered(
-    jammed: bool, tmp_path: Path, figures: dict[str, Figure]
+    jammed: bool, tmp_path: Path, shown: dict[str, Picture]
 ) -> None:
     write_report(synthetic.build(tmp_path, jammed=jammed, torques=(50.0, 100.0)))
-    assert len(figures) > 20
-    for name, figure in figures.items():
+    assert len(shown) > 20
+    for name, picture in shown.items():
+        said = json.dumps(picture.to_json())
+        if said in DRAWN:
+            continue  # a jam leaves it as it is
+        DRAWN.add(said)
+        figure = drawing.draw(picture)
         assert figure.axes, name
         with drawing.styled():
             figure.draw_without_rendering()
@@ -158,31 +168,31 @@ def test_the_same_results_give_the_same_page(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("kept", GROUPS)
 def test_a_group_that_is_absent_is_left_out_quietly(
-    kept: str, tmp_path: Path, figures: dict[str, Figure]
+    kept: str, tmp_path: Path, shown: dict[str, Picture]
 ) -> None:
     synthetic.build(tmp_path, without=tuple(g for g in GROUPS if g != kept))
     page = rendered(tmp_path)
-    assert figures
+    assert shown
     ids = [section.attrib["id"] for section in tree_of(page).iter("section")]
     assert ("results" in ids) == (kept == "mesh")
     assert "case" in ids
 
 
 def test_a_variable_that_is_absent_costs_its_pictures_alone(
-    tmp_path: Path, figures: dict[str, Figure]
+    tmp_path: Path, shown: dict[str, Picture]
 ) -> None:
     path = synthetic.path_group(("consistent",), (100.0,)).drop_vars("friction_coefficient_dry")
     synthetic.write(tmp_path, {"path": path}, title="t", kind="gear")
     write_report(tmp_path)
-    assert "fig-friction" not in figures
-    assert "fig-flash-mixed" in figures
+    assert "fig-friction" not in shown
+    assert "fig-flash-mixed" in shown
 
 
-def test_one_bundle_alone_makes_a_page(tmp_path: Path, figures: dict[str, Figure]) -> None:
+def test_one_bundle_alone_makes_a_page(tmp_path: Path, shown: dict[str, Picture]) -> None:
     synthetic.build(tmp_path, bundles=("consistent",), torques=(100.0,))
     page = rendered(tmp_path)
     assert "choices" in [section.attrib["id"] for section in tree_of(page).iter("section")]
-    assert "fig-stiffness-1" not in figures
+    assert "fig-stiffness-1" not in shown
 
 
 def test_a_dimensionless_case_makes_a_page_of_its_rows(tmp_path: Path) -> None:
@@ -197,13 +207,13 @@ def test_a_dimensionless_case_makes_a_page_of_its_rows(tmp_path: Path) -> None:
 
 
 def test_a_jam_is_said_in_words_with_its_temperature(
-    tmp_path: Path, figures: dict[str, Figure]
+    tmp_path: Path, shown: dict[str, Picture]
 ) -> None:
     words = words_of(rendered(synthetic.build(tmp_path, jammed=True)))
     assert re.search(r"jammed\b.* 68 °C", words)
     assert "there is no motion" in words
     assert "−10" not in words[: words.index("Friction")]
-    assert "fig-motion-0-0" in figures
+    assert "fig-motion-0-0" in shown
 
 
 HOSTILE = '<script>alert("x")</script> $\\frac{a}$ & \'"><img src=x>'
@@ -225,7 +235,7 @@ def test_hostile_texts_are_shown_and_never_obeyed(tmp_path: Path) -> None:
 
 
 def test_points_in_plenty_are_thinned_and_said_to_be(
-    tmp_path: Path, figures: dict[str, Figure]
+    tmp_path: Path, shown: dict[str, Picture]
 ) -> None:
     three = synthetic.motion_group(("c",), (1.0, 2.0, 3.0), ("undeformed", "hot"), "state", False)
     wide = three.isel(operating=[0, 1, 2, 0, 1, 2, 0, 1])
