@@ -166,14 +166,13 @@ def _by_mesh_line(
     record: Record, through: Passed, teeth: int, speed: float | None, notices: list[Notice]
 ) -> tuple[Floats, int, float]:
     """Turns of the pinion by the phase of its mesh line, from which sample on, and their noise."""
-    known = speed is not None and record.rate is not None
     gearing = stated_gearing(
         through.table,
         notices,
         expected=expected_mesh(record, teeth, speed),
         teeth=teeth,
         rate=record.rate,
-        shaft=speed / (2.0 * np.pi) / record.rate if known else None,
+        shaft=None if speed is None or record.rate is None else speed / (2.0 * np.pi * record.rate),
     )
     if gearing is None or gearing.teeth != teeth:
         need = "--speed" if record.rate is not None else "--rate and --speed"
