@@ -317,7 +317,8 @@ def allowed_error(case: GearCase, torque: float) -> tuple[str, dict[str, Any]]:
         "made": 1e6 * sum(one.profile_slope + one.profile_form for one in tolerances),
         "load": 1e6 * LOAD_SHARE * load / single if single > 0.0 else 0.0,
     }
-    return f"class {{grade}}{whose} allows {{made:.1f µm}}, the load {{load:.1f µm}}", figures
+    of_class = f"class {{grade}}{whose}{',' * bool(whose)}"
+    return f"{of_class} allows {{made:.1f µm}}, the load {{load:.1f µm}}", figures
 
 
 def relief(asked: Asked) -> Answer:
