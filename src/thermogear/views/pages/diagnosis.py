@@ -172,7 +172,7 @@ def _tables(result: Result, found: dict[str, Any], *, last: bool = False) -> dic
         ),
         "where": declared(
             "The tooth at which the difference signal is greatest, in how many averages, and the "
-            "chance of as many in noise. A sound gear has such a tooth, too, for teeth differ: it is "
+            "chance of as many in noise. A sound gear has such a tooth, too: teeth differ. It is "
             "a fault's only where the verdict names its shaft. Change of amplitude and delay "
             "there, of mesh harmonics 1, 2, 3 (0: not clear of the other teeth).",
             (
