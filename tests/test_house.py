@@ -161,6 +161,7 @@ LONG_FUNCTIONS = {
     "analysis.attractors.trapped": 42,
     "analysis.continuation._walk": 41,
     "analysis.curve.correct": 46,
+    "analysis.event_curve.event_curve": 45,
     "gears.touch._least_advance": 43,
     "heat.gearbox.thermal_network": 42,
     "heat.transient.follow": 51,

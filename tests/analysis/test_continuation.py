@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from said import numbers
-from smooth_model import SmoothModel
 from thermogear.analysis.bifurcations import (
     BIRTH,
     FLIP,
@@ -31,10 +30,9 @@ from thermogear.analysis.continuation import (
 )
 from thermogear.analysis.curve import Curve
 from thermogear.analysis.labels import label
-from thermogear.analysis.orbits import periodic_orbit, shoot
+from thermogear.analysis.orbits import periodic_orbit
 from thermogear.base.errors import InputError
 from thermogear.dynamics.models import TorsionalModel
-from thermogear.dynamics.return_map import return_map
 
 TRUTH = json.loads((Path(__file__).parents[1] / "dynamics" / "truth.json").read_text())
 BIFURCATIONS = {case["id"]: case for case in TRUTH["bifurcations"]}
@@ -522,34 +520,3 @@ def test_a_doubling_in_lasting_contact_is_vertical():
     branch = continuation(periodic_orbit(model, 1, (1.2, 0.0)), "frequency", 2.0)
     assert branch.of_kind(FLIP)
     assert branch.of_kind(FLIP)[0].note == VERTICAL
-
-
-def forked(p: float) -> SmoothModel:
-    """v'' = -v' + p v - v^3 beside a forced oscillator: its mirror motions +-sqrt(p) meet at 0."""
-    return SmoothModel(
-        derivative=lambda t, y: np.array(
-            [y[1], -0.5 * y[1] - y[0] + np.cos(1.3 * t), y[3], -y[3] + p * y[2] - y[2] ** 3]
-        ),
-        jacobian=lambda t, y: np.array(
-            [[0, 1, 0, 0], [-1, -0.5, 0, 0], [0, 0, 0, 1], [0, 0, p - 3.0 * y[2] ** 2, -1.0]]
-        ),
-        period=2.0 * np.pi / 1.3,
-        unit=np.ones(4),
-        divergence=-1.5,
-        tolerance=1e-10,
-    )
-
-
-@pytest.mark.parametrize("side", [0.0, 1.0])
-def test_mirror_motions_of_a_long_state_meet_in_a_pitchfork(side: float) -> None:
-    """Off the symmetric motion the branch turns there; along it one multiplier passes +1."""
-    begin, end = (0.2, -0.1) if side else (-0.1, 0.1)
-    model = forked(begin)
-    orbit = shoot(return_map(model), np.array([0.5, 0.5, side * np.sqrt(begin or 0.0), 0.0])
-                  if side else np.array([0.5, 0.5, 0.0, 0.0]), 1, model=model)  # fmt: skip
-    assert orbit is not None
-    branch = continuation(orbit, "p", end, family=forked, start=begin)
-    assert [one.kind for one in branch.bifurcations] == [PITCHFORK]
-    # v^3 closes to 1e-10, so that v is known to some 1e-3 there and p = v^2 to its square
-    assert branch.bifurcations[0].value == pytest.approx(0.0, abs=1e-5)
-    assert branch.ended == (SHRUNK[PITCHFORK] if side else REACHED)

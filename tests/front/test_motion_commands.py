@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from thermogear.base.notice import Notice
@@ -110,6 +111,23 @@ def test_continue_marks_fold_and_grazing(
     assert (out / "branch.html").is_file()
 
 
+def test_continue_in_a_second_parameter(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Both folds are one curve that turns; stored, drawn, as CSV with the asked values."""
+    numbers = ["--zeta", "0.05", "--w", "0.7", "--eps", "0.1", "--fm", "0.1", "--fh", "0.05"]
+    numbers += ["--start", "1.1,0", "--parameter", "w", "--to", "0.9", "--and", "zeta=0.05:0.07:3"]
+    out = tmp_path / "plane"
+    assert main(["continue", *numbers, "-o", str(out)]) == 0
+    said = capsys.readouterr().out
+    assert len(re.findall("^ +1 fold, period 1 ", said, re.MULTILINE)) > 3
+    kept = open_results(out)
+    assert kept["curve_0"].attrs["kind"] == "fold"
+    asked = kept["curve_0"]["second"].values[kept["curve_0"]["asked"].values == 1]
+    assert np.isin([0.05, 0.06], asked.round(12)).all()
+    rows = (out / "plane_point.csv").read_text(encoding="utf-8").splitlines()
+    assert rows[0].startswith("kind,period,first [1],second [1]")
+    assert (out / "branch.html").read_text(encoding="utf-8").count("<figure") == 2
+
+
 def test_symbols_of_a_cascade_are_drawn_not_spelt_as_tags(tmp_path: Path) -> None:
     out = tmp_path / "cascade"
     assert main(["continue", "table-4.2", "--row", "omega", "--cascade", "1", "-o", str(out)]) == 0
@@ -190,6 +208,18 @@ def test_ctrl_c_keeps_what_is_done(
         (
             ["continue", "motor-train", "--rigid", "--values", "9"],
             "--values: got 9; --rigid leaves the shafts out",
+        ),
+        (
+            ["continue", *NUMBERS, "--parameter", "w", "--to", "1", "--and", "w=1:2:3"],
+            "--and: got 'w=1:2:3'; it is --parameter",
+        ),
+        (
+            ["continue", *NUMBERS, "--parameter", "w", "--to", "1", "--and", "zeta"],
+            "--and: got 'zeta'; allowed NAME=FROM:TO:COUNT",
+        ),
+        (
+            ["continue", *NUMBERS, "--parameter", "w", "--to", "1", "--and", "zeta=0.1:0.2:1"],
+            "--and: got 'zeta=0.1:0.2:1'; allowed two values or more",
         ),
         (
             ["continue", "rig", "--parameter", "speed", "--to", "4000"],

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.analysis.test_event_curve import DOUBLING
 
 from own_pair import OWN_PAIR
 from thermogear.analysis.diagram import diagram_plan
@@ -15,7 +16,6 @@ from thermogear.base.plan import gather
 from thermogear.base.units import RPM
 from thermogear.base.vocabulary import ASSUMED
 from thermogear.case.case import load_case, load_example
-from thermogear.dynamics.models import TorsionalModel
 from thermogear.results.work import carry_out
 from thermogear.study import diagrams
 from thermogear.study.diagrams import case_map, overlaid, whole_or_spared
@@ -23,13 +23,6 @@ from thermogear.views.plots.lost_contact import PARTED
 from thermogear.views.write import page_of
 
 SCALED = ("damping_ratio", "stiffness_amplitude", "mean_force", "force_amplitude")
-DOUBLING = TorsionalModel(
-    damping_ratio=0.1535,
-    frequency=1.3,
-    stiffness_amplitude=0.335,
-    mean_force=0.017,
-    force_amplitude=-1.16,
-)
 
 
 PAIRS = (

@@ -23,11 +23,12 @@ from thermogear.study.shafts.branches import TrainGrid, Trains, train_branch_res
 from thermogear.views.write import page_of
 
 TRUE = float(TRUTH["Q1"]["values"]["eps"])
+KELVIN = 300.0
 
 
 @dataclass(frozen=True, eq=False)
 class Known:
-    """Truth Q1: its modulation stands for the speed."""
+    """Truth Q1: its modulation stands for the speed, its speed for the temperature."""
 
     names: tuple[str, ...]
     cycle: int = 1
@@ -35,6 +36,7 @@ class Known:
     def train(self, row: list[float]) -> Any:
         params = copy.deepcopy(TRUTH["Q1"]["params"])
         params["k_re"], params["k_im"] = [row[0] * params["k_mean"]], [0.0]
+        params["rpm"] *= row[1] / KELVIN if len(row) > 1 else 1.0
         return SimpleNamespace(model=moving_six(params)[0])
 
 
@@ -44,9 +46,9 @@ def trains(monkeypatch: pytest.MonkeyPatch) -> Trains:
     assert isinstance(case, GearCase)
     found = Trains.of(case, of_case(case), operating=None, coordinates=None)
 
-    def over(_: Trains, name: str, values: Any) -> TrainGrid:
-        family: Any = Known((name,))
-        return TrainGrid(family, np.unique(values))
+    def over(_: Trains, names: tuple[str, ...], axes: tuple[Any, ...]) -> TrainGrid:
+        family: Any = Known(names)
+        return TrainGrid(family, tuple(np.unique(axis) for axis in axes))
 
     monkeypatch.setattr(Trains, "over", over)
     return found
@@ -54,25 +56,32 @@ def trains(monkeypatch: pytest.MonkeyPatch) -> Trains:
 
 def test_a_torus_point_of_a_train_is_the_known_one(trains: Trains, compared: Compared) -> None:
     low, high = 0.8 * TRUE, 1.2 * TRUE
-    result = train_branch_results(trains, "pinion_speed", high, begin=low, count=3)
+    temperatures = np.array([KELVIN, 1.002 * KELVIN])
+    result = train_branch_results(
+        trains, "pinion_speed", high, begin=low, count=3,
+        second=("gear_temperature", temperatures),
+    )  # fmt: skip
     events = [one for one in result.summary["bifurcations"] if one["kind"] == TORUS]
     assert len(events) == 1
     compared("torus point of a train by continue", "truth Q1", abs(events[0]["value"] - TRUE), 1e-6)
     assert result.summary["branches"][0]["ended"] == REACHED
-    # settled by itself on either side a pair crosses the circle
-    grid = trains.over("pinion_speed", np.array([low, high]))
-    sizes = [
-        float(np.abs(train_orbit(grid(share * TRUE), period=1,
-                                 transient=False)[0].multipliers).max())
-        for share in (0.99, 1.01)
-    ]  # fmt: skip
-    assert sizes[0] < 1.0 < sizes[1]
+    # settled by itself on either side, at the last temperature too, a pair crosses the circle
+    curve = result.summary["curves"][0]
+    assert [one["second"] for one in curve["asked"]] == temperatures.tolist()
+    grid = trains.over(("pinion_speed", "gear_temperature"), (np.array([low, high]), temperatures))
+    for one in curve["asked"]:
+        sizes = [
+            float(np.abs(train_orbit(grid(share * one["first"], one["second"]), period=1,
+                                     transient=False)[0].multipliers).max())
+            for share in (0.99, 1.01)
+        ]  # fmt: skip
+        assert sizes[0] < 1.0 < sizes[1]
     lines = page_of(result).lines()
     assert any(TORUS in line for line in lines)
 
 
 def test_beyond_the_grid_is_refused(trains: Trains) -> None:
-    grid = trains.over("pinion_speed", np.array([0.8, 1.2]) * TRUE)
+    grid = trains.over(("pinion_speed",), (np.array([0.8, 1.2]) * TRUE,))
     with pytest.raises(InputError, match="pinion_speed"):
         grid(2.0 * TRUE)
     with pytest.raises(InputError, match="--values"):

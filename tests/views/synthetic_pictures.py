@@ -35,6 +35,7 @@ from thermogear.views.plots import (
     shafts,
     sweeps,
 )
+from thermogear.views.plots.one_motion import plane_picture
 
 SIZES = {
     "direction": 2, "start": 1, "damping_ratio": 5, "frequency": 4, "section": 3, "branch": 1,
@@ -387,6 +388,14 @@ def of_sampled_rigs() -> dict[str, Picture]:
     }
 
 
+def of_planes() -> dict[str, Picture]:
+    about = {"kind": "fold", "first": "frequency", "second": "damping_ratio", "period": 1}
+    curve = made("point", "first", "second").assign(
+        stable=("point", np.array([1, 0])), asked=("point", np.array([1, 1]))
+    )
+    return {"event-plane": plane_picture([curve.assign_attrs(about)])}
+
+
 def of_moving_trains() -> dict[str, Picture]:
     heat, two = ["undeformed", "hot"], ["left", "right"]
     rng = np.random.default_rng(5)
@@ -573,4 +582,4 @@ def of_dials() -> dict[str, Picture]:
 def every() -> dict[str, Picture]:
     """All of them by name."""
     gears = of_sweeps() | of_orbits() | of_surveys() | of_shafts()
-    return gears | of_claims() | of_sampled_rigs() | of_dials()
+    return gears | of_claims() | of_sampled_rigs() | of_planes() | of_dials()

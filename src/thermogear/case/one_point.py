@@ -96,6 +96,11 @@ class OnePoint:
         """value -> the point with ``parameter`` put to it; temperature is both addenda's."""
         return along(self._over((parameter,)))
 
+    def over(self, first: str, second: str) -> Callable[[float, float], Points]:
+        """(p, q) -> the point with two parameters put to them, as :meth:`along`."""
+        whole = self._over((first, second))
+        return lambda p, q: moving(whole(np.array([[p, q]])), whole)
+
     def _over(self, names: tuple[str, ...]) -> GearFamily | NumberFamily:
         if "gear_temperature" not in map(long_name, names):
             return family(self.case, names, state=self._held)

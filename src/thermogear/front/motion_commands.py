@@ -139,6 +139,11 @@ def point_of(options: dict[str, Any]) -> OnePoint:
     help="Find the first N period doublings of every row (or of --parameter).",
 )  # fmt: skip
 @click.option(
+    "--and", "second", metavar="NAME=FROM:TO:COUNT",
+    help="A second parameter: every fold, doubling, pitchfork and torus point found at FROM is "
+    "followed to TO, as a curve in the plane of both.",
+)  # fmt: skip
+@click.option(
     "--rigid", is_flag=True, help="The gear pair on rigid bearings, although CASE has [[shafts]]."
 )
 @click.option(
@@ -158,6 +163,7 @@ def continue_(
     direct: bool,
     switch: int,
     cascade: int | None,
+    second: str | None,
     rigid: bool,
     coordinates: int | None,
     values: int | None,
@@ -180,6 +186,8 @@ def continue_(
       thermogear continue rig.toml --parameter speed --to "6000 rpm" -o branches
       thermogear continue --zeta 0.18 --w 1.245 --eps 0.335 --fm 0.017 --fh -1.16 \\
         --parameter zeta --to 0.10 --switch 2
+      thermogear continue own.toml --parameter speed --from "2000 rpm" --to "4000 rpm" \\
+        --and "temperature=20 degC:100 degC:5" -o jumps
     """
     from thermogear.case.one_point import parameter_name, parameter_value
     from thermogear.study.branches import branch_results, cascade_results
@@ -187,8 +195,8 @@ def continue_(
     case = _case(options)
     train = is_train(case, rigid, {"coordinates": coordinates, "values": values})
     if cascade is not None:
-        own = {"period": period, "direct": direct, "switch": switch} | options
-        _unused(own, ("period", "direct", "switch", *OF_GEARS), "beside --cascade")
+        own = {"period": period, "direct": direct, "switch": switch, "and": second} | options
+        _unused(own, ("period", "direct", "switch", "and", *OF_GEARS), "beside --cascade")
         if parameter is None:
             _unused(own, ("point",), "a cascade runs through the whole row")
         sweeps, title = _sweeps(options, case, parameter, begin, to)
@@ -208,6 +216,7 @@ def continue_(
     name = parameter_name(point, parameter)
     end = parameter_value("--to", point, name, to)
     first = None if begin is None else parameter_value("--from", point, name, begin)
+    plane = None if second is None else _second(point, name, second)
 
     def make(report: Progress) -> Result:
         if train:
@@ -217,11 +226,11 @@ def continue_(
             return train_branch_results(
                 trains, name, end, begin=first, start=_start(options), period=period,
                 transient=not direct, switch=switch, count=VALUES if values is None else values,
-                progress=report,
+                second=plane, progress=report,
             )  # fmt: skip
         return branch_results(
             point, name, end, start=first, period=period, transient=not direct, switch=switch,
-            progress=report,
+            second=plane, progress=report,
         )  # fmt: skip
 
     delivery.deliver(make, options["output"], as_json=options["as_json"])
@@ -241,6 +250,18 @@ def is_train(case: Any, rigid: bool, asked: dict[str, Any]) -> bool:
             why = "--rigid leaves the shafts out" if rigid else "CASE has no [[shafts]]"
             raise InputError(f"--{name}", value, why=why, fix="leave it out")
     return False
+
+
+def _second(point: OnePoint, first: str, text: str) -> tuple[str, Any]:
+    """Name and values of a second parameter, as no case file would refuse them."""
+    from thermogear.case.axes import parse_axis
+
+    name, values = parse_axis(point.case, text, "--and")
+    if name == first:
+        raise InputError("--and", repr(text), why="it is --parameter", fix="name another one")
+    if values.size < 2 or values[0] == values[-1]:
+        raise InputError("--and", repr(text), allowed="two values or more, from one to another")
+    return name, values
 
 
 def _sweeps(

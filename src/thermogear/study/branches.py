@@ -7,9 +7,11 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from thermogear.analysis.bifurcations import FLIP, PITCHFORK, Bifurcation
 from thermogear.analysis.continuation import GAP, Branch, continuation, switch_branch
+from thermogear.analysis.event_curve import EventCurve
 from thermogear.analysis.orbits import Orbit, periodic_orbit
 from thermogear.base.arrays import Dataset
 from thermogear.base.errors import ConvergenceError, InputError
@@ -20,9 +22,9 @@ from thermogear.case.allowed import gear_parameter, number_parameter
 from thermogear.case.case import DimensionlessCase, GearCase
 from thermogear.case.dimensionless import Point
 from thermogear.case.one_point import OnePoint, of_numbers
-from thermogear.dynamics.return_map import MovedMap
 from thermogear.results.result import Result
 from thermogear.study.declared import fault_notices
+from thermogear.study.event_plane import Plane, one_mass
 from thermogear.study.orbit import complex_rows, found, orbit_of
 
 STEPS = 1000
@@ -51,23 +53,37 @@ def branch_results(
     period: int | None = None,
     transient: bool = True,
     switch: int = 0,
+    second: tuple[str, NDArray[np.float64]] | None = None,
     progress: Progress = silent,
 ) -> Result:
     """Follow the orbit of ``point`` in ``parameter`` to ``to``; at flips ``switch`` levels deeper.
 
     ``start`` a value of the parameter to begin at (default: the present one). Folds, flips,
-    pitchforks and grazing are located; Ctrl+C keeps the branches walked so far.
+    pitchforks and grazing are located; Ctrl+C keeps the branches walked so far. ``second``: a
+    parameter and values of it; the branch is walked at the first of these, and all but grazings are
+    followed on to the last, as curves in the plane of both parameters.
     """
     varied = parameter_of(point, parameter)
     begin = point.value(varied.name) if start is None else start
-    models = point.along(varied.name)
+    plane = None
+    if second is not None:
+        plane = Plane(parameter_of(point, second[0]), second[1], point.over(varied.name, second[0]))
+    models = point.along(varied.name) if plane is None else plane.models
     require_depth(switch)
     orbit, _ = orbit_of(point, period, transient=transient, model=models(begin))
     legs, cut = walked(orbit, varied, models, begin=begin, to=to, switch=switch, progress=progress)
+    curves: list[EventCurve] = []
     notices = [*(fault_notices(point.gears) if point.points.gears else ()), *lost_notices(legs)]
+    if plane is not None and not cut:
+        branches = [leg.branch for leg in legs]
+        curves, told, cut = plane.followed(branches, varied, (begin, to), progress)
+        notices += told
     summary = summary_of(point.title, varied, legs, (begin, to), cut)
     summary["parameters"] = point.parameters
     groups = {f"branch_{i}": dataset(leg, varied.unit) for i, leg in enumerate(legs)}
+    if plane is not None:
+        summary |= plane.summary(curves, varied)
+        groups |= plane.groups(curves, varied)
     if point.points.mesh_periods > 1:
         summary["mesh_periods"] = point.points.mesh_periods
         for group in groups.values():
@@ -160,11 +176,6 @@ def _forks(branch: Branch) -> tuple[Bifurcation, ...]:
     """Where other branches begin: period doublings, and pitchforks of one mass."""
     events = branch.bifurcations
     return tuple(b for b in events if b.kind == FLIP or (b.kind == PITCHFORK and one_mass(b)))
-
-
-def one_mass(event: Bifurcation) -> bool:
-    """Whether its orbit is that of one mass."""
-    return isinstance(event.orbit.section, MovedMap)
 
 
 def _walk(

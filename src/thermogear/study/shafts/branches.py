@@ -1,4 +1,4 @@
-"""Branches of a drive train's periodic motions along a parameter."""
+"""Branches of a drive train's periodic motions along a parameter, and in a second one."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 
 from thermogear.analysis.any_motion import settle
 from thermogear.analysis.continuation import Branch
+from thermogear.analysis.event_curve import EventCurve
 from thermogear.analysis.orbits import Orbit, periodic_orbit, shoot
 from thermogear.analysis.walk import Motion, Search
 from thermogear.base.arrays import Dataset, Floats
@@ -34,6 +35,7 @@ from thermogear.study.branches import (
     summary_of,
     walked,
 )
+from thermogear.study.event_plane import Plane
 from thermogear.study.orbit import found
 from thermogear.study.shafts.family import TrainFamily
 
@@ -43,42 +45,60 @@ BEYOND = 0.5
 
 @dataclass(frozen=True, eq=False)
 class TrainGrid:
-    """``family`` at the values of ``axis`` (ascending), straight between them."""
+    """``family`` at the corners of ``axes`` (one or two, ascending), straight between them."""
 
     family: TrainFamily
-    axis: Floats
-    _kept: dict[int, GearedModel] = field(init=False, repr=False, default_factory=dict)
+    axes: tuple[Floats, ...]
+    _kept: dict[tuple[int, ...], GearedModel] = field(init=False, repr=False, default_factory=dict)
 
-    def __call__(self, value: float) -> GearedModel:
-        """The train in motion at a value of the parameter.
+    def __call__(self, *values: float) -> GearedModel:
+        """The train in motion at one value of each parameter.
 
         InputError beyond the grid, or where the train has no motion.
         """
-        axis = self.axis
+        places = [self._cell(axis, at) for axis, at in zip(self.axes, values, strict=True)]
+        return self._mixed((), places)
+
+    def _cell(self, axis: Floats, value: float) -> tuple[int, float]:
+        """The cell that a value lies in, and where in it."""
         place = int(np.clip(np.searchsorted(axis, value, side="right") - 1, 0, axis.size - 2))
         weight = float((value - axis[place]) / (axis[place + 1] - axis[place]))
         if not -BEYOND <= weight <= 1.0 + BEYOND:
-            raise InputError(self.family.names[0], value, allowed=f"{axis[0]:.6g}..{axis[-1]:.6g}")
-        low = self._at(place)
+            number = next(i for i, one in enumerate(self.axes) if one is axis)
+            raise InputError(
+                self.family.names[number], value, allowed=f"{axis[0]:.6g}..{axis[-1]:.6g}"
+            )
+        return place, weight
+
+    def _mixed(self, corner: tuple[int, ...], rest: list[tuple[int, float]]) -> GearedModel:
+        if not rest:
+            return self._corner(corner)
+        (place, weight), *others = rest
+        low = self._mixed((*corner, place), others)
         if weight == 0.0:
             return low
-        high = self._at(place + 1)
+        high = self._mixed((*corner, place + 1), others)
         return high if weight == 1.0 else between(low, high, weight)
 
-    def _at(self, place: int) -> GearedModel:
-        if place not in self._kept:
-            value = float(self.axis[place])
-            train = self.family.train((value,))
-            if train is None:
-                status = STATUS[self.family.at_rest((value,))[0].status]
-                raise InputError(
-                    "parameter",
-                    f"{self.family.names[0]} {value:.6g} (SI): {status.replace('_', ' ')}",
-                    why=STILL[status],
-                    fix="choose a smaller range",
-                )
-            self._kept[place] = train.model
-        return self._kept[place]
+    def _corner(self, corner: tuple[int, ...]) -> GearedModel:
+        found = self._kept.get(corner)
+        if found is not None:
+            return found
+        row = [float(axis[place]) for axis, place in zip(self.axes, corner, strict=True)]
+        train = self.family.train(row)
+        if train is None:
+            rest = self.family.at_rest(row)[0]
+            words = ", ".join(
+                f"{name} {value:.6g}" for name, value in zip(self.family.names, row, strict=True)
+            )
+            raise InputError(
+                "parameter",
+                f"{words} (SI): {STATUS[rest.status].replace('_', ' ')}",
+                why=STILL[STATUS[rest.status]],
+                fix="choose a smaller range",
+            )
+        self._kept[corner] = train.model
+        return train.model
 
 
 VALUES = 9
@@ -112,15 +132,15 @@ class Trains:
         )  # fmt: skip
         return cls(point=point, family=family)
 
-    def over(self, name: str, values: Floats) -> TrainGrid:
-        """The train over a parameter, computed at ``values`` of it."""
+    def over(self, names: tuple[str, ...], axes: tuple[Floats, ...]) -> TrainGrid:
+        """The train over parameters, computed at the values of ``axes``."""
         one = self.family
         whole = TrainFamily(
-            one.case, (name,), one.bundle, one.state, operating=one.operating,
+            one.case, names, one.bundle, one.state, operating=one.operating,
             coordinates=one.coordinates,
         )  # fmt: skip
-        whole.require({name: values})
-        return TrainGrid(whole, np.unique(values))
+        whole.require(dict(zip(names, axes, strict=True)))
+        return TrainGrid(whole, tuple(np.unique(axis) for axis in axes))
 
 
 def train_orbit(
@@ -164,12 +184,13 @@ def train_branch_results(
     transient: bool = True,
     switch: int = 0,
     count: int = VALUES,
+    second: tuple[str, Floats] | None = None,
     progress: Progress = silent,
 ) -> Result:
     """Follow the orbit of a drive train in ``parameter``, as ``branch_results`` does of a pair.
 
-    Mesh, bearings and friction are computed at ``count`` values from ``begin`` to ``to`` and run
-    straight between them.
+    Mesh, bearings and friction are computed at ``count`` values from ``begin`` to ``to``, in a
+    ``second`` parameter at those asked for, and run straight between them.
     """
     if count < 2:
         raise InputError("--values", count, allowed=">= 2")
@@ -179,7 +200,16 @@ def train_branch_results(
     if first == to:
         raise InputError("--to", varied.told(to), allowed="another value than that of --from")
     require_depth(switch)
-    models = trains.over(varied.name, np.linspace(first, to, count))
+    axis = np.linspace(first, to, count)
+    plane = None
+    if second is None:
+        grid = trains.over((varied.name,), (axis,))
+        models: Any = grid
+    else:
+        other = parameter_of(point, second[0])
+        grid = trains.over((varied.name, other.name), (axis, second[1]))
+        plane = Plane(other, second[1], grid)
+        models = plane.models
     progress("settling", 0, 1)
     model = models(first)
     asked = trains.family.coordinates
@@ -188,6 +218,11 @@ def train_branch_results(
     orbit, motion = train_orbit(model, start, period, transient=transient)
     progress("settling", 1, 1)
     legs, cut = walked(orbit, varied, models, begin=first, to=to, switch=switch, progress=progress)
+    curves: list[EventCurve] = []
+    told: list[Notice] = []
+    if plane is not None and not cut:
+        branches = [leg.branch for leg in legs]
+        curves, told, cut = plane.followed(branches, varied, (first, to), progress)
     summary = summary_of(point.title, varied, legs, (first, to), cut)
     began = "Newton's method from the start itself"
     if motion is not None:
@@ -196,42 +231,47 @@ def train_branch_results(
     summary |= {
         "train": {
             "coordinates": orbit.model.size if isinstance(orbit.model, GearedModel) else 0,
-            "cycle": models.family.cycle,
+            "cycle": grid.family.cycle,
             "began": began,
             "values": count,
-            "straight": straight_error(models, legs[0].branch),
+            "straight": straight_error(grid, legs[0].branch, plane),
         }
     }
     off = summary["train"]["straight"] or {"force": None, "multiplier": None}
-    cycle = models.family.cycle
+    cycle = grid.family.cycle
     notices = [
         *lost_notices(legs),
+        *told,
         Notice.of("straight_between_values", force=off["force"], multiplier=off["multiplier"]),
         *([Notice.of("period_of_all_shafts", cycle=cycle)] if cycle > 1 else []),
     ]
     groups = {f"branch_{i}": _stored(leg, varied) for i, leg in enumerate(legs)}
+    if plane is not None:
+        summary |= plane.summary(curves, varied)
+        groups |= plane.groups(curves, varied)
     return found("branch", groups, summary, notices, interrupted=cut)
 
 
-def straight_error(grid: TrainGrid, branch: Branch) -> dict[str, Any] | None:
+def straight_error(grid: TrainGrid, branch: Branch, plane: Plane | None) -> dict[str, Any] | None:
     """How far an orbit of the straight numbers is from that of the train computed there.
 
-    Half way in the middle interval between computed values: ``value`` [SI], ``multiplier`` the
-    change of the largest modulus, ``force`` that of the greatest mesh force as a share. None where
-    the branch or one of both orbits is not there.
+    Half way in the middle interval between computed values, at the first value of a second
+    parameter: ``value`` [SI], ``multiplier`` the change of the largest modulus, ``force`` that of
+    the greatest mesh force as a share. None where the branch or one of both orbits is not there.
     """
-    axis = grid.axis
+    axis = grid.axes[0]
     place = (axis.size - 1) // 2
     value = 0.5 * float(axis[place] + axis[place + 1])
     index = int(np.argmin(np.abs(branch.values - value)))
     if abs(branch.values[index] - value) > 0.5 * float(axis[place + 1] - axis[place]):
         return None
-    computed = grid.family.train((value,))
+    rest = () if plane is None else (float(plane.values[0]),)
+    computed = grid.family.train((value, *rest))
     if computed is None:
         return None
     found = []
     state = branch.states[index]
-    for model in (grid(value), computed.model):
+    for model in (grid(value, *rest), computed.model):
         orbit = shoot(return_map(model), state, branch.period, model=model)
         if orbit is None:
             return None

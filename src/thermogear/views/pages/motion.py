@@ -9,7 +9,7 @@ from typing import Any
 
 from thermogear.base.arrays import Dataset
 from thermogear.base.display import MICROMETRE, PERCENT, Display, number
-from thermogear.base.vocabulary import label_words
+from thermogear.base.vocabulary import label_words, of_turn
 from thermogear.results.result import Result
 from thermogear.views.columns import Column, Row, declared, pairs
 from thermogear.views.csv_files import cell_text, head_text
@@ -30,11 +30,65 @@ from thermogear.views.typesetting import prose
 
 Summary = dict[str, Any]
 MESH = "mesh periods"
+SECOND = "second_shown"
+PLANE = "Where the motion jumps or changes"
 
 
-def shown(point: Row, digits: int = 8) -> str:
-    """The value of a point with its unit."""
-    return f"{point['shown']:.{digits}g} {point['shown_unit']}".strip()
+def shown(point: Row, digits: int = 8, which: str = "shown") -> str:
+    """The value of a point with its unit, of the first or the second parameter."""
+    return f"{point[which]:.{digits}g} {point[f'{which}_unit']}".strip()
+
+
+def _turns(curve: Row) -> list[str]:
+    """Where a curve turns back, in both parameters."""
+    return [f"{shown(one, 6)} at {shown(one, 6, SECOND)}" for one in curve["turns"]]
+
+
+def plane_headline(summary: Summary) -> str:
+    """How many were followed; "" without a second parameter."""
+    if "curves" not in summary:
+        return ""
+    count = len(summary["curves"])
+    return f"{count} followed in a second parameter." if count else "None followed further."
+
+
+def plane_caption(summary: Summary) -> str:
+    """What the plane shows: only what is drawn in it."""
+    words = ["A motion that crosses a solid line changes there"]
+    if any(not one["stable"] for curve in summary["curves"] for one in curve["asked"]):
+        words.append("dotted: the orbit is unstable already, so that no motion meets it")
+    return "; ".join(words) + ". Marks: at the values asked for."
+
+
+def plane_tables(summary: Summary) -> list[Block]:
+    """The curves at the values asked for, and how each ended."""
+    if "curves" not in summary:
+        return []
+    second = page_words(summary["second"])
+    if not summary["curves"]:
+        return [Text(f"No bifurcation was followed in the second parameter, {second}.")]
+    turn = of_turn(summary.get("mesh_periods", 1))
+    curves = [
+        {**curve, "name": f"{number} {curve['kind']}, period {curve['period']}{turn}"}
+        for number, curve in enumerate(summary["curves"], start=1)
+    ]
+    points = (
+        Column("curve", "name"),
+        Column(second, lambda point: shown(point, 6, SECOND)),
+        Column(page_words(summary["parameter"]), shown),
+        Column("", lambda point: "" if point["stable"] else "on an unstable orbit"),
+    )
+    ends = (
+        Column("curve", "name"),
+        Column("points", "points"),
+        Column("turns at", lambda curve: "; ".join(_turns(curve)) or "–"),
+        Column("ended", "ended"),
+    )
+    asked = [{**point, "name": curve["name"]} for curve in curves for point in curve["asked"]]
+    return [
+        declared("Bifurcations in two parameters", points, asked),
+        declared("The curves", ends, curves),
+    ]
 
 
 Groups = Mapping[str, Dataset]
@@ -47,6 +101,9 @@ def page(result: Result) -> Page:
     kind, groups, summary = result.kind, result.groups, result.summary
     caption = _caption(kind, summary, groups)
     shown = [Shown(kind, HEADINGS[kind], caption, _picture(kind, groups), wide=True)]
+    if "curve_0" in groups:
+        made = partial(plots.plane_picture, _numbered(groups, "curve_"))
+        shown.append(Shown("plane", PLANE, plane_caption(summary), made, wide=True))
     headline, blocks = _headline(kind, summary), _TABLES[kind](summary)
     return Page(
         result,
@@ -78,14 +135,15 @@ def _numbered(groups: Groups, begin: str) -> list[Dataset]:
 def csv_tables(kind: str, groups: Groups) -> dict[str, str]:
     """Every array along an axis as CSV: one file for each axis, branches below each other."""
     files: dict[str, list[str]] = {}
-    for data in groups.values():
-        own = {k: data.attrs[k] for k in ("row", "period") if k in data.attrs}
+    for name, data in groups.items():
+        file = "plane" if name.startswith("curve_") else kind
+        own = {k: data.attrs[k] for k in ("row", "kind", "period") if k in data.attrs}
         for axis in data.dims:
             columns = [str(v) for v in data.variables if data[v].dims == (axis,)]
             if not columns or axis in ("multiplier", "coordinate"):
                 continue
             heads = [head_text(data, column) for column in columns]
-            lines = files.setdefault(f"{kind}_{axis}.csv", [",".join([*own, *heads])])
+            lines = files.setdefault(f"{file}_{axis}.csv", [",".join([*own, *heads])])
             rows = zip(*(data[column].values.tolist() for column in columns), strict=True)
             lines += [",".join(map(cell_text, (*own.values(), *row))) for row in rows]
     return {name: "\n".join(lines) + "\n" for name, lines in files.items()}
@@ -143,7 +201,8 @@ def _headline(kind: str, summary: Summary) -> str:
         )
     if kind == "branch":
         events, legs = len(summary["bifurcations"]), len(summary["branches"])
-        return f"{events} bifurcation{'s' * (events != 1)} on {legs} branch{'es' * (legs != 1)}."
+        told = f"{events} bifurcation{'s' * (events != 1)} on {legs} branch{'es' * (legs != 1)}."
+        return f"{told} {plane_headline(summary)}".strip()
     return f"{sum(len(c['flips']) for c in summary['cascades'])} period doublings located."
 
 
@@ -239,6 +298,7 @@ def _branch_tables(summary: Summary) -> list[Block]:
         *_train_words(summary.get("train", {})),
         declared("Bifurcations", points, found, names=2) if found else none,
         declared("Branches", legs, branches, names=2),
+        *plane_tables(summary),
     ]
 
 

@@ -257,3 +257,34 @@ def cascade_picture(branches: Sequence[Dataset]) -> Picture:
         panels.append(panel)
     panels[0].y.words = "displacement X at phase 0 [–]"
     return Picture([panels], size=(WIDE, 3.6), between=0.62)
+
+
+def plane_picture(curves: Sequence[Dataset]) -> Picture:
+    """Every curve over both parameters: solid where a stable motion meets it, else dotted."""
+    first, second = str(curves[0].attrs["first"]), str(curves[0].attrs["second"])
+    panel = Panel(
+        Axis(axis_words(first, curves[0]["first"])), Axis(axis_words(second, curves[0]["second"]))
+    )
+    for data in curves:
+        kind = str(data.attrs["kind"])
+        marker, colour = MARKS[kind]
+        turn = of_turn(data.attrs.get("mesh_periods", 1))
+        label = f"{kind}, period {int(data.attrs['period'])}{turn}"
+        x, y = shown(first, data["first"]), shown(second, data["second"])
+        met = data["stable"].values.astype(bool)
+        cuts = [0, *(np.flatnonzero(np.diff(met.astype(int))) + 1).tolist(), met.size]
+        for low, high in pairwise(cuts):
+            end = min(high + 1, met.size)
+            if met[low]:
+                panel.curve(x[low:end], y[low:end], colour=colour, width=1.6, label=label)
+            else:
+                panel.curve(
+                    x[low:end], y[low:end], colour=colour, width=1.1, dash=DOTTED,
+                    label=f"{label}, no motion meets it",
+                )  # fmt: skip
+        asked = data["asked"].values.astype(bool)
+        panel.points(
+            x[asked], y[asked], marker=marker, size=4.5, colour=colour, edge="white",
+            edge_width=0.5,
+        )  # fmt: skip
+    return Picture([[panel]], size=(WIDE, 4.4), legend=3)
