@@ -230,7 +230,7 @@ def test_what_is_meant_is_allowed() -> None:
             allowed.require(name, [allowed.least, 0.5 * (allowed.least + allowed.most)])
             allowed.require(name, allowed.most)
             for wrong in (math.nan, math.inf, -math.inf):
-                with pytest.raises(InputError, match=f"^{name}: got -?(nan|inf) "):
+                with pytest.raises(InputError, match=f"^{name}: got -?(nan|inf)\\b"):
                     allowed.require(name, [allowed.most, wrong])
 
 

@@ -12,7 +12,7 @@ from thermogear.base.vocabulary import STATUS
 from thermogear.views.gears import DrawnState, GearDrawing
 from thermogear.views.pages import contact as loaded
 from thermogear.views.pages import (
-    record,
+    measured,
     records,
     relief,
     rig_trains,
@@ -293,8 +293,8 @@ def of_records() -> dict[str, Picture]:
     names = [f"line {k}" for k in range(several.sizes["line"])]
     several = several.assign_coords(name=("line", names), channel=("line", ["a"] * len(names)))
     return {
-        "order-map": record.order_map(shown, "g", "the first shaft"),
-        "order-slices": record.over_speed(run, 0, "g"),
+        "order-map": measured.order_map(shown, "g", "the first shaft"),
+        "order-slices": measured.over_speed(run, 0, "g"),
         "records": records.course(several),
     }
 
