@@ -12,6 +12,7 @@ from thermogear.base.vocabulary import STATUS
 from thermogear.views.gears import DrawnState, GearDrawing
 from thermogear.views.pages import contact as loaded
 from thermogear.views.pages import (
+    diagnosis,
     measured,
     records,
     relief,
@@ -256,6 +257,7 @@ def of_surveys() -> dict[str, Picture]:
         **of_turn(),
         **of_warm_up(),
         **of_records(),
+        **of_diagnosis(),
     }
 
 
@@ -277,6 +279,27 @@ def of_turn() -> dict[str, Picture]:
         "turn": turn.error_of_turn(data),
         "turn-orders": turn.orders_of_turn(data),
         "turn-teeth": turn.teeth_of_turn(rows),
+    }
+
+
+def of_diagnosis() -> dict[str, Picture]:
+    """One turn of a shaft, its mesh harmonics, an envelope with a bearing's line, a cepstrum."""
+    shaft = made("channel sample", "average", "difference").assign(
+        mesh_amplitude=rising("slice", "channel", "sample"),
+        mesh_phase_error=rising("slice", "channel", "sample"),
+        teeth_turned=rising("sample", low=0.0, high=20.0),
+        harmonic=("slice", [1, 2, 3]),
+    )
+    lines = made("sample", "envelope_amplitude", "envelope_floor").assign(
+        envelope_order=rising("sample", low=0.0, high=8.0)
+    )
+    bearing = {"bearing": "6205", "part": "outer race", "shaft": "pinion", "order": 3.6}
+    echoes = made("channel sample", "cepstrum").assign(turns=rising("sample", low=0.0, high=4.0))
+    return {
+        "diagnosis-turn": diagnosis.turn(shaft, "g"),
+        "diagnosis-teeth": diagnosis.demodulated(shaft),
+        "diagnosis-envelope": diagnosis.envelope(lines, [bearing]),
+        "diagnosis-cepstrum": diagnosis.cepstrum(echoes),
     }
 
 
