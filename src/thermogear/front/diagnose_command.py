@@ -104,13 +104,17 @@ def diagnose(
             [("wheel", rates) for rates in bearing_rates(wheel_bearings)] if wheel_bearings else []
         )
 
-        def sources(chosen: tuple[str, ...]) -> list[tuple[str, Any]]:
-            there = files_of(chosen) if chosen else []
+        def sources(there: list[Path]) -> list[tuple[str, Any]]:
             return [(file.name, partial(_in_angle, str(file), teeth[0], options)) for file in there]
 
+        tested, healthy = files_of(named), files_of(baselines) if baselines else []
+        for file in tested:
+            if any(file.resolve() == other.resolve() for other in healthy):
+                why = "the record is in the baseline that it is held against"
+                raise InputError("--baseline", file.name, why=why, fix="leave it out of one")
         return study(
-            sources(named),
-            sources(baselines),
+            sources(tested),
+            sources(healthy),
             teeth=(teeth[0] or 0, teeth[1]),
             bearings=hung,
             band=edges,

@@ -52,6 +52,9 @@ SLOW = 600.0 * RPM
 _CUT = 1.0 / 2.56  # of the sampling rate: the highest frequency that counts
 _LONGEST = 1 << 18  # samples that a band is chosen by
 _ORDERS = np.arange(1.0, 11.0)  # of the mate, whose leakage is told
+NARROWEST = 16.0
+"""Orders of the pinion that a band of the kurtogram is at least wide: an envelope reaches as far as
+its band, and rates of bearings up to some 12 (chosen)."""
 _FULL_BAND = 0.8  # of half the samples a turn, where no band stands out
 
 
@@ -293,8 +296,8 @@ class Impacts:
     """What is no line of a gear, channel by channel, over the pinion's angle.
 
     ``band`` [orders of the pinion] that was demodulated, with its kurtosis; ``chosen``: by the
-    kurtogram, or all (False); ``spectrum`` of the squared envelope, its positions in orders;
-    ``cepstrum`` (channel, quefrency in turns of the pinion x ``per_turn``).
+    kurtogram or given, or all (False); ``spectrum`` of the squared envelope, its positions in
+    orders; ``cepstrum`` (channel, quefrency in turns of the pinion x ``per_turn``).
     """
 
     bands: tuple[Band, ...]
@@ -325,7 +328,11 @@ def impacts(
     for values in straight:
         random = _without_orders(values, per_turn, 1.0 if mate is None else teeth / mate)
         part = random[:_LONGEST]
-        best = impulsive_band([b for b in kurtogram(part) if b.high <= top], samples=part.size)
+        wide = [
+            b for b in kurtogram(part)
+            if b.high <= top and (b.high - b.low) * per_turn >= NARROWEST
+        ]  # fmt: skip
+        best = impulsive_band(wide, samples=part.size)
         whole = Band(low=0.0, high=_FULL_BAND * top, kurtosis=float("nan"))
         if band is not None:
             low, high = (edge / per_turn for edge in band)
@@ -397,7 +404,7 @@ def _bearing_lines(
 
 
 def raw_values(record: InAngle) -> dict[str, Floats]:
-    """Kurtosis, crest factor and velocity rms [m/s] from 10 to 1000 Hz, by channel.
+    """Rms, kurtosis, crest factor and velocity rms [m/s] from 10 to 1000 Hz, by channel.
 
     From 2 Hz below 600 rpm, as ISO 20816-3 has it. The velocity is nan where rate or unit are not
     known, or the rate is below 2.56 times 1000 Hz.
@@ -418,6 +425,7 @@ def raw_values(record: InAngle) -> dict[str, Floats]:
         speeds.append(velocity_rms(si, rate=rate, low=low, high=high, integrations=power))
     centred = record.table - record.table.mean(axis=-1, keepdims=True)
     return {
+        "raw_rms": centred.std(axis=-1),
         "raw_kurtosis": normalised_moment(record.table, power=4),
         "raw_crest": crest_factor(centred),
         "velocity_rms": np.array(speeds),

@@ -42,13 +42,17 @@ from thermogear.signals.indicators import (
 from thermogear.signals.synchronous import demodulated, separated, tooth_means
 
 INDICATORS = (
-    "fm0", "fm4", "na4", "energy_ratio", "sideband_ratio", "amplitude_depth", "phase_depth",
+    "fm0", "fm4", "energy_ratio", "sideband_ratio", "amplitude_depth", "phase_depth", "na4",
     "rms", "residual_rms", "m6a", "m8a", "energy_operator", "kurtosis", "crest", "sideband_index",
 )  # fmt: skip
 """Of every shaft, in the order of the table."""
-DECIDED = INDICATORS[:7]
-"""Those that are held against limits: ratios, which a change of gain leaves as they are. Those
-that say the same again, as M6A beside FM4, would only widen the limits of all."""
+DECIDED = INDICATORS[:6]
+"""Those that are held against limits: ratios, which a change of gain leaves as they are (NA4 over
+the variance of healthy records grows with its fourth power). Those that say the same again, as M6A
+beside FM4, would only widen the limits of all."""
+LEVEL = 0.2
+"""Share by which the rms of a record lies outside that of the baseline, from which nothing is
+decided: load, gain or noise are others then (chosen: a third of a change of load)."""
 ALARM = 0.05
 """Chance of any false alarm over all that is decided of one record: chosen, as usual."""
 BY_CHANCE = 0.001
@@ -64,6 +68,8 @@ ALIKE = 0.5
 SPEEDS = 0.02
 """Relative difference of speed from which a record is not like the baseline (chosen)."""
 MOST_DRAWN = 4096
+
+EITHER = "pinion or wheel"
 
 Key = tuple[str, str, str]
 """Channel, shaft and indicator."""
@@ -286,15 +292,16 @@ def _beyond(values: Floats, near: Sequence[int]) -> float:
 
 Source = tuple[str, Callable[[], InAngle]]
 """The name of a record and what reads it into its angle."""
-NO_BASELINE, ONE_BASELINE, CHANGED, OPEN, UNCHANGED = (
-    "no baseline", "one baseline record", "changed", "undecided", "no change",
+NO_BASELINE, ONE_BASELINE, OTHER_LEVEL, CHANGED, OPEN, UNCHANGED = (
+    "no baseline", "one baseline record", "another level", "changed", "undecided", "no change",
 )  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
 class Judged:
     """A tested record beside the limits: its ``medians`` by key, those ``beyond`` their limit and
-    those ``above`` every healthy average, the ``verdict``, where the change is (``places``)."""
+    those ``above`` every healthy average, the ``verdict``, where the change is (``places``);
+    ``level``: its rms over that of the nearest healthy record, 1 within their range."""
 
     name: str
     medians: dict[Key, float]
@@ -302,6 +309,7 @@ class Judged:
     above: tuple[Key, ...]
     verdict: str
     places: tuple[Place, ...]
+    level: float
 
 
 def diagnose(
@@ -342,7 +350,7 @@ def diagnose(
     healthy, tested = counts[0], with_na4(rows, counts[0])[counts[0] :]
     base = with_na4(rows, healthy)[:healthy]
     limits = _limits(base, tested)
-    judged = [_judged(row, limits, healthy) for row in tested]
+    judged = [_judged(row, limits, base) for row in tested]
     notices += _notices(base, tested, teeth)
     return Result.of(
         "diagnosis",
@@ -368,7 +376,19 @@ def _limits(base: Sequence[Reduced], tested: Sequence[Reduced]) -> dict[Key, Hea
     return {key: healthy_limit([row.values[key] for row in base], family=family) for key in shared}
 
 
-def _judged(row: Reduced, limits: dict[Key, Healthy], healthy: int) -> Judged:
+def _level(row: Reduced, base: Sequence[Reduced]) -> float:
+    """Its rms over the nearest of the baseline's, of the channel that is farthest off; 1 within."""
+    ratios = [1.0]
+    for place, name in enumerate(row.channels):
+        healthy = [b.raw["raw_rms"][b.channels.index(name)] for b in base if name in b.channels]
+        if healthy:
+            value = float(row.raw["raw_rms"][place])
+            nearest = float(np.clip(value, min(healthy), max(healthy)))
+            ratios.append(value / nearest if nearest > 0.0 else 1.0)
+    return max(ratios, key=lambda ratio: abs(np.log(max(ratio, 1e-300))))
+
+
+def _judged(row: Reduced, limits: dict[Key, Healthy], base: Sequence[Reduced]) -> Judged:
     known = sorted(
         (key for key in row.values if key[2] in INDICATORS),
         key=lambda key: (SHAFTS.index(key[1]), INDICATORS.index(key[2])),
@@ -378,10 +398,12 @@ def _judged(row: Reduced, limits: dict[Key, Healthy], healthy: int) -> Judged:
     decided = [key for key in limits if key[2] in DECIDED and key in medians]
     beyond = tuple(key for key in decided if medians[key] > limits[key].limit)
     above = tuple(key for key in decided if medians[key] > limits[key].greatest)
-    verdict = NO_BASELINE if not healthy else UNCHANGED
-    if healthy and above:
+    verdict, level = UNCHANGED if base else NO_BASELINE, _level(row, base)
+    if base and above:
         verdict = CHANGED if beyond else OPEN
-    if healthy == 1:
+    if abs(np.log(level)) > np.log1p(LEVEL):
+        verdict = OTHER_LEVEL
+    if len(base) == 1:
         verdict = ONE_BASELINE
     places = []
     for shaft in row.shafts:
@@ -400,23 +422,27 @@ def _judged(row: Reduced, limits: dict[Key, Healthy], healthy: int) -> Judged:
         above=above,
         verdict=verdict,
         places=tuple(places),
+        level=level,
     )
 
 
 def changed_shaft(
     judged: Judged, limits: dict[Key, Healthy], shafts: Sequence[ShaftAverage]
 ) -> str:
-    """The shaft on which most changed, "" where none did.
+    """The shaft on which most changed, :data:`EITHER` where the teeth do not tell, "" for none.
 
-    Of shafts of which any indicator is beyond its limit the one that is furthest beyond; one whose
-    orders are its mate's, all or every second, only where the mate, which is told apart, is not.
+    Of shafts of which any indicator is beyond its limit the one that is furthest beyond. Where all
+    orders of a shaft, or every second, are its mate's, a change of one shows in both.
     """
+    if judged.verdict != CHANGED:
+        return ""
+    if any(shaft.step is not None and shaft.step <= 2 for shaft in shafts):
+        return EITHER
     excess: dict[str, float] = {}
     for key in judged.beyond:
         over = float(np.log(judged.medians[key] / limits[key].limit))
         excess[key[1]] = max(excess.get(key[1], 0.0), over)
-    own = {shaft.name for shaft in shafts if shaft.step is None or shaft.step > 2}
-    return max(excess, key=lambda name: (name in own, excess[name]), default="")
+    return max(excess, key=lambda name: excess[name], default="")
 
 
 def _notices(
@@ -554,12 +580,20 @@ def _figures(
     known = {line.bearing + line.shaft + line.part for row in base for line in row.impacts.lines
              if line.chance <= HEARD}  # fmt: skip
     family = [key for key in limits if key[2] in DECIDED]
+    before = {
+        (place.shaft, place.tooth)
+        for row in base
+        if row.marked
+        for place in _judged(row, limits, base).places
+        if place.chance <= BY_CHANCE
+    }
     return {
         "verdicts": [
             {
                 "record": each.name,
                 "verdict": each.verdict,
                 "shaft": changed_shaft(each, limits, row.shafts),
+                "level": each.level,
                 "beyond": len(each.beyond),
                 "above": len(each.above),
                 "indicators": len(family),
@@ -574,7 +608,8 @@ def _figures(
             {
                 "record": each.name,
                 **{name: getattr(place, name) for name in Place.__dataclass_fields__},
-                "named": place.chance <= BY_CHANCE,
+                "named": place.chance <= BY_CHANCE
+                and not (row.marked and (place.shaft, place.tooth) in before),
                 "marked": row.marked,
             }
             for each, row in zip(judged, tested, strict=True)

@@ -114,19 +114,28 @@ def summary(found: dict[str, Any]) -> str:
         "much one assembly, or one day, differs from the next; give further ones.",
         "undecided": f"Undecided: {of}, and none is beyond what records of this baseline may "
         "scatter. Further healthy records narrow that.",
+        "another level": f"Undecided: its rms is {last['level']:.2g} times that of the baseline, "
+        "so that load, gain or noise are others. Give a baseline like it.",
         "no change": "No change: no indicator is above every healthy average.",
         "changed": f"Changed: {last['beyond']} of {last['indicators']} indicators are beyond their "
         f"limits, most on the {last['shaft']}.",
     }[last["verdict"]]
     spare = ""
-    if len(found["baseline"]) > 1:
+    if len(found["baseline"]) > 1 and last["verdict"] != "another level":
         spare = (
             f" In at most {PERCENT(found['alarm']):g} % of healthy records would any of them be "
             "beyond its limit, where logarithms scatter normally from record to record; fewer than "
             f"{PERCENT(found['averages_beyond']):.2g} % of healthy averages are above all "
             f"{found['averages']} of the baseline (95 %)."
         )
-    return f"{last['record']}: {rest}{spare} {_where(found, last)}".rstrip()
+    heard = [
+        f"The envelope has a line of the {row['bearing']}'s {row['part']} ({row['shaft']}), which "
+        "the baseline has not."
+        for row in found["bearings"]
+        if row["record"] == last["record"] and found["baseline"] and not row["in_baseline"]
+    ]
+    parts = (f"{last['record']}: {rest}{spare}", _where(found, last), *heard)
+    return " ".join(part for part in parts if part)
 
 
 def _where(found: dict[str, Any], last: dict[str, Any]) -> str:
@@ -268,9 +277,7 @@ def _tables(result: Result, found: dict[str, Any], *, last: bool = False) -> dic
             "Orders of the pinion between which the envelope was taken.",
             (
                 Column("channel", "channel"),
-                Column(
-                    "chosen by", lambda row: "kurtogram" if row["chosen"] else "none stands out"
-                ),
+                Column("chosen by", lambda row: _chosen(row)),
                 Column("from", "low", 4, PLAIN),
                 Column("to", "high", 4, PLAIN),
                 Column("spectral kurtosis", "kurtosis", 3, PLAIN),
@@ -280,6 +287,12 @@ def _tables(result: Result, found: dict[str, Any], *, last: bool = False) -> dic
         ),
     }
     return {name: table for name, table in listed.items() if table.rows}
+
+
+def _chosen(row: Row) -> str:
+    if not row["chosen"]:
+        return "none stands out"
+    return "kurtogram" if np.isfinite(row["kurtosis"]) else "given"
 
 
 def _removed(row: Row, name: str) -> str:
