@@ -147,7 +147,7 @@ def in_angle(
         turns, first, noise, origin = angle.turns, angle.first, angle.noise, shaft.origin
     table = table[:, first : first + turns.size]
     notices += through.findings
-    found = InAngle(
+    angle_record = InAngle(
         record=record,
         channels=tuple(c.name for c in through.channels),
         table=table,
@@ -158,11 +158,11 @@ def in_angle(
         notices=tuple(dict.fromkeys(notices)),
         withheld=dict(through.withheld),
     )
-    if found.length < LEAST_TURNS:
-        got = f"{found.turns[-1] - found.turns[0]:.3g} turns of the pinion"
+    if angle_record.length < LEAST_TURNS:
+        got = f"{angle_record.turns[-1] - angle_record.turns[0]:.3g} turns of the pinion"
         allowed = f">= {LEAST_TURNS} turns"
         raise InputError("record", got, allowed=allowed, fix="record for longer")
-    return found
+    return angle_record
 
 
 def _by_mesh_line(
@@ -241,34 +241,34 @@ def shaft_average(
     Raises InputError where this record holds no such block.
     """
     straight, per_turn = record.straightened
-    own, mate, ratio = teeth[0], teeth[1], 1.0
+    shaft_teeth, mate, ratio = teeth[0], teeth[1], 1.0
     if name == WHEEL and mate is not None:
-        own, mate, ratio = mate, own, own / mate
+        shaft_teeth, mate, ratio = mate, shaft_teeth, shaft_teeth / mate
         turned = record.turns * ratio
         per_turn = samples_per_turn(turned)
         straight = resample_by_angle(record.table, turned, samples_per_turn=per_turn)
     held = straight.shape[-1] // per_turn
-    period = 1 if mate is None else repeating_turns(mesh_order=own, mate_order=mate)
+    period = 1 if mate is None else repeating_turns(mesh_order=shaft_teeth, mate_order=mate)
     longest, _ = block_lengths(held, period=period)
     _, block = block_lengths(turns or held, period=period)
     fastest = float(np.percentile(np.diff(record.turns), 99.0)) * ratio
     leakage: list[float] = []
     if mate is not None:
-        places = _ORDERS * own / mate
+        places = _ORDERS * shaft_teeth / mate
         alone = places[np.abs(places - np.rint(places)) > 1e-9]
         gains = (comb_gain(alone, turns=count) for count in (longest, block))
         leakage = [float(np.max(gain, initial=0.0)) for gain in gains]
     blocks = synchronous_averages(straight, samples_per_turn=per_turn, turns=block)
     return ShaftAverage(
         name=name,
-        teeth=own,
+        teeth=shaft_teeth,
         held=held,
         turns=longest,
         block_turns=block,
         average=synchronous_averages(straight, samples_per_turn=per_turn, turns=longest)[:, 0],
         blocks=blocks[:, : BLOCKS[1]],
         highest=min(int(_CUT / fastest), per_turn // 2 - 1),
-        step=None if mate is None else shared_step(mesh_order=own, mate_order=mate),
+        step=None if mate is None else shared_step(mesh_order=shaft_teeth, mate_order=mate),
         leakage=tuple(leakage),
     )
 
@@ -368,8 +368,8 @@ def _without_orders(values: Floats, per_turn: int, ratio: float) -> Floats:
     turns = values.size // per_turn
     lines[::turns] = 0.0
     places = np.rint(np.arange(0.0, lines.size - 1.0, turns * ratio)).astype(int)
-    for beside in (-1, 0, 1):
-        lines[np.clip(places + beside, 0, lines.size - 1)] = 0.0
+    for offset in (-1, 0, 1):
+        lines[np.clip(places + offset, 0, lines.size - 1)] = 0.0
     return np.asarray(np.fft.irfft(lines, n=values.size))
 
 
@@ -399,8 +399,8 @@ def _bearing_lines(
                 chance=float(np.exp(-level)),
             )
         )
-    told = [replace(line, chance=min(1.0, windows * line.chance)) for line in lines]
-    return tuple(sorted(told, key=lambda line: line.chance))
+    corrected = [replace(line, chance=min(1.0, windows * line.chance)) for line in lines]
+    return tuple(sorted(corrected, key=lambda line: line.chance))
 
 
 def raw_values(record: InAngle) -> dict[str, Floats]:

@@ -238,8 +238,8 @@ def gear_indicators(
 
     >>> turn = 2 * np.pi * np.arange(256) / 256
     >>> x = (1 + 0.2 * np.cos(turn)) * np.cos(20 * turn)
-    >>> found = gear_indicators(x, mesh_order=20, highest=100)
-    >>> [round(float(found[name]), 3) for name in ("amplitude_depth", "sideband_ratio")]
+    >>> values = gear_indicators(x, mesh_order=20, highest=100)
+    >>> [round(float(values[name]), 3) for name in ("amplitude_depth", "sideband_ratio")]
     [0.2, 0.2]
     """
     x = finite_record(average)

@@ -52,7 +52,7 @@ the variance of healthy records grows with its fourth power). Those that say the
 beside FM4, would only widen the limits of all."""
 LEVEL = 0.2
 """Share by which the rms of a record lies outside that of the baseline, from which nothing is
-decided: load, gain or noise are others then (chosen: a third of a change of load)."""
+decided: load, gain or noise are others then (chosen)."""
 ALARM = 0.05
 """Chance of any false alarm over all that is decided of one record: chosen, as usual."""
 BY_CHANCE = 0.001
@@ -118,7 +118,7 @@ def reduced(
             turns = record.length * teeth[0] / teeth[1]
             notices.append(Notice.of("few_turns_of_wheel", turns=turns))
     given = dict(zip(SHAFTS, held, strict=False))
-    shafts = [shaft_average(record, one, teeth=teeth, turns=given.get(one)) for one in names]
+    shafts = [shaft_average(record, shaft, teeth=teeth, turns=given.get(shaft)) for shaft in names]
     values: dict[Key, Floats] = {}
     for shaft in shafts:
         rows = gear_indicators(
@@ -147,18 +147,18 @@ def reduced(
 def with_na4(rows: Sequence[Reduced], healthy: int) -> list[Reduced]:
     """The records with NA4: over the variance of the first ``healthy`` of them, else over that of
     all averages up to each, in the order of the records."""
-    found = [dict(row.values) for row in rows]
+    values_of = [dict(row.values) for row in rows]
     for channel, shaft, name in rows[0].values:
-        if name != "residual_fourth" or any((channel, shaft, name) not in row for row in found):
+        if name != "residual_fourth" or any((channel, shaft, name) not in row for row in values_of):
             continue
-        variances = [row[channel, shaft, "residual_rms"] ** 2 for row in found]
-        fourths = np.concatenate([row[channel, shaft, name] for row in found])
+        variances = [row[channel, shaft, "residual_rms"] ** 2 for row in values_of]
+        fourths = np.concatenate([row[channel, shaft, name] for row in values_of])
         mean = float(np.mean(np.concatenate(variances[:healthy]))) if healthy else None
         na4 = na4_of_moments(fourth=fourths, variance=np.concatenate(variances), healthy=mean)
-        ends = np.cumsum([one.size for one in variances])[:-1]
-        for row, part in zip(found, np.split(na4, ends), strict=True):
+        ends = np.cumsum([variance.size for variance in variances])[:-1]
+        for row, part in zip(values_of, np.split(na4, ends), strict=True):
             row[channel, shaft, "na4"] = part
-    return [replace(row, values=values) for row, values in zip(rows, found, strict=True)]
+    return [replace(row, values=values) for row, values in zip(rows, values_of, strict=True)]
 
 
 # --- limits --------------------------------------------------------------------------------------
@@ -450,18 +450,18 @@ def _notices(
 ) -> list[Notice]:
     """What must be known of the averages, and of the records themselves."""
     last = tested[-1]
-    told: list[Notice] = []
+    notices: list[Notice] = []
     if teeth[1] is None:
-        told.append(Notice.of("wheel_teeth_not_stated"))
+        notices.append(Notice.of("wheel_teeth_not_stated"))
     for shaft in last.shafts:
         if shaft.step is not None and shaft.step < shaft.teeth:
-            told.append(
+            notices.append(
                 Notice.of(
                     "orders_of_both_shafts", shaft=shaft.name, step=shaft.step, twice=2 * shaft.step
                 )
             )
         if shaft.leakage and shaft.leakage[1] > 1e-6:
-            told.append(
+            notices.append(
                 Notice.of(
                     "mate_leaks",
                     shaft=shaft.name,
@@ -470,17 +470,19 @@ def _notices(
                 )
             )
     if not last.marked:
-        told.append(Notice.of("tooth_one_arbitrary", origin=last.origin))
+        notices.append(Notice.of("tooth_one_arbitrary", origin=last.origin))
     speed = float(np.median([row.speed for row in base])) if base else np.nan
     for row in tested:
         if abs(row.speed / speed - 1.0) > SPEEDS:
-            told.append(Notice.of("other_speed", record=row.name, speed=row.speed, baseline=speed))
+            notices.append(
+                Notice.of("other_speed", record=row.name, speed=row.speed, baseline=speed)
+            )
     named: dict[Notice, list[str]] = {}
     for row in (*base, *tested):
         for notice in row.notices:
             named.setdefault(notice, []).append(row.name)
     several = len(base) + len(tested) > 1
-    return told + [n.of_files(names) if several else n for n, names in named.items()]
+    return notices + [n.of_files(names) if several else n for n, names in named.items()]
 
 
 def _groups(
@@ -492,7 +494,8 @@ def _groups(
     blank = Healthy(least=np.nan, greatest=np.nan, limit=np.nan)
     healthy = [limits.get(key, blank) for key in keys]
     bounds = [
-        one.limit if key[2] in DECIDED else np.nan for key, one in zip(keys, healthy, strict=True)
+        scatter.limit if key[2] in DECIDED else np.nan
+        for key, scatter in zip(keys, healthy, strict=True)
     ]
     value = [[each.medians.get(key, np.nan) for key in keys] for each in judged]
     beyond = [[float(key in each.beyond) for key in keys] for each in judged]
@@ -501,10 +504,15 @@ def _groups(
         {
             "indicator_value": (("record", "row"), value, "", "median of the averages"),
             "indicator_beyond": (("record", "row"), beyond, "1", "beyond its limit"),
-            "healthy_least": (("row",), [one.least for one in healthy], "", "of the baseline"),
+            "healthy_least": (
+                ("row",),
+                [scatter.least for scatter in healthy],
+                "",
+                "of the baseline",
+            ),
             "healthy_greatest": (
                 ("row",),
-                [one.greatest for one in healthy],
+                [scatter.greatest for scatter in healthy],
                 "",
                 "of the baseline",
             ),
@@ -520,7 +528,9 @@ def _groups(
     for shaft in last.shafts:
         groups[shaft.name] = _turn(shaft, last.channels)
     heard = last.impacts
-    clear = int(np.argmax([np.max(one.amplitude / one.floor) for one in heard.spectra]))
+    clear = int(
+        np.argmax([np.max(spectrum.amplitude / spectrum.floor) for spectrum in heard.spectra])
+    )
     spectrum = heard.spectra[clear]
     shown = spectrum.position <= _highest_shown(heard)
     half = heard.cepstrum.shape[-1] // 2
@@ -679,11 +689,11 @@ def _trends(judged: Sequence[Judged]) -> list[dict[str, Any]]:
     if len(judged) < 3:
         return []
     keys = [key for key in judged[-1].medians if key[2] in DECIDED]
-    found: list[dict[str, Any]] = []
+    trends: list[dict[str, Any]] = []
     for key in keys:
         values = [each.medians.get(key, np.nan) for each in judged]
         if np.all(np.isfinite(values)) and np.median(values) > 0.0:
             slope, chance = trend_of(values)
             row = dict(zip(("channel", "shaft", "indicator"), key, strict=True))
-            found.append({**row, "trend": slope, "chance": min(1.0, chance * len(keys))})
-    return [row for row in found if row["chance"] <= ALARM]
+            trends.append({**row, "trend": slope, "chance": min(1.0, chance * len(keys))})
+    return [row for row in trends if row["chance"] <= ALARM]

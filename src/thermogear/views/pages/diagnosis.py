@@ -42,7 +42,7 @@ _ORDERS = 8  # of those removed that are told
 
 def page(result: Result) -> Page:
     """Verdict first, then where, the indicators, and what they were read from."""
-    found = result.table("figures")
+    figures = result.table("figures")
     pictures = Pictures()
     for shaft in ("pinion", "wheel"):
         data = result.group(shaft)
@@ -73,7 +73,7 @@ def page(result: Result) -> Page:
         "noise. Upright: rates of the bearings named.",
         result.groups["envelope"],
         ["envelope_amplitude"],
-        partial(envelope, result.groups["envelope"], found["bearings"]),
+        partial(envelope, result.groups["envelope"], figures["bearings"]),
     )
     pictures.add(
         "cepstrum",
@@ -83,7 +83,7 @@ def page(result: Result) -> Page:
         ["cepstrum"],
         partial(cepstrum, result.groups["cepstrum"]),
     )
-    tables = _tables(result, found)
+    tables = _tables(result, figures)
     sections = [
         Section("pictures", "In pictures", pictures.take(), folded=False),
         *(
@@ -93,19 +93,19 @@ def page(result: Result) -> Page:
     ]
     return Page(
         result,
-        summary(found),
+        summary(figures),
         sections,
         numbers=lambda: {
-            **found,
+            **figures,
             "indicators": rows_along(result.groups["indicators"], "record", "row"),
         },
-        told=lambda: [Text(summary(found)), *_tables(result, found, last=True).values()],
+        told=lambda: [Text(summary(figures)), *_tables(result, figures, last=True).values()],
     )
 
 
-def summary(found: dict[str, Any]) -> str:
+def summary(figures: dict[str, Any]) -> str:
     """The verdict on the last record in two or three sentences."""
-    last = found["verdicts"][-1]
+    last = figures["verdicts"][-1]
     of = f"{last['above']} of {last['indicators']} indicators are above every healthy average"
     rest = {
         "no baseline": "No verdict: no indicator has a limit that holds for every machine. Give "
@@ -121,26 +121,26 @@ def summary(found: dict[str, Any]) -> str:
         f"limits, most on the {last['shaft']}.",
     }[last["verdict"]]
     spare = ""
-    if len(found["baseline"]) > 1 and last["verdict"] != "another level":
+    if len(figures["baseline"]) > 1 and last["verdict"] != "another level":
         spare = (
-            f" In at most {PERCENT(found['alarm']):g} % of healthy records would any of them be "
+            f" In at most {PERCENT(figures['alarm']):g} % of healthy records would any of them be "
             "beyond its limit, where logarithms scatter normally from record to record; fewer than "
-            f"{PERCENT(found['averages_beyond']):.2g} % of healthy averages are above all "
-            f"{found['averages']} of the baseline (95 %)."
+            f"{PERCENT(figures['averages_beyond']):.2g} % of healthy averages are above all "
+            f"{figures['averages']} of the baseline (95 %)."
         )
     heard = [
         f"The envelope has a line of the {row['bearing']}'s {row['part']} ({row['shaft']}), which "
         "the baseline has not."
-        for row in found["bearings"]
-        if row["record"] == last["record"] and found["baseline"] and not row["in_baseline"]
+        for row in figures["bearings"]
+        if row["record"] == last["record"] and figures["baseline"] and not row["in_baseline"]
     ]
-    parts = (f"{last['record']}: {rest}{spare}", _where(found, last), *heard)
+    parts = (f"{last['record']}: {rest}{spare}", _where(figures, last), *heard)
     return " ".join(part for part in parts if part)
 
 
-def _where(found: dict[str, Any], last: dict[str, Any]) -> str:
+def _where(figures: dict[str, Any], last: dict[str, Any]) -> str:
     """The tooth of the shaft that changed, in a sentence; "" where none is named."""
-    for place in found["places"]:
+    for place in figures["places"]:
         if place["record"] == last["record"] and place["shaft"] == last["shaft"] and place["named"]:
             alike = " Its delay is alike in two mesh harmonics or more." if place["alike"] else ""
             zero = (
@@ -157,7 +157,7 @@ def _where(found: dict[str, Any], last: dict[str, Any]) -> str:
     return ""
 
 
-def _tables(result: Result, found: dict[str, Any], *, last: bool = False) -> dict[str, Table]:
+def _tables(result: Result, figures: dict[str, Any], *, last: bool = False) -> dict[str, Table]:
     """Verdicts, places, indicators (of the ``last`` record alone), bearings, trends, channels,
     averages: as far as there are."""
     unit = result.text("unit") or "file's unit"
@@ -176,7 +176,7 @@ def _tables(result: Result, found: dict[str, Any], *, last: bool = False) -> dic
                 Column("above", "above"),
                 Column("of", "indicators"),
             ),
-            found["verdicts"],
+            figures["verdicts"],
             names=3,
         ),
         "where": declared(
@@ -194,7 +194,7 @@ def _tables(result: Result, found: dict[str, Any], *, last: bool = False) -> dic
                 Column("averages", lambda row: f"{row['agreeing']} of {row['averages']}"),
                 Column("chance", "chance", 2),
             ),
-            found["places"],
+            figures["places"],
             names=5,
             marked=lambda row: row["named"],
         ),
@@ -234,7 +234,7 @@ def _tables(result: Result, found: dict[str, Any], *, last: bool = False) -> dic
                 Column("over noise", "level", 3),
                 Column("chance", "chance", 2),
             ),
-            found["bearings"],
+            figures["bearings"],
             names=5,
         ),
         "trends": declared(
@@ -247,13 +247,13 @@ def _tables(result: Result, found: dict[str, Any], *, last: bool = False) -> dic
                 Column("from record to record", "trend", "+.2f", PERCENT),
                 Column("chance", "chance", 2),
             ),
-            found["trends"],
+            figures["trends"],
             names=3,
         ),
         "channels": declared(
             "Of the whole record: kurtosis, crest factor, velocity (rms, 10 to 1000 Hz, from 2 Hz "
             "below 600 rpm)"
-            + (f", zone of ISO 10816-3, {found['machine']}." if found["machine"] else "."),
+            + (f", zone of ISO 10816-3, {figures['machine']}." if figures["machine"] else "."),
             (
                 record,
                 Column("channel", "channel"),
@@ -262,15 +262,15 @@ def _tables(result: Result, found: dict[str, Any], *, last: bool = False) -> dic
                 Column("crest factor", "raw_crest", 4, PLAIN),
                 Column("velocity", "velocity_rms", 3, MILLIMETRE_PER_SECOND),
             ),
-            found["raw"],
+            figures["raw"],
             names=3,
         ),
         "averages": declared(
-            f"How the averages were made; angle by {found['angle']}, its noise "
-            f"{number(found['angle_noise'], 2)} turns. Removed: orders taken out of the residual, "
-            "and with their sidebands out of the difference.",
+            f"How the averages were made; angle by {figures['angle']}, its noise "
+            f"{number(figures['angle_noise'], 2)} turns. Removed: orders taken out of the "
+            "residual, and with their sidebands out of the difference.",
             AVERAGES,
-            found["shafts"],
+            figures["shafts"],
             names=3,
         ),
         "bands": declared(
@@ -282,7 +282,7 @@ def _tables(result: Result, found: dict[str, Any], *, last: bool = False) -> dic
                 Column("to", "high", 4, PLAIN),
                 Column("spectral kurtosis", "kurtosis", 3, PLAIN),
             ),
-            found["bands"],
+            figures["bands"],
             names=2,
         ),
     }
@@ -321,7 +321,7 @@ def _value(row: Row, name: str) -> float:
 
 
 def _listed(values: Any) -> str:
-    return ", ".join(exactly(float(one), 2) for one in values) or "–"
+    return ", ".join(exactly(float(value), 2) for value in values) or "–"
 
 
 # --- pictures -----------------------------------------------------------------------------------
