@@ -11,6 +11,7 @@ from own_pair import OWN_PAIR
 from thermogear.base.errors import InputError
 from thermogear.case.case import GearCase, gear_case, load_case
 from thermogear.case.dials import Changes, balanced, dials, turned
+from thermogear.gears.tooth_damage import way_across
 
 pytestmark = pytest.mark.filterwarnings("ignore::thermogear.base.errors.ValidityWarning")
 HARMONICS = (
@@ -185,6 +186,26 @@ def test_a_dial_of_eccentricity_keeps_its_angle_and_takes_half_a_run_out() -> No
     assert changed.period.mesh_periods == changed.pair.wheel.teeth
 
 
+CRACKED = '{kind = "crack", gear = "wheel", tooth = 5, depth = "2 mm", angle = "60 deg"}'
+WORN = '{kind = "wear", gear = "pinion", depth = "5 um"}'
+
+
+def test_a_dial_of_a_crack_turns_the_first_one_and_leaves_the_rest() -> None:
+    """100 % of the way across is 2 x_root/sin(angle): the depth said is the share times that."""
+    case = case_of("own", (("faults", f"[{WORN}, {CRACKED}]"),))
+    before = {dial.name: dial.value for dial in dials(case)}
+    root = way_across(case.pair.wheel, 0.5 * math.pi)
+    assert before["crack"] == pytest.approx(2e-3 * math.sin(math.pi / 3.0) / root, rel=1e-9)
+    again = case_of("own", turned(case, {"crack": 0.4}))
+    assert again.file.faults[0] == case.file.faults[0]
+    assert (again.file.faults[1].share, again.file.faults[1].tooth) == (0.4, 5)
+    sound = case_of("own")
+    assert {dial.name: dial.value for dial in dials(sound)}["crack"] == 0.0
+    cracked = case_of("own", turned(sound, {"crack": 0.3}))
+    assert (cracked.file.faults[0].gear, cracked.file.faults[0].place) == ("pinion", 0)
+    assert cracked.period.mesh_periods == sound.pair.pinion.teeth
+
+
 REFUSED = {
     "speed": (-1.0, 0.0, 1e9, math.nan, math.inf, -math.inf, 1e308),
     "torque": (-5.0, 1e300, math.nan),
@@ -195,6 +216,7 @@ REFUSED = {
     "error": (-3.0, 1e9, math.nan),
     "pinion_eccentricity": (-1.0, 1e9, math.nan),
     "wheel_eccentricity": (-1.0, 1e9, math.nan),
+    "crack": (-0.1, 0.7, math.nan),
 }
 
 

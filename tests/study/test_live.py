@@ -182,7 +182,7 @@ def test_a_run_up_stops_when_it_is_told_to(own: GearCase) -> None:
 def test_a_run_up_hangs_on_what_its_key_holds(own: GearCase) -> None:
     """Every dial but speed changes the hot key, and that of the drawn gears where it is no heat.
 
-    A run-up is of the mean tooth, which no eccentricity changes.
+    A run-up is of the mean tooth, which no eccentricity or crack changes.
     """
     idle = ("speed", "pinion_eccentricity", "wheel_eccentricity")
     speeds = RPM * np.linspace(2000.0, 9000.0, 5)

@@ -19,9 +19,11 @@ from thermogear.base.toml import held, literal
 from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import STILL
 from thermogear.case.case import GearCase
+from thermogear.case.fault_schema import FaultTable
 from thermogear.case.flank_schema import PARTS
 from thermogear.case.thermal_state import HOT
 from thermogear.gears.deviations import GEARS
+from thermogear.gears.tooth_damage import way_across
 
 Changes = tuple[tuple[str, str], ...]
 """Dotted fields of the file and what is put there; nothing: the field is left out."""
@@ -95,7 +97,10 @@ def _kinds(case: GearCase) -> dict[str, _Kind]:
             for gear in GEARS
         ),
     )  # fmt: skip
-    kinds = {one.name: one for one in found}
+    kinds = {kind.name: kind for kind in found}
+    _, crack = _crack(case)
+    title = f"crack of {crack.gear} tooth {crack.place + 1}, share of the way across its root"
+    kinds["crack"] = _Kind("crack", title, "", ("faults",))
     if drawing(case) is not None:
         title = "pair of the class, its drawing (-1: all of them)"
         kinds["part"] = _Kind("part", title, "", ("flanks.drawing", "flanks.teeth"))
@@ -147,6 +152,9 @@ def dials(case: GearCase) -> list[Dial]:
     for gear in GEARS:
         amount, _ = _eccentricity(case, gear)
         values[f"{gear}_eccentricity"] = (amount, (0.0, max(40.0, 2.0 * amount)))
+    crack = _crack(case)[1]
+    deep = (crack.depth or 0.0) / way_across(case.pair.gear(crack.gear), crack.slope)
+    values["crack"] = (deep if crack.share is None else crack.share, (0.0, 0.5))
     every = [_dial(kinds[name], value, ends) for name, (value, ends) in values.items()]
     if (place := drawing(case)) is not None:
         high = float(max(parts_of(case) - 1, place))
@@ -191,6 +199,8 @@ def turned(case: GearCase, values: Mapping[str, float]) -> Changes:
         elif name.endswith("eccentricity"):
             _, angle = _eccentricity(case, name.partition("_")[0])
             found.append((dial.fields[0], literal({"amount": text, "angle": f"{angle!r} rad"})))
+        elif name == "crack":
+            found.append((dial.fields[0], _cracked(case, value)))
         elif name == "backlash" and not _given(case, "backlash.value"):
             said = {"value": text, "direction": "normal", "extent": "total"}
             found.append(("backlash", literal(said)))
@@ -276,6 +286,23 @@ def _eccentricity(case: GearCase, gear: str) -> tuple[float, float]:
     if table is None:
         return 0.0, 0.0
     return 1e6 * (0.5 * table.run_out if table.amount is None else table.amount), table.angle
+
+
+def _crack(case: GearCase) -> tuple[int, FaultTable]:
+    """The first crack of the file and its place there; else one of no depth, pinion tooth 1."""
+    for place, fault in enumerate(case.file.faults):
+        if fault.kind == "crack":
+            return place, fault
+    return len(case.file.faults), FaultTable(kind="crack", gear="pinion", share=0.0)
+
+
+def _cracked(case: GearCase, share: float) -> str:
+    """The file's faults with the first crack at another ``share``, or one more."""
+    rows: list[dict[str, Any]] = list(case.data.get("faults", []))
+    place, fault = _crack(case)
+    row = rows[place] if place < len(rows) else {"kind": fault.kind, "gear": fault.gear}
+    row = {field: text for field, text in row.items() if field != "depth"} | {"share": share}
+    return literal([*rows[:place], row, *rows[place + 1 :]])
 
 
 def _harmonics(case: GearCase, micrometres: float) -> str:
