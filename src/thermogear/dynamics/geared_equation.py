@@ -113,6 +113,7 @@ class GearedEquation:
     wobbles: tuple[Wobble, ...] = ()
     slip: tuple[Floats, float, float] | None = None
     cycle: int = 1
+    mesh_periods: int = 1
     seen: Floats | None = None
 
     def __post_init__(self) -> None:

@@ -204,7 +204,7 @@ class Engine:
         )
         train, work = self._train(), self._work(0)
         for rung in range(how.rungs):
-            length = model.period / how.longest / 2.0**rung
+            length = model.period / model.mesh_periods / how.longest / 2.0**rung
             steps.fill(train, self.ladder, work, rung, length)
 
     def _train(self, turn: float = 0.0) -> k.Train:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from thermogear.base import fourier
-from thermogear.base.arrays import Complexes, Floats
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.base.vocabulary import STATUS
 from thermogear.case.case import GearCase
@@ -22,6 +22,7 @@ from thermogear.case.points import Points
 from thermogear.case.thermal_state import HOT, StateLike
 from thermogear.case.turn_response import SAMPLES, turn_lanes, turn_tables
 from thermogear.dynamics.turns import STEPS, follow_turns, record_turns
+from thermogear.mesh.excite import over_turn as spread
 from thermogear.signals.spectra import Spectrum, amplitude_spectrum
 from thermogear.study.series import series_parts
 
@@ -36,6 +37,7 @@ class TurnMotion:
     [m/s^2] x'' + e'' of the pinion's flanks towards the wheel's along the line of action,
     (F - k f(x) - c x')/m_e; ``mesh_force`` [N] k f(x), < 0 on the back flanks; ``error`` [m] the
     dynamic transmission error x + e. ``repeats``: whether it comes again after these turns.
+    ``bearing_force`` (sample, bearing, 2) [N] on the outer rings of a drive train, else None.
     """
 
     speed: float
@@ -49,6 +51,7 @@ class TurnMotion:
     acceleration: Floats
     mesh_force: Floats
     error: Floats
+    bearing_force: Floats | None = None
 
     @property
     def phase(self) -> Floats:
@@ -131,18 +134,11 @@ def over_turns(points: Points, mesh_periods: int) -> Points:
     of_turn = replace(
         flat,
         period=flat.period * times,
-        stiffness=_spread(flat.stiffness, times),
-        force=_spread(flat.force, times),
+        stiffness=spread(flat.stiffness, times),
+        force=spread(flat.force, times),
         mesh_periods=mesh_periods,
     )
-    return replace(points, flat=of_turn, error=_spread(points.error, times))
-
-
-def _spread(coefficients: Complexes, times: int) -> Complexes:
-    """Fourier coefficients of a period of so many as they have."""
-    spread = np.zeros((len(coefficients), (coefficients.shape[1] - 1) * times + 1), complex)
-    spread[:, ::times] = coefficients
-    return spread
+    return replace(points, flat=of_turn, error=spread(points.error, times))
 
 
 def _motions(case: GearCase, points: Points, rows: Floats, samples: int) -> list[TurnMotion]:
