@@ -79,6 +79,7 @@ def test_a_run_has_a_row_for_each_operating_point_with_its_motion() -> None:
     answers = result.to_frame("answers")
     assert list(answers["name"]) == [one.name for one in result.answers]
     assert isinstance(result._repr_html_(), str)
+    assert len(repr(result)) < 2000
 
 
 def test_a_period_that_is_none_is_missing_in_every_file(

@@ -125,7 +125,7 @@ MOST_POINTS = 1_000_000
 """Speeds times torques, at most."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class GearCase(Case):
     """A gear pair with its operating points, from friction to vibration (SI, K, rad).
 
@@ -451,7 +451,7 @@ class GearCase(Case):
         )
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class DimensionlessCase(Case):
     """Rows of points of the dimensionless equation; they come from no gear.
 

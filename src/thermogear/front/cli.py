@@ -232,8 +232,7 @@ def check(case: str, overrides: tuple[str, ...], as_json: bool) -> None:
         if fact.group != group:
             group = fact.group
             click.echo(f"\n{group}")
-        value = f"{fact.value:.7g}" if isinstance(fact.value, float) else str(fact.value)
-        click.echo(f"  {fact.name:<38} {printable(value)} {fact.unit}".rstrip())
+        click.echo(f"  {fact.name:<38} {printable(fact.words)}")
     taken = [line if line.startswith(" ") else f"\n{line}" for line in defaults(read.assumptions)]
     for line in taken:
         click.echo(line)

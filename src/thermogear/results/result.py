@@ -11,6 +11,7 @@ import json
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -60,7 +61,7 @@ class Later(Mapping[str, Dataset]):
         return len(self._made)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Result:
     """One finished study of one case.
 
@@ -172,19 +173,26 @@ class Result:
         about: dict[str, Plain] = {"title": self.title, "kind": self.kind, "notices": notices}
         return {**self.provenance, **about, "schema": SCHEMA}
 
+    def __repr__(self) -> str:
+        rows = (f"\n  {name}: {axes}" for name, axes in self._axes())
+        return f"Result {self.kind}: {self.title}{''.join(rows)}"
+
+    def _axes(self) -> list[tuple[str, str]]:
+        """Every group with its axes and their lengths, in words."""
+        return [
+            (name or "(root)", " × ".join(f"{dim} {size}" for dim, size in data.sizes.items()))
+            for name, data in self.groups.items()
+        ]
+
     def _repr_html_(self) -> str:
         """What a notebook shows: title, kind, answers or notices, the groups with their axes."""
-        from html import escape
 
         def row(*cells: str) -> str:
             return f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in cells)}</tr>"
 
         said = [row(one.verdict, one.sentence) for one in self.answers]
         said = said or [row(one.level, one.text) for one in self.notices[:SHOWN]]
-        groups = [
-            row(name or "(root)", " × ".join(f"{dim} {size}" for dim, size in data.sizes.items()))
-            for name, data in self.groups.items()
-        ]
+        groups = [row(*cells) for cells in self._axes()]
         about = f"{self.kind}, thermogear {self.text('thermogear')}, {self.text('created')}"
         return (
             f"<div><p><b>{escape(self.title)}</b><br>{escape(about.rstrip(', '))}</p>"
