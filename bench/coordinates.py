@@ -1,4 +1,4 @@
-"""What more coordinates change in a motion with impacts, and cost: ``make bench-coordinates``.
+"""What more coordinates change in a motion with impacts, and cost: ``make bench NAME=coordinates``.
 
 ``motor-train`` with 4 N m, undeformed, 1 500 mesh periods from rest, then 64 that are measured.
 Periods a second are of processor time on one core.

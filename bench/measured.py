@@ -111,7 +111,8 @@ def page() -> str:
     """The tables."""
     lines = [
         "---", "orphan: true", "---", "# What `measure` costs", "",
-        "Made by `make bench-measure`: drawn drive trains of two channels, whole commands with",
+        "Made by `make bench NAME=measured`: drawn drive trains of two channels, "
+        "whole commands with",
         f"their start; {platform.python_implementation()} {platform.python_version()}, numpy "
         f"{np.__version__}, one thread a process.", "",
         "| samples a channel | processor s | s per million samples of a channel | most MB |",

@@ -1,4 +1,4 @@
-"""``make bench-paths``: what one answer costs, from a parameter to a figure, before and after.
+"""``make bench NAME=paths``: what one answer costs, from a parameter to a figure, before and after.
 
 python bench/paths.py                 this tree beside the reference, both sides in one run
 python bench/paths.py --only orbit    some rows
@@ -383,7 +383,8 @@ def table(rows: list[tuple[Row, float | None, float]], reference: str, *, thread
     lines = [
         "# What an answer costs",
         "",
-        "Written by `make bench-paths`; do not edit. Processor time on one thread, median of the",
+        "Written by `make bench NAME=paths`; do not edit. Processor time on one "
+        "thread, median of the",
         f"rounds, this tree beside commit {reference} in one run on the same machine",
         f"({platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}).",
         "The rig, with the friction law of Benedict and Kelley and its given temperatures.",

@@ -1,7 +1,7 @@
 """Run every benchmark and write docs/benchmarks.md and bench/results.json.
 
 make bench                 the full run
-make bench BENCH=--quick   few points, to see that everything works
+make bench ARGS=--quick   few points, to see that everything works
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A drive train's map on one thread and on two: ``make bench-train-map``.
+"""A drive train's map on one thread and on two: ``make bench NAME=train_map``.
 
 Prints the table of docs/train_map.md and writes it with ``--write``. ``--grid 6x4`` takes another
 grid than 64 speeds by 24 gear temperatures. Every way computes the whole map anew, into
@@ -148,7 +148,7 @@ def page(grid: tuple[int, int], rows: list[str]) -> str:
         [
             "---", "orphan: true", "---",
             "# A map of a drive train on threads", "",
-            f"Made by `make bench-train-map`: a map of {grid[0]} speeds (1000 to 6000 rpm) by "
+            f"Made by `make bench NAME=train_map`: a map of {grid[0]} speeds (1000 to 6000 rpm) by "
             f"{grid[1]} gear temperatures",
             f"(30 to 110 °C) of a 27:44 pair on two shafts in four ball bearings, {COORDINATES} "
             "coordinates. Each way computes",

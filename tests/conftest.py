@@ -146,7 +146,8 @@ class _Long:
         if exitstatus == 0:
             head = (
                 "---\norphan: true\n---\n# Tests at length\n\n"
-                "Made by `make trial-long`: the same tests with the larger count, every claim and "
+                "Made by `make trial NAME=long`: the same tests with the larger "
+                "count, every claim and "
                 "bound alike. All held.\n\n"
                 "| of | test | count in `make test` | count here | took, s |\n"
                 "|---|---|---:|---:|---:|\n"

@@ -52,7 +52,7 @@ def _experiment(found: dict[str, Any]) -> str:
         f"{_cell(found['sentence'])} What decides it, by rank correlation: "
         f"{_cell(found['deciding'])}. Motions: {_cell(found['motions'])}. The page that "
         "`thermogear thesis -o DIR` writes has the pictures and every assumption with its range "
-        "and reason; `make trial-experiment` samples the trains anew.\n\n"
+        "and reason; `make trial NAME=experiment` samples the trains anew.\n\n"
     )
     limits = list(next(iter(found["shares"].values())))
     text += f"| trains of {found['trains']} that show the printed displacements, growing | "

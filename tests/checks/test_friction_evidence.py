@@ -1,4 +1,4 @@
-"""``make friction-evidence``: what is taken for measured, and that the page is the script's."""
+"""``make trial NAME=friction_evidence``: what is measured, and that the page is the script's."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from thermogear.heat.friction import LAWS
 
 
 def test_losses_from_printed_errors_agree_among_themselves_and_with_the_text() -> None:
-    evidence = script("friction_evidence")
+    evidence = script("trials/friction_evidence")
     errors = {int(n): rest for n, *rest in evidence.read()["source"]["petry-johnson"]["errors"]}
     shares = {n: evidence.loss_from_errors(rest) for n, rest in errors.items()}
     for low, high in shares.values():
@@ -25,7 +25,7 @@ def test_losses_from_printed_errors_agree_among_themselves_and_with_the_text() -
 
 
 def test_cases_are_those_of_their_sources() -> None:
-    evidence = script("friction_evidence")
+    evidence = script("trials/friction_evidence")
     every = evidence.cases(evidence.read())
     assert len(every) == 14
     loops = [one for one in every if one.kind == "temperature"]
@@ -46,14 +46,14 @@ def test_cases_are_those_of_their_sources() -> None:
 
 def test_the_committed_page_is_that_of_the_script() -> None:
     """Losses and friction by the default are computed anew; where they differ, make it again."""
-    evidence = script("friction_evidence")
+    evidence = script("trials/friction_evidence")
     table = evidence.read()
     every = evidence.cases(table)
     text = evidence.PAGE.read_text("utf-8")
     default = MeshModel.consistent().friction
     quick = [one for one in every if one.kind != "temperature"]
     for row in evidence.rows(table, quick, default):
-        assert evidence.line(row) in text, "run make friction-evidence"
+        assert evidence.line(row) in text, "run make trial NAME=friction_evidence"
     lines = text.splitlines()
     for law in LAWS:
         assert sum(line.startswith(f"| {law} | ") for line in lines) == 1 + len(every)

@@ -1,4 +1,4 @@
-"""Stated intervals of lines on trial, a fortieth of it: `make trial-coverage` runs it whole."""
+"""Stated intervals of lines on trial, a fortieth of it: `trial NAME=intervals` runs it whole."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from thermogear.measured.record import Channel, Record
 from thermogear.measured.reduction import measure
 from thermogear.measured.turns import mesh_turns
 
-TRIAL = script("trial_coverage")
+TRIAL = script("trials/intervals")
 RUNS = 12
 SHORT = ("white noise, rms 0.1", "load wanders 5 %, 1 s", "neighbour 0.4 Hz away, 0.3 amplitudes")
 

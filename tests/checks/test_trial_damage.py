@@ -1,4 +1,4 @@
-"""Fifteen of the damages of ``make trial-damage``: none is read back different without a word."""
+"""Fifteen of the damages of ``trial NAME=damage``: none is read back different without a word."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from said import numbers
 
 @pytest.mark.slow
 def test_no_damage_is_read_back_without_a_word(tmp_path: Path) -> None:
-    trial = script("trial_damage")
+    trial = script("trials/damage")
     made = trial.specimens(tmp_path / "made", short=True)
     told = Counter(trial.trial(*one, tmp_path) for one in trial.drawn(made, 15))
     readers = Counter(reader for reader, _ in told.elements())
@@ -25,7 +25,7 @@ def test_no_damage_is_read_back_without_a_word(tmp_path: Path) -> None:
 
 
 def test_the_committed_table_is_that_of_this_trial() -> None:
-    trial = script("trial_damage")
+    trial = script("trials/damage")
     text = trial.PAGE.read_text("utf-8")
     assert {float(trial.SEED), float(trial.COUNT)} <= set(numbers(text))
     for what in trial.NEVER:

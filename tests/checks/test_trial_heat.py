@@ -1,4 +1,4 @@
-"""Some of the points of ``make trial-heat``: no steady state is left untold."""
+"""Some of the points of ``make trial NAME=heat``: no steady state is left untold."""
 
 import warnings
 
@@ -10,7 +10,7 @@ from thermogear.case.case import gear_case, load_example
 
 
 def test_both_ends_and_the_warm_up_agree_on_a_few_points() -> None:
-    trial = script("trial_heat")
+    trial = script("trials/heat")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ValidityWarning)
         rig = trial.on_the_rig(gear_case(load_example("rig")), "lambda-blend", 1, warm=True)
@@ -24,7 +24,7 @@ def test_both_ends_and_the_warm_up_agree_on_a_few_points() -> None:
 
 
 def test_what_differs_and_is_not_told_is_counted() -> None:
-    trial = script("trial_heat")
+    trial = script("trials/heat")
     found = trial.Found(several=[(4000.0, 20.0, 76.0, 90.0), (4100.0, 20.0, 77.0, np.nan)])
     row = trial.table("rig", found)
     assert row.startswith("| rig | 0 | 0 | 0.0e+00 K | 0 | 2 | 14.0 K |")

@@ -1,4 +1,4 @@
-"""Some of the mutated files of ``make trial-hostile``: what must never happen does not."""
+"""Some of the mutated files of ``make trial NAME=hostile``: what must never happen does not."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ COUNT = 3
 
 @pytest.mark.slow
 def test_mutated_files_of_every_kind_end_in_a_result_or_one_line() -> None:
-    trial = script("trial_hostile")
+    trial = script("trials/hostile")
     found = trial.summed(trial.batch([(kind, 0, COUNT) for kind in trial.KINDS]))
     notes = [note for one in found.values() for note in one.notes]
     assert notes == []
@@ -22,7 +22,7 @@ def test_mutated_files_of_every_kind_end_in_a_result_or_one_line() -> None:
 
 
 def test_a_mutation_is_the_same_whenever_it_is_made() -> None:
-    trial = script("trial_hostile")
+    trial = script("trials/hostile")
     data = bytes(range(256)) * 8
     made = [
         [trial.mutated_bytes(data, np.random.default_rng([5, i])) for i in range(200)]
@@ -33,7 +33,7 @@ def test_a_mutation_is_the_same_whenever_it_is_made() -> None:
 
 
 def test_the_committed_table_is_that_of_this_trial() -> None:
-    trial = script("trial_hostile")
+    trial = script("trials/hostile")
     text = trial.PAGE.read_text("utf-8")
     assert f"(seed {trial.SEED})" in text
     for kind in trial.KINDS:

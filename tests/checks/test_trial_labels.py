@@ -1,4 +1,4 @@
-"""Some of the random motions of ``make trial-labels``: no label that is asserted is wrong."""
+"""Some of the random motions of ``make trial NAME=labels``: no label that is asserted is wrong."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ COUNT = 40
 
 @pytest.mark.slow
 def test_labels_of_random_motions_stand_another_test() -> None:
-    trial = script("trial_labels")
+    trial = script("trials/labels")
     drawn, _ = trial.draws(COUNT)
     found = trial.Found()
     for one in trial.all_trials(drawn, workers=1):
@@ -30,7 +30,7 @@ def test_labels_of_random_motions_stand_another_test() -> None:
 
 def test_the_trial_sees_what_is_wrong() -> None:
     """Chaos that ends, a multiplier that is another's, and an orbit the start does not reach."""
-    trial = script("trial_labels")
+    trial = script("trials/labels")
     columns = np.array([[0.0362811934206, 0.4856413205293, 0.287450100057, 0.3020883356857,
                          0.5082231342633, 1.0579260211767, 0.0]])  # fmt: skip
     start = np.array([[-0.2291657201697, -1.7074805351333]])
@@ -44,7 +44,7 @@ def test_the_trial_sees_what_is_wrong() -> None:
 
 
 def test_the_committed_table_of_labels_is_that_of_this_trial() -> None:
-    trial = script("trial_labels")
+    trial = script("trials/labels")
     text = trial.PAGE.read_text("utf-8")
     assert {float(trial.SEED), 2000.0} <= set(numbers(text))
     (wrong,) = (line for line in text.splitlines() if line.startswith("| asserted labels"))

@@ -1,4 +1,4 @@
-"""Six of the random pairs of ``make trial-pairs``: what must never happen does not."""
+"""Six of the random pairs of ``make trial NAME=pairs``: what must never happen does not."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ WINDOW = 400
 
 @pytest.mark.slow
 def test_six_random_pairs_go_through_the_whole_chain() -> None:
-    trial = script("trial_pairs")
+    trial = script("trials/pairs")
     drawn, refused = trial.draws(COUNT)
     steps = np.arange(WINDOW) / trial.POSITIONS
     found = [
@@ -47,7 +47,7 @@ def test_six_random_pairs_go_through_the_whole_chain() -> None:
 
 
 def test_the_committed_table_is_that_of_this_trial() -> None:
-    trial = script("trial_pairs")
+    trial = script("trials/pairs")
     text = trial.PAGE.read_text("utf-8")
     assert {float(trial.SEED), 2000.0} <= set(numbers(text))
     for what in trial.NEVER:

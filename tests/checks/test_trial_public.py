@@ -13,7 +13,7 @@ from scripts import script
 def test_a_page_stays_without_records_and_tells_what_is_said(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    trial = script("trial_public")
+    trial = script("trials/public")
     page = tmp_path / "page.md"
     page.write_text("old", "utf-8")
     monkeypatch.setattr(trial, "PAGE", page)

@@ -11,7 +11,7 @@ from scripts import script
 
 @pytest.mark.slow
 def test_fresh_pairs_lie_in_the_stated_bands() -> None:
-    trial = script("trial_series")
+    trial = script("trials/series")
     rows = list(trial.held(6, parts=32))
     assert len(rows) == 3
     assert all(row.share.high > trial.LEAST and row.share.low < trial.MOST for row in rows)
@@ -19,7 +19,7 @@ def test_fresh_pairs_lie_in_the_stated_bands() -> None:
 
 
 def test_the_committed_table_holds() -> None:
-    text = script("trial_series").PAGE.read_text("utf-8")
+    text = script("trials/series").PAGE.read_text("utf-8")
     rows = re.findall(r"^\| \d+/\d+ \|.*\| (\d+) \| (\d+) to (\d+) \|$", text, re.MULTILINE)
     held, low, high = np.array(rows, dtype=float).T
     assert held.size == 30

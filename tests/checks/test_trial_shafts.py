@@ -1,4 +1,4 @@
-"""A few records of the trial of few turns and unknown shafts; `make trial-shafts`."""
+"""A few records of the trial of few turns and unknown shafts; `make trial NAME=shafts`."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scripts import script
 
-TRIAL = script("trial_shafts")
+TRIAL = script("trials/shafts")
 
 
 @pytest.mark.parametrize("sort", range(len(TRIAL.SORTS)), ids=TRIAL.SORTS)

@@ -1,5 +1,5 @@
 """Speeds that swing a few times in a record: the angle, the amplitudes. A few of the
-trial's law; `make trial-swings` runs it whole."""
+trial's law; `make trial NAME=swings` runs it whole."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from scripts import script
 from thermogear.measured.reduction import measure
 from thermogear.signals.following import follow_line
 
-TRIAL = script("trial_swings")
+TRIAL = script("trials/swings")
 
 
 def slow(seed: int) -> Any:

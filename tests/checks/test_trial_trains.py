@@ -1,4 +1,4 @@
-"""The trial of drive trains, one of two hundred: `make trial-trains` runs it whole."""
+"""The trial of drive trains, one of two hundred: `make trial NAME=trains` runs it whole."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from said import numbers
 from thermogear.dynamics.geared_map import GearedMap
 from thermogear.dynamics.return_map import return_map
 
-TRIAL = script("trial_trains")
+TRIAL = script("trials/trains")
 
 
 @pytest.mark.slow

@@ -1,4 +1,4 @@
-"""Two of the random pairs of ``make trial-turn``: the exact engine and other steps agree."""
+"""Two of the random pairs of ``make trial NAME=turn``: the exact engine and other steps agree."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from said import numbers
 
 
 def test_motions_over_a_turn_stand_another_integration(monkeypatch: pytest.MonkeyPatch) -> None:
-    trial = script("trial_turn")
+    trial = script("trials/turn")
     monkeypatch.setattr(trial, "FINER_UP_TO", 100)
     found = [one for one in trial.all_compared(2) if one is not None]
     assert len(found) == 2
@@ -23,7 +23,7 @@ def test_motions_over_a_turn_stand_another_integration(monkeypatch: pytest.Monke
 
 
 def test_the_committed_table_of_turns_is_that_of_this_trial() -> None:
-    trial = script("trial_turn")
+    trial = script("trials/turn")
     text = trial.PAGE.read_text("utf-8")
     assert text.startswith(trial.HEAD)
     assert {float(trial.SEED), float(len(trial.LENGTHS))} <= set(numbers(text))

@@ -13,12 +13,13 @@ from thermogear.measured.record import Channel, Record
 from thermogear.measured.reduction import measure
 from thermogear.views.write import page_of
 
-TRIAL = script("trial_turning")
+TRIAL = script("trials/turning")
 
 
 @pytest.mark.parametrize("kind", TRIAL.KINDS[:3])
 def test_orders_over_speed_are_within_their_intervals(kind: str) -> None:
-    """One draw of `make trial-turning`, shorter: 95 % of about 70 amplitudes that share nothing.
+    """One draw of `make trial NAME=turning`, shorter: 95 % of about 70 amplitudes that share
+    nothing.
 
     Neighbouring steps share their samples. Of 100 draws of 95 % less than 90 % hold once in 87
     times; the draw is fixed.

@@ -145,7 +145,7 @@ def test_too_few_iterations_are_told_by_the_residual(rig: GearPair) -> None:
 
 
 def rough_speeds_and_torques() -> tuple[np.ndarray, np.ndarray]:
-    """A coarse part of the grid of ``checks/trial_heat.py``, and the corner where states meet."""
+    """A coarse part of the grid of ``trials/heat.py``, and the corner where states meet."""
     speed, torque = np.meshgrid(
         np.linspace(500.0, 6000.0, 9), np.linspace(50.0, 500.0, 7), indexing="ij"
     )

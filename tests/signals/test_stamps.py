@@ -32,7 +32,7 @@ def test_the_ends_are_those_of_a_linear_program() -> None:
 
 
 def test_rates_of_drawn_columns_are_in_their_intervals() -> None:
-    """A short one of `make trial-stamps`: rounding gives bounds, jitter 95 %."""
+    """A short one of `make trial NAME=stamps`: rounding gives bounds, jitter 95 %."""
     random = np.random.default_rng(2411)
     held = []
     for _ in range(80):

@@ -52,7 +52,7 @@ speed = "3000 rpm"
 torque = "80 N m"
 """
 SMALL = ("grid.path_positions=41", "grid.mesh_positions=48", "grid.harmonics=12", "flanks.seed=1")
-WORDS = script("trial_answers")
+WORDS = script("trials/answers")
 POLISHED = ("gears.pinion.roughness=0.02 um", "gears.wheel.roughness=0.02 um")
 WHOLE = ("backlash.direction=normal", "backlash.extent=total")
 CASES: dict[str, tuple[str, ...]] = {

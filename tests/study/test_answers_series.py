@@ -99,7 +99,7 @@ def test_quantiles_are_those_of_the_parts_that_are_stored(
     np.testing.assert_allclose(data["dynamic_factor"].values[1, 0, place], hdquantiles(
         factor[0], [0.5]
     )[0])  # fmt: skip
-    assert list(script("trial_answers").contradictions(series)) == []
+    assert list(script("trials/answers").contradictions(series)) == []
 
 
 def test_a_relief_of_true_flanks_is_no_verdict_on_a_class(told: dict[str, Answer]) -> None:

@@ -78,7 +78,7 @@ def test_the_shaft_and_the_tooth_are_found(shaft: int, tooth: int) -> None:
 
 
 def test_few_false_alarms() -> None:
-    """Whole records; `checks/trial_diagnosis.py` counts sixty such sets, and finds faults."""
+    """Whole records; `trials/diagnosis.py` counts sixty such sets, and finds faults."""
     verdicts = [
         verdict(diagnose(
             [source(partial(read, 400 + 4 * k))],

@@ -6,7 +6,7 @@ which a library adds numbers decides rounding. A label is given where all starts
 The method is an ensemble: starts that differ by rounding's size are followed, and the label is what
 they agree on. It costs as many runs as starts, and only where a tangent along the way has grown
 above PARTED. It cannot prove chaos: starts that all part for so many periods may still close later.
-Checked by ``tests/analysis/test_labels.py`` on published rows, and by ``checks/trial_labels.py``,
+Checked by ``tests/analysis/test_labels.py`` on published rows, and by ``trials/labels.py``,
 which follows every chaotic motion of random draws to 200 000 periods.
 """
 

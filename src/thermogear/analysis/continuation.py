@@ -8,7 +8,7 @@ grows where the branch is nearly straight. A step costs a few runs of the orbit'
 variational equations. A branch ends in a gap where no step as short as SHORTEST_STEP succeeds;
 islands without a connection to the first orbit are not seen.
 Checked by ``tests/analysis/test_continuation.py`` (closed forms, independent folds and doublings),
-and by ``checks/trial_branches.py`` against a walker in steps ten times as short.
+and by ``trials/branches.py`` against a walker in steps ten times as short.
 """
 
 from __future__ import annotations

@@ -8,9 +8,6 @@ from typing import Any, ClassVar
 
 from thermogear.case.assumptions import Assumption
 
-SHOWN = 12
-"""Figures that a case shows of itself in a line each."""
-
 
 @dataclass(frozen=True, kw_only=True)
 class Simulation:
@@ -50,20 +47,21 @@ class Case:
         return {"case": self.text, "overrides": [list(pair) for pair in self.overrides]}
 
     def __repr__(self) -> str:
-        changes = "".join(f"\n  {path} = {text}" for path, text in self.overrides)
-        rows = [f"\n  {name}: {value:.100}" for name, value in self._figures()[:SHOWN]]
-        return f"{type(self).__name__}: {self.title}{changes}{''.join(rows)}"
+        rows = (f"\n  {name}: {text:.100}" for name, text in self._rows())
+        return f"{type(self).__name__}: {self.title}{''.join(rows)}"
 
     def _repr_html_(self) -> str:
         """What a notebook shows: title, what replaced values of the file, its figures."""
         rows = "".join(
             f"<tr><td>{escape(name)}</td><td>{escape(value)}</td></tr>"
-            for name, value in (*self.overrides, *self._figures())
+            for name, value in self._rows()
         )
         return f"<div><p><b>{escape(self.title)}</b></p><table>{rows}</table></div>"
 
-    def _figures(self) -> list[tuple[str, str]]:
-        """The derived figures by their names, as `thermogear check` lists them."""
-        from thermogear.case.derived import facts
+    def _rows(self) -> list[tuple[str, str]]:
+        return [*self.figures.items(), *self.overrides]
 
-        return [(f"{fact.group}, {fact.name}", fact.words) for fact in facts(self)]
+    @property
+    def figures(self) -> dict[str, str]:
+        """What the case is, in a few values with their units by name."""
+        return {}

@@ -25,7 +25,7 @@ from thermogear.base.materials import MATERIALS, Material
 from thermogear.base.parameters import NUMBERS
 from thermogear.base.period import Period
 from thermogear.base.toml import overridden, pairs, tables
-from thermogear.base.units import ZERO_CELSIUS
+from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.case import build as parts
 from thermogear.case.allowed import gear_parameter, gear_reader
 from thermogear.case.assumptions import LEFT, Assumption, assumptions
@@ -177,6 +177,22 @@ class GearCase(Case):
     _balances: dict[tuple[MeshModel, bytes | None], HeatBalance] = field(
         init=False, repr=False, compare=False, default_factory=dict
     )
+
+    @property
+    def figures(self) -> dict[str, str]:
+        """What the case is, in a few values with their units by name."""
+        pair = self.pair
+        return {
+            "teeth": f"{pair.pinion.teeth}:{pair.wheel.teeth}",
+            "module": shown(pair.pinion.module, "length", 4),
+            "centre distance": shown(pair.centre_distance, "length", 6),
+            "contact ratio": f"{pair.contact_ratio:.4g}",
+            "speed": ", ".join(f"{speed / RPM:.6g} rpm" for speed in self.speeds),
+            "torque": ", ".join(f"{torque:.6g} N m" for torque in self.torques),
+            "shafts": "none" if self.train is None else "two, on bearings",
+            "faults": "; ".join(self.all_faults) or "none",
+            "assumptions": f"{len(self.assumptions)}, see `thermogear check`",
+        }
 
     def with_values(self, values: Mapping[str, float], *, told: bool = True) -> GearCase:
         """The case with numbers put to other SI ``values``, no text read again.
@@ -461,6 +477,12 @@ class DimensionlessCase(Case):
     kind = "dimensionless"
     points: tuple[Point, ...]
     base: Mapping[str, tuple[float, ...]]
+
+    @property
+    def figures(self) -> dict[str, str]:
+        """The numbers that its rows start from, and how many points they have."""
+        base = {name: ", ".join(f"{value:g}" for value in row) for name, row in self.base.items()}
+        return base | {"points": str(len(self.points))}
 
 
 def _written(name: str, value: float) -> tuple[tuple[str, str], ...]:

@@ -34,12 +34,6 @@ class Fact:
     value: float | int | str
     unit: str = ""
 
-    @property
-    def words(self) -> str:
-        """Value and unit."""
-        value = f"{self.value:.7g}" if isinstance(self.value, float) else str(self.value)
-        return f"{value} {self.unit}".rstrip()
-
 
 def facts(case: Case) -> tuple[Fact, ...]:
     """The derived numbers of a case, in groups, in the units a gear engineer reads."""

@@ -232,7 +232,8 @@ def check(case: str, overrides: tuple[str, ...], as_json: bool) -> None:
         if fact.group != group:
             group = fact.group
             click.echo(f"\n{group}")
-        click.echo(f"  {fact.name:<38} {printable(fact.words)}")
+        value = f"{fact.value:.7g}" if isinstance(fact.value, float) else str(fact.value)
+        click.echo(f"  {fact.name:<38} {printable(value)} {fact.unit}".rstrip())
     taken = [line if line.startswith(" ") else f"\n{line}" for line in defaults(read.assumptions)]
     for line in taken:
         click.echo(line)

@@ -4,8 +4,8 @@ Table 4.2 states the ranges of damping, frequency and stiffness amplitude and no
 from. What holds for one set found by search need not hold for another. So the set is drawn from
 ranges that are ours, kept where all three rows begin at period-1 and end in chaos (which stands for
 the document's quasi-periodic motion), and every statement of section 4 becomes a share of the sets
-kept. `make trial-base-sets` draws and judges them; independent draws, so that the interval of a
-share is exact.
+kept. `make trial NAME=base_sets` draws and judges them; independent draws, so that the interval
+of a share is exact.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class Judged:
 
 
 def stored() -> list[Judged]:
-    """The sets that come with the package; `make trial-base-sets` computes them."""
+    """The sets that come with the package; `make trial NAME=base_sets` computes them."""
     text = (files("thermogear.thesis") / TABLE).read_text(encoding="utf-8")
     return [
         Judged(

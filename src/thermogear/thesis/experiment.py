@@ -168,7 +168,7 @@ def trains(count: int = SAMPLES_STORED) -> Iterator[Shown]:
 
 
 def stored() -> list[Shown]:
-    """The sampled trains that come with the package; `make trial-experiment` computes them."""
+    """The sampled trains that come with the package; `make trial NAME=experiment` computes them."""
     text = (files("thermogear.thesis") / TABLE).read_text(encoding="utf-8")
     return [_read(line) for line in csv.DictReader(io.StringIO(text))]
 

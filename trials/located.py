@@ -1,12 +1,13 @@
 """Random drive trains: located bifurcations against a fine settled sweep, and what a proof costs.
 
-``make trial-located`` moves six random drive trains (seed fixed before the first run) over their
+``make trial NAME=located`` moves six random drive trains (seed fixed before the first run) over
+their
 mesh frequency, in steps from one settled motion to the next, follows their periodic motion with
 :func:`continuation`, and asks of every located fold, period doubling and torus of a stable orbit
 whether the settled label changes between the two neighbouring values of the sweep. It then measures
 processor time of a settled motion, a closed orbit with multipliers and a located event for trains
 of 6, 12, 30 and 60 coordinates. It writes docs/trial_located.md;
-``python checks/trial_located.py 2`` prints a short one.
+``python trials/located.py 2`` prints a short one.
 """
 
 from __future__ import annotations
@@ -201,8 +202,9 @@ orphan: true
 ---
 # Random drive trains: located bifurcations against a fine sweep
 
-Made by `make trial-located`, seed {SEED}: {VALUES} settled values of the mesh frequency a train,
-each from the last state of the one before. The branch is followed to its first fold, period
+
+Made by `make trial NAME=located`, seed {SEED}: {VALUES} settled values of the mesh frequency a
+train, each from the last state of the one before. The branch is followed to its first fold, period
 doubling or torus; the sweep until its label, or its orbit, is another. *Steps apart*: by how many
 steps later (above 0) or earlier the sweep leaves the branch than in the step with the event.
 

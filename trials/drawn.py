@@ -1,7 +1,7 @@
 """Sixty drawn records of gear trains through ``measure``: what is named, and what is named wrongly.
 
-    python checks/trial_drawn.py            printed
-    python checks/trial_drawn.py --write    docs/trial_drawn.md anew
+    python trials/drawn.py            printed
+    python trials/drawn.py --write    docs/trial_drawn.md anew
 
 The generator shares no code with the package. Every record is read three times: without any fact,
 with the nominal speed of the first shaft alone, and with its teeth too (where the header's rate is
@@ -196,7 +196,7 @@ def page() -> str:
                     count_lines(one, found, held, "all")
     columns = ("right", "undecided", "false", "refused", "contradiction told")
     lines = ["---", "orphan: true", "---", "# Drawn records of gear trains", "",
-             "Made by `python checks/trial_drawn.py --write`: sixty records of a generator that",
+             "Made by `python trials/drawn.py --write`: sixty records of a generator that",
              f"shares no code with the package (seed {SEED}), {SECONDS:g} s at {RATE:g} samples/s;",
              "the speed that is told is within 1.5 % of the true one. A planetary set's teeth, its",
              "ring over its planets, are to stay undecided without teeth told.", "",

@@ -1,8 +1,8 @@
 """Few turns of a shaft, a shaft that is not known: do stated intervals hold?
 
-``make trial-shafts`` draws records of each of SORTS (seed fixed before the first), gives each to
-:func:`measure` with the teeth of one gear, and writes docs/trial_shafts.md;
-``python checks/trial_shafts.py 20`` prints a table of 20 of each.
+``make trial NAME=shafts`` draws records of each of SORTS (seed fixed before the first), gives
+each to :func:`measure` with the teeth of one gear, and writes docs/trial_shafts.md;
+``python trials/shafts.py 20`` prints a table of 20 of each.
 """
 
 from __future__ import annotations
@@ -220,7 +220,7 @@ orphan: true
 ---
 # Few turns of a shaft, a shaft that is not known: do stated intervals hold?
 
-Made by `make trial-shafts` (`checks/trial_shafts.py`). Each record is a gear's mesh line of 150 to
+Made by `make trial NAME=shafts` (`trials/shafts.py`). Each record is a gear's mesh line of 150 to
 700 Hz and its double, with two pairs of sidebands of 1 to 15 %, in noise of 0.3 to 30 %. Nothing
 but the teeth of this gear is stated. A speed that changes walks (0.2 to 5 s), oscillates (0.3 to 3
 periods in the record, at most half as fast as the shaft) or drifts, by 0.03 to 1 %. An unknown

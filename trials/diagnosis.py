@@ -1,6 +1,6 @@
 """How often ``diagnose`` errs: false alarms on healthy records, and faults that it finds.
 
-``python checks/trial_diagnosis.py [SETS]``: of each set three healthy records are the baseline; a
+``python trials/diagnosis.py [SETS]``: of each set three healthy records are the baseline; a
 fourth healthy one must raise no alarm, and one with a fault of one tooth must name shaft and tooth.
 The records are of ``tests/measured/faulty_gears.py``, which shares no code with the package; gears,
 tooth and seed of a set are drawn by its number alone.

@@ -1,9 +1,9 @@
 """Random motions that lose contact: every label of the settled motion put to another test.
 
-``make trial-labels`` draws until 2 000 motions lose contact (seed fixed before the first run),
+``make trial NAME=labels`` draws until 2 000 motions lose contact (seed fixed before the first run),
 labels them, closes every labelled orbit anew by multiple shooting on an adaptive integrator, sends
 other starts beside each to see whether they end there too, follows every chaotic motion to 200 000
-periods, and writes docs/trial_labels.md. ``python checks/trial_labels.py 50`` prints a short one.
+periods, and writes docs/trial_labels.md. ``python trials/labels.py 50`` prints a short one.
 """
 
 from __future__ import annotations
@@ -347,7 +347,8 @@ def page(count: int, asked: int, found: Found) -> str:
         "---",
         "# Trial of labels",
         "",
-        f"Made by `make trial-labels` (seed {SEED}): {count} random motions that lose contact,",
+        f"Made by `make trial NAME=labels` (seed {SEED}): {count} random motions that "
+        f"lose contact,",
         f"of {asked} drawn: " + ", ".join(spans[:4]) + ",",
         ", ".join(spans[4:]) + f"; starts {STARTS[0]:g} to {STARTS[1]:g} in x and x'.",
         "",

@@ -1,9 +1,10 @@
 """What damage of a record does to its lines, and what ``measure`` makes of it.
 
-``make trial-defects`` draws records of a known gear train, damages each in one way, and tells the
+``make trial NAME=defects`` draws records of a known gear train, damages each in one way, and
+tells the
 error of the mesh line's amplitude without the gate and with it, or that it is withheld, beside
 the stated interval. It also counts undamaged records of which anything is withheld: drawn ones and,
-where they are at hand, real ones. It writes docs/trial_defects.md; ``python checks/trial_defects.py
+where they are at hand, real ones. It writes docs/trial_defects.md; ``python trials/defects.py
 3`` prints a table of three records for each defect.
 """
 
@@ -344,7 +345,9 @@ def told(count: int, undamaged_count: int) -> list[str]:
 
 HEAD = """# Damaged records
 
-Made by `make trial-defects`. Each record is a drawn gear train of 4 s (mesh line of amplitude 1 at
+
+Made by `make trial NAME=defects`. Each record is a drawn gear train of 4 s (mesh line of
+amplitude 1 at
 300 to 450 Hz, sidebands, noise of rms 0.05 to 0.6, a converter of 12, 16 or 24 bits) with one
 defect. Before: the flat-top line of the samples as they stand, of NaN the longest piece. Now: what
 `measure` states, or that it is withheld; a frequency that is withheld counts as held. The last

@@ -1,6 +1,7 @@
 """Random drive trains: is the label of a settled motion the same when it is asked otherwise?
 
-``make trial-trains`` draws 200 trains (seed fixed before the first run) and labels each four times:
+``make trial NAME=trains`` draws 200 trains (seed fixed before the first run) and labels each four
+times:
 by the rule of the studies, after twice the transient, with finer steps, and in more coordinates.
 Where rounding decides, two starts stand for the sixteen of the rule, for time. A label that
 changed is put to tests that say why. 40 other trains are labelled on one thread of the linear
@@ -481,7 +482,8 @@ def page(
         "---",
         "# Trial of drive trains",
         "",
-        f"Made by `make trial-trains` (seed {SEED}): {count} random drive trains in motion.{ran}",
+        f"Made by `make trial NAME=trains` (seed {SEED}): {count} random drive trains "
+        f"in motion.{ran}",
         f"Load {UNIT_LOAD[0]:g} to {UNIT_LOAD[1]:g} N/mm² over width and module, mesh frequency",
         f"{RATIO[0]:g} to {RATIO[1]:g} of the teeth's own, run-out of the teeth {ERRORS[0]:g} to "
         f"{ERRORS[1]:g} um,",

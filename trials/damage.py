@@ -1,10 +1,10 @@
 """Single damages to finished results and stores: what is read back different without a word.
 
-``make trial-damage`` makes three netCDF files and two stores by the commands' own functions and
-damages them in 300 ways drawn beforehand (seed fixed before the first run): bytes, blocks, what
+``make trial NAME=damage`` makes three netCDF files and two stores by the commands' own functions
+and damages them in 300 ways drawn beforehand (seed fixed before the first run): bytes, blocks, what
 numbers mean, files exchanged. After each the package's readers are asked, and for a store the
 command that made it is given again. It writes docs/trial_damage.md. ``python
-checks/trial_damage.py 40`` prints a short one, ``... costs``
+trials/damage.py 40`` prints a short one, ``... costs``
 measures the reading alone anew.
 """
 
@@ -503,7 +503,8 @@ def page(found: Sequence[tuple[str, str, str, str]]) -> str:
     lines = [
         "# Damages to results",
         "",
-        f"`make trial-damage` (seed {SEED}): {len(found)} single damages to finished files and "
+        f"`make trial NAME=damage` (seed {SEED}): {len(found)} single damages to "
+        f"finished files and "
         "stores.",
         "",
         "| what the reader said | |",

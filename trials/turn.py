@@ -1,12 +1,12 @@
 """Random pairs with pitch errors on both gears: the exact engine over a turn put to another test.
 
-``make trial-turn`` draws pairs until 40 have a motion that closes (seed fixed before the first
+``make trial NAME=turn`` draws pairs until 40 have a motion that closes (seed fixed before the first
 run), five of them with more than 500 mesh periods to a turn and three hunting pairs with more than
 1500. Stiffness and error of the whole turn come from the loaded contact. The motion from rest goes
 to the event-exact maps with their label, and to Runge-Kutta steps of this file, in metres and
 seconds and in the total displacement, whose tables are its own inverse transforms. Dynamic factor
 and share of contact loss are compared, and docs/trial_turn.md is written.
-``python checks/trial_turn.py 3`` prints three short ones.
+``python trials/turn.py 3`` prints three short ones.
 """
 
 from __future__ import annotations
@@ -266,7 +266,8 @@ def all_compared(count: int | None = None) -> Iterator[Compared | None]:
 
 HEAD = f"""# Pairs with pitch errors: the exact engine over a turn against other steps
 
-Made by `make trial-turn`, seed {SEED}: pairs of {TEETH[0]} to {TEETH[1]} teeth, modules of 1.5 to
+Made by `make trial NAME=turn`, seed {SEED}: pairs of {TEETH[0]} to {TEETH[1]} teeth, modules of
+1.5 to
 6 mm, 50 to 200 N/mm, index errors of both gears with standard deviations of 0.5 to 4 um, mesh over
 natural frequency 0.15 to 1.4, damping ratio 0.03 to 0.1. Stiffness and error of the turn come from
 the loaded contact at {POSITIONS} phases of each mesh period, {HARMONICS} harmonics of the mesh

@@ -1,6 +1,6 @@
 """Five verdicts on the thesis, recomputed in two ways by code that is not the package's.
 
-``make trial-verdicts`` writes docs/trial_verdicts.md. The equation is
+``make trial NAME=verdicts`` writes docs/trial_verdicts.md. The equation is
 
     x'' + 2 zeta x' + [1 + eps cos(w t) + eps_T] f(x; b) = F_m + F_h cos(w t)
 
@@ -297,7 +297,8 @@ def main() -> int:
     PAGE.write_text("\n".join([
         "---", "orphan: true", "---",
         "# Five verdicts by other code", "",
-        f"Made by `make trial-verdicts` ({seconds:.0f} s of processor time). The second and third",
+        f"Made by `make trial NAME=verdicts` ({seconds:.0f} s of processor time). The "
+        f"second and third",
         "way share no code with the package: scipy's DOP853, restarted at every edge of the",
         "backlash, and the power series in time that solves the linear equation of each piece.",
         "Both follow the two variations of a motion, so Newton's method finds a closed orbit and",

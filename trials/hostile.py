@@ -1,8 +1,8 @@
 """Mutated case files and records through the command line: what must never happen, counted.
 
-    python checks/trial_hostile.py            docs/trial_hostile.md anew, an hour of processor
-    python checks/trial_hostile.py rig.mf4    the row of one kind anew, the others stay
-    python checks/trial_hostile.py 200        200 of each kind, printed
+    python trials/hostile.py            docs/trial_hostile.md anew, an hour of processor
+    python trials/hostile.py rig.mf4    the row of one kind anew, the others stay
+    python trials/hostile.py 200        200 of each kind, printed
 
 Every file goes through ``thermogear check`` or ``thermogear measure`` inside a worker process that
 may take one gigabyte more than it takes at rest and ten seconds of processor time for each.
@@ -462,7 +462,8 @@ def page(found: dict[str, Sum], kept: dict[str, str]) -> str:
         "---",
         "# Trial of mutated files",
         "",
-        f"Made by `make trial-hostile` (seed {SEED}): case files and records in every format with",
+        f"Made by `make trial NAME=hostile` (seed {SEED}): case files and records in "
+        f"every format with",
         "bits flipped, pieces cut, doubled, moved or zeroed, counts and sizes made huge, numbers",
         "replaced by hostile ones, also inside of what is packed. Each goes through",
         "`thermogear check` or `thermogear measure` (joined: with a good file beside it and",

@@ -1,6 +1,6 @@
 """What a stranger may try with the local app, each attempt at a real server: docs/trial_attacks.md.
 
-    python checks/trial_attacks.py            the page anew, half a minute
+    python trials/attacks.py            the page anew, half a minute
 
 The tests run the same list. Each attempt says what must come back; the page holds what came.
 """
@@ -427,8 +427,8 @@ orphan: true
 ---
 # What a stranger may try with the app
 
-Made by `make trial-attacks`: every attempt at a real server, `thermogear app rig`. The tests run
-the same list. {count} attempts, {bad} of them with another answer than expected. What the rules
+Made by `make trial NAME=attacks`: every attempt at a real server, `thermogear app rig`. The tests
+run the same list. {count} attempts, {bad} of them with another answer than expected. What the rules
 are, and what is left to you: [The app and strangers](howto/app_security.md).
 
 | attempt | expected | got |

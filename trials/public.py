@@ -1,6 +1,6 @@
 """What ``thermogear measure`` says of public records, and what is known of them.
 
-    python checks/trial_public.py [FOLDER]     docs/public_records.md anew
+    python trials/public.py [FOLDER]     docs/public_records.md anew
 
 FOLDER (default: ``shared/data`` beside this checkout) holds records, which are read there and never
 copied, with a ``README.md`` of what is known of them. Where it is missing the page stays.
@@ -165,7 +165,8 @@ def page(folder: Path, found: Sequence[Said]) -> str:
         "---",
         "# Public records",
         "",
-        "Made by `make trial-public`: every record of a folder through `thermogear measure`, with",
+        "Made by `make trial NAME=public`: every record of a folder through "
+        "`thermogear measure`, with",
         "no option, beside what its README says. Nothing is told to the program: where a file",
         "states no rate, lines are in cycles per sample. The records are not part of the project.",
         "",

@@ -1,8 +1,8 @@
 """Every steady state of the heat balance: from cold, from hot, and at the end of a warm-up.
 
-``make trial-heat`` asks the ready-made rig at 30 speeds x 30 torques and 60 random pairs at 20
+``make trial NAME=heat`` asks the ready-made rig at 30 speeds x 30 torques and 60 random pairs at 20
 points each (seed fixed before the first run), for two friction laws, and writes
-docs/trial_heat.md. ``python checks/trial_heat.py 10`` prints one of 10 x 10 points.
+docs/trial_heat.md. ``python trials/heat.py 10`` prints one of 10 x 10 points.
 """
 
 from __future__ import annotations
@@ -174,7 +174,8 @@ def page(rows: Sequence[tuple[str, Found]], side: int) -> str:
         "---",
         "# Trial of the heat balance",
         "",
-        f"Made by `make trial-heat` (seed {SEED}): the ready-made rig at {side} speeds x {side}",
+        f"Made by `make trial NAME=heat` (seed {SEED}): the ready-made rig at {side} "
+        f"speeds x {side}",
         f"torques, {SPEEDS[0]:.0f} to {SPEEDS[1]:.0f} rpm and {TORQUES[0]:.0f} to "
         f"{TORQUES[1]:.0f} N m, its oil as the ambient warms it, and random pairs.",
         "",

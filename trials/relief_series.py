@@ -1,10 +1,10 @@
 """Does the relief of a series help parts it was not made for? Six own pairs at two loads.
 
-``make trial-relief-series`` draws six gear pairs (seed fixed before the first run), designs the tip
-relief of each for two loads, and judges it by 64 parts that neither the design nor its own
+``make trial NAME=relief_series`` draws six gear pairs (seed fixed before the first run), designs
+the tip relief of each for two loads, and judges it by 64 parts that neither the design nor its own
 judgement has seen: the printed gain against theirs, the parts made worse, and the regret against
 the best of a grid, which is chosen on these parts themselves. Writes docs/trial_relief_series.md.
-``python checks/trial_relief_series.py 2`` prints two of them.
+``python trials/relief_series.py 2`` prints two of them.
 """
 
 from __future__ import annotations
@@ -131,7 +131,8 @@ def main(count: int, page: Path | None) -> int:
     worse = sum(row.worse > WORSE for row in rows)
     text = f"""# Relief of a series, judged by parts it has not seen
 
-Made by `make trial-relief-series`, seed {SEED}: gears of 17 to 60 teeth, modules of 2 to 6 mm, 100
+Made by `make trial NAME=relief_series`, seed {SEED}: gears of 17 to 60 teeth, modules of 2 to 6
+mm, 100
 to 300 N/mm, classes 4 to 7, each at two loads, the lesser .6 of the greater. *Printed*: gain that
 `relief` states, of its 64 judging parts, with its standard error [%]: what the relief takes off the
 root mean square of the transmission error within a mesh period. *Fresh*: the same of {PARTS} other

@@ -1,11 +1,12 @@
 """Kills of eight commands at random moments: is anything lost, different or left over?
 
-``make trial-kills`` runs each command once undisturbed, then in new folders: it is killed (SIGKILL)
+``make trial NAME=kills`` runs each command once undisturbed, then in new folders: it is killed
+(SIGKILL)
 at a random moment of its usual time and given once more, until it was killed five times or ended by
 itself before; 25 kills a command. Everything below the directory it was started in is then
 compared with what the undisturbed run left, file by file, the directory for temporary files
 included; every seal must vouch for its file. Writes docs/trial_kills.md;
-``python checks/trial_kills.py 3 run`` kills one command three times and prints.
+``python trials/kills.py 3 run`` kills one command three times and prints.
 """
 
 from __future__ import annotations
@@ -222,7 +223,8 @@ def main(words: list[str]) -> int:
     if not words:
         head = ["---", "orphan: true", "---", "# Trial of kills", ""]
         head += [
-            f"Made by `make trial-kills` (seed {SEED}). Each command is killed (SIGKILL, with its",
+            f"Made by `make trial NAME=kills` (seed {SEED}). Each command is killed "
+            "(SIGKILL, with its",
             f"workers) {KILLS} times at a random moment between a fifth and the whole of its usual",
             f"time and given again; after {ROW} kills, or when it ends before the kill, it is left",
             "to end. Everything below the directory it was started in is then compared, file by",

@@ -1,6 +1,6 @@
 """The app walked through by mouse and by keyboard: actions counted, moves timed, pictures taken.
 
-``python checks/app_walk.py`` (``make trial-app``) starts the app on the rig, answers three
+``python trials/app.py`` (``make trial NAME=app``) starts the app on the rig, answers three
 questions by mouse and one by keyboard alone in a real browser, times moves beside the same
 answers by commands, and writes docs/trial_app.md with the pictures of docs/howto/app.md.
 """
@@ -247,7 +247,7 @@ def page_text(
     shown = {name: f"{middle:.0f} ({worst:.0f})" for name, (middle, worst) in times.items()}
     return "\n".join((
         "---", "orphan: true", "---", "# The app walked through", "",
-        "Made by `make trial-app`: the app on the rig in a real browser.", "",
+        "Made by `make trial NAME=app`: the app on the rig in a real browser.", "",
         "| question | by | actions | which | what the page says |",
         "|---|---|---:|---|---|",
         *rows, "",

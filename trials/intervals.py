@@ -1,9 +1,10 @@
 """How often stated 95 % intervals of a measured line hold: records drawn with a known truth.
 
-``make trial-coverage`` draws 500 records for each scenario (seed fixed before the first run), gives
+``make trial NAME=intervals`` draws 500 records for each scenario (seed fixed before the first
+run), gives
 each to :func:`measure`, and counts how often the interval of the mesh line's amplitude, of its
 frequency and of the shaft speed holds the truth. It writes docs/trial_coverage.md;
-``python checks/trial_coverage.py 40`` prints a table of 40 records each, with ``--write`` after it
+``python trials/intervals.py 40`` prints a table of 40 records each, with ``--write`` after it
 it writes the page.
 """
 
@@ -273,7 +274,7 @@ def told(cells: list[Cell], count: int) -> list[str]:
 
 HEAD = """# Do the stated intervals of a line hold?
 
-Made by `make trial-coverage`. Every record has a mesh line of amplitude 1 near 400 Hz with a
+Made by `make trial NAME=intervals`. Every record has a mesh line of amplitude 1 near 400 Hz with a
 second harmonic of 0.5, sidebands of 12 and 5 %, and white noise of rms 0.1 where nothing else is
 said; 4 s at 2560 samples/s. Wandering quantities are stationary with an exponential correlation of
 the time said. `measure` is told 25 teeth and the nominal speed; the mesh frequency lies up to 2 %

@@ -1,9 +1,9 @@
 """Random branches against small steps, random run-ups against finer ones: no event missed.
 
-``make trial-branches`` follows 60 branches (seed fixed before the first run) with
+``make trial NAME=branches`` follows 60 branches (seed fixed before the first run) with
 :func:`continuation` and again with a plain walker of its own in steps ten times as short, and runs
 40 random gear pairs up and down in steps of 100 and of 12.5 rpm; it writes
-docs/trial_branches.md. ``python checks/trial_branches.py 5 3`` prints a short one: 5 branches, 3
+docs/trial_branches.md. ``python trials/branches.py 5 3`` prints a short one: 5 branches, 3
 pairs.
 """
 
@@ -406,7 +406,8 @@ def page(found: Found) -> str:
         "---",
         "# Trial of branches and run-ups",
         "",
-        f"Made by `make trial-branches` (seed {SEED}). {found.counts['branches']} random branches,",
+        f"Made by `make trial NAME=branches` (seed {SEED}). {found.counts['branches']} "
+        f"random branches,",
         "every fifth of the symmetric equation (no mean force, constant stiffness), are followed",
         "over up to 60 % of a parameter by the continuation, and again by a plain walker (secant",
         f"predictor, derivatives by differences of the map, steps of {SHORT_STEP} at most against",

@@ -1,8 +1,8 @@
 """Sampling rates from rounded and jittering time stamps, on trial: do their intervals hold?
 
-    python checks/trial_stamps.py             2 000 time columns, 120 records; docs/trial_stamps.md
-    python checks/trial_stamps.py 100 6       100 columns, 6 records, printed
-    python checks/trial_stamps.py 100 6 2027  of another seed, printed
+    python trials/stamps.py             2 000 time columns, 120 records; docs/trial_stamps.md
+    python trials/stamps.py 100 6       100 columns, 6 records, printed
+    python trials/stamps.py 100 6 2027  of another seed, printed
 
 Columns are read as those of files are; records hold a sine in noise beside such a column.
 """
@@ -173,7 +173,7 @@ def lines(count: int, seed: int) -> Iterator[str]:
 
 HEAD = """# Sampling rates from rounded and jittering time stamps: do their intervals hold?
 
-Made by `make trial-stamps`. Each draw is a time column: the rate 1 000, 2 048, 4 096, 5 000,
+Made by `make trial NAME=stamps`. Each draw is a time column: the rate 1 000, 2 048, 4 096, 5 000,
 12 800, 25 600 or 44 100 samples/s, or any of 500 to 50 000; stamps of 2 to 6 decimals, rounded or
 (30 %) cut; 0.5 to 20 s, at most 60 000 stamps; in 60 % jitter, even within up to 0.2 step to both
 sides. An error is told in half widths of the 95 % interval; a usual rate that is taken as exact

@@ -1,8 +1,9 @@
 """Random gear pairs through the quasi-static chain, relief and motion: what must never happen.
 
-``make trial-pairs`` draws until 2 000 pairs are valid (seed fixed before the first run), computes
+``make trial NAME=pairs`` draws until 2 000 pairs are valid (seed fixed before the first run),
+computes
 each cold and hot with deviations of every kind, designs a relief, moves it, exchanges and scales
-it, and writes docs/trial_pairs.md. ``python checks/trial_pairs.py 50`` prints a short one.
+it, and writes docs/trial_pairs.md. ``python trials/pairs.py 50`` prints a short one.
 """
 
 from __future__ import annotations
@@ -436,7 +437,7 @@ def page(count: int, refused: Counter[str], found: Sequence[Found], seconds: flo
         "---",
         "# Trial of random pairs",
         "",
-        f"Made by `make trial-pairs` (seed {SEED}): {count} valid pairs of "
+        f"Made by `make trial NAME=pairs` (seed {SEED}): {count} valid pairs of "
         "10 to 150 teeth, 14.5 to",
         "28 degrees, profile shifts of -0.6 to 0.9, rims from one module, modules of 0.5 to 20 mm,",
         "bodies and housing of -20 to 160 degrees Celsius each, deviations of every kind, loads of",

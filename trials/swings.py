@@ -1,9 +1,9 @@
 """How often stated intervals hold where the speed swings: records drawn with a known truth.
 
-``make trial-swings`` draws 200 records whose speed swings, and 100 each of a small fast
+``make trial NAME=swings`` draws 200 records whose speed swings, and 100 each of a small fast
 oscillation of the phase and of a load that oscillates (seed fixed before the first), gives each to
 :func:`measure` with its teeth, and writes docs/trial_swings.md;
-``python checks/trial_swings.py 20`` prints a table of 20 of each.
+``python trials/swings.py 20`` prints a table of 20 of each.
 """
 
 from __future__ import annotations
@@ -180,7 +180,7 @@ def table(rows: list[tuple[int, dict[str, list[float]] | str, float, str]]) -> l
 
 HEAD = """# Do stated intervals hold where the speed swings?
 
-Made by `make trial-swings` (`checks/trial_swings.py`). Each record is a gear's mesh line and its
+Made by `make trial NAME=swings` (`trials/swings.py`). Each record is a gear's mesh line and its
 double, with sidebands of its shaft, while the speed swings as a sine: a control that hunts, a slow
 torsional mode. Nothing but the teeth is stated. Drawn are 12 to 80 teeth, a mesh line of 200 to
 900 Hz, 2 to 8 s at 5000 samples/s, a swing of 0.1 to 3 % at 0.05 to 8 Hz, sidebands of 1 to 7.5 %

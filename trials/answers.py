@@ -1,7 +1,8 @@
 """Random cases through answers and runs, every sentence held against the data beside it.
 
-``make trial-answers`` puts 300 case files (seed fixed before the first run) through the answers
-and 60 of them through a run, and writes docs/trial_answers.md; ``python checks/trial_answers.py 20
+``make trial NAME=answers`` puts 300 case files (seed fixed before the first run) through the
+answers
+and 60 of them through a run, and writes docs/trial_answers.md; ``python trials/answers.py 20
 4`` prints a short one.
 
 :func:`contradictions` reads a result as its reader does. Every number of a sentence is a figure of
@@ -352,7 +353,9 @@ orphan: true
 ---
 # Trial of the answers
 
-Made by `make trial-answers` (seed {SEED}, fixed before the first run), which takes 300 cases and
+
+Made by `make trial NAME=answers` (seed {SEED}, fixed before the first run), which takes 300 cases
+and
 60 runs; the table says how many it holds. They are case files of 12 to 120 teeth, modules of 0.5 to
 20 mm, profile shifts of -0.3 to 0.7, four pressure angles, classes 3 to 10 by both editions or
 none, 0.03 to 15 N per mm of width and mm of module, 0.3 to 60 m/s, heat given, half given or

@@ -1,8 +1,8 @@
 """Runs whose speed changes, on trial: are order amplitudes within their stated intervals?
 
-    python checks/trial_turning.py              20 draws of each kind; docs/trial_turning.md
-    python checks/trial_turning.py 3            3 draws of each, printed
-    python checks/trial_turning.py 20 2027      20 draws of another seed, printed
+    python trials/turning.py              20 draws of each kind; docs/trial_turning.md
+    python trials/turning.py 3            3 draws of each, printed
+    python trials/turning.py 20 2027      20 draws of another seed, printed
 
 Each draw is a run of a shaft with 25 teeth, an unbalance, three mesh harmonics and two sidebands,
 in noise. Amplitude and phase of mesh and sidebands follow one resonance, so that the truth is known
@@ -242,7 +242,8 @@ def runs_told(row: Row) -> str:
 
 HEAD = f"""# Orders of runs whose speed changes: do the stated intervals hold?
 
-Made by `make trial-turning`. Each draw is a run of 20 s at 12 800 samples/s of a shaft of 25 teeth
+Made by `make trial NAME=turning`. Each draw is a run of 20 s at 12 800 samples/s of a shaft of 25
+teeth
 between 8..14 and 38..50 turns/s, with an unbalance (order 1), mesh lines (25, 50, 75), sidebands
 (24, 26) and noise of rms 0.05. Mesh lines and sidebands pass a resonance at 500..900 Hz with 2 to
 5 % damping, so the truth is known at every speed. A tacho has one pulse a turn, of which 10 % are

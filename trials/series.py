@@ -1,9 +1,10 @@
 """Do the bands of a series hold? Fresh pairs of the class, none of which an answer has seen.
 
-``make trial-series`` draws ten gear pairs (seed fixed before the first run), asks `answers` for
+``make trial NAME=series`` draws ten gear pairs (seed fixed before the first run), asks `answers`
+for
 their series of 64 pairs, and draws 64 others of the same class: the share of these that the stated
 bands of 90 % hold, with its binomial interval, goes into docs/trial_series.md.
-``python checks/trial_series.py 2`` prints two of them.
+``python trials/series.py 2`` prints two of them.
 """
 
 from __future__ import annotations
@@ -106,7 +107,9 @@ def main(count: int, page: Path | None) -> int:
     mean = 100.0 * float(np.mean([row.share.value for row in rows]))
     text = f"""# Series: do the stated bands hold fresh pairs?
 
-Made by `make trial-series`, seed {SEED}: gears of 17 to 60 teeth, modules of 1.5 to 4 mm, 50 to 150
+
+Made by `make trial NAME=series`, seed {SEED}: gears of 17 to 60 teeth, modules of 1.5 to 4 mm, 50
+to 150
 N/mm, classes 4 to 7, 1500 to 9000 rpm. *Band*: what `answers` says of {PARTS} pairs, 90 % of all
 lie in it. *Held*: the share of {PARTS} other pairs of the class, drawn with another seed, that do,
 with its binomial interval of 95 %. Both have the same population, which is assumed: this tests the

@@ -1,7 +1,8 @@
 """Every friction law against measured losses and body temperatures of gears.
 
-``make friction-evidence`` computes each case of checks/friction_cases.toml with each law and
-writes docs/friction_evidence.md with its picture; ``python checks/friction_evidence.py --print``
+``make trial NAME=friction_evidence`` computes each case of trials/friction_cases.toml with each
+law and
+writes docs/friction_evidence.md with its picture; ``python trials/friction_evidence.py --print``
 prints the page and writes nothing. The cases were written down before any law was compared.
 """
 
@@ -43,7 +44,7 @@ from thermogear.views.style import FAINT, INK, OKABE_ITO, QUIET
 Floats = NDArray[np.float64]
 
 ROOT = Path(__file__).parents[1]
-CASES = ROOT / "checks" / "friction_cases.toml"
+CASES = ROOT / "trials" / "friction_cases.toml"
 PAGE = ROOT / "docs" / "friction_evidence.md"
 PICTURE = ROOT / "docs" / "pictures" / "friction-evidence.svg"
 WITHIN = 15.0
@@ -417,8 +418,8 @@ def page(
         "---",
         "# Friction laws against measurements",
         "",
-        f"Made by `make friction-evidence` from the {len(every)} cases of",
-        "`checks/friction_cases.toml`, written down before any law was compared with them. Nothing",
+        f"Made by `make trial NAME=friction_evidence` from the {len(every)} cases of",
+        "`trials/friction_cases.toml`, written down before any law was compared with them. Nothing",
         f"is fitted to them. The consistent bundle computes with `{law}`, its film at the flanks'",
         "temperature.",
         "",
