@@ -476,7 +476,6 @@ CASES = (
             " --to 0.12 --switch 2 -o out --json",
         ),
     ),
-    Case("cascade", ("continue table-4.2 --cascade 2 -o out --json",)),
     # --- stores
     Case(
         "bifurcation-table",
