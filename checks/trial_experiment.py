@@ -9,8 +9,10 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
+from rig_samples import trains
+
 from thermogear.base.display import MICROMETRE
-from thermogear.thesis.experiment import SAMPLES_STORED, SEED, SEEN, TABLE, Shown, trains
+from thermogear.thesis.experiment import SAMPLES_STORED, SEED, SEEN, TABLE, Shown
 from thermogear.thesis.experiment_answer import results
 from thermogear.thesis.rig_trains import ASSUMED, DIGITS, SPEEDS
 

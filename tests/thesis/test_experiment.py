@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from scripts import script
 
 from conftest import Compared
 from thermogear.case.case import gear_case, load_case
-from thermogear.front.thesis_commands import thesis
 from thermogear.thesis import experiment, experiment_answer
-from thermogear.thesis.experiment import PRINTED, SEED, Shown, shown, stored
+from thermogear.thesis.experiment import PRINTED, SEED, Shown, stored
 from thermogear.thesis.experiment_answer import EITHER, NEAR, answer, factor, interval, results
-from thermogear.thesis.rig_trains import ASSUMED, case_text, drawn
+from thermogear.thesis.rig_trains import ASSUMED
+
+SAMPLES = script("rig_samples")
 
 
 @pytest.fixture(scope="module")
@@ -25,7 +25,7 @@ def rows() -> list[Shown]:
 
 def test_at_least_200_are_stored_as_drawn_from_the_seed(rows: list[Shown]) -> None:
     assert len(rows) == experiment.SAMPLES_STORED >= 200
-    assert [dict(one.values) for one in rows] == drawn(len(rows), seed=SEED)
+    assert [dict(one.values) for one in rows] == SAMPLES.drawn(len(rows), seed=SEED)
     for one in ASSUMED:
         values = [row.values[one.name] for row in rows]
         assert one.low <= min(values) <= max(values) <= one.high
@@ -46,7 +46,7 @@ def _share(low: float, high: float, logarithmic: bool, value: float) -> float:
 # last bit and is none of them
 @pytest.mark.parametrize("number", [0, 4, 7])
 def test_a_stored_row_is_what_the_code_computes(number: int, rows: list[Shown]) -> None:
-    told, found = rows[number], shown(rows[number].values)
+    told, found = rows[number], SAMPLES.shown(rows[number].values)
     assert found.labels == told.labels
     assert found.channels == told.channels
     for place in experiment.SEEN:
@@ -55,7 +55,7 @@ def test_a_stored_row_is_what_the_code_computes(number: int, rows: list[Shown]) 
 
 
 def test_few_coordinates_are_enough(rows: list[Shown], compared: Compared) -> None:
-    found = shown(rows[1].values, held=2 * experiment.HELD_MODES)
+    found = SAMPLES.shown(rows[1].values, held=2 * SAMPLES.HELD_MODES)
     pairs = [(found.most[place], rows[1].most[place]) for place in experiment.SEEN]
     compared(
         "displacements of a sampled drive train of the thesis's rig, relative",
@@ -67,7 +67,7 @@ def test_few_coordinates_are_enough(rows: list[Shown], compared: Compared) -> No
 
 def test_a_sampled_case_holds_what_was_drawn(rows: list[Shown]) -> None:
     values = rows[7].values
-    case = gear_case(load_case(case_text(values)))
+    case = gear_case(load_case(SAMPLES.case_text(values)))
     train = case.train
     assert train is not None
     assert case.stated.torque[0] == pytest.approx(values["torque"])
@@ -95,9 +95,7 @@ def test_the_rule_counts_one_channel_near_at_all_speeds_and_growing(rows: list[S
     assert factor(far, "cap") == pytest.approx(1.6)
     falling = (1.4 * PRINTED[0], 0.7 * PRINTED[1], PRINTED[2])
     fallen = replace(hit, amplitudes={**hit.amplitudes, "cap": falling})
-    lost = experiment._without(
-        rows[0].values, "jammed", dict.fromkeys(experiment.SEEN, (np.nan,) * 3)
-    )
+    lost = SAMPLES.without(rows[0].values, "jammed", dict.fromkeys(experiment.SEEN, (np.nan,) * 3))
     data = results([hit, far, fallen, lost, *rows[:20]])
     one = data.sel(seen=EITHER, limit=NEAR)
     assert int(one["hits"]) == 1
@@ -106,13 +104,6 @@ def test_the_rule_counts_one_channel_near_at_all_speeds_and_growing(rows: list[S
     assert data.attrs["open"] == len(open_) > 0
     assert data.attrs["open_nearest"] == min(factor(one, EITHER) for one in open_)
     assert (float(one["share_low"]), float(one["share_high"])) == interval(1, count=24, lost=1)
-
-
-def test_too_few_trains_are_refused(tmp_path: Path) -> None:
-    done = CliRunner().invoke(thesis, ["-o", str(tmp_path / "new"), "--experiment", "7"])
-    assert done.exit_code == 2
-    assert "--experiment" in done.output
-    assert not (tmp_path / "new").exists()
 
 
 def _told(hits: int, lost: int = 0) -> str:

@@ -9,37 +9,18 @@ from __future__ import annotations
 
 import csv
 import io
-import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.resources import files
 
 import numpy as np
 
-from thermogear.analysis.any_motion import settle
-from thermogear.analysis.walk import Search
 from thermogear.base.arrays import Floats
-from thermogear.base.display import SPEED
-from thermogear.base.errors import ThermogearError, ValidityWarning
-from thermogear.base.vocabulary import STATUS
-from thermogear.case.case import gear_case, load_case
-from thermogear.case.thermal_state import HOT
-from thermogear.dynamics.ladder import Engine
 from thermogear.measured.published import THESIS_5_2
-from thermogear.shafts.reduction import interface_of
-from thermogear.study.shafts.moving import MovingTrain, moving, rubbing
-from thermogear.study.shafts.record import SAMPLES, lines
-from thermogear.study.shafts.state import TrainState, settled
-from thermogear.thesis.rig_trains import ASSUMED, DIGITS, SPEEDS, case_text, drawn
+from thermogear.thesis.rig_trains import ASSUMED, SPEEDS
 
 TABLE = "experiment.csv"
 SAMPLES_STORED, SEED = 256, 22
-HELD_MODES = 8
-"""Modes of the reduced train beside its interface; with 24 displacements changed by 6 % at most in
-the first eight stored trains."""
-PERIODS, LONGER = 16, 64
-"""Mesh periods of a record: of a proven orbit, of any other motion."""
-SEARCH = Search(first=64, cap=2048, exponent=False, starts=1)
 PRINTED = tuple(line.displacement for line in THESIS_5_2.measured.lines)
 """Measured displacements [m] as printed, by speed."""
 SEEN = ("cap", "housing", "journal", "teeth")
@@ -78,90 +59,14 @@ class Shown:
         found = np.asarray(self.amplitudes[seen])
         if not np.all(np.isfinite(found)):
             return float("inf")
-        return float(_factors(found[:, None])[0])
+        return float(factors(found[:, None])[0])
 
 
-def _factors(amplitudes: Floats) -> Floats:
+def factors(amplitudes: Floats) -> Floats:
     """Largest ratio to the printed values, either way, of every channel: (speed, channel)."""
     with np.errstate(divide="ignore"):
         far = np.abs(np.log(amplitudes / np.asarray(PRINTED)[:, None]))
     return np.asarray(np.exp(far.max(axis=0)))
-
-
-def shown(values: Mapping[str, float], *, held: int = HELD_MODES) -> Shown:
-    """What the train of ``values`` shows; ``held``: modes beside its interface."""
-    nothing = dict.fromkeys(SEEN, (float("nan"),) * len(SPEEDS))
-    try:
-        with warnings.catch_warnings(action="ignore", category=ValidityWarning):
-            case = gear_case(load_case(case_text(values)))
-            ((state,),) = settled(case, [0], states=(HOT,))
-            if state.status != STATUS.index("ok"):
-                return _without(values, STATUS[state.status], nothing)
-            wanted = len(interface_of(state.assembly)) - 1 + held
-            train = moving(case, state, coordinates=wanted, friction=rubbing(case, state))
-            trains = [train.at_speed(case, float(SPEED.stored(rpm))) for rpm in SPEEDS]
-    except ThermogearError:
-        return _without(values, "not_converged", nothing)
-    labels, found = [], []
-    for one in trains:
-        motion = settle(one.model.return_map(), one.start, SEARCH)
-        labels.append(motion.name)
-        if motion.name == "diverged":
-            return _without(values, "diverged", nothing)
-        proven = 0 < motion.period <= PERIODS // 2 and motion.name.startswith("period")
-        found.append(_amplitudes(one, motion.state, PERIODS if proven else LONGER))
-    names = _channels(state)
-    channels, amplitudes, most = {}, {}, {}
-    for place in SEEN:
-        table = np.stack([one[place] for one in found])
-        best = int(np.argmin(_factors(table)))
-        channels[place] = names[place][best]
-        amplitudes[place] = tuple(_rounded(v) for v in table[:, best])
-        most[place] = tuple(_rounded(v) for v in table.max(axis=1))
-    return Shown(
-        values=values, labels=tuple(labels), channels=channels, amplitudes=amplitudes, most=most
-    )
-
-
-def _without(
-    values: Mapping[str, float], status: str, nothing: dict[str, tuple[float, ...]]
-) -> Shown:
-    labels = (status,) * len(SPEEDS)
-    none = dict.fromkeys(SEEN, "")
-    return Shown(values=values, labels=labels, channels=none, amplitudes=nothing, most=nothing)
-
-
-def _rounded(value: float) -> float:
-    return float(f"{value:.{DIGITS}g}")
-
-
-def _channels(state: TrainState) -> dict[str, list[str]]:
-    both = [f"{place.bearing.name} {axis}" for place in state.assembly.bearings for axis in "xy"]
-    return {"cap": both, "housing": ["x", "y"], "journal": both, "teeth": ["line of action"]}
-
-
-def _amplitudes(train: MovingTrain, start: Floats, periods: int) -> dict[str, Floats]:
-    """Amplitude [m] at the mesh line of every channel, by what is seen."""
-    model, own = train.model, train.state.assembly
-    run = Engine(model).run(start, periods, samples=SAMPLES)
-    felt = model.forces(run.sample_phase, states=run.samples)["acceleration"]
-    twice = (2.0 * np.pi * model.mesh_frequency) ** 2
-    columns = {
-        "cap": np.concatenate([one.ring for one in own.bearings], axis=1),
-        "housing": np.stack([own.unit(f"casing.{axis}") for axis in "xy"], axis=1),
-        "journal": np.concatenate([one.journal for one in own.bearings], axis=1),
-    }
-    found = {
-        name: lines(felt @ train.reduction.vector(vectors), orders=[1.0])[0] / twice
-        for name, vectors in columns.items()
-    }
-    teeth = run.samples[:, : model.size] @ model.drive - model.errors_at(run.sample_phase)[0]
-    return {**found, "teeth": lines(teeth, orders=[1.0])[0].reshape(1)}
-
-
-def trains(count: int = SAMPLES_STORED) -> Iterator[Shown]:
-    """``count`` sampled trains, one after the other."""
-    yield from map(shown, drawn(count, seed=SEED))
 
 
 # --- the table that is stored -------------------------------------------------------------------

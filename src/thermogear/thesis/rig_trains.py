@@ -6,13 +6,7 @@ else is ours: every range is as wide as rigs of this kind are, and says where it
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-
-import numpy as np
-
-from thermogear.base.display import MILLIMETRE
-from thermogear.shafts.bearings.catalogue import catalogue_bearing
 
 SPEEDS = (1000.0, 2000.0, 3000.0)
 """Speeds of the pinion [rpm] in the document."""
@@ -35,17 +29,6 @@ class Assumed:
     why: str
     logarithmic: bool = False
     choices: tuple[str, ...] = ()
-
-    def value(self, share: float) -> float:
-        """The value at a place 0..1 of the range; of choices the number of one."""
-        if self.choices:
-            return float(min(int(share * len(self.choices)), len(self.choices) - 1))
-        found = (
-            self.low * (self.high / self.low) ** share
-            if self.logarithmic
-            else self.low + (self.high - self.low) * share
-        )
-        return float(f"{found:.{DIGITS}g}")
 
     @property
     def span(self) -> str:
@@ -133,145 +116,3 @@ FIXED = (
     "brake of constant torque; shafts balanced and gears centred: their errors give lines at shaft "
     "order beside the mesh line."
 )
-
-_TEXT = """\
-title = "A drive train of the rig"
-[gears]
-module = "5 mm"
-pressure_angle = "20 deg"
-face_width = "{face_width!r} mm"
-[gears.pinion]
-teeth = 25
-bore_radius = "{pinion_bore!r} mm"
-[gears.wheel]
-teeth = 75
-bore_radius = "{wheel_bore!r} mm"
-[oil]
-name = "M100"
-temperature_below_addendum = "40 K"
-[operating]
-speed = "2000 rpm"
-torque = "{torque!r} N m"
-[temperatures]
-pinion_addendum = "{gears!r} degC"
-wheel_addendum = "{gears!r} degC"
-pinion_bore_below_addendum = "{shafts_below!r} K"
-wheel_bore_below_addendum = "{shafts_below!r} K"
-housing_below_addendum = "{box_below!r} K"
-[backlash]
-value = "{backlash!r} mm"
-direction = "normal"
-extent = "total"
-[dynamics]
-damping_ratio = {damping!r}
-[transmission_error]
-harmonics = [{{ order = 1, amplitude = "{error!r} um", phase = "0 deg" }}]
-[model]
-bundle = "consistent"
-[grid]
-mesh_positions = 64
-harmonics = 12
-[[shafts]]
-gear = "pinion"
-gear_position = "{pinion_gear!r} mm"
-sections = [{pinion_sections}]
-[[shafts]]
-gear = "wheel"
-gear_position = "{wheel_gear!r} mm"
-sections = [{wheel_sections}]
-{bearings}
-[motor]
-inertia = "{motor_inertia!r} kg m^2"
-coupling_stiffness = "{coupling!r} N m/rad"
-coupling_damping = "{coupling_damping!r} N m s/rad"
-slip_damping = "33 N m s/rad"
-lag = "0.02 s"
-[load]
-inertia = "{brake_inertia!r} kg m^2"
-coupling_stiffness = "{coupling!r} N m/rad"
-coupling_damping = "{coupling_damping!r} N m s/rad"
-[housing]
-mass = "{housing_mass!r} kg"
-mount_stiffness = "{mount_stiffness!r} N/um"
-mount_damping = "{feet!r} N s/m"
-[train]
-centre_line = "{centre_line!r} deg"
-elements = 6
-"""
-_BEARING = """\
-[[bearings]]
-shaft = "{shaft}"
-name = "{name}"
-position = "{position!r} mm"
-type = "{kind}"
-play = "{play!r} um"
-damping = "{bearing_damping!r} N s/m"
-seat_stiffness = "{seat_stiffness!r} N/um"
-seat_mass = "{seat_mass!r} kg"
-seat_damping = "{seat_damping!r} N s/m"
-"""
-_OVERHANG = 50.0
-_WALL = 5.0
-"""Shaft outside a bearing towards its coupling, and beyond the other bearing [mm]."""
-
-
-def case_text(values: Mapping[str, float]) -> str:
-    """The case file of one sampled train; ``values`` by the names of :data:`ASSUMED`."""
-    told: dict[str, object] = dict(values)
-    bearings = []
-    for shaft in ("pinion", "wheel"):
-        kind = _chosen(f"{shaft}_bearing", values)
-        size = catalogue_bearing(kind)
-        bore, half = MILLIMETRE(size.bore), 500.0 * size.width
-        middle = bore * values["thickness"]
-        ends = (_OVERHANG + half, _WALL + half)
-        # the coupling is on the left of the pinion's shaft, on the right of the wheel's
-        before, after = ends if shaft == "pinion" else ends[::-1]
-        span, place = values["span"], values["place"]
-        lengths = (before + half, span - 2.0 * half, after + half)
-        pieces = zip(lengths, (bore, middle, bore), strict=True)
-        told[f"{shaft}_sections"] = ", ".join(
-            f'{{ length = "{length!r} mm", diameter = "{diameter!r} mm" }}'
-            for length, diameter in pieces
-        )
-        told[f"{shaft}_gear"] = before + place * span
-        told[f"{shaft}_bore"] = 0.5 * middle
-        bearings += [
-            _BEARING.format(
-                shaft=shaft,
-                name=f"{shaft} {side}",
-                position=position,
-                kind=kind,
-                seat_damping=values["seat_loss"] * values["seat_stiffness"],
-                **{n: values[n] for n in _OF_BEARINGS},
-            )
-            for side, position in (("left", before), ("right", before + span))
-        ]
-    told["bearings"] = "".join(bearings)
-    told["box_below"] = values["shafts_below"] + values["housing_below"]
-    told["coupling_damping"] = 5e-4 * values["coupling"]
-    told["feet"] = (
-        2.0
-        * values["mount_damping"]
-        * float(np.sqrt(values["housing_mass"] * values["mount_stiffness"] * 1e6))
-    )
-    return _TEXT.format(**told)
-
-
-_OF_BEARINGS = ("play", "bearing_damping", "seat_stiffness", "seat_mass")
-
-
-def _chosen(name: str, values: Mapping[str, float]) -> str:
-    (one,) = (a for a in ASSUMED if a.name == name)
-    return one.choices[int(values[name])]
-
-
-def drawn(count: int, *, seed: int) -> list[dict[str, float]]:
-    """``count`` sampled trains, a latin hypercube: every range in ``count`` strips, one in each."""
-    rng = np.random.default_rng(seed)
-    strips = np.stack([rng.permutation(count) for _ in ASSUMED], axis=1)
-    shares = (strips + rng.random(strips.shape)) / count
-    return [
-        {one.name: one.value(float(share)) for one, share in zip(ASSUMED, row, strict=True)}
-        for row in shares
-    ]
