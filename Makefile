@@ -209,7 +209,7 @@ trial-base-sets: $(STAMP)  ## base sets drawn at random that meet the thesis's t
 trial-verdicts: $(STAMP)  ## five verdicts on the thesis by scipy and by exact pieces, half a minute; docs/trial_verdicts.md
 	@$(BIN)/python checks/verdicts.py
 
-trial-experiment: $(STAMP)  ## the thesis's experiment on 256 sampled drive trains, ten minutes; src/thermogear/thesis/experiment.csv
+trial-experiment: $(STAMP)  ## the thesis's experiment on 256 sampled drive trains, ten minutes; checks/experiment.csv, src/thermogear/thesis/experiment.json
 	@$(BIN)/python checks/trial_experiment.py
 
 friction-evidence: $(STAMP)  ## every friction law against measurements; docs/friction_evidence.md

@@ -22,7 +22,7 @@ from thermogear.results.result import Result
 from thermogear.study.compare import compare
 from thermogear.study.run import run
 from thermogear.study.sensitivity import Plan, sensitivity
-from thermogear.thesis import base_sets, chain, experiment, experiment_answer, motions
+from thermogear.thesis import base_sets, chain, experiment, motions
 from thermogear.thesis.errata import with_errata
 
 STAGES = (
@@ -145,7 +145,7 @@ class Evidence:
     def rig_trains(self) -> Dataset:
         """What accelerometers show on drive trains that the rig could have been."""
         self._tell(STAGES[7])
-        return experiment_answer.results(experiment.stored())
+        return experiment.stored()
 
     @cached_property
     def two_gears(self) -> dict[str, float]:
