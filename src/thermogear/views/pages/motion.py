@@ -11,8 +11,8 @@ from thermogear.base.arrays import Dataset
 from thermogear.base.display import MICROMETRE, PERCENT, Display, number
 from thermogear.base.vocabulary import label_words, of_turn
 from thermogear.results.result import Result
+from thermogear.results.tables import csv_text, frames
 from thermogear.views.columns import Column, Row, declared, pairs
-from thermogear.views.csv_files import cell_text, head_text
 from thermogear.views.page import (
     LEAD,
     Block,
@@ -113,7 +113,7 @@ def page(result: Result) -> Page:
         ],
         numbers=lambda: summary,
         told=lambda: [Text(summary["title"]), Text(headline), *blocks],
-        tables=lambda: csv_tables(kind, groups),
+        tables=lambda: curve_tables(kind, groups),
         files=("svg", "png"),
     )
 
@@ -130,21 +130,19 @@ def _numbered(groups: Groups, begin: str) -> list[Dataset]:
     return [groups[name] for name in names]
 
 
-def csv_tables(kind: str, groups: Groups) -> dict[str, str]:
+def curve_tables(kind: str, groups: Groups) -> dict[str, str]:
     """Every array along an axis as CSV: one file for each axis, branches below each other."""
-    files: dict[str, list[str]] = {}
+    import pandas as pd
+
+    parts: dict[str, list[pd.DataFrame]] = {}
     for name, data in groups.items():
         file = "plane" if name.startswith("curve_") else kind
         own = {k: data.attrs[k] for k in ("kind", "period") if k in data.attrs}
-        for axis in data.dims:
-            columns = [str(v) for v in data.variables if data[v].dims == (axis,)]
-            if not columns or axis in ("multiplier", "coordinate"):
-                continue
-            heads = [head_text(data, column) for column in columns]
-            lines = files.setdefault(f"{file}_{axis}.csv", [",".join([*own, *heads])])
-            rows = zip(*(data[column].values.tolist() for column in columns), strict=True)
-            lines += [",".join(map(cell_text, (*own.values(), *row))) for row in rows]
-    return {name: "\n".join(lines) + "\n" for name, lines in files.items()}
+        for (axis, *more), frame in frames(data).items():
+            if not more and axis not in ("multiplier", "coordinate"):
+                columns = [*own, *frame.columns.drop(axis, errors="ignore")]
+                parts.setdefault(f"{file}_{axis}.csv", []).append(frame.assign(**own)[columns])
+    return {file: csv_text(pd.concat(each)) for file, each in parts.items()}
 
 
 HEADINGS = {

@@ -8,8 +8,8 @@ from typing import Any
 
 from thermogear.base.arrays import Dataset
 from thermogear.results.result import Result
+from thermogear.results.tables import table_text
 from thermogear.views.columns import Column, declared, in_full
-from thermogear.views.csv_files import table_text
 from thermogear.views.page import LEAD, Page, Pictures, Section, Table, Text
 from thermogear.views.pages.findings import finding
 from thermogear.views.pages.sweeps import bifurcations, numbers
@@ -39,9 +39,7 @@ def page(result: Result) -> Page:
         result, " ".join(parts), sections,
         numbers=lambda: _numbers(result),
         told=lambda: [*map(Text, parts), *[table] * bool(table.rows)],
-        tables=lambda: {
-            "overlay_bifurcations.csv": table_text([*map(str, table.head)], table.figures)
-        },
+        tables=lambda: {"overlay_bifurcations.csv": table_text(table.head, table.figures)},
     )  # fmt: skip
 
 

@@ -15,8 +15,8 @@ from thermogear.base.arrays import Dataset
 from thermogear.base.display import PERCENT, display, in_words, percent
 from thermogear.base.vocabulary import UNDEFORMED, label
 from thermogear.results.result import Result
+from thermogear.results.tables import table_text
 from thermogear.views.columns import Column, Row, declared, in_full, key, rows_along
-from thermogear.views.csv_files import table_text
 from thermogear.views.page import Block, Code, Page, Pictures, Section, Table, Text
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.curves import along_path
