@@ -245,7 +245,7 @@ def row_views(*, columns: int, most: int) -> str:
 
 def stiffness(mesh: Dataset) -> str:
     """Of the mesh stiffness over the mesh phase."""
-    words = where(mesh, "mean_stiffness")
+    words = f"{where(mesh, 'mean_stiffness')}Undeformed and hot, with their means. "
     ratio = float(mesh.attrs.get("contact_ratio", np.nan))
     if 1.0 < ratio < 2.0:
         words += "High where two pairs carry, low where one does. "
