@@ -486,12 +486,11 @@ CASES = (
         ("bifurcation rig --over rpm=6000:9000:7 --branch-period 1 -o out --json --threads 1",),
     ),
     Case(
-        "bifurcation-against",
+        "bifurcation-undeformed",
         (
-            "bifurcation rig --over torque=60:100:3 --against state=undeformed --branch-period 1"
+            "bifurcation rig --over torque=60:100:3 --state undeformed --branch-period 1"
             " -o out --json",
-            "bifurcation table-4.2 --over omega=1.1:1.3:5 --against b=0.9 --branch-period 2"
-            " -o rows",
+            "bifurcation table-4.2 --over omega=1.1:1.3:5 --but b=0.9 --branch-period 2 -o rows",
         ),
     ),
     Case(
