@@ -429,7 +429,6 @@ CASES = (
             f"run rig -o one {MOTION}",
             f"run rig -o two {MOTION} --set 'operating.torque=150 N m'",
             "versus one two -o out --json",
-            "versus table-4.2 section-4.1 -o rows --json",
         ),
     ),
     # --- one motion

@@ -122,7 +122,7 @@ def case_diagram(
     rule = DIAGRAM_RULE
     if isinstance(whole, TrainFamily):
         rule = rule_of(whole, rule)
-        lanes = TabulatedTrains(whole, axis)
+        lanes = TabulatedTrains.of(whole, axis)
     elif isinstance(whole, GearFamily) and axis.size > 1:
         lanes = Tabulated.of(whole, axis)
     begin = starts or (case.simulation.initial_state,)
