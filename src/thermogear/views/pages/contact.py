@@ -66,7 +66,7 @@ def page(result: Result) -> Page:
         Shown(
             "uneven_stiffness",
             "Mean stiffness of unequally hot gears",
-            "A softer or stiffer mesh than that of equally hot gears.",
+            captions.uneven_stiffness(light),
             partial(double_contact, light, pitch, "mean_stiffness"),
         ),
         Shown(

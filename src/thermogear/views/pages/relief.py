@@ -55,7 +55,7 @@ def page(result: Result) -> Page:
         Shown(
             "stiffness",
             "Tangent stiffness over a mesh period",
-            "Under the design load.",
+            words.relief_stiffness(result.groups["error"]),
             partial(stiffness, result.groups["error"]),
         ),
         Shown(

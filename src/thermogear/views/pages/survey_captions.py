@@ -77,6 +77,13 @@ def one_point(data: Dataset) -> str:
 # --- tip relief ---------------------------------------------------------------------------
 
 
+def relief_stiffness(data: Dataset) -> str:
+    """Of the tangent stiffness under the design load."""
+    without, with_it = data["tangent_stiffness"].values.mean(axis=-1)
+    change = PERCENT(with_it / without - 1.0)
+    return f"Relief changes the mean stiffness by {change:+.1f} %.".replace("-", "−")
+
+
 def relief_loads(data: Dataset) -> str:
     """Of the error over other loads than the design load."""
     load = data["load"].values
@@ -108,3 +115,15 @@ def contact_path(data: Dataset) -> str:
         f"{words}. Where the teeth give way the corner of a tip, or the edge of an undercut, "
         "touches: there (shaded) the Hertzian pressure is not valid and is left out."
     )
+
+
+def uneven_stiffness(data: Dataset) -> str:
+    """Of the mean stiffness of unequally hot gears."""
+    mean, apart = data["mean_stiffness"].values, data["temperature_difference"].values
+    ratio = PERCENT(mean / mean[int(np.argmin(np.abs(apart)))] - 1.0)
+    low, high = (_percent(float(v)) for v in (ratio.min(), ratio.max()))
+    return f"Against equally hot gears the mean stiffness changes by {low} to {high} %."
+
+
+def _percent(value: float) -> str:
+    return "0" if abs(value) < 0.5 else f"{value:+.0f}".replace("-", "−")
