@@ -429,7 +429,6 @@ CASES = (
             f"run rig -o one {MOTION}",
             f"run rig -o two {MOTION} --set 'operating.torque=150 N m'",
             "versus one two -o out --json",
-            "versus table-4.2 section-4.1 -o rows --json",
         ),
     ),
     # --- one motion
@@ -476,7 +475,6 @@ CASES = (
             " --to 0.12 --switch 2 -o out --json",
         ),
     ),
-    Case("cascade", ("continue table-4.2 --cascade 2 -o out --json",)),
     # --- stores
     Case(
         "bifurcation-table",
@@ -487,12 +485,11 @@ CASES = (
         ("bifurcation rig --over rpm=6000:9000:7 --branch-period 1 -o out --json --threads 1",),
     ),
     Case(
-        "bifurcation-against",
+        "bifurcation-undeformed",
         (
-            "bifurcation rig --over torque=60:100:3 --against state=undeformed --branch-period 1"
+            "bifurcation rig --over torque=60:100:3 --state undeformed --branch-period 1"
             " -o out --json",
-            "bifurcation table-4.2 --over omega=1.1:1.3:5 --against b=0.9 --branch-period 2"
-            " -o rows",
+            "bifurcation table-4.2 --over omega=1.1:1.3:5 --but b=0.9 --branch-period 2 -o rows",
         ),
     ),
     Case(

@@ -25,7 +25,6 @@ from plain_numbers import told_as_text, told_in_csv
 from thermogear import Gear, GearPair, Operating, Temperatures, __version__
 from thermogear.base.materials import ZERO_CELSIUS, lubricant
 from thermogear.results import files, tables
-from thermogear.views import csv_files
 
 if TYPE_CHECKING:
     from thermogear.mesh.warm_up import WarmUp
@@ -59,7 +58,6 @@ def _scanned(make: Callable[..., str]) -> Callable[..., str]:
 
 
 tables.csv_text = _scanned(tables.csv_text)
-csv_files.lined = _scanned(csv_files.lined)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

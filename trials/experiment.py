@@ -1,20 +1,33 @@
-"""The thesis's experiment on 256 sampled drive trains: the table that its page reads, minutes."""
+"""The thesis's experiment on 256 sampled drive trains: the answer that its page reads, minutes."""
 
 from __future__ import annotations
 
 import csv
 import io
+import json
 import sys
 import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from thermogear.base.display import MICROMETRE
-from thermogear.thesis.experiment import SAMPLES_STORED, SEED, SEEN, TABLE, Shown, trains
-from thermogear.thesis.experiment_answer import results
-from thermogear.thesis.rig_trains import ASSUMED, DIGITS, SPEEDS
+from rig_answer import results
+from rig_samples import (
+    ASSUMED,
+    DIGITS,
+    SAMPLES_STORED,
+    SEED,
+    SEEN,
+    SPEEDS,
+    TABLE,
+    Shown,
+    trains,
+)
 
-TARGET = Path(__file__).parents[1] / "src" / "thermogear" / "thesis" / TABLE
+from thermogear.base.arrays import Dataset
+from thermogear.base.display import MICROMETRE
+from thermogear.thesis import experiment
+
+TARGET = Path(experiment.__file__).with_name(experiment.TABLE)
 
 
 def header() -> list[str]:
@@ -45,13 +58,19 @@ def text_of(rows: Sequence[Shown]) -> str:
     return into.getvalue()
 
 
+def put(found: Dataset) -> None:
+    """The answer where the page reads it."""
+    TARGET.write_text(json.dumps(found.to_dict(), ensure_ascii=False, indent=0) + "\n", "utf-8")
+
+
 def main() -> None:
     began, rows = time.process_time(), []
     for one in trains():
         rows.append(one)
         print(f"{len(rows)} of {SAMPLES_STORED}: {', '.join(one.labels)}", file=sys.stderr)
-    TARGET.write_text(text_of(rows), "utf-8")
+    TABLE.write_text(text_of(rows), "utf-8")
     found = results(rows)
+    put(found)
     seconds = time.process_time() - began
     print(f"{len(rows)} drive trains from seed {SEED}, {seconds:.0f} s of processor time: {TARGET}")
     print(f"motions: {found.attrs['motions']}; without one: {found.attrs['lost']} trains")

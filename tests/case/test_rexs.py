@@ -14,9 +14,8 @@ import pytest
 
 from own_rexs import case_of, flank, json_text, one_stage, put, refused, replaced, two_stages, xml
 from said import numbers
-from thermogear import InputError, read_rexs
+from thermogear import read_rexs
 from thermogear.case.rexs.importing import listed
-from thermogear.case.rexs.json_reader import decoded_matrix
 from thermogear.case.rexs.model import VERSIONS
 
 REVOLUTION = 2.0 * math.pi / 60.0
@@ -403,19 +402,6 @@ def test_values_of_a_material_that_cannot_be_give_way_to_steel(tmp_path: Path) -
     assert case.pair.pinion.material.thermal_expansion == pytest.approx(11.5e-6, rel=1e-14)
     assert any("material 18.thermal_expansion_coefficient_plus" in one for one in found.unused)
     assert re.search(r"# default: .*thermal_expansion_coefficient_plus", found.text)
-
-
-def test_coded_matrices_are_whole_rows() -> None:
-    numbers_in = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]
-    six, four = (base64.b64encode(struct.pack(f"<{n}d", *numbers_in[:n])).decode() for n in (6, 4))
-    rows = [numbers_in[:3], numbers_in[3:]]
-    for size in ((2, 3), ("2", None), (None, 3)):
-        assert decoded_matrix("float64", six, *size) == rows
-    assert decoded_matrix("float64", four, None, None) == [[1.0, 2.0], [3.0, 4.0]]
-    for size in ((4, 2), (None, 4), (None, None), ("two", 3)):
-        with pytest.raises(InputError) as told:
-            decoded_matrix("float64", six, *size)
-        assert (told.value.field, told.value.got) == ("coded matrix", "6 values")
 
 
 def test_coded_arrays(tmp_path: Path) -> None:

@@ -87,15 +87,16 @@ def test_lyapunov_as_json(capsys: pytest.CaptureFixture[str]) -> None:
 def test_one_command_finds_a_whole_cascade(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    out = tmp_path / "cascade"
-    wanted = ["continue", "table-4.2", "--row", "epsilon", "--cascade", "4"]
+    out = tmp_path / "branch"
+    wanted = ["continue", "table-4.2", "--row", "epsilon", "--parameter", "eps"]
+    wanted += ["--to", "0.6", "--switch", "3"]
     assert main([*wanted, "-o", str(out)]) == 0
     said = capsys.readouterr().out
-    for value in ("0.258236471", "0.523447310", "0.562794274", "0.579050411"):
+    for value in ("0.2582364", "0.5234473", "0.5627942", "0.5790504"):
         assert value in said
-    page = (out / "cascade.html").read_text(encoding="utf-8")
-    assert "0.523447310" in page
-    assert (out / "cascade_point.csv").read_text(encoding="utf-8").startswith("row,period,")
+    page = (out / "branch.html").read_text(encoding="utf-8")
+    assert "0.5234473" in page
+    assert (out / "branch_point.csv").read_text(encoding="utf-8").startswith("period,")
 
 
 def test_continue_marks_fold_and_grazing(
@@ -128,11 +129,12 @@ def test_continue_in_a_second_parameter(tmp_path: Path, capsys: pytest.CaptureFi
     assert (out / "branch.html").read_text(encoding="utf-8").count("<figure") == 2
 
 
-def test_symbols_of_a_cascade_are_drawn_not_spelt_as_tags(tmp_path: Path) -> None:
-    out = tmp_path / "cascade"
-    assert main(["continue", "table-4.2", "--row", "omega", "--cascade", "1", "-o", str(out)]) == 0
-    page = (out / "cascade.html").read_text(encoding="utf-8")
-    assert re.search(r"ω<sub>h</sub>, 1\.3 \w+ 1\.1", page)
+def test_symbols_of_a_branch_are_drawn_not_spelt_as_tags(tmp_path: Path) -> None:
+    out = tmp_path / "branch"
+    wanted = ["continue", "table-4.2", "--row", "omega", "--parameter", "w", "--to", "1.25"]
+    assert main([*wanted, "-o", str(out)]) == 0
+    page = (out / "branch.html").read_text(encoding="utf-8")
+    assert "ω<sub>h</sub>" in page
     assert "&lt;" not in page
 
 
@@ -179,21 +181,16 @@ def test_ctrl_c_keeps_what_is_done(
             "--parameter: got 'zetta'",
         ),
         (["continue", *NUMBERS, "--parameter", "zeta", "--to", "x"], "--to: got 'x'"),
-        (["continue", *NUMBERS, "--cascade", "9"], "--cascade: got 9; allowed 1..6"),
+        (
+            ["continue", *NUMBERS, "--parameter", "zeta", "--to", "0.1", "--switch", "9"],
+            "--switch: got 9; allowed 0..6",
+        ),
         (["orbit", *NUMBERS, "--row", "zeta"], "--row: got zeta; no case is named"),
         (["orbit", *NUMBERS, "--state", "hot"], "--state: got hot; no case is named"),
         (["orbit", "rig", "--point", "2"], "--point: got 2; a gear case has no rows"),
         (
             ["orbit", "table-4.2", "--bundle", "thesis"],
             "--bundle: got thesis; a dimensionless case has no gears",
-        ),
-        (
-            ["continue", "table-4.2", "--cascade", "2", "--period", "2"],
-            "--period: got 2; beside --cascade",
-        ),
-        (
-            ["continue", "table-4.2", "--cascade", "2", "--point", "2"],
-            "--point: got 2; a cascade runs through the whole row",
         ),
         (["report", "somewhere", "--kind", "svg"], "--kind: got svg; no picture is saved"),
         (["compare", "rig", "thesis-5.2", "--samples", "3"], "--samples: got 3; beside no"),
@@ -202,7 +199,6 @@ def test_ctrl_c_keeps_what_is_done(
             ["compare", "thesis-5.2", "--tolerance", "torque=5"],
             "tolerances: got torque; stored lines are not computed anew",
         ),
-        (["continue", "rig", "--cascade", "2"], "--cascade: got a gear case"),
         (["continue", "rig", "--rigid"], "--rigid: got without shafts; CASE has no [[shafts]]"),
         (["continue", "rig", "--coordinates", "30"], "--coordinates: got 30; CASE has no"),
         (

@@ -65,7 +65,6 @@ def _here(tmp_path, monkeypatch):
         # a continuation refuses its end before it walks
         ("continue table-4.2 --parameter zeta --to -1 -o out", "--to: got -1; allowed 0..1000"),
         ("continue table-4.2 --parameter zeta --to 0.1 --from -1", "--from: got -1; allowed 0.."),
-        ("continue table-4.2 --parameter zeta --to -1 --cascade 2", "--to: got -1; allowed 0.."),
         ("continue table-4.2 --parameter eps --to 1.5", f"got 1.5; allowed 0..0.999; {ZERO}"),
         ("continue table-4.2 --parameter eps-t --to -0.8", "got 0.335; allowed < 0.2 (1 + eps_T)"),
         ("continue rig --parameter torque --to '-3 N m'", "--to: got '-3 N m'; allowed 0..1e7 N m"),

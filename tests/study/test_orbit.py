@@ -25,11 +25,7 @@ from thermogear.case.one_point import (
     parameter_value,
 )
 from thermogear.study.branches import (
-    Sweep,
     branch_results,
-    cascade_results,
-    on_numbers,
-    sweeps_of,
 )
 from thermogear.study.orbit import lyapunov_results, orbit_results
 
@@ -176,57 +172,6 @@ def test_doubled_branches_are_followed_to_the_end() -> None:
     assert [b["period"] for b in summary["branches"]] == [1, 2, 4]
     flips = [b["value"] for b in summary["bifurcations"] if b["kind"] == "period doubling"]
     assert flips == pytest.approx([0.170043027, 0.115498003, 0.109948814], abs=6e-10)
-
-
-def test_cascades_of_the_table_cold() -> None:
-    (sweep,) = sweeps_of(table(), "epsilon")
-    summary = cascade_results([sweep], 4, title="").summary
-    values = [f["value"] for f in summary["cascades"][0]["flips"]]
-    assert values == pytest.approx([0.258236471, 0.523447310, 0.562794274, 0.579050411], abs=6e-10)
-    assert [f["to_period"] for f in summary["cascades"][0]["flips"]] == [2, 4, 8, 16]
-
-
-def test_heat_moves_a_cascade_by_scaling_alone() -> None:
-    """Without back-side impacts eps_T acts by scaling and b' not at all (M2, M5)."""
-    (sweep,) = sweeps_of(table(), "zeta")
-    heats = {0.0: 1.0, 0.02: 0.8, -0.0462: 0.8}
-    hot = [
-        on_numbers([sweep], {"thermal_stiffness": thermal, "half_backlash": b})[0]
-        for thermal, b in heats.items()
-    ]
-    results = [cascade_results([one], 2, title="") for one in hot]
-    assert all(coded(r.notices) == {"backlash_without_effect": [{}]} for r in results)
-    cold, thesis, consistent = (r.summary["cascades"][0] for r in results)
-    for thermal, entry in zip((0.02, -0.0462), (thesis, consistent), strict=True):
-        s = np.sqrt(1.0 + thermal)
-        numbers = {
-            **sweep.base,
-            "frequency": sweep.base["frequency"] / s,
-            "stiffness_amplitude": sweep.base["stiffness_amplitude"] / s**2,
-            "damping_ratio": sweep.first / s,
-        }
-        scaled = Sweep(
-            row="scaled",
-            parameter="damping_ratio",
-            first=sweep.first / s,
-            last=sweep.last / s,
-            base=numbers,
-        )
-        same = cascade_results([scaled], 2, title="").summary["cascades"][0]
-        assert [s * f["value"] for f in same["flips"]] == pytest.approx(
-            [f["value"] for f in entry["flips"]], abs=1e-9
-        )
-    # stiffening brings the first flip earlier on the way down, softening later
-    first = [entry["flips"][0]["value"] for entry in (thesis, cold, consistent)]
-    assert first == sorted(first, reverse=True)
-
-
-def test_a_row_that_begins_past_its_flip_starts_beyond_its_end() -> None:
-    (sweep,) = on_numbers(sweeps_of(table(), "omega"), {"thermal_stiffness": 0.02})
-    summary = cascade_results([sweep], 1, title="").summary
-    value = summary["cascades"][0]["flips"][0]["value"]
-    assert value > sweep.first
-    assert value == pytest.approx(1.304211729, abs=6e-10)
 
 
 def test_a_gear_pair_speaks_in_micrometres_and_hertz(rig_case: GearCase) -> None:

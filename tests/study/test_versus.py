@@ -158,31 +158,13 @@ def test_lone_bundles_of_different_names_stand_beside_each_other(first: Stored) 
     )
 
 
-def test_dimensionless_cases_are_matched_by_row_and_value() -> None:
-    small = ["simulation.periods=16", "simulation.discard=16"]
-    case = load_example("section-4.1", small)
-    one = stored(run(case), "one")
-    found = versus([one, replace(one, name="two")])
-    assert found.text("of") == "dimensionless"
-    data = found.data
-    assert numbers(str(data["point"].values[0])) == [293.15]
-    assert data.sizes["operating"] == one.groups["points"].sizes["point"]
-    np.testing.assert_array_equal(
-        data["peak_to_peak_displacement"][1, 0, 0].values,
-        one.groups["points"]["peak_to_peak_displacement"].values,
-    )
-    np.testing.assert_array_equal(
-        data["label"][0, 0, 0].values, one.groups["points"]["label"].values
-    )
-
-
 def test_numbers_and_kinds_that_cannot_stand_together_are_refused(first: Stored) -> None:
     with pytest.raises(InputError, match=r"versus: got 1 case; allowed 2\.\.6 cases"):
         versus([first])
     with pytest.raises(InputError, match=r"got 7 cases; allowed 2\.\.6 cases; more colours"):
         versus([first] * (MOST_CASES + 1))
     other = Stored("row", {"kind": "dimensionless", "case": "a = 1"}, {})
-    with pytest.raises(InputError, match=r"first \(gear\), row \(dimensionless\)"):
+    with pytest.raises(InputError, match=r"got row \(dimensionless\); allowed cases of gear pairs"):
         versus([first, other])
     with pytest.raises(InputError, match="the group mesh is missing; run the case anew"):
         versus([first, replace(first, groups={})])

@@ -165,7 +165,6 @@ def of_orbits() -> dict[str, Picture]:
         "orbit": one_motion.orbit_picture(orbit),
         "lyapunov": one_motion.lyapunov_picture(made("batch", "lyapunov_batch")),
         "branch": one_motion.branch_picture([branch], "a branch"),
-        "cascade": one_motion.cascade_picture([branch]),
     }
 
 

@@ -19,7 +19,7 @@ from thermogear.base.display import CELSIUS, MICROMETRE, PERCENT, exactly
 from thermogear.base.vocabulary import label, status_attributes
 from thermogear.results.files import json_text
 from thermogear.results.result import Notice, Result
-from thermogear.results.tables import rows_of
+from thermogear.results.tables import rows_of, table_text
 from thermogear.views.columns import (
     Column,
     by_name,
@@ -30,7 +30,6 @@ from thermogear.views.columns import (
     rows_along,
     units,
 )
-from thermogear.views.csv_files import cell_text, table_text
 from thermogear.views.page import Code, Page, Text, lines_of, typed
 
 GAP = np.array([[1.0 / 3e4, -2e-9], [np.nan, 4e-5]])
@@ -158,7 +157,7 @@ def test_the_page_has_units_in_heads_and_digits_as_declared() -> None:
 def test_csv_gets_the_rows_of_the_page_in_full() -> None:
     columns = (COLUMNS[0], *COLUMNS[2:])
     table = declared("Gaps.", columns, rows_along(data(), "state", "operating"))
-    head, *lines = csv.reader(table_text([*map(str, table.head)], table.figures).splitlines())
+    head, *lines = csv.reader(table_text(table.head, table.figures).splitlines())
     assert head == table.head
     gaps = [float(line[1] or "nan") for line in lines]
     assert gaps == pytest.approx(1e6 * GAP.ravel(), rel=1e-14, nan_ok=True)
@@ -217,8 +216,9 @@ def test_texts_stand_between_tables_and_an_empty_one_has_its_heads() -> None:
     table = declared("", COLUMNS[:1], [])
     assert lines_of(Text("−1 µm"), table) == ["-1 um", "  state"]
     assert rows_of({"a": np.arange(2), "b": ["x", "y"]}) == [{"a": 0, "b": "x"}, {"a": 1, "b": "y"}]
-    assert [cell_text(v) for v in (0.1, math.nan, 3, "a,b", "=1")] == [
-        "0.1", "", "3", '"a,b"', "'=1",
+    cells = (0.1, math.nan, 3, "a,b", "=1")
+    assert table_text(["=1", "b"], [(v, v) for v in cells]).splitlines() == [
+        "'=1,b", "0.1,0.1", ",", "3,3", '"a,b","a,b"', "'=1,'=1",
     ]  # fmt: skip
 
 

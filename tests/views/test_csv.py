@@ -30,6 +30,13 @@ def read(path: Path) -> dict[str, list[str]]:
     return {name: [row[name] for row in rows] for name in rows[0]}
 
 
+def chosen(table: dict[str, list[str]], **cells: str) -> dict[str, list[str]]:
+    """The rows of a table that have these cells."""
+    wanted = [place for place, row in enumerate(zip(*(table[name] for name in cells), strict=True))
+              if row == tuple(cells.values())]  # fmt: skip
+    return {name: [column[place] for place in wanted] for name, column in table.items()}
+
+
 @pytest.fixture(scope="module", autouse=True)
 def undrawn() -> Iterator[None]:
     """Of a page its tables alone: drawing its pictures takes most of the time of writing it."""
@@ -48,7 +55,10 @@ def whole(undrawn: None, tmp_path_factory: pytest.TempPathFactory) -> list[Path]
 
 def test_curves_come_back_with_units_and_operating_points(whole: list[Path]) -> None:
     files = {path.name: path for path in whole}
-    table = read(files["path_consistent_hot.csv"])
+    table = chosen(
+        read(files["path_by_bundle_operating_path_position_state.csv"]),
+        bundle="consistent", state="hot",
+    )  # fmt: skip
     data = synthetic.path_group(("consistent", "thesis"), (100.0, 100.0))
     here = data.isel(bundle=0, state=1)
     positions = here.sizes["path_position"]
@@ -79,36 +89,41 @@ def test_every_variable_of_the_store_stands_in_some_file(whole: list[Path]) -> N
 def test_jammed_points_are_words_and_empty_cells(tmp_path: Path) -> None:
     synthetic.build(tmp_path, jammed=True, without=("temperature",))
     files = {path.name: path for path in write_csv(tmp_path)}
-    figures = read(files["motion_figures.csv"])
+    figures = read(files["motion_by_bundle_operating_state.csv"])
     assert set(figures["status"]) == {"ok", "jammed"}
     swing = dict(zip(figures["status"], figures["peak_to_peak_displacement [m]"], strict=True))
     assert swing == {"ok": "2e-06", "jammed": ""}
-    assert set(read(files["motion_time_consistent_hot.csv"])["displacement [m]"]) == {""}
+    motion = read(files["motion_by_bundle_operating_sample_state.csv"])
+    hot = chosen(motion, bundle="consistent", state="hot")
+    assert set(hot["displacement [m]"]) == {""}
 
 
 def test_names_make_safe_files_and_safe_cells(tmp_path: Path) -> None:
     synthetic.build(tmp_path, bundles=('../=1+1, "x"',), without=("temperature",))
     files = write_csv(tmp_path)
     assert {path.parent for path in files} == {tmp_path / "csv"}
-    assert any(path.name == "path_=1+1_x_hot.csv".replace("=", "_").replace("__", "_") or
-               path.name.startswith("path_") for path in files)  # fmt: skip
-    figures = read(next(path for path in files if path.name == "mesh_figures.csv"))
+    figures = read(
+        next(path for path in files if path.name == "mesh_by_bundle_operating_state.csv")
+    )
     assert set(figures["bundle"]) == {'../=1+1, "x"'}
     synthetic.build(tmp_path, bundles=("=1+1",), without=("temperature",))
-    figures = read(next(p for p in write_csv(tmp_path) if p.name == "mesh_figures.csv"))
+    figures = read(
+        next(p for p in write_csv(tmp_path) if p.name == "mesh_by_bundle_operating_state.csv")
+    )
     assert set(figures["bundle"]) == {"'=1+1"}
 
 
 def test_files_of_an_earlier_run_go_and_others_stay(tmp_path: Path) -> None:
-    synthetic.build(tmp_path, without=("temperature",))
+    synthetic.build(tmp_path)
     write_csv(tmp_path)
+    assert (tmp_path / "csv" / "temperature_by_bundle_gear_temperature_operating.csv").is_file()
     (tmp_path / "csv" / "mine.csv").write_text("a,b\n", encoding="utf-8")
     synthetic.build(tmp_path, bundles=("consistent",), without=("temperature",))
     write_csv(tmp_path)
     names = {path.name for path in (tmp_path / "csv").iterdir()}
     assert "mine.csv" in names
-    assert "path_consistent_hot.csv" in names
-    assert "path_thesis_hot.csv" not in names
+    assert "mesh_by_bundle_operating_state.csv" in names
+    assert not [name for name in names if name.startswith("temperature")]
 
 
 def test_curves_are_written_when_they_are_asked_for_and_then_the_same(whole: list[Path]) -> None:

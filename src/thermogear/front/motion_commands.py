@@ -135,10 +135,6 @@ def point_of(options: dict[str, Any]) -> OnePoint:
     help="Follow doubled branches at flips, so many levels deep.",
 )  # fmt: skip
 @click.option(
-    "--cascade", type=int, metavar="N",
-    help="Find the first N period doublings of every row (or of --parameter).",
-)  # fmt: skip
-@click.option(
     "--and", "second", metavar="NAME=FROM:TO:COUNT",
     help="A second parameter: every fold, doubling, pitchfork and torus point found at FROM is "
     "followed to TO, as a curve in the plane of both.",
@@ -162,7 +158,6 @@ def continue_(
     period: int | None,
     direct: bool,
     switch: int,
-    cascade: int | None,
     second: str | None,
     rigid: bool,
     coordinates: int | None,
@@ -182,7 +177,7 @@ def continue_(
     grazing          the motion just touches an edge of the gap: contacts begin or end
 
     \b
-      thermogear continue table-4.2 --cascade 4
+      thermogear continue table-4.2 --parameter zeta --to 0.1 --switch 3
       thermogear continue rig.toml --parameter speed --to "6000 rpm" -o branches
       thermogear continue --zeta 0.18 --w 1.245 --eps 0.335 --fm 0.017 --fh -1.16 \\
         --parameter zeta --to 0.10 --switch 2
@@ -190,25 +185,10 @@ def continue_(
         --and "temperature=20 degC:100 degC:5" -o jumps
     """
     from thermogear.case.one_point import parameter_name, parameter_value
-    from thermogear.study.branches import branch_results, cascade_results
+    from thermogear.study.branches import branch_results
 
     case = _case(options)
     train = is_train(case, rigid, {"coordinates": coordinates, "values": values})
-    if cascade is not None:
-        own = {"period": period, "direct": direct, "switch": switch, "and": second} | options
-        _unused(own, ("period", "direct", "switch", "and", *OF_GEARS), "beside --cascade")
-        if parameter is None:
-            _unused(own, ("point",), "a cascade runs through the whole row")
-        sweeps, title = _sweeps(options, case, parameter, begin, to)
-
-        def make_cascade(report: Progress) -> Result:
-            return cascade_results(
-                sweeps, cascade, title=title, start=_start(options),
-                progress=report,
-            )  # fmt: skip
-
-        delivery.deliver(make_cascade, options["output"], as_json=options["as_json"])
-        return
     if parameter is None or to is None:
         missing = "--parameter" if parameter is None else "--to"
         raise InputError(missing, "nothing", fix="for instance --parameter zeta --to 0.1")
@@ -262,46 +242,6 @@ def _second(point: OnePoint, first: str, text: str) -> tuple[str, Any]:
     if values.size < 2 or values[0] == values[-1]:
         raise InputError("--and", repr(text), allowed="two values or more, from one to another")
     return name, values
-
-
-def _sweeps(
-    options: dict[str, Any], case: Any, parameter: str | None, begin: str | None, to: str | None
-) -> tuple[Any, str]:
-    """What a cascade runs through: the parameter, the case's rows, or those of table 4.2."""
-    from thermogear.case.case import DimensionlessCase, load_example
-    from thermogear.case.one_point import of_numbers, parameter_name, parameter_value
-    from thermogear.study.branches import on_numbers, sweep_of_point, sweeps_of
-
-    if parameter is not None:
-        point = _point(options, case)
-        name = parameter_name(point, parameter)
-        if to is None:
-            raise InputError("--to", "nothing", fix="for instance --to 0.1")
-        first = (
-            parameter_value("--from", point, name, begin)
-            if begin is not None
-            else point.parameters.get(name, 0.0)
-        )
-        last = parameter_value("--to", point, name, to)
-        return (sweep_of_point(point, name, first=first, last=last),), point.title
-    if begin is not None or to is not None:
-        raise InputError("--parameter", "nothing", fix="name what runs from --from to --to")
-    numbers = _numbers(options)
-    if case is None:
-        title = "Cascades of plain numbers"
-        numbers = of_numbers(numbers).parameters
-        case = load_example("table-4.2")
-    elif isinstance(case, DimensionlessCase):
-        title = f"Cascades of {case.title}"
-    else:
-        raise InputError(
-            "--cascade",
-            "a gear case",
-            why="cascades are tabled for the dimensionless equation",
-            fix="use --parameter speed --to '4000 rpm' --switch 2",
-        )
-    sweeps = sweeps_of(case, options["row"])
-    return (on_numbers(sweeps, numbers) if numbers else sweeps), title
 
 
 COMMANDS: list[click.Command] = [continue_]

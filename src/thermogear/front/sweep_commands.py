@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from thermogear.base.errors import InputError, nearest
+from thermogear.base.errors import InputError
 from thermogear.base.units import RPM
 from thermogear.front import delivery
 from thermogear.front.motion_commands import is_train
@@ -106,19 +106,15 @@ _but = click.option(
               help="A start in half backlashes. May be repeated.")  # fmt: skip
 @click.option("--branch-period", type=click.IntRange(0, 64), default=4, show_default=True,
               help="Follow branches of orbits up to this period; 0: none.")  # fmt: skip
-@click.option("--against", multiple=True, metavar="NAME=VALUE",
-              help="A second diagram with these numbers changed (state=VALUE for a gear case); "
-              "both in one picture and one table.")  # fmt: skip
 @_train
 @_common
 def bifurcation(
     case: str, over: tuple[str, ...], but: tuple[str, ...], starts: tuple[str, ...],
-    branch_period: int, against: tuple[str, ...], output: str, as_json: bool, **options: Any,
+    branch_period: int, output: str, as_json: bool, **options: Any,
 ) -> None:  # fmt: skip
     """Orbit diagram of CASE over one parameter, up and down, with located bifurcations."""
-    from thermogear.case.axes import parse_axis, parse_numbers, split_change
-    from thermogear.results.files import claimed
-    from thermogear.study.diagrams import case_diagram, overlaid
+    from thermogear.case.axes import parse_axis, parse_numbers
+    from thermogear.study.diagrams import case_diagram
 
     read = _of_mean_tooth(delivery.load(case, options["overrides"]), options)
     if len(over) != 1:
@@ -126,46 +122,12 @@ def bifurcation(
     name, values = parse_axis(read, over[0])
     delivery.heat_once([name], options["state"])
     begin = tuple(map(start, starts))
-    train = _train_of(read, options)
-    changes = parse_numbers(but)
-
-    def plan(state: ThermalState, changed: dict[str, float]) -> Any:
-        return case_diagram(
-            read, name, values, bundle=bundle, state=state, changes=changed,
-            branch_period=branch_period, starts=begin, train=train,
-        )  # fmt: skip
-
     bundle, state = _choice(read, options)
-    directory = Path(output)
-    whole = plan(state, changes)
-    if not against:
-        _carry(whole, directory, read.title, as_json, options)
-        return
-    other_state = state
-    _estimate_alone(options, as_json)
-    second: dict[str, str] = dict(map(split_change, against))
-    for given in second if read.kind == "gear" else ():
-        if given != "state":
-            raise InputError("--against", repr(given), allowed="state=VALUE of a gear case",
-                             fix=nearest(given, ("state",)))  # fmt: skip
-    if "state" in second:
-        _, other_state = _choice(read, {"bundle": None, "state": second.pop("state")}, "--against")
-    texts = [f"{k}={v}" for k, v in second.items()]
-    plans = (whole, plan(other_state, changes | parse_numbers(texts)))
-    if not options["only_estimate"]:
-        with claimed(directory):
-            pass  # refused before anything is computed, or ours from here on
-    both = [
-        _compute(each, directory / part, read.title, options)
-        for each, part in zip(plans, ("one", "other"), strict=True)
-    ]
-    found = tuple(result.data for result in both if result is not None)
-    if len(found) < len(plans):
-        return
-    words = (state.words, other_state.words)
-    if read.kind != "gear":
-        words = (", ".join(but) or "as in the case", ", ".join((*but, *texts)))
-    delivery.deliver(lambda _: overlaid(read.title, words, found), output, as_json=as_json)
+    plan = case_diagram(
+        read, name, values, bundle=bundle, state=state, changes=parse_numbers(but),
+        branch_period=branch_period, starts=begin, train=_train_of(read, options),
+    )  # fmt: skip
+    _carry(plan, Path(output), read.title, as_json, options)
 
 
 @click.command("map")
@@ -360,7 +322,7 @@ COMMANDS: tuple[click.Command, ...] = (bifurcation, map_, basins, runup, waterfa
 
 
 def _choice(
-    case: GearCase | DimensionlessCase, options: dict[str, Any], option: str = "--state"
+    case: GearCase | DimensionlessCase, options: dict[str, Any]
 ) -> tuple[str, ThermalState]:
     """Bundle and state of heat; refused beside a case without gears."""
     from thermogear.case.thermal_state import HOT, ThermalState
@@ -372,7 +334,7 @@ def _choice(
                 fix="leave it out",
             )  # fmt: skip
     said = options["state"]
-    return options["bundle"] or "", HOT if said is None else ThermalState.parse(said, option)
+    return options["bundle"] or "", HOT if said is None else ThermalState.parse(said, "--state")
 
 
 # --- running ------------------------------------------------------------------------------

@@ -24,13 +24,6 @@ OPTIONS = {"records": "record", "overrides": "set"}
 @click.argument("case", metavar="[CASE]", required=False)
 @delivery.output("Directory of the report; made if new.")
 @click.option(
-    "--experiment",
-    type=click.IntRange(8, 10_000),
-    metavar="N",
-    help="Sample N drive trains of the test rig anew, seconds each; left out, the 256 that come "
-    "with the package.",
-)
-@click.option(
     "--operating", type=int, metavar="N",
     help="Operating point of CASE, from 1 [the one nearest to resonance].",
 )  # fmt: skip
@@ -48,13 +41,7 @@ OPTIONS = {"records": "record", "overrides": "set"}
 )  # fmt: skip
 @delivery.overrides
 @delivery.as_json
-def thesis(
-    case: str | None,
-    output: str,
-    experiment: int | None,
-    as_json: bool,
-    **options: Any,
-) -> None:
+def thesis(case: str | None, output: str, as_json: bool, **options: Any) -> None:
     """Judge every claim of the thesis, or redo the thesis for CASE, and write the report to DIR.
 
     Without CASE sections 2 to 6: what is said, what is computed as in the thesis and consistently,
@@ -63,8 +50,6 @@ def thesis(
     records. Ctrl+C keeps what is finished.
     """
     if case is not None:
-        if experiment is not None:
-            raise InputError("--experiment", experiment, why="beside CASE", fix="leave one out")
         _redone(case, output, as_json, options)
         return
     for name, value in options.items():
@@ -75,13 +60,9 @@ def thesis(
     require_salib()
 
     def make(report: Progress) -> Result:
-        from thermogear.thesis.evidence import Size
         from thermogear.thesis.report import build
 
-        return build(
-            Size(trains=experiment or 0),
-            progress=lambda stage, done, total: report("thesis", done, total),
-        )
+        return build(progress=lambda stage, done, total: report("thesis", done, total))
 
     delivery.deliver(make, output, as_json=as_json, kept="the claims judged so far stay")
 

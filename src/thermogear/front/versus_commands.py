@@ -11,7 +11,7 @@ from thermogear.front import delivery
 
 if TYPE_CHECKING:
     from thermogear.base.progress import Progress
-    from thermogear.case.case import DimensionlessCase, GearCase
+    from thermogear.case.case import GearCase
     from thermogear.results.result import Result
 
 
@@ -45,20 +45,17 @@ def versus(
 
     # everything is read and checked before the first case runs
     results_by_place: dict[int, Result] = {}
-    cases: dict[int, GearCase | DimensionlessCase] = {}
+    cases: dict[int, GearCase] = {}
     for place, path in enumerate(paths):
         if path.is_dir():
             results_by_place[place] = read_results(path)
+            study.require_gears(str(path), results_by_place[place].kind)
         else:
-            cases[place] = delivery.load(str(path), overrides)
+            cases[place] = delivery.load_gears(str(path), overrides)
             require_room(cases[place])
     if overrides and not cases:
         why = "directories of results stay as they are"
         raise InputError("overrides", ", ".join(overrides), why=why, fix="name a case, or none")
-    study.require_one_kind({
-        str(path): results_by_place[place].kind if place in results_by_place else cases[place].kind
-        for place, path in enumerate(paths)
-    })  # fmt: skip
     homes = _homes(directory, paths)
     done = 0
 

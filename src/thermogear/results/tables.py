@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
 UNITS = ("si", "display")
+PLACES = {"bundle", "gear_temperature", "operating", "point", "state"}
+"""Dimensions of points; others are a curve's."""
 FIRST = ("status", "label", "period")
 """Columns that stand behind the axes, before all numbers."""
 
@@ -39,13 +41,10 @@ def frames(data: Dataset, units: str = "si") -> dict[tuple[str, ...], pd.DataFra
     return {dims: _frame(data[names], units) for dims, names in families.items()}
 
 
-def stretched(
-    data: Dataset, dims: Iterable[str], made: Callable[[NDArray[Any]], NDArray[Any]] = np.asarray
-) -> dict[str, NDArray[Any]]:
+def stretched(data: Dataset, dims: Iterable[str]) -> dict[str, NDArray[Any]]:
     """Every variable that runs along no other dimension than ``dims``, spread over all of them.
 
-    Its values, or what is ``made`` of them, in the order of the rows, the last dimension fastest;
-    flags as their words.
+    Its values in the order of the rows, the last dimension fastest; flags as their words.
     """
     sizes = {dim: data.sizes[dim] for dim in dims}
     found = {}
@@ -53,7 +52,7 @@ def stretched(
         if set(variable.dims) <= set(sizes):
             own = [variable.dims.index(dim) for dim in sizes if dim in variable.dims]
             sides = [sizes[dim] if dim in variable.dims else 1 for dim in sizes]
-            values = made(variable.values).transpose(own).reshape(sides)
+            values = variable.values.transpose(own).reshape(sides)
             found[str(name)] = np.broadcast_to(values, tuple(sizes.values())).ravel()
     return found
 
@@ -81,8 +80,37 @@ def csv_text(frame: pd.DataFrame) -> str:
     """A frame as CSV that a spreadsheet reads safely: no text is a formula."""
     words = frame.select_dtypes(["object", "string"]).columns
     safe = frame.assign(**{str(name): frame[name].map(harmless) for name in words})
-    text: str = safe.to_csv(index=False, float_format="%.15g", lineterminator="\n")
+    text: str = safe.rename(columns=harmless).to_csv(
+        index=False, float_format="%.15g", lineterminator="\n"
+    )
     return text
+
+
+def csv_tables(groups: Mapping[str, Dataset], stem: str) -> dict[str, str]:
+    """One CSV text for each group and set of dimensions, by its file, which begins with ``stem``.
+
+    SI; the heads name the units. What is the same at all :data:`PLACES`, such as a time, stands
+    beside what differs there. Single numbers are left out.
+    """
+    found = {}
+    for group, data in groups.items():
+        families = {frozenset(dims): frame for dims, frame in frames(data).items()}
+        for dims, frame in families.items():
+            alike = [one for one in families if one < dims <= one | PLACES]
+            if any(dims < one <= dims | PLACES for one in families):
+                continue
+            for one in alike:
+                frame = frame.merge(families[one], how="left")
+            name = f"{stem}{group.replace('/', '_')}_by_{'_'.join(sorted(dims))}.csv"
+            found[name] = csv_text(frame)
+    return found
+
+
+def table_text(head: Iterable[object], rows: Iterable[Iterable[object]]) -> str:
+    """A CSV text: one header line, then a line for each row, its numbers in full."""
+    import pandas as pd
+
+    return csv_text(pd.DataFrame([*map(list, rows)], columns=[*map(str, head)]))
 
 
 def harmless(value: object) -> object:

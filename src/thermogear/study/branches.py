@@ -1,9 +1,9 @@
-"""Branches of orbits along a parameter, doubled branches, and whole cascades."""
+"""Branches of orbits along a parameter, and the doubled branches behind their flips."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -12,16 +12,15 @@ from numpy.typing import NDArray
 from thermogear.analysis.bifurcations import FLIP, PITCHFORK, Bifurcation
 from thermogear.analysis.continuation import GAP, Branch, continuation, switch_branch
 from thermogear.analysis.event_curve import EventCurve
-from thermogear.analysis.orbits import Orbit, periodic_orbit
+from thermogear.analysis.orbits import Orbit
 from thermogear.base.arrays import Dataset
-from thermogear.base.errors import ConvergenceError, InputError
+from thermogear.base.errors import InputError
 from thermogear.base.notice import Notice
-from thermogear.base.parameters import NUMBERS, Parameter
+from thermogear.base.parameters import Parameter
 from thermogear.base.progress import Progress, silent
 from thermogear.case.allowed import gear_parameter, number_parameter
-from thermogear.case.case import DimensionlessCase, GearCase
-from thermogear.case.dimensionless import Point
-from thermogear.case.one_point import OnePoint, of_numbers
+from thermogear.case.case import GearCase
+from thermogear.case.one_point import OnePoint
 from thermogear.results.result import Result
 from thermogear.study.declared import fault_notices
 from thermogear.study.event_plane import Plane, one_mass
@@ -37,11 +36,10 @@ Models = Callable[[float], object]
 
 @dataclass(frozen=True)
 class Leg:
-    """A branch that was walked: how deep below the first one, and the row of its cascade."""
+    """A branch that was walked, and how deep below the first one."""
 
     branch: Branch
     level: int = 0
-    row: str = ""
 
 
 def branch_results(
@@ -259,189 +257,8 @@ def dataset(leg: Leg, unit: str) -> Dataset:
     if "section_x" in data:
         places = np.array([b.state[0] for b in leg.branch.bifurcations], dtype=float)
         data["event_x"] = ("event", places, {"units": "1", "long_name": "displacement at phase 0"})
-    data.attrs.update({"level": leg.level, "row": leg.row})
+    data.attrs["level"] = leg.level
     return data
 
 
 # --- cascades -----------------------------------------------------------------------------
-
-
-@dataclass(frozen=True, kw_only=True)
-class Sweep:
-    """A row of a cascade table: the parameter from ``first`` to ``last`` on a base set."""
-
-    row: str
-    parameter: str
-    first: float
-    last: float
-    base: dict[str, float]
-
-
-def sweeps_of(case: DimensionlessCase, row: str | None = None) -> tuple[Sweep, ...]:
-    """One sweep for every row of ``case`` that runs through a number of the equation."""
-    rows: dict[str, list[Point]] = {}
-    for point in case.points:
-        if point.parameter in NUMBERS and row in (None, point.row):
-            rows.setdefault(point.row, []).append(point)
-    if not rows:
-        raise InputError(
-            "--row",
-            repr(row),
-            allowed=" | ".join({p.row: None for p in case.points if p.parameter in NUMBERS}),
-            why="a cascade runs through a number of the equation",
-        )
-    return tuple(
-        Sweep(
-            row=name,
-            parameter=own[0].parameter,
-            first=own[0].value,
-            last=own[-1].value,
-            base=own[0].model_arguments(),
-        )
-        for name, own in rows.items()
-    )
-
-
-def on_numbers(sweeps: Sequence[Sweep], numbers: dict[str, float]) -> tuple[Sweep, ...]:
-    """The same sweeps on another base set."""
-    return tuple(
-        replace(one, base={**one.base, **numbers, one.parameter: one.first}) for one in sweeps
-    )
-
-
-def cascade_results(
-    sweeps: Sequence[Sweep],
-    flips: int,
-    *,
-    title: str,
-    start: tuple[float, float] | None = None,
-    progress: Progress = silent,
-) -> Result:
-    """The first ``flips`` period doublings of every sweep.
-
-    Each cascade starts from the orbit of period 1 at the sweep's first value. Where that one has
-    doubled already, the walk begins where it is stable, beyond the sweep's end.
-    """
-    if not 1 <= flips <= MOST_DEPTH:
-        raise InputError("--cascade", flips, allowed=f"1..{MOST_DEPTH}")
-    legs: list[Leg] = []
-    entries: list[dict[str, Any]] = []
-    notices: list[Notice] = []
-    cut = False
-    for sweep in sweeps:
-        if cut:
-            break
-        point = of_numbers(sweep.base, start)
-        own: list[Leg] = []
-        values: list[Bifurcation] = []
-        try:
-            cut = _cascade(point, sweep, flips, progress, own, values)
-        except ConvergenceError as error:
-            notices.append(Notice.of("cascade_not_found", about=sweep.row, reason=str(error)))
-        except KeyboardInterrupt:
-            cut = True
-        if own:
-            legs += [replace(leg, row=sweep.row) for leg in own]
-            entries.append(_entry(sweep, values, own))
-    if not legs and cut:
-        raise KeyboardInterrupt
-    if not legs:
-        raise ConvergenceError("; ".join(n.text for n in notices) or "no cascade was found")
-    if all(leg.branch.back_impacts.max() == 0 for leg in legs):
-        notices.append(Notice.of("backlash_without_effect"))
-    summary = {"title": title, "flips": flips, "cascades": entries, "interrupted": cut}
-    groups = {f"branch_{i}": dataset(leg, "1") for i, leg in enumerate(legs)}
-    return found("cascade", groups, summary, notices, interrupted=cut)
-
-
-def _entry(sweep: Sweep, values: Sequence[Bifurcation], legs: Sequence[Leg]) -> dict[str, Any]:
-    gaps = np.diff(np.array([b.value for b in values]))
-    return {
-        "row": sweep.row,
-        "parameter": sweep.parameter,
-        "from": sweep.first,
-        "to": sweep.last,
-        "base": sweep.base,
-        "flips": [
-            {
-                "from_period": b.period,
-                "to_period": 2 * b.period,
-                "value": b.value,
-                "state": [float(c) for c in b.state],
-                "multipliers": complex_rows(b.multipliers),
-                "note": b.note,
-            }
-            for b in values
-        ],
-        "ratios": [float(r) for r in gaps[:-1] / gaps[1:]] if len(gaps) > 1 else [],
-        "ended": legs[-1].branch.ended,
-        "back_impacts": int(max(leg.branch.back_impacts.max() for leg in legs)),
-    }
-
-
-def _cascade(
-    point: OnePoint,
-    sweep: Sweep,
-    flips: int,
-    progress: Progress,
-    legs: list[Leg],
-    values: list[Bifurcation],
-) -> bool:
-    """Walk one sweep, filling ``legs`` and flips as they come; whether Ctrl+C cut it short."""
-    models = point.along(sweep.parameter)
-    orbit, begin = _mother(point, sweep, models)
-    direction, first = None, begin
-    while True:
-        name = f"{sweep.row}: period {orbit.period}"
-        branch = _walk(
-            orbit, sweep.parameter, sweep.last, models, begin, name, progress, direction, FLIP,
-            back_to=first,
-        )  # fmt: skip
-        legs.append(Leg(branch, len(legs)))
-        if branch.ended == INTERRUPTED:
-            return True
-        if not branch.of_kind(FLIP):
-            return False
-        values.append(branch.of_kind(FLIP)[0])
-        if len(values) == flips:
-            return False
-        doubled = switch_branch(values[-1], models)
-        orbit, begin, direction = doubled.orbit, doubled.value, doubled.direction
-
-
-def _mother(point: OnePoint, sweep: Sweep, models: Models) -> tuple[Orbit, float]:
-    """A stable orbit of period 1 to start from: at the sweep's first value or beyond it."""
-    orbit, _ = orbit_of(point)
-    if orbit.period == 1:
-        return orbit, sweep.first
-    mother = periodic_orbit(models(sweep.first), 1, orbit.points.mean(axis=0))
-    away = sweep.first + 0.5 * (sweep.first - sweep.last)
-    if away <= 0.0:
-        away = 0.5 * sweep.first
-    branch = continuation(
-        mother, sweep.parameter, away, family=models, start=sweep.first, stop_at=FLIP
-    )
-    if not bool(branch.stable[-1]):
-        raise ConvergenceError(
-            f"no stable orbit of period 1 between {sweep.parameter} = {sweep.first:.6g} and "
-            f"{away:.6g}; start the sweep elsewhere"
-        )
-    return branch.orbit(-1), float(branch.values[-1])
-
-
-def sweep_of_point(point: OnePoint, parameter: str, *, first: float, last: float) -> Sweep:
-    """One sweep on the numbers of a dimensionless point."""
-    if isinstance(point.case, GearCase):
-        raise InputError(
-            "--cascade",
-            "a gear case",
-            why="cascades are tabled for the dimensionless equation",
-            fix="use --switch to follow doubled branches of a gear pair",
-        )
-    return Sweep(
-        row=parameter,
-        parameter=parameter,
-        first=first,
-        last=last,
-        base={**point.parameters, parameter: first},
-    )

@@ -1,11 +1,10 @@
-"""Diagrams, maps and basins of a case: its words become plans, two states become one overlay."""
+"""Diagrams, maps and basins of a case: its words become plans, two states one overlay."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import chain
 from pathlib import Path
 from typing import TypeAlias
 
@@ -25,8 +24,6 @@ from thermogear.case.base import Case
 from thermogear.case.case import GearCase, gear_case
 from thermogear.case.family import GearFamily, NumberFamily, Tabulated, family, moving
 from thermogear.case.thermal_state import HOT, StateLike, ThermalState
-from thermogear.results.beside import from_data
-from thermogear.results.result import Result
 from thermogear.results.work import Estimate, estimate
 from thermogear.study.shafts.family import TabulatedTrains, TrainFamily
 from thermogear.study.shafts.motion import LONGEST
@@ -125,7 +122,7 @@ def case_diagram(
     rule = DIAGRAM_RULE
     if isinstance(whole, TrainFamily):
         rule = rule_of(whole, rule)
-        lanes = TabulatedTrains(whole, axis)
+        lanes = TabulatedTrains.of(whole, axis)
     elif isinstance(whole, GearFamily) and axis.size > 1:
         lanes = Tabulated.of(whole, axis)
     begin = starts or (case.simulation.initial_state,)
@@ -210,15 +207,11 @@ def case_basins(
     return basin_plan(points.model() if points.gears else whole.model, x=x, v=v)
 
 
-def overlaid(
-    title: str,
-    words: Sequence[str],
-    found: Sequence[Dataset],
-) -> Result:
-    """Two diagrams over the same values as one result.
+def overlaid(words: Sequence[str], found: Sequence[Dataset]) -> Dataset:
+    """Two diagrams over the same values as one, with the axis ``state``.
 
-    ``words`` name their states, ``found`` holds the diagrams. The group "states" has the axis
-    ``state``; branches and bifurcations carry ``branch_state`` and ``bifurcation_state``.
+    ``words`` name their states, ``found`` holds the diagrams. Branches and bifurcations carry
+    ``branch_state`` and ``bifurcation_state``.
     """
     import xarray as xr
 
@@ -235,5 +228,4 @@ def overlaid(
     name = str(data.attrs["parameter"])
     if "bifurcation_kind" in one and "bifurcation_kind" in other:
         data = with_branches_of_states(data, dict(enumerate(found)), str(data[name].attrs["units"]))
-    notices = chain.from_iterable(map(from_data, found, words))
-    return Result.of("overlay", title, {"states": data}, notices, states=words)
+    return data

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.errors import InputError
 from thermogear.base.parameters import PARAMETERS
 from thermogear.base.plan import gather
@@ -81,7 +81,7 @@ def thesis_pair(
     computed: list[str] = []
     try:
         for name, axis in _axes(alone, point, values).items():
-            groups[f"diagrams/{name}"] = _overlaid(alone, name, axis, progress).data
+            groups[f"diagrams/{name}"] = _overlaid(alone, name, axis, progress)
             computed.append(name)
     except KeyboardInterrupt:
         cut = True
@@ -155,7 +155,7 @@ def _axes(case: GearCase, point: Points, count: int) -> dict[str, Floats]:
     }
 
 
-def _overlaid(case: GearCase, name: str, values: Floats, progress: Progress) -> Result:
+def _overlaid(case: GearCase, name: str, values: Floats, progress: Progress) -> Dataset:
     """The diagrams over one parameter, undeformed and hot."""
     states = (UNDEFORMED, HOT)
     plans = [case_diagram(case, name, values, state=state) for state in states]
@@ -163,5 +163,4 @@ def _overlaid(case: GearCase, name: str, values: Floats, progress: Progress) -> 
         gather(plan, progress=partial(progress, f"{PARAMETERS[name].words}, {state.words}"))
         for plan, state in zip(plans, states, strict=True)
     ]
-    words = [state.words for state in states]
-    return overlaid(case.title, words, found)
+    return overlaid([state.words for state in states], found)

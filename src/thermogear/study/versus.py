@@ -1,8 +1,8 @@
 """Case against case: stored results of several cases joined into one labelled Dataset.
 
-Operating points are matched by speed and torque (dimensionless points by row, parameter and
-value), bundles by name. What one case has and another has not is NaN there, and said. Cases that
-are answered as a series are compared as series, and part by part where they are of one seed.
+Operating points are matched by speed and torque, bundles by name. What one case has and another has
+not is NaN there, and said. Cases that are answered as a series are compared as series, and part by
+part where they are of one seed.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ CURVES = {
     "mesh_phase": ("half_backlash_curve", "mesh_stiffness"),
     "order": ("line_amplitude",),
 }
-GROUPS = {"gear": ("mesh", "path", "motion"), "dimensionless": ("points",)}
+GROUPS = ("mesh", "path", "motion")
 PLACE = {"path_position": "path_place", "mesh_phase": "phase_place", "order": "line"}
 """The axis of a curve whose positions differ from case to case."""
 LEAD = ("bundle", "state", "operating")
@@ -69,36 +69,19 @@ class Stored:
     groups: Mapping[str, xr.Dataset]
 
     @property
-    def kind(self) -> str:
-        """``gear`` or ``dimensionless``."""
-        return str(self.texts["kind"])
-
-    @property
     def bundles(self) -> list[str]:
         """The names of its bundles of choices."""
-        if self.kind == "dimensionless":
-            return ["equation"]
         return [str(name) for name in self.groups["mesh"]["bundle"].values]
 
     @property
     def states(self) -> list[str]:
         """Its states, undeformed first."""
-        if self.kind == "dimensionless":
-            return ["steady"]
         return [str(name) for name in self.groups["mesh"]["state"].values]
 
     def points(self) -> list[Hashable]:
         """What its operating points are matched by, each once."""
-        if self.kind == "gear":
-            mesh = self.groups["mesh"]
-            columns: list[list[Any]] = [
-                _rounded(mesh[name]) for name in ("pinion_speed", "pinion_torque")
-            ]
-        else:
-            data = self.groups["points"]
-            words = [[str(v) for v in data[name].values] for name in ("row", "parameter")]
-            units = [str(v) for v in data["value_unit"].values]
-            columns = [*words, _rounded(data["value"]), units]
+        mesh = self.groups["mesh"]
+        columns = [_rounded(mesh[name]) for name in ("pinion_speed", "pinion_torque")]
         seen: Counter[Hashable] = Counter()
         found: list[Hashable] = []
         for key in zip(*columns, strict=True):
@@ -145,15 +128,10 @@ def require_number(count: int) -> None:
         )
 
 
-def require_one_kind(kinds: Mapping[str, str]) -> None:
-    """Refuse gear cases beside dimensionless ones; ``kinds`` maps names to kinds."""
-    if len(set(kinds.values())) > 1:
-        raise InputError(
-            "versus",
-            ", ".join(f"{name} ({kind})" for name, kind in kinds.items()),
-            allowed="cases of one kind",
-            why="a dimensionless case has no micrometres to set beside a gear pair's",
-        )
+def require_gears(name: str, kind: str) -> None:
+    """Refuse results of a case without gears."""
+    if kind != "gear":
+        raise InputError("versus", f"{name} ({kind})", allowed="cases of gear pairs")
 
 
 def versus(cases: Sequence[Stored]) -> Result:
@@ -165,14 +143,12 @@ def versus(cases: Sequence[Stored]) -> Result:
     the numbers are NaN and texts empty; ``present`` (case, bundle, operating) tells. The
     attributes ``differences``, ``choices`` and ``notices`` hold JSON lists, and
     ``series`` that of :func:`of_series`.
-    Raises InputError for a wrong number of cases, kinds that differ, and damaged results.
+    Raises InputError for a wrong number of cases, one without gears, and damaged results.
     """
     require_number(len(cases))
-    numbered = {f"{place + 1}: {case.name}": case.kind for place, case in enumerate(cases)}
-    require_one_kind(numbered if len({c.name for c in cases}) < len(cases) else
-                     {c.name: c.kind for c in cases})  # fmt: skip
     for case in cases:
-        _require_groups(case)
+        require_gears(case.name, case.texts["kind"])
+        _require_mesh(case)
     titles = unique_titles(cases)
     names = [case.bundles for case in cases]
     shared = set(names[0]).intersection(*names[1:])
@@ -182,17 +158,14 @@ def versus(cases: Sequence[Stored]) -> Result:
         "case": titles,
         "bundle": _union(bundles),
         "state": _union([case.states for case in cases]),
-        "operating": _union([case.points() for case in cases]),
+        "operating": sorted(_union([case.points() for case in cases])),
     }
-    if cases[0].kind == "gear":
-        axes["operating"].sort()
     data = _joined(cases, bundles, axes)
     return Result.of(
         "versus",
         " against ".join(titles) if len(titles) == 2 else " · ".join(titles),
         {"": data},
         _notices(cases, data, names if own else None),
-        of=cases[0].kind,
         differences=differences(cases),
         choices=choices(cases, bundles),
         series=list(of_series(cases, titles)),
@@ -290,7 +263,7 @@ def of_series(cases: Sequence[Stored], titles: Sequence[str]) -> Iterator[dict[s
                 continue
             known = np.isfinite(here["dynamic_factor"])
             row: dict[str, Any] = {
-                "case": title, "point": _point_name("gear", (*key, 1)), "parts": int(known.sum()),
+                "case": title, "point": _point_name((*key, 1)), "parts": int(known.sum()),
                 "parting": int((here["onset"] <= key[0] * (1.0 + ALIKE))[known].sum()),
             }  # fmt: skip
             for name in LESS_IS_BETTER:
@@ -421,10 +394,9 @@ def _joined(
     variables["label"] = variables["label"].astype(str)
     coordinates: dict[str, Any] = {name: axes[name] for name in ("case", "bundle", "state")}
     keys = axes["operating"]
-    if cases[0].kind == "gear":
-        for place, name in enumerate(("pinion_speed", "pinion_torque")):
-            coordinates[name] = ("operating", np.array([key[place] for key in keys]))
-    coordinates["point"] = ("operating", [_point_name(cases[0].kind, key) for key in keys])
+    for place, name in enumerate(("pinion_speed", "pinion_torque")):
+        coordinates[name] = ("operating", np.array([key[place] for key in keys]))
+    coordinates["point"] = ("operating", [_point_name(key) for key in keys])
     return label(variables, coordinates)
 
 
@@ -464,12 +436,7 @@ def _alone(case: Stored, bundles: Sequence[str], axes: Mapping[str, list[Any]]) 
 def _laid(data: xr.Dataset, name: str, curve: str = "") -> NDArray[Any]:
     """``data[name]`` with the axes (bundle, state, operating[, curve]), whatever it lacks."""
     variable = data[name].variable
-    if "point" in variable.dims:
-        variable = xr.Variable(
-            ["operating" if dim == "point" else dim for dim in variable.dims], variable.values
-        )
     lengths = {d: data.sizes.get(d, 1) for d in LEAD}
-    lengths["operating"] = data.sizes.get("operating", data.sizes.get("point", 1))
     if curve:
         lengths[curve] = data.sizes[curve]
     missing = [d for d in lengths if d not in variable.dims]
@@ -480,7 +447,7 @@ def _laid(data: xr.Dataset, name: str, curve: str = "") -> NDArray[Any]:
 
 def _groups(case: Stored) -> list[xr.Dataset]:
     """The groups that figures are looked for in, in this order."""
-    return [case.groups[name] for name in GROUPS[case.kind] if name in case.groups]
+    return [case.groups[name] for name in GROUPS if name in case.groups]
 
 
 def _positions(case: Stored, curve: str) -> NDArray[np.float64]:
@@ -492,25 +459,17 @@ def _positions(case: Stored, curve: str) -> NDArray[np.float64]:
     return np.zeros(0)
 
 
-def _require_groups(case: Stored) -> None:
-    need = GROUPS[case.kind][0]
-    names = {
-        "mesh": (*LEAD[:2], "pinion_speed"),
-        "points": ("row", "parameter", "value", "value_unit"),
-    }[need]
-    data = case.groups.get(need)
-    if data is None or not all(name in data.variables for name in names):
+def _require_mesh(case: Stored) -> None:
+    data = case.groups.get("mesh")
+    if data is None or not {*LEAD[:2], "pinion_speed"} <= set(data.variables):
         raise InputError(
-            "results", case.name, why=f"the group {need} is missing", fix="run the case anew"
+            "results", case.name, why="the group mesh is missing", fix="run the case anew"
         )
 
 
-def _point_name(kind: str, key: Sequence[Any]) -> str:
+def _point_name(key: Sequence[Any]) -> str:
     again = "" if key[-1] == 1 else f" ({key[-1]})"
-    if kind == "gear":
-        return f"{key[0] / RPM:.6g} rpm, {key[1]:.6g} N m{again}"
-    unit = "" if key[3] == "1" else f" {key[3]}"
-    return f"{key[0]}: {key[1]} = {key[2]:.6g}{unit}{again}".replace("_", " ")
+    return f"{key[0] / RPM:.6g} rpm, {key[1]:.6g} N m{again}"
 
 
 def _rounded(values: xr.DataArray) -> list[float]:

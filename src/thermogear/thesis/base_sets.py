@@ -16,9 +16,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
 
-from thermogear.thesis.experiment_answer import interval
-
 TABLE = "base_sets.csv"
+CONFIDENCE = 0.95
 STATEMENTS = (
     "4.1.3", "4.1.4", "4.1.5", "4.1.6", "4.1.8", "4.1.7", "4.2.3", "4.2.6", "4.2.8", "4.2.10",
     "4.2.11", "4.2.12", "4.2.13", "4.3.2", "4.3.4", "4.3.5", "4.3.7", "4.3.8", "4.3.9", "4.3.10",
@@ -62,3 +61,20 @@ def share(sets: Sequence[Judged], number: str) -> tuple[int, float, float]:
     return hits, *interval(
         hits, count=len(sets), lost=sum(number not in judged_set.holds for judged_set in sets)
     )
+
+
+def interval(hits: int, *, count: int, lost: int = 0) -> tuple[float, float]:
+    """Exact (Clopper-Pearson) 95 % interval of a share, ``lost`` of ``count`` not known.
+
+    The lost ones are misses for the lower end and hits for the upper.
+
+    >>> low, high = interval(0, count=256)
+    >>> low, round(high, 4)
+    (0.0, 0.0143)
+    """
+    from scipy.stats import beta
+
+    half, most = 0.5 * (1.0 - CONFIDENCE), hits + lost
+    low = 0.0 if hits == 0 else float(beta.ppf(half, hits, count - hits + 1))
+    high = 1.0 if most == count else float(beta.ppf(1.0 - half, most + 1, count - most))
+    return low, high

@@ -22,7 +22,7 @@ from thermogear.results.result import Result
 from thermogear.study.compare import compare
 from thermogear.study.run import run
 from thermogear.study.sensitivity import Plan, sensitivity
-from thermogear.thesis import base_sets, chain, experiment, experiment_answer, motions
+from thermogear.thesis import base_sets, chain, experiment, motions
 from thermogear.thesis.errata import with_errata
 
 STAGES = (
@@ -40,17 +40,13 @@ STAGES = (
 
 @dataclass(frozen=True, kw_only=True)
 class Size:
-    """How much is computed; a small one answers every claim too, on coarser grids.
-
-    ``trains``: drive trains of the rig that are sampled anew; 0: those that come with the package.
-    """
+    """How much is computed; a small one answers every claim too, on coarser grids."""
 
     speeds: int = 6
     torques: int = 4
     diagram: int = 241
     flips: int = 4
     samples: int = 128
-    trains: int = 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,9 +145,7 @@ class Evidence:
     def rig_trains(self) -> Dataset:
         """What accelerometers show on drive trains that the rig could have been."""
         self._tell(STAGES[7])
-        count = self.size.trains
-        rows = list(experiment.trains(count)) if count else experiment.stored()
-        return experiment_answer.results(rows)
+        return experiment.stored()
 
     @cached_property
     def two_gears(self) -> dict[str, float]:

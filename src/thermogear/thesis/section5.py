@@ -244,7 +244,7 @@ _ROWS = (
      (PUBLISHED,), "experiment"),
     ("5.1.3", "5.1", "statement",
      "Acceleration was filtered and integrated twice to displacement.", _integrated,
-     ("thermogear.signals.integration.trapezoid_factor", "thermogear.thesis.experiment.trains"),
+     ("thermogear.signals.integration.trapezoid_factor", "thermogear.thesis.experiment.stored"),
      "rig-trains"),
     ("5.2.1", "5.2", "statement", "The measured main lines lie near the mesh frequency.",
      _near_mesh, (PUBLISHED,), "experiment"),

@@ -21,7 +21,7 @@ STUDIES = {
     "warmup": "Warm-up", "temperature": "Heat balance",
     "relief": "Tip relief", "contact": "Loaded contact", "friction": "Friction laws",
     "orbit": "Orbit", "lyapunov": "Lyapunov exponent", "branch": "Branches of orbits",
-    "cascade": "Period doublings", "shared": "Two forms of the mesh force",
+    "shared": "Two forms of the mesh force",
     "drawing": "Drawing", "versus": "Comparison of cases", "thesis": "The thesis's claims",
     "measurement": "Measurement", "comparison": "Comparison with a record",
     "sensitivity": "Sensitivity", "statics": "Loads of shafts and bearings",

@@ -24,9 +24,7 @@ KINDS = ("png", "svg", "pdf")
 RESOLUTION = 160
 """Dots per inch of the PNG files."""
 IN_NOTEBOOK = 130
-_OURS = re.compile(
-    r"(path|mesh|profile|motion|temperature|points)(_|$)|.+_(figures|time|section|spectrum)$"
-)
+_OURS = re.compile(r".+_by_[a-z_]+")
 """Tables that earlier runs may have left behind in ``csv``."""
 
 
@@ -82,7 +80,7 @@ def clear_tables(directory: Path, kept: list[Path]) -> None:
     """Remove what earlier runs left in ``directory/csv``: tables of ours not among ``kept``."""
     stay = {path.name for path in kept}
     for old in (directory / "csv").glob("*.csv"):
-        if old.name not in stay and _OURS.match(old.stem):
+        if old.name not in stay and _OURS.fullmatch(old.stem):
             old.unlink()
 
 

@@ -115,8 +115,6 @@ def left_out(
         if several:
             count = "1 attribute" if len(several) == 1 else f"{len(several)} attributes"
             lines.append(f"{kind}: {count}: {flat(some(sorted(several)))}"[:400])
-    if model.accumulation:
-        lines.append("accumulation: results over all load cases")
     return lines
 
 

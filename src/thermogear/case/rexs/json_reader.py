@@ -1,6 +1,7 @@
 """A model out of the tables of JSON; what would not fit the memory is refused before it is read.
 
-Coded arrays and matrices are base64 of little-endian numbers (REXS 1.4 and later).
+Coded arrays are base64 of little-endian numbers (REXS 1.4 and later); no attribute that is used
+is a matrix.
 """
 
 from __future__ import annotations
@@ -11,8 +12,6 @@ import json
 import re
 import struct
 from typing import Any, NoReturn
-
-import numpy as np
 
 from thermogear.base.errors import InputError, short
 from thermogear.case.rexs.model import (
@@ -98,7 +97,6 @@ def model_in(root: dict[str, Any], container: str) -> Model:
     spectra = root.get("load_spectrum")
     for spectrum in spectra if isinstance(spectra, list) else [spectra]:
         _spectrum(spectrum, model)
-    _accumulate(root.get("accumulation"), model)
     return model
 
 
@@ -114,14 +112,6 @@ def _spectrum(spectrum: object, model: Model) -> None:
             place = identity(one.get("id"), "component")
             found.components.setdefault(place, {}).update(_attributes(one, model))
         model.load(found)
-    _accumulate(spectrum.get("accumulation"), model)
-
-
-def _accumulate(found: object, model: Model) -> None:
-    if isinstance(found, dict):
-        for one in _list(found, "components"):
-            place = identity(one.get("id"), "component")
-            model.accumulation.setdefault(place, {}).update(_attributes(one, model))
 
 
 def _list(table: dict[str, Any], key: str) -> list[dict[str, Any]]:
@@ -149,9 +139,8 @@ def _value(entry: dict[str, Any]) -> Value:
     key, value = next((one for one in entry.items() if _TYPE.fullmatch(one[0])), ("", None))
     if key.endswith("array_coded") and isinstance(value, dict):
         return list(decoded_array(value.get("code"), value.get("value")))
-    if key.endswith("matrix_coded") and isinstance(value, dict):
-        size = (value.get("rows"), value.get("columns"))
-        return decoded_matrix(value.get("code"), value.get("value"), *size)
+    if key.endswith("matrix_coded"):
+        return None
     if isinstance(value, str) and len(value) > LONGEST_TEXT:
         raise too_many("characters in one value", LONGEST_TEXT)
     if isinstance(value, dict):
@@ -175,16 +164,3 @@ def decoded_array(code: object, text: object) -> tuple[Any, ...]:
             "coded array", f"{len(raw)} bytes", allowed=f"a whole number of {code} ({size} bytes)"
         )
     return struct.unpack(f"<{len(raw) // size}{letter}", raw)
-
-
-def decoded_matrix(code: object, text: object, rows: object, columns: object) -> list[Any]:
-    """The rows of a coded matrix, row-major; a missing number of rows or columns follows."""
-    flat = decoded_array(code, text)
-    left_out = round(len(flat) ** 0.5) if rows is None and columns is None else -1
-    try:
-        shape = [left_out if one is None else int(str(one)) for one in (rows, columns)]
-        found: list[Any] = np.reshape(flat, shape).tolist()
-    except ValueError as cause:
-        allowed = f"{short(rows)} rows of {short(columns)} numbers"
-        raise InputError("coded matrix", f"{len(flat)} values", allowed=allowed) from cause
-    return found

@@ -80,7 +80,6 @@ class Model:
     components: dict[int, Component] = field(default_factory=dict)
     relations: list[Relation] = field(default_factory=list)
     load_cases: list[LoadCase] = field(default_factory=list)
-    accumulation: dict[int, dict[str, Attribute]] = field(default_factory=dict)
     attributes: int = 0
 
     # --- building ------------------------------------------------------------------------

@@ -104,5 +104,3 @@ class _Reader:
             if name == "attribute" and table.keys() <= {"id", "unit"}:
                 table["string"] = text
             above.setdefault(_LISTS[name], []).append(table)
-        elif name == "accumulation":
-            above[name] = table

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from thermogear.case.case import GearCase
 
 
-LONG = ("series", "run-up", "answers", "shafts", "map")
+LONG = ("series", "run-up", "answers", "shafts")
 MOST_LIVE = 60
 """Mesh periods of a turn that are shown while a dial moves; of more the mean tooth is."""
 CALM = 0.08
@@ -144,7 +144,7 @@ def temperatures(case: GearCase) -> list[list[str]]:
 
 
 def hello(given: Given) -> dict[str, object]:
-    """What a page needs once: the fields of a case file, the range of speeds, the record."""
+    """What a page needs once: the fields of a case file, the range of speeds."""
     from thermogear.case.form import form
 
     case = given.case
@@ -155,7 +155,6 @@ def hello(given: Given) -> dict[str, object]:
         "speeds": speeds(case),
         "shafts": case.train is not None,
         "series": drawing(case) is not None,
-        "record": given.record_name,
     }
 
 

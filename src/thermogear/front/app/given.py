@@ -1,11 +1,11 @@
-"""What the command line gave the app: a case, and a measured record; the same for every page."""
+"""What the command line gave the app: a case, the same for every page."""
 
 from __future__ import annotations
 
 import shlex
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from thermogear.base.errors import InputError, short
 from thermogear.base.toml import overridden, tables
@@ -14,9 +14,6 @@ from thermogear.case.charts import GEARS
 from thermogear.case.dials import Changes, balanced, turned
 from thermogear.case.size import estimated_bytes
 from thermogear.front.app.wire import State
-
-if TYPE_CHECKING:
-    from thermogear.measured.reduction import Measurement
 
 MOST_MEMORY = 2**30
 """Of the curves and motions of a case [bytes]."""
@@ -33,12 +30,10 @@ MOST = {
 
 @dataclass(frozen=True, eq=False)
 class Given:
-    """The ``case`` as it was read, ``name`` as one types it, and a ``record`` beside it."""
+    """The ``case`` as it was read, and its ``name`` as one types it."""
 
     name: str
     case: GearCase
-    record: Measurement | None = None
-    record_name: str = ""
 
     @cached_property
     def file(self) -> dict[str, Any]:

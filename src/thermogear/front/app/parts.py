@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.display import CELSIUS, MICROMETRE, PERCENT, SPEED
+from thermogear.base.display import MICROMETRE, SPEED
 from thermogear.base.errors import ThermogearError
-from thermogear.base.plan import Alive, slices
+from thermogear.base.plan import Alive
 from thermogear.base.vocabulary import STILL
 from thermogear.case.case import GearCase
 from thermogear.case.dials import drawing
@@ -28,11 +28,6 @@ from thermogear.views.plots import live as plot
 
 OFTEN = 0.25
 """Seconds between two pictures of one that fills in."""
-MAP = (48, 24)
-"""Speeds and temperatures of the map."""
-TILE = 8
-COLDEST, HOTTEST = 20.0, 180.0
-"""Of the map [degC]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -283,37 +278,6 @@ def answers(look: Look) -> Iterator[Part]:
     look.kept.keys["answers"] = key
 
 
-def record(look: Look) -> Iterator[Part]:
-    """The record's mesh lines over those of the motions shown."""
-    measured = look.given.record
-    if measured is not None and "orbit" not in look.show.parts:
-        for _ in orbit(look):
-            look.alive()
-    motions = {n: m.data for n, m in look.kept.motions.items() if m.orbit is not None}
-    if measured is None or measured.teeth is None:
-        if measured is not None:
-            yield Part(name="record", lines=["the record tells no tooth number: give --teeth"])
-        return
-    rows = [one for one in measured.lines if one.kind == "mesh" and np.isfinite(one.displacement)]
-    if not rows or not motions:
-        words = "no displacement can be read from it" if not rows else "no closed orbit to compare"
-        yield Part(name="record", lines=[f"{look.given.record_name}: {words}"])
-        return
-    order = np.array([one.order / measured.teeth for one in rows])
-    size = np.array([one.displacement for one in rows])
-    half = np.array([one.half_width * one.displacement for one in rows])
-    lines = [
-        f"{one.channel}, {one.name}: {MICROMETRE(one.displacement):.4g} µm "
-        f"± {PERCENT(one.half_width):.2g} %"
-        for one in rows
-    ]
-    yield Part(
-        name="record",
-        picture=plot.measured_orders(motions, order=order, amplitude=size, half=half),
-        lines=lines,
-    )
-
-
 def shafts(look: Look) -> Iterator[Part]:
     """Loads, lift-off and critical speeds of a case with shafts."""
     if look.case.train is None:
@@ -336,54 +300,6 @@ def shafts(look: Look) -> Iterator[Part]:
     look.kept.keys["shafts"] = key
 
 
-def parameter_map(look: Look) -> Iterator[Part]:
-    """The regime over speed and gear temperature, coarsely first."""
-    from thermogear.study.diagrams import case_map
-
-    speeds = look.speeds
-    axes = {
-        "pinion_speed": np.linspace(speeds[0], speeds[-1], MAP[0]),
-        "gear_temperature": CELSIUS.stored(np.linspace(COLDEST, HOTTEST, MAP[1])),
-    }
-    data = {k: v for k, v in look.case.data.items() if k != "operating"}
-    key = json.dumps([data, look.case.torques, *(a.tolist() for a in axes.values())], default=str)
-    if not look.kept.fresh("map", key):
-        return
-    look.kept.forget("map")
-    plan = replace(case_map(look.case, axes), tile=TILE)
-    arrays = {n: np.zeros(MAP, np.int32) for n in ("label", "period")}
-    known = np.zeros(MAP, bool)
-    total, done, last = MAP[0] * MAP[1], 0, 0.0
-    for one in slices(plan, coarse=4, threads=1, alive=look.alive):
-        i, j = one.where["pinion_speed"], one.where["gear_temperature"]
-        for name, values in arrays.items():
-            values[np.ix_(i, j)] = one.arrays[name]
-        known[np.ix_(i, j)] = True
-        done += 0 if one.preview else i.size * j.size
-        now = time.monotonic()
-        if now - last > OFTEN or done == total:
-            last = now
-            yield Part(
-                name="map", picture=_map_picture(axes, arrays, known), done=done, total=total
-            )
-        else:
-            yield Part(name="", done=done, total=total)
-    look.kept.keys["map"] = key
-
-
-def _map_picture(
-    axes: dict[str, NDArray[np.float64]], arrays: dict[str, NDArray[Any]], known: NDArray[np.bool_]
-) -> Picture:
-    import xarray as xr
-
-    units = {"pinion_speed": "rad/s", "gear_temperature": "K"}
-    data = xr.Dataset(
-        {name: (tuple(axes), values) for name, values in arrays.items()},
-        {name: ((name,), values, {"units": units[name]}) for name, values in axes.items()},
-    )
-    return plot.regimes(data, known)
-
-
 MAKERS: dict[str, Callable[[Look], Iterator[Part]]] = {
     "mesh": mesh,
     "orbit": orbit,
@@ -392,9 +308,7 @@ MAKERS: dict[str, Callable[[Look], Iterator[Part]]] = {
     "series": series,
     "run-up": run_up,
     "answers": answers,
-    "record": record,
     "shafts": shafts,
-    "map": parameter_map,
 }
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import threading
 from collections.abc import Mapping, Sequence
-from dataclasses import KW_ONLY, dataclass, field, replace
+from dataclasses import KW_ONLY, dataclass, field, fields, replace
 from functools import cached_property, partial
 from typing import Any
 
@@ -342,55 +342,24 @@ def _alike(one: Assembly, other: Assembly) -> bool:
 
 
 @dataclass(frozen=True, eq=False)
-class TabulatedTrains:
-    """A family of one parameter at ``values``, ascending; straight between them."""
+class TabulatedTrains(TrainFamily):
+    """A family of one parameter computed at ``values``, ascending; straight between them."""
 
-    family: TrainFamily
-    values: Floats
+    values: Floats = field(kw_only=True)
 
-    @property
-    def names(self) -> tuple[str, ...]:
-        return self.family.names
-
-    @property
-    def units(self) -> tuple[str, ...]:
-        return self.family.units
-
-    @property
-    def dimension(self) -> int:
-        """Length of a state."""
-        return self.family.dimension
-
-    def inputs(self) -> dict[str, Any]:
-        return self.family.inputs()
-
-    @cached_property
-    def _found(self) -> dict[int, tuple[GearedModel | None, int]]:
-        return {}
-
-    def __getstate__(self) -> dict[str, Any]:
-        return {"family": self.family, "values": self.values}
-
-    kinds = TrainFamily.kinds
-
-    def watched(self, dims: tuple[str, ...]) -> dict[str, Variable]:
-        """As of the family."""
-        return self.family.watched(dims)
-
-    def watched_coordinates(self) -> dict[str, Coordinate]:
-        """As of the family."""
-        return self.family.watched_coordinates()
-
-    def watch(self, points: Floats, found: Settled) -> Arrays:
-        """As of the family, at its ``values``."""
-        return self.family.watch(points, found)
+    @classmethod
+    def of(cls, family: TrainFamily, values: Floats) -> TabulatedTrains:
+        """``family`` at ``values``."""
+        own = {one.name: getattr(family, one.name) for one in fields(family) if one.init}
+        return cls(**own, values=values)
 
     def _at(self, place: int) -> tuple[GearedModel | None, int]:
-        found = self._found.get(place)
-        if found is None:
-            made = self.family(self.values[place : place + 1, None])
+        kept = self._kept.setdefault("values", {})
+        if place not in kept:
+            made = super().__call__(self.values[place : place + 1, None])
             model: Any = made.models[0]
-            found = self._found[place] = (model, int(made.status[0]))
+            kept[place] = (model, int(made.status[0]))
+        found: tuple[GearedModel | None, int] = kept[place]
         return found
 
     def __call__(self, points: Floats) -> Models:

@@ -14,10 +14,10 @@ from thermogear.base.display import PERCENT, display
 from thermogear.base.limits import FINE, LOOK, OPEN
 from thermogear.results.answer import Answer, worst
 from thermogear.results.result import Result
+from thermogear.results.tables import csv_tables
 from thermogear.views.columns import Column, declared
 from thermogear.views.page import Block, Code, Made, Page, Pictures, Section, Table
 from thermogear.views.pages.background import background
-from thermogear.views.pages.survey import csv_tables
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import HOT, INK, OKABE_ITO, QUIET, WIDE
 
@@ -35,7 +35,7 @@ def page(result: Result) -> Page:
         Made(lambda: sections(result, pictures) + background(result)),
         numbers=lambda: {"answers": result.rows("answers")} | of_series(result),
         told=lambda: told(result),
-        tables=lambda: {} if result.group("series") is None else csv_tables(result),
+        tables=lambda: csv_tables(result.groups, "answers_") if "series" in result.groups else {},
     )
 
 

@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.arrays import Dataset
-from thermogear.base.display import MICROMETRE, MILLIMETRE, PERCENT, number, span
-from thermogear.base.vocabulary import told_operating
+from thermogear.base.display import MILLIMETRE, PERCENT, number, span
 from thermogear.views.plots.curves import hot_state
 from thermogear.views.plots.path import BAND, own_law
 from thermogear.views.style import chosen, names_of, path_points
@@ -18,11 +17,6 @@ from thermogear.views.typesetting import operating_names
 
 NEAR = 0.02
 """Positions closer than this part of the path are the same place."""
-SHARING = {
-    "loaded": "by the loaded contact",
-    "stiffness": "by their stiffnesses",
-    "equal": "in equal parts",
-}
 PLACES = {
     "A": "at the start of contact A",
     "C": "at the pitch point C",
@@ -71,14 +65,11 @@ def top_of(data: Dataset, values: NDArray[np.float64]) -> str:
     return place(data, float(data["path_position"].values[int(np.nanargmax(values))]))
 
 
-def _sentence(parts: Mapping[str, str], start: str = "") -> str:
+def _sentence(parts: Mapping[str, str], start: str) -> str:
     """name -> words as one sentence, after ``start``; names only where the words differ."""
     if len(set(parts.values())) == 1:
-        words = next(iter(parts.values()))
-        return f"{start}: {words}." if start else f"{words[:1].upper()}{words[1:]}."
-    colon = "" if start else ":"
-    told = "; ".join(f"{name}{colon} {words}" for name, words in parts.items())
-    return f"{start}: {told}." if start else f"{told}."
+        return f"{start}: {next(iter(parts.values()))}."
+    return f"{start}: {'; '.join(f'{name} {words}' for name, words in parts.items())}."
 
 
 def regimes(here: Dataset) -> str:
@@ -127,18 +118,13 @@ def kinematics(data: Dataset, fastest: int) -> str:
     )
 
 
-def load_share(data: Dataset, bundles: Mapping[str, Any]) -> str:
+def load_share(data: Dataset) -> str:
     """Of the share of one tooth pair."""
     here = hot_state(data).isel(operating=0)
     if "line_load" in here and not np.any(here["line_load"].values > 0.0):
         return "Without load: the shares that a light one would have."
-    how = {
-        name: SHARING[str(bundles[name]["sharing"])]
-        for name in names_of(data, "bundle")
-        if str(bundles.get(name, {}).get("sharing")) in SHARING
-    }
     words = "Where the share is 1 one pair carries everything; elsewhere several do."
-    return f"{where(data, 'load_share')}{words} {_sentence(how, 'How') if how else ''}"
+    return f"{where(data, 'load_share')}{words}"
 
 
 def friction(data: Dataset, bundle: int, bundles: Mapping[str, Any]) -> str:
@@ -204,20 +190,6 @@ def temperatures(data: Dataset, bundle: int) -> str:
     return words + (", and as cool as the bodies at C." if pitch_inside(data) else ".")
 
 
-def growth(data: Dataset) -> str:
-    """Of the flanks' growth."""
-    if "deformation_sum" not in data:
-        return "Growth of the hot flanks."
-    hot = hot_state(data)
-    words = where(hot, "deformation_sum")
-    here = hot.isel(operating=told_operating(data))
-    for b, name in enumerate(names_of(data, "bundle")):
-        values = MICROMETRE(here["deformation_sum"].values[b])
-        if np.isfinite(values).all():
-            words += f" Sum in the {name} bundle: {span(values, 4)} µm."
-    return words.strip()
-
-
 def profile(factor: int, printed: bool, at: str) -> str:
     """Of one tooth, its hot displacement magnified."""
     words = f"{at}The displacement of the hot profile is drawn {factor} times larger than it is."
@@ -227,25 +199,6 @@ def profile(factor: int, printed: bool, at: str) -> str:
             "body and tooth, and differ in the tooth's thickness."
         )
     return words
-
-
-def gap_over_phase(mesh: Dataset) -> str:
-    """Of the half backlash over the mesh phase."""
-    drawn = mesh["half_backlash_curve"].isel(operating=told_operating(mesh))
-    curves = drawn.transpose("bundle", "state", ...).values
-    told = {}
-    for b, name in enumerate(names_of(mesh, "bundle")):
-        cold, hot = curves[b, 0], curves[b, -1]
-        shift, breath = float(hot.mean() - cold.mean()), float(np.ptp(hot))
-        told[name] = (
-            f"heat shifts the gap by {number(MICROMETRE(shift))} µm; hot it breathes by "
-            f"{number(MICROMETRE(breath)) if breath > 1e-3 * abs(shift) else '0'} µm over the "
-            "period"
-        )
-    return (
-        f"{where(mesh, 'half_backlash')}{_sentence(told)} Below zero a pair is jammed; no motion "
-        "is computed there."
-    )
 
 
 FOLLOWS = {
@@ -290,29 +243,18 @@ def row_views(*, columns: int, most: int) -> str:
     )
 
 
-def stiffness(mesh: Dataset, bundle: int) -> str:
+def stiffness(mesh: Dataset) -> str:
     """Of the mesh stiffness over the mesh phase."""
-    one = mesh.isel(operating=told_operating(mesh), bundle=bundle)["mean_stiffness"].values
-    change = PERCENT(float(one[-1]) / float(one[0]) - 1.0)
-    words = where(mesh, "mean_stiffness")
+    words = f"{where(mesh, 'mean_stiffness')}Undeformed and hot, with their means. "
     ratio = float(mesh.attrs.get("contact_ratio", np.nan))
     if 1.0 < ratio < 2.0:
         words += "High where two pairs carry, low where one does. "
     if "mesh_periods" in mesh.attrs:
         words += (
             f"Over the turn of {mesh.attrs['mesh_periods']} mesh periods: where a tooth stands "
-            "back its neighbours carry on. "
+            "back its neighbours carry on."
         )
-    if not np.isfinite(change):
-        return words
-    return f"{words}Hot against undeformed the mean changes by {change:+.1f} %.".replace("-", "−")
-
-
-def one_pair(mesh: Dataset) -> str:
-    """Of the stiffness of one tooth pair."""
-    values = mesh["pair_stiffness"].isel(bundle=0, state=-1, operating=told_operating(mesh)).values
-    at = f", stiffest {top_of(mesh, values)}" if np.isfinite(values).any() else ""
-    return f"{where(mesh, 'pair_stiffness')}One pair alone along its path of contact{at}."
+    return words.strip()
 
 
 def path_intro(data: Dataset) -> str:

@@ -109,8 +109,7 @@ def friction(results: Result, pictures: Pictures) -> Section | None:
     if "load_share" in data:
         pictures.add(
             "share", "Load share of one tooth pair",
-            captions.load_share(data, results.table("bundles")),
-            data, ("load_share",), lambda: path.load_share(data),
+            captions.load_share(data), data, ("load_share",), lambda: path.load_share(data),
         )  # fmt: skip
     pictures.add(
         "hertz", "Hertzian contact",
@@ -152,7 +151,9 @@ def heat(results: Result, pictures: Pictures) -> Section | None:
         deformed = ("pinion_deformation", "wheel_deformation", "deformation_sum")
         if all(name in data for name in deformed):
             pictures.add(
-                "growth", "Growth of both flanks", captions.growth(data), data, deformed,
+                "growth", "Growth of both flanks",
+                f"{captions.where(data, deformed[-1])}The sum is taken from the backlash.",
+                data, deformed,
                 lambda: deformation.growth(data),
             )  # fmt: skip
     if profile is not None:
@@ -183,7 +184,9 @@ def gap(results: Result, pictures: Pictures) -> Section | None:
     if mesh is not None:
         if "half_backlash_curve" in mesh:
             pictures.add(
-                "gap-phase", "Half backlash over the mesh phase", captions.gap_over_phase(mesh),
+                "gap-phase", "Half backlash over the mesh phase",
+                f"{captions.where(mesh, 'half_backlash')}Below zero a pair is jammed; no motion is "
+                "computed there.",
                 mesh, ("half_backlash_curve",), lambda: backlash.over_phase(mesh),
             )  # fmt: skip
         blocks += _jam_texts(mesh) if "status" in mesh else []
@@ -223,14 +226,15 @@ def springs(results: Result, pictures: Pictures) -> Section | None:
         return None
     for place, name in enumerate(names_of(mesh, "bundle")):
         pictures.add(
-            f"stiffness-{place}", f"Mesh stiffness, {name}", captions.stiffness(mesh, place),
+            f"stiffness-{place}", f"Mesh stiffness, {name}", captions.stiffness(mesh),
             mesh, ("mesh_stiffness", "elastic_stiffness", "thermal_stiffness", "mean_stiffness"),
             lambda p=place: stiffness.over_phase(mesh, p),  # type: ignore[misc]
         )  # fmt: skip
     first = mesh.isel(operating=0) if "operating" in mesh.dims else mesh
     if "pair_stiffness" in mesh:
         pictures.add(
-            "stiffness-pair", "Stiffness of one tooth pair", captions.one_pair(mesh),
+            "stiffness-pair", "Stiffness of one tooth pair",
+            f"{captions.where(mesh, 'pair_stiffness')}One pair alone along its path of contact.",
             first, ("pair_stiffness",), lambda: stiffness.pair(first),
         )  # fmt: skip
     needs = ("pair_stiffness", "hertz_stiffness")

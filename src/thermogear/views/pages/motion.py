@@ -1,8 +1,8 @@
-"""Pages of one motion: its orbit, its Lyapunov exponent, its branches and cascades."""
+"""Pages of one motion: its orbit, its Lyapunov exponent, its branches."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from functools import partial
 from operator import itemgetter
 from typing import Any
@@ -11,8 +11,8 @@ from thermogear.base.arrays import Dataset
 from thermogear.base.display import MICROMETRE, PERCENT, Display, number
 from thermogear.base.vocabulary import label_words, of_turn
 from thermogear.results.result import Result
+from thermogear.results.tables import csv_text, frames
 from thermogear.views.columns import Column, Row, declared, pairs
-from thermogear.views.csv_files import cell_text, head_text
 from thermogear.views.page import (
     LEAD,
     Block,
@@ -20,7 +20,6 @@ from thermogear.views.page import (
     Page,
     Section,
     Shown,
-    Table,
     Text,
 )
 from thermogear.views.picture import Picture
@@ -93,7 +92,7 @@ def plane_tables(summary: Summary) -> list[Block]:
 
 Groups = Mapping[str, Dataset]
 
-KINDS = ("orbit", "lyapunov", "branch", "cascade")
+KINDS = ("orbit", "lyapunov", "branch")
 
 
 def page(result: Result) -> Page:
@@ -114,15 +113,14 @@ def page(result: Result) -> Page:
         ],
         numbers=lambda: summary,
         told=lambda: [Text(summary["title"]), Text(headline), *blocks],
-        tables=lambda: csv_tables(kind, groups),
+        tables=lambda: curve_tables(kind, groups),
         files=("svg", "png"),
     )
 
 
 def _picture(kind: str, groups: Groups) -> Callable[[], Picture]:
-    if kind in ("branch", "cascade"):
-        maker = plots.branch_picture if kind == "branch" else plots.cascade_picture
-        return partial(maker, _numbered(groups, "branch_"))
+    if kind == "branch":
+        return partial(plots.branch_picture, _numbered(groups, "branch_"))
     return partial(plots.orbit_picture if kind == "orbit" else plots.lyapunov_picture, groups[kind])
 
 
@@ -132,32 +130,25 @@ def _numbered(groups: Groups, begin: str) -> list[Dataset]:
     return [groups[name] for name in names]
 
 
-def csv_tables(kind: str, groups: Groups) -> dict[str, str]:
+def curve_tables(kind: str, groups: Groups) -> dict[str, str]:
     """Every array along an axis as CSV: one file for each axis, branches below each other."""
-    files: dict[str, list[str]] = {}
+    import pandas as pd
+
+    parts: dict[str, list[pd.DataFrame]] = {}
     for name, data in groups.items():
         file = "plane" if name.startswith("curve_") else kind
-        own = {k: data.attrs[k] for k in ("row", "kind", "period") if k in data.attrs}
-        for axis in data.dims:
-            columns = [str(v) for v in data.variables if data[v].dims == (axis,)]
-            if not columns or axis in ("multiplier", "coordinate"):
-                continue
-            heads = [head_text(data, column) for column in columns]
-            lines = files.setdefault(f"{file}_{axis}.csv", [",".join([*own, *heads])])
-            rows = zip(*(data[column].values.tolist() for column in columns), strict=True)
-            lines += [",".join(map(cell_text, (*own.values(), *row))) for row in rows]
-    return {name: "\n".join(lines) + "\n" for name, lines in files.items()}
+        own = {k: data.attrs[k] for k in ("kind", "period") if k in data.attrs}
+        for (axis, *more), frame in frames(data).items():
+            if not more and axis not in ("multiplier", "coordinate"):
+                columns = [*own, *frame.columns.drop(axis, errors="ignore")]
+                parts.setdefault(f"{file}_{axis}.csv", []).append(frame.assign(**own)[columns])
+    return {file: csv_text(pd.concat(each)) for file, each in parts.items()}
 
 
 HEADINGS = {
     "orbit": "The orbit",
     "lyapunov": "The exponent as batches come in",
     "branch": "Branches along the parameter",
-    "cascade": "Cascades",
-}
-CAPTIONS = {
-    "lyapunov": "The band is one standard error of the mean.",
-    "cascade": "Dots: period doublings.",
 }
 
 
@@ -186,7 +177,7 @@ def _caption(kind: str, summary: Summary, groups: Groups) -> str:
         if "mesh_periods" in summary:
             words.append(f"Periods are those of the turn of {summary['mesh_periods']} mesh periods")
         return ". ".join(words) + "."
-    return CAPTIONS[kind]
+    return "The band is one standard error of the mean."
 
 
 def _headline(kind: str, summary: Summary) -> str:
@@ -199,11 +190,9 @@ def _headline(kind: str, summary: Summary) -> str:
             f"λ₁ = {summary['exponent']:.5f} ± {summary['error']:.5f} ({summary['verdict']}); "
             f"the sum of both exponents is {summary['sum']:.6g}."
         )
-    if kind == "branch":
-        events, legs = len(summary["bifurcations"]), len(summary["branches"])
-        told = f"{events} bifurcation{'s' * (events != 1)} on {legs} branch{'es' * (legs != 1)}."
-        return f"{told} {plane_headline(summary)}".strip()
-    return f"{sum(len(c['flips']) for c in summary['cascades'])} period doublings located."
+    events, legs = len(summary["bifurcations"]), len(summary["branches"])
+    told = f"{events} bifurcation{'s' * (events != 1)} on {legs} branch{'es' * (legs != 1)}."
+    return f"{told} {plane_headline(summary)}".strip()
 
 
 def _orbit_tables(summary: Summary) -> list[Block]:
@@ -317,33 +306,9 @@ def _train_words(train: Summary) -> list[Block]:
     return [Text(text, "note") for text in words]
 
 
-def _cascade_tables(summary: Summary) -> list[Block]:
-    return [_cascade_table(cascade, summary["flips"]) for cascade in summary["cascades"]]
-
-
-def _cascade_table(cascade: Summary, most: int) -> Table:
-    """The flips of a cascade."""
-    rows = [
-        {"name": f"{2**k} → {2 ** (k + 1)}", "value": _flip_words(cascade["flips"], k)}
-        for k in range(most)
-    ]
-    rows.append({"name": "branch then", "value": cascade["ended"]})
-    caption = page_words(cascade["parameter"]) + f", {cascade['from']:g} to {cascade['to']:g}"
-    return declared(caption, [Column("period doubling", "name"), Column("at", "value")], rows)
-
-
-def _flip_words(flips: Sequence[Summary], place: int) -> str:
-    """The value of a flip, and whether the doubled motion takes over smoothly."""
-    if place >= len(flips):
-        return "–"
-    flip = flips[place]
-    return f"{flip['value']:.9f} {str(flip.get('note', '')).split(':')[0]}".strip()
-
-
 ORBIT = (Column("quantity", "name"), Column("value", "value"), Column("unit", "unit"))
 _TABLES: dict[str, Callable[[Summary], list[Block]]] = {
     "orbit": _orbit_tables,
     "lyapunov": _lyapunov_tables,
     "branch": _branch_tables,
-    "cascade": _cascade_tables,
 }

@@ -49,7 +49,7 @@ def page(result: Result) -> Page:
         Shown(
             "error",
             "Transmission error over a mesh period",
-            words.relief_error(result.groups["error"]),
+            "Under the design load.",
             partial(error, result.groups["error"]),
         ),
         Shown(

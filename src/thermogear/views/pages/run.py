@@ -11,9 +11,9 @@ from thermogear.base.arrays import DataArray, Dataset
 from thermogear.base.display import SPEED
 from thermogear.base.vocabulary import DIMENSIONLESS
 from thermogear.results.result import Result
+from thermogear.results.tables import csv_tables
 from thermogear.views import tables
 from thermogear.views.columns import Column, in_full, key, rows_along, units
-from thermogear.views.csv_files import curve_tables
 from thermogear.views.page import OPEN, Page, Pictures, Section
 from thermogear.views.pages import (
     answers,
@@ -158,7 +158,7 @@ def page(result: Result) -> Page:
         numbers=lambda: numbers(result),
         told=lambda: [*answers.told(result), *train_motion.told(result)],
         most=OPEN if result.answers else None,
-        tables=lambda: curve_tables(result),
+        tables=lambda: csv_tables(result.groups, "csv/"),
         first=(*FIRST, *gear_sections.first(result)),
     )
 

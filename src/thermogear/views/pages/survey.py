@@ -8,7 +8,7 @@ from typing import Any
 from thermogear.base.arrays import Dataset
 from thermogear.base.display import SPEED
 from thermogear.results.result import Result
-from thermogear.results.tables import csv_text, frames
+from thermogear.results.tables import csv_tables
 from thermogear.views.columns import in_full, key, rows_along
 from thermogear.views.page import (
     LEAD,
@@ -52,21 +52,9 @@ def survey(
         sections,
         numbers=numbers,
         told=lambda: [Text(summary), *(told or tables)],
-        tables=lambda: csv_tables(result),
+        tables=lambda: csv_tables(result.groups, f"{result.kind}_"),
         files=("svg", "png"),
     )
-
-
-def csv_tables(result: Result) -> dict[str, str]:
-    """One CSV text for each group and set of dimensions; the heads name the units."""
-    found = {}
-    for group, data in result.groups.items():
-        families = frames(data)
-        whole = any(not v.dims for v in data.data_vars.values()) + len(families)
-        for dims, frame in families.items():
-            tail = "" if whole == 1 else f"_by_{'_'.join(dims)}"
-            found[f"{result.kind}_{group}{tail}.csv"] = csv_text(frame)
-    return found
 
 
 # --- figures as JSON wants them ---------------------------------------------------------------

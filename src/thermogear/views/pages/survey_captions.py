@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from thermogear.base.arrays import Dataset
-from thermogear.base.display import MICROMETRE, PERCENT, SPEED, exactly, number, span
+from thermogear.base.display import PERCENT, SPEED, exactly, number, span
 from thermogear.base.vocabulary import is_known
 
 
@@ -77,13 +77,6 @@ def one_point(data: Dataset) -> str:
 # --- tip relief ---------------------------------------------------------------------------
 
 
-def relief_error(data: Dataset) -> str:
-    """Of the transmission error under the design load."""
-    spread = MICROMETRE(np.ptp(data["transmission_error"].values, axis=-1))
-    without, with_it = (number(float(v)) for v in spread)
-    return f"Under the design load: {without} µm peak to peak without relief, {with_it} µm with it."
-
-
 def relief_stiffness(data: Dataset) -> str:
     """Of the tangent stiffness under the design load."""
     without, with_it = data["tangent_stiffness"].values.mean(axis=-1)
@@ -116,17 +109,11 @@ def contact_path(data: Dataset) -> str:
         if data.sizes["load"] > 1
         else f"At {loads[0]} N m"
     )
-    edges = data["edge_contact"].values[:, [0, -1]]
-    corners = [name for bit, name in ((1, "wheel"), (2, "pinion")) if (edges & bit).any()]
-    if not corners:
+    if not data["edge_contact"].values[:, [0, -1]].any():
         return f"{words}. No corner of a tip touches."
-    tips = "the tips of both gears" if len(corners) == 2 else f"the {corners[0]}'s tip"
-    whose = f"the corner of {tips}"
-    if np.isnan(data["corner_load_share"].values).all():
-        whose = "the corner of a tip or the edge of an undercut"
     return (
-        f"{words}. Where the teeth give way {whose} touches: there (shaded) the Hertzian pressure "
-        "is not valid and is left out."
+        f"{words}. Where the teeth give way the corner of a tip, or the edge of an undercut, "
+        "touches: there (shaded) the Hertzian pressure is not valid and is left out."
     )
 
 

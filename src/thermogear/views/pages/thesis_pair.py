@@ -25,11 +25,12 @@ from thermogear.base.vocabulary import STATUS, moves
 from thermogear.results.result import Result
 from thermogear.results.tables import rows_of
 from thermogear.views.columns import Column, by_name, declared, in_full, key, rows_along
-from thermogear.views.page import Block, Gallery, Page, Pictures, Section, Text
-from thermogear.views.pages import gear_sections, overlay
+from thermogear.views.page import Block, Gallery, Page, Pictures, Section, Table, Text
+from thermogear.views.pages import gear_sections
 from thermogear.views.pages.background import background
 from thermogear.views.pages.record_tables import comparison_table
 from thermogear.views.pages.survey import OPERATING
+from thermogear.views.pages.sweeps import bifurcations
 from thermogear.views.plots.motion import label_of, moving
 from thermogear.views.plots.parameters import shown
 from thermogear.views.plots.sweeps import CLASSES, classes_of, overlay_picture, state_of
@@ -41,6 +42,11 @@ ROUNDING = 1e-9
 """A line at half the mesh frequency below this part of the swing is rounding."""
 FRICTION = {"friction", "flash-mixed", "flash-dry"}
 """The pictures of mixed beside dry friction."""
+CAPTION = (
+    "Sections at phase 0 of the settled motion in both states, up and down; branches from "
+    "continuation. The largest Lyapunov exponent below."
+)
+"""Of two diagrams over each other."""
 Told = tuple[str, list[Block]]
 
 
@@ -166,15 +172,36 @@ def _diagram(name: str, result: Result, pictures: Pictures) -> Told:
     told = [f"{state} {words}" for state, words in zip(states, motions, strict=True)]
     told = told if len(set(motions)) > 1 else [f"{' and '.join(states)} alike {motions[0]}"]
     counts = [f"{one.sizes.get('bifurcation', 0)} {s}" for s, one in zip(states, here, strict=True)]
-    table = overlay.table_of(data, states)
+    table = table_of(data, states)
     told.append(f"bifurcations: {', '.join(counts)}" if table.rows else "no bifurcation was found")
     if any(moves(one["status"]).any() for one in here):
         pictures.add(
-            f"diagram-{name}", "Undeformed and hot", overlay.CAPTION, data, (),
+            f"diagram-{name}", "Undeformed and hot", CAPTION, data, (),
             lambda: overlay_picture(data, states), wide=True,
         )  # fmt: skip
     blocks = [*pictures.take(), *[table] * bool(table.rows)]
     return _sentence([f"from {' to '.join(ends)} {PARAMETERS[name].shown}".strip(), *told]), blocks
+
+
+def _located(data: Dataset, states: Sequence[str]) -> tuple[list[Column], list[dict[str, Any]]]:
+    """Columns and rows of the bifurcations of all ``states``."""
+    each = [bifurcations(state_of(data, place)) for place in range(len(states))]
+    columns = [Column("state", "state", key="state"), *each[0][0]]
+    rows = [
+        {**row, "state": words} for words, (_, of) in zip(states, each, strict=True) for row in of
+    ]
+    return columns, rows
+
+
+def table_of(data: Dataset, states: Sequence[str]) -> Table:
+    """The located bifurcations of all ``states``."""
+    return declared("Located bifurcations", *_located(data, states))
+
+
+def located(data: Dataset, states: Sequence[str]) -> list[dict[str, Any]]:
+    """The located bifurcations of all ``states``, JSON-ready."""
+    columns, rows = _located(data, states)
+    return [in_full(columns, row) for row in rows]
 
 
 def _shares(one: Dataset) -> str:
@@ -246,7 +273,7 @@ def _numbers(result: Result, findings: dict[str, str]) -> dict[str, Any]:
         "findings": findings,
         "temperature": [in_full(there, place) for place in rows_along(row, "gear_temperature")],
         "bifurcations": {
-            name: overlay.located(data, json.loads(str(data.attrs["state_names"])))
+            name: located(data, json.loads(str(data.attrs["state_names"])))
             for name in DIAGRAMS
             if (data := result.group(f"diagrams/{name}")) is not None
         },

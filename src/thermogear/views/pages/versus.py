@@ -15,8 +15,8 @@ from thermogear.base.arrays import Dataset
 from thermogear.base.display import PERCENT, display, in_words, percent
 from thermogear.base.vocabulary import UNDEFORMED, label
 from thermogear.results.result import Result
+from thermogear.results.tables import table_text
 from thermogear.views.columns import Column, Row, declared, in_full, key, rows_along
-from thermogear.views.csv_files import table_text
 from thermogear.views.page import Block, Code, Page, Pictures, Section, Table, Text
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.curves import along_path
@@ -72,7 +72,6 @@ def page(result: Result) -> Page:
         _summary(data),
         [_differences(data), _figures(data), *_series(rows), *_pictures(data), _cases(data)],
         numbers=lambda: {
-            "kind": result.text("of"),
             "cases": names_of(data, "case"),
             "differences": result.rows("differences"),
             "choices": result.rows("choices"),
@@ -117,7 +116,7 @@ def _differences(data: Dataset) -> Section:
         choice = Column("choice", lambda row: row["choice"].replace("_", " "))
         columns = [Column("bundle", "bundle"), choice, *by_case]
         blocks.append(declared(caption, columns, made, names=len(columns), wordy=True))
-    elif data.attrs["of"] == "gear":
+    else:
         blocks.append(Text("Bundles of one name make the same choices in all cases."))
     return Section("differences", "What differs", blocks, folded=False)
 
@@ -128,11 +127,10 @@ def _figures(data: Dataset) -> Section:
     for b, bundle in enumerate(bundles):
         here = data.isel(bundle=b)
         if here["present"].values.any():
-            words = f"Bundle {bundle}" if data.attrs["of"] == "gear" else "Every point"
             for names in (tuple(n for n in FIGURES if n not in VIBRATION), VIBRATION):
                 kept = [name for name in names if name in here and _any(here, name)]
                 if kept:
-                    blocks.append(_table(here, kept, words))
+                    blocks.append(_table(here, kept, f"Bundle {bundle}"))
     return Section("figures", "Key figures", blocks, folded=False)
 
 
@@ -208,8 +206,6 @@ def _both(texts: Sequence[str]) -> str:
 
 
 def _points(data: Dataset) -> list[str]:
-    if "pinion_speed" not in data.coords:
-        return [str(name) for name in data["point"].values]
     names = operating_names(data)
     twice = len(set(names)) < len(names)
     return [str(name) for name in data["point"].values] if twice else names
@@ -284,15 +280,12 @@ def _pictures(data: Dataset) -> list[Section]:
         blocks = pictures.take()
         if not blocks:
             continue
-        gear = data.attrs["of"] == "gear"
-        intro = "A colour for each case; where curves coincide the first is the broadest."
-        if gear:
-            intro += (
-                " Hot is solid, undeformed dashed. A curve that is the same at a further operating "
-                "point is drawn once."
-            )
-        title = f"Curves, {bundle}" if gear else "Curves"
-        found.append(Section(f"curves-{b}", title, [Text(intro), *blocks]))
+        intro = (
+            "A colour for each case; where curves coincide the first is the broadest. Hot is "
+            "solid, undeformed dashed. A curve that is the same at a further operating point is "
+            "drawn once."
+        )
+        found.append(Section(f"curves-{b}", f"Curves, {bundle}", [Text(intro), *blocks]))
     return found
 
 

@@ -5,20 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
-from thermogear.base.arrays import Dataset, Floats
+from thermogear.base.arrays import Dataset
 from thermogear.base.display import CELSIUS, MICROMETRE, SPEED, STIFFNESS, number
 from thermogear.base.vocabulary import STATUS, STILL, is_known
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.curves import axis_of
 from thermogear.views.plots.motion import HALF_ORDERS, HIGHEST_ORDER, thinned
 from thermogear.views.plots.one_motion import edges_in_sight
-from thermogear.views.plots.parameters import axis_words
-from thermogear.views.plots.parameters import shown as by_unit
 from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
 from thermogear.views.plots.stiffness import by_state
-from thermogear.views.plots.sweeps import CLASSES, classes_of, edges
 from thermogear.views.style import COLD, FAINT, HOT, INK, OKABE_ITO, QUIET, STATES, names_of
 from thermogear.views.typesetting import FAR, axis_label, shown
 
@@ -233,35 +229,3 @@ def told_mesh(data: Dataset) -> list[str]:
     if np.isfinite(jam) and jam < FAR:
         found.append(f"jams with the gears at {jam:.1f} °C, the other bodies as they are")
     return found
-
-
-def measured_orders(
-    computed: Mapping[str, Dataset], *, order: Floats, amplitude: Floats, half: Floats
-) -> Picture:
-    """Lines of a record over computed ones: ``amplitude`` [m] with its 95 % ``half`` width."""
-    panel = _spectra(computed)
-    panel.title = ""
-    known = np.isfinite(amplitude) & (amplitude > 0.0) & (order > 0.0)
-    if known.any():
-        at = MICROMETRE(amplitude[known])
-        panel.y.low = min(panel.y.low or at.min(), 0.5 * float(at.min()))
-        panel.y.high = max(panel.y.high or at.max(), 2.0 * float(at.max()))
-        room = np.nan_to_num(MICROMETRE(half[known]))
-        for q, middle, wide in zip(order[known], at, room, strict=True):
-            low = max(middle - wide, 1e-3 * middle)
-            panel.curve([q, q], [low, middle + wide], colour=HOT, width=2.4)
-        panel.points(order[known], at, colour=HOT, marker="diamond", size=7, open=True,
-                     label="measured, 95 % interval")  # fmt: skip
-    return Picture([[panel]], size=(10.0, 3.4), legend=4)
-
-
-def regimes(data: Dataset, known: NDArray[np.bool_]) -> Picture:
-    """A map over two parameters as far as it is ``known``; white is not there yet."""
-    one, two = (str(name) for name in data["label"].dims[:2])
-    borders = edges(by_unit(one, data[one])), edges(by_unit(two, data[two]))
-    x, y = (Axis(axis_words(name, data[name])) for name in (one, two))
-    panel = Panel(x, y)
-    names, colours = zip(*CLASSES, strict=True)
-    values = np.where(known, classes_of(data), np.nan)
-    panel.field(*borders, values.T, colours=colours, classes=names)
-    return Picture([[panel]], size=(10.0, 4.2), legend=6)

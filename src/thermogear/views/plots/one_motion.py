@@ -1,4 +1,4 @@
-"""Pictures of one orbit, of a Lyapunov exponent, of branches and of a cascade."""
+"""Pictures of one orbit, of a Lyapunov exponent, and of branches."""
 
 from __future__ import annotations
 
@@ -236,27 +236,6 @@ def _marks(panel: Panel, branches: Sequence[Dataset], parameter: str, row: str =
                     at, data[row].values[here], marker=marker, size=5.5, colour=colour,
                     edge="white", edge_width=0.6, label=kind,
                 )  # fmt: skip
-
-
-def cascade_picture(branches: Sequence[Dataset]) -> Picture:
-    """One axis for each row: the doubling branches."""
-    rows = list(dict.fromkeys(str(b.attrs["row"]) for b in branches))
-    panels = []
-    for row in rows:
-        own = [b for b in branches if str(b.attrs["row"]) == row]
-        parameter = str(own[0].attrs["parameter"])
-        panel = Panel(Axis(axis_words(parameter, own[0]["value"])))
-        for data in own:
-            value = shown(parameter, data["value"])
-            panel.curve(value, data["section_x"].values, colour=COLD, width=1.2)
-            flips = data["event_kind"].values.astype(str) == "period doubling"
-            panel.points(
-                shown(parameter, data["event_value"][flips]), data["event_x"].values[flips],
-                size=4.5, colour=COLD, edge="white", edge_width=0.5,
-            )  # fmt: skip
-        panels.append(panel)
-    panels[0].y.words = "displacement X at phase 0 [–]"
-    return Picture([panels], size=(WIDE, 3.6), between=0.62)
 
 
 def plane_picture(curves: Sequence[Dataset]) -> Picture:

@@ -354,7 +354,6 @@ const heard = (message) => {
     for (const name of ["low", "high", "count"]) if (!by(name).value) by(name).value = message.speeds[name];
     document.querySelector('[data-part="shafts"]').hidden = !message.shafts;
     document.querySelector('[data-part="series"]').hidden = !message.series;
-    document.querySelector('[data-part="record"]').hidden = !message.record;
     ready = true;
     ask();
     return;

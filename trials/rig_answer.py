@@ -12,18 +12,17 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from rig_samples import ASSUMED, FIXED, PRINTED, SEEN, SPEEDS, WORDS, Shown
 
 from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.display import MICROMETRE, PERCENT, SPEED
 from thermogear.base.vocabulary import label
-from thermogear.thesis.experiment import PRINTED, SEEN, WORDS, Shown
-from thermogear.thesis.rig_trains import ASSUMED, FIXED, SPEEDS
+from thermogear.thesis.base_sets import interval
 
 NEAR = 1.5
 """Peak or rms (1.41) and an unstated processing together."""
 LIMITS = (1.25, NEAR, 2.0, 3.0)
 NO, YES = 0.05, 0.5
-CONFIDENCE = 0.95
 EITHER = "either"
 """An accelerometer on a bearing's cap or on the housing, whichever is nearer."""
 TOLD = {EITHER: "accelerometer on a cap or on the housing", **WORDS}
@@ -49,23 +48,6 @@ def _comes_out(one: Shown, seen: str, limit: float) -> bool:
         one.factor(place) <= limit and bool(np.all(np.diff(one.amplitudes[place]) > 0.0))
         for place in places
     )
-
-
-def interval(hits: int, *, count: int, lost: int = 0) -> tuple[float, float]:
-    """Exact (Clopper-Pearson) 95 % interval of a share, ``lost`` of ``count`` not known.
-
-    The lost ones are misses for the lower end and hits for the upper.
-
-    >>> low, high = interval(0, count=256)
-    >>> low, round(high, 4)
-    (0.0, 0.0143)
-    """
-    from scipy.stats import beta
-
-    half, most = 0.5 * (1.0 - CONFIDENCE), hits + lost
-    low = 0.0 if hits == 0 else float(beta.ppf(half, hits, count - hits + 1))
-    high = 1.0 if most == count else float(beta.ppf(1.0 - half, most + 1, count - most))
-    return low, high
 
 
 def answer(*, low: float, high: float) -> str:
