@@ -18,8 +18,8 @@ from thermogear.base.errors import InputError
 from thermogear.base.limits import VIBRATION_ZONES, zone_of
 from thermogear.front.diagnose_command import MACHINES
 from thermogear.measured.diagnosis import InAngle, in_angle
+from thermogear.measured.impacts import BearingRates
 from thermogear.measured.record import Channel, Record
-from thermogear.measured.swelling import BearingRates
 from thermogear.results.result import Result
 from thermogear.study.diagnosis import diagnose, healthy_limit, trend_of
 

@@ -99,10 +99,8 @@ def diagnose(
         from thermogear.study.bearing_rates import bearing_rates
         from thermogear.study.diagnosis import diagnose as study
 
-        hung = [("pinion", rates) for rates in bearing_rates(bearings)] if bearings else []
-        hung += (
-            [("wheel", rates) for rates in bearing_rates(wheel_bearings)] if wheel_bearings else []
-        )
+        hung = [("pinion", rates) for rates in bearing_rates(bearings)]
+        hung += [("wheel", rates) for rates in bearing_rates(wheel_bearings)]
 
         def sources(there: list[Path]) -> list[tuple[str, Any]]:
             return [(file.name, partial(_in_angle, str(file), teeth[0], options)) for file in there]

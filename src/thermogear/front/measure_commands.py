@@ -88,8 +88,8 @@ def supplies(command: Any, *, speeds: bool = False) -> Any:
             "bearings",
             metavar="TYPE",
             multiple=True,
-            help="Rolling bearing on the first shaft, as 6205: swelling noise is held against its "
-            "rates [those of the catalogue]. May be repeated.",
+            help="Rolling bearing on the first shaft, as 6205: its rates are looked for in the "
+            "envelope. May be repeated.",
         ),
         number(
             "--start",

@@ -28,6 +28,17 @@ from thermogear.measured.gate import (
     require_sampling_rate,
 )
 from thermogear.measured.gearing import Gearing
+from thermogear.measured.impacts import (
+    BAND_SAMPLES,
+    HEARD,
+    HIGHEST,
+    BearingLine,
+    BearingRates,
+    Impacts,
+    Swelling,
+    clearest_line,
+    impacts,
+)
 from thermogear.measured.lines import (
     Doubts,
     MeasuredLine,
@@ -41,21 +52,17 @@ from thermogear.measured.rate_check import check_rate
 from thermogear.measured.readers import read_record
 from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.stated import expected_mesh, speed_undecided, stated_gearing
-from thermogear.measured.swelling import (
-    BearingRates,
-    Defect,
-    Swelling,
-    defects_of,
-    swellings_of,
-)
 from thermogear.measured.traps import unknown_unit
 from thermogear.measured.turns import MeshTurns, few_turns, mesh_turns
+from thermogear.signals.orders import resample_by_angle
+from thermogear.signals.tracking import samples_per_turn
 from thermogear.signals.windows import Window
 
 LONGEST = 1 << 21
 """Samples per channel reduced at once; a longer record is cut there with a notice."""
 
 
+FIRST = "first shaft"
 _MOST = 64
 """Harmonics, sidebands and orders that may be asked for."""
 _HIGHEST_ORDER = 10_000.0
@@ -68,8 +75,8 @@ class Measurement:
     ``teeth``: those orders are counted with, given or found; ``given``: what the user said (teeth,
     speed [rad/s]), None where he said nothing.
     ``findings``: damage of the record and what was done about it; ``values`` (channel, sample):
-    what the lines were read from, in the file's unit; ``swellings``: impacts that slip, and the
-    ``defects`` of bearings whose rates they have.
+    what the lines were read from, in the file's unit; ``swellings``: the clearest line of the
+    envelope, () where noise may have it, and ``defects``: its lines at rates of bearings named.
     """
 
     record: Record
@@ -86,7 +93,7 @@ class Measurement:
     slices: OrderSlices | None = None
     given: tuple[int | None, float | None] = (None, None)
     swellings: tuple[Swelling, ...] = ()
-    defects: tuple[Defect, ...] = ()
+    defects: tuple[BearingLine, ...] = ()
 
     @property
     def readings(self) -> tuple[MeasuredLine, ...]:
@@ -255,7 +262,12 @@ def measure(
     lines = [of_velocity(line, record.channel(line.channel)) for line in lines]
     notices += [*_hidden(lines), *_untold(record, chosen, sensor_tolerance)]
     notices += _filtered(wanted, rate, mesh, gearing)
-    swellings = _swellings(record, chosen, table, gearing, speed) if changing is None else ()
+    shaft = gearing.shaft if gearing is not None else None
+    shaft = _turns(record, speed) if shaft is None else shaft
+    heard = _impacts(through, gearing, turns, shaft, bearings)
+    names = [one.name for one in chosen]
+    known = None if record.rate_doubt else record.rate
+    clear = clearest_line(heard, names, shaft=shaft, rate=known) if heard and shaft else None
     return Measurement(
         record,
         tuple(c.name for c in chosen),
@@ -269,8 +281,8 @@ def measure(
         tuple(through.findings),
         table,
         given=given,
-        swellings=swellings,
-        defects=defects_of(swellings, bearings),
+        swellings=() if clear is None else (clear,),
+        defects=tuple(line for line in heard.lines if line.chance <= HEARD) if heard else (),
     )
 
 
@@ -295,18 +307,34 @@ def _turns(record: Record, speed: float | None) -> float | None:
     return None if speed is None or not record.rate else speed / (2.0 * np.pi * record.rate)
 
 
-def _swellings(
-    record: Record,
-    chosen: Sequence[Channel],
-    table: NDArray[np.float64],
+def _impacts(
+    through: Passed,
     gearing: Gearing | None,
-    speed: float | None,
-) -> tuple[Swelling, ...]:
-    """Impacts that slip, beside the shaft by its lines or by the speed said [rad/s]."""
-    shaft = gearing.shaft if gearing is not None else None
-    shaft = _turns(record, speed) if shaft is None else shaft
-    rate = None if record.rate_doubt else record.rate
-    return swellings_of([one.name for one in chosen], table, rate, shaft)
+    turns: MeshTurns | None,
+    shaft: float | None,
+    bearings: Sequence[BearingRates],
+) -> Impacts | None:
+    """What is no line over the angle of a ``shaft`` [turns/sample], of the first samples; None
+    without a shaft and for a record too short to have a band."""
+    if shaft is None:
+        return None
+    first, angle = 0, shaft * np.arange(min(BAND_SAMPLES, through.table.shape[-1]))
+    if gearing is not None and turns is not None and turns.turning is not None:
+        first, cycles = turns.turning.dropped, turns.turning.cycles[:BAND_SAMPLES]
+        angle = cycles * (shaft / gearing.mesh_frequency)
+    table = through.table[:, first : first + angle.size]
+    try:
+        per_turn = samples_per_turn(angle)
+        return impacts(
+            resample_by_angle(table, angle, samples_per_turn=per_turn),
+            per_turn,
+            top=min(0.5, HIGHEST / float(np.percentile(np.diff(angle), 99.0)) / per_turn),
+            channels=[channel.name for channel in through.channels],
+            ratios={FIRST: 1.0},
+            bearings=[(FIRST, rates) for rates in bearings],
+        )
+    except InputError:
+        return None
 
 
 def _require(

@@ -22,15 +22,13 @@ from thermogear.measured.diagnosis import (
     PINION,
     SHAFTS,
     WHEEL,
-    BearingLine,
-    Impacts,
     InAngle,
     ShaftAverage,
-    impacts,
+    heard,
     raw_values,
     shaft_average,
 )
-from thermogear.measured.swelling import BearingRates
+from thermogear.measured.impacts import HEARD, BearingLine, BearingRates, Impacts
 from thermogear.results.result import Notice, Result, now
 from thermogear.signals.indicators import (
     demodulated_harmonics,
@@ -39,6 +37,7 @@ from thermogear.signals.indicators import (
     na4_of_moments,
     tooth_deviations,
 )
+from thermogear.signals.kurtogram import real_cepstrum
 from thermogear.signals.synchronous import demodulated, separated, tooth_means
 
 INDICATORS = (
@@ -58,8 +57,6 @@ ALARM = 0.05
 BY_CHANCE = 0.001
 """Chance that as many averages have their greatest residual at one tooth, up to which the tooth is
 named (chosen)."""
-HEARD = 0.01
-"""Chance of a line of a bearing up to which it is told (chosen)."""
 CLEAR = 4.0
 """Robust standard deviations of the other teeth from which a tooth's amplitude or timing counts as
 off (chosen)."""
@@ -78,13 +75,16 @@ Key = tuple[str, str, str]
 @dataclass(frozen=True, kw_only=True)
 class Reduced:
     """A record's ``values`` of every average by channel, shaft and indicator; its ``shafts``, what
-    else is heard (``impacts``), ``raw`` values by channel; the rest as in the record."""
+    else is heard (``impacts``), ``cepstrum`` (channel, quefrency in turns of the pinion x
+    ``per_turn``), ``raw`` values by channel; the rest as in the record."""
 
     name: str
     channels: tuple[str, ...]
     values: dict[Key, Floats]
     shafts: tuple[ShaftAverage, ...]
     impacts: Impacts
+    cepstrum: Floats
+    per_turn: int
     raw: dict[str, Floats]
     speed: float
     length: int
@@ -118,6 +118,7 @@ def reduced(
             turns = record.length * teeth[0] / teeth[1]
             notices.append(Notice.of("few_turns_of_wheel", turns=turns))
     given = dict(zip(SHAFTS, held, strict=False))
+    straight, per_turn = record.straightened
     shafts = [shaft_average(record, shaft, teeth=teeth, turns=given.get(shaft)) for shaft in names]
     values: dict[Key, Floats] = {}
     for shaft in shafts:
@@ -132,7 +133,9 @@ def reduced(
         channels=record.channels,
         values=values,
         shafts=tuple(shafts),
-        impacts=impacts(record, teeth=teeth[0], mate=teeth[1], bearings=bearings, band=band),
+        impacts=heard(record, teeth=teeth[0], mate=teeth[1], bearings=bearings, band=band),
+        cepstrum=real_cepstrum(straight),
+        per_turn=per_turn,
         raw=raw_values(record),
         speed=record.speed,
         length=record.length,
@@ -527,13 +530,11 @@ def _groups(
     groups = {"indicators": indicators}
     for shaft in last.shafts:
         groups[shaft.name] = _turn(shaft, last.channels)
-    heard = last.impacts
-    clear = int(
-        np.argmax([np.max(spectrum.amplitude / spectrum.floor) for spectrum in heard.spectra])
-    )
-    spectrum = heard.spectra[clear]
-    shown = spectrum.position <= _highest_shown(heard)
-    half = heard.cepstrum.shape[-1] // 2
+    spectra = last.impacts.spectra
+    clear = int(np.argmax([np.max(each.amplitude / each.floor) for each in spectra]))
+    spectrum = spectra[clear]
+    shown = spectrum.position <= _highest_shown(last.impacts)
+    half = last.cepstrum.shape[-1] // 2
     count = min(half, MOST_DRAWN)
     groups["envelope"] = label(
         {
@@ -542,19 +543,19 @@ def _groups(
             "envelope_order": (("line",), spectrum.position[shown], "1", "order of the pinion"),
         }
     ).assign_attrs(channel=last.channels[clear])
-    quefrency = np.arange(1, count) / heard.per_turn
+    quefrency = np.arange(1, count) / last.per_turn
     groups["cepstrum"] = label(
         {
-            "cepstrum": (("channel", "quefrency"), heard.cepstrum[:, 1:count], "1", "cepstrum"),
+            "cepstrum": (("channel", "quefrency"), last.cepstrum[:, 1:count], "1", "cepstrum"),
             "turns": (("quefrency",), quefrency, "1", "turns of the pinion"),
         }
     ).assign_coords(channel=list(last.channels))
     return groups
 
 
-def _highest_shown(heard: Impacts) -> float:
+def _highest_shown(found: Impacts) -> float:
     """The order up to which an envelope is drawn: past the highest rate that was looked for."""
-    return max([10.0, *(1.5 * line.order for line in heard.lines if np.isfinite(line.order))])
+    return max([10.0, *(1.5 * line.order for line in found.lines if np.isfinite(line.order))])
 
 
 def _turn(shaft: ShaftAverage, channels: Sequence[str]) -> Dataset:
@@ -629,6 +630,7 @@ def _figures(
             {
                 "record": row.name,
                 **{name: getattr(line, name) for name in BearingLine.__dataclass_fields__},
+                "words": line.words,
                 "in_baseline": line.bearing + line.shaft + line.part in known,
             }
             for row in tested

@@ -129,8 +129,7 @@ def summary(figures: dict[str, Any]) -> str:
             f"{figures['averages']} of the baseline (95 %)."
         )
     heard = [
-        f"The envelope has a line of the {row['bearing']}'s {row['part']} ({row['shaft']}), which "
-        "the baseline has not."
+        f"T{row['words'][1:]}; the baseline has not."
         for row in figures["bearings"]
         if row["record"] == last["record"] and figures["baseline"] and not row["in_baseline"]
     ]
