@@ -17,7 +17,7 @@ from thermogear.measured.impacts import HIGHEST, BearingRates, Impacts, impacts
 from thermogear.measured.order_angle import order_angle
 from thermogear.measured.record import Notice, Record
 from thermogear.measured.reduction import LONGEST, require_teeth
-from thermogear.measured.shaft import given_shaft, locked, tracked_shaft
+from thermogear.measured.shaft import locked, tracked_shaft, usable_shaft
 from thermogear.measured.stated import expected_mesh, stated_gearing
 from thermogear.measured.turns import mesh_turns
 from thermogear.measured.units import kind_of
@@ -47,7 +47,8 @@ _ORDERS = np.arange(1.0, 11.0)  # of the mate, whose leakage is told
 class InAngle:
     """A record with the pinion's angle: ``table`` (channel, sample) in the channel's unit,
     ``turns`` of the pinion at each sample, ``origin`` of the angle, ``marked``: a tacho marks its
-    zero; ``noise`` of the angle [turns, rms]; ``withheld`` why a channel is not to be trusted."""
+    zero; ``mesh``: the order at which the mesh line stands; ``noise`` of the angle [turns, rms];
+    ``withheld`` why a channel is not to be trusted."""
 
     record: Record
     channels: tuple[str, ...]
@@ -55,6 +56,7 @@ class InAngle:
     turns: Floats = field(repr=False)
     origin: str
     marked: bool
+    mesh: float
     noise: float
     notices: tuple[Notice, ...]
     withheld: dict[str, str]
@@ -103,25 +105,19 @@ def in_angle(
     notices = list(record.notices)
     through = passed(chosen_channels(record, channels, notices), LONGEST)
     table = through.table
-    shaft = given_shaft(
-        record,
-        samples=table.shape[-1],
-        start=through.start,
-        pulses_per_turn=pulses_per_turn,
-        tacho=tacho,
+    shaft = usable_shaft(
+        record, through, pulses_per_turn=pulses_per_turn, tacho=tacho, notices=notices
     )
-    marked = shaft is not None and shaft.turns.size > 0 and not shaft.by_speed
-    if shaft is not None:
-        notices += shaft.told
-        shaft = shaft if shaft.turns.size else None
+    marked = shaft is not None and not shaft.by_speed
     if shaft is not None and shaft.by_speed:
         shaft = locked(shaft, table, teeth)
     if shaft is None and speed is None:
         shaft = tracked_shaft(table)
     if shaft is None:
         turns, first, noise = _by_mesh_line(record, through, teeth, speed, notices)
-        origin = "the mesh line"
+        origin, mesh = "the mesh line", float(teeth)
     else:
+        notices += shaft.told
         angle = order_angle(
             shaft, table, teeth=teeth, speed=speed, rate=record.rate, notices=notices
         )
@@ -130,6 +126,7 @@ def in_angle(
             field = "--speed" if shaft.line else "--pulses"
             raise InputError(field, "none", why=why, fix=f"give {field} and --teeth")
         turns, first, noise, origin = angle.turns, angle.first, angle.noise, shaft.origin
+        mesh = float(teeth) if angle.mesh is None else angle.mesh
     table = table[:, first : first + turns.size]
     notices += through.findings
     angle_record = InAngle(
@@ -139,6 +136,7 @@ def in_angle(
         turns=turns,
         origin=origin,
         marked=marked,
+        mesh=mesh,
         noise=noise,
         notices=tuple(dict.fromkeys(notices)),
         withheld=dict(through.withheld),

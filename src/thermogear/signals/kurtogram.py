@@ -108,8 +108,8 @@ def without_lines(x: ArrayLike, *, spacings: Sequence[float] = ()) -> Floats:
     """``x`` without its lines: bins of its DFT set to 0 at all multiples of each of ``spacings``
     [bins] and one beside, and where power is 12 times the floor's and three beside.
 
-    The floor is the median over 301 bins over ln 2, the mean power of Gaussian noise. A line that is
-    in no bin of its own leaves its ends: what falls off below 12 times the floor.
+    The floor is the median over 301 bins over ln 2, the mean power of Gaussian noise. A line in no
+    bin of its own leaves its ends, which are below 12 times the floor.
 
     >>> line = np.cos(0.125 * np.pi * np.arange(4096))
     >>> noise = np.random.default_rng(1).normal(size=4096)

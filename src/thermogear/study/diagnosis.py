@@ -62,8 +62,9 @@ CLEAR = 4.0
 off (chosen)."""
 ALIKE = 0.5
 """Relative difference of the delays of mesh harmonics up to which they are one delay (chosen)."""
-SPEEDS = 0.02
-"""Relative difference of speed from which a record is not like the baseline (chosen)."""
+UNLIKE = 0.02
+"""Relative difference of speed, or of the mesh line's order, from which a record is not like the
+baseline (chosen)."""
 MOST_DRAWN = 4096
 
 EITHER = "pinion or wheel"
@@ -87,6 +88,7 @@ class Reduced:
     per_turn: int
     raw: dict[str, Floats]
     speed: float
+    mesh: float
     length: int
     marked: bool
     origin: str
@@ -138,6 +140,7 @@ def reduced(
         per_turn=per_turn,
         raw=raw_values(record),
         speed=record.speed,
+        mesh=record.mesh,
         length=record.length,
         marked=record.marked,
         origin=record.origin,
@@ -295,16 +298,19 @@ def _beyond(values: Floats, near: Sequence[int]) -> float:
 
 Source = tuple[str, Callable[[], InAngle]]
 """The name of a record and what reads it into its angle."""
-NO_BASELINE, ONE_BASELINE, OTHER_LEVEL, CHANGED, OPEN, UNCHANGED = (
-    "no baseline", "one baseline record", "another level", "changed", "undecided", "no change",
+NO_BASELINE, ONE_BASELINE, CHANGED, OPEN, UNCHANGED = (
+    "no baseline", "one baseline record", "changed", "undecided", "no change",
 )  # fmt: skip
+OTHER_LEVEL, OTHER_SPEED, OTHER_GEARS = "another level", "another speed", "other gears"
+"""Of a record that is not like the baseline: nothing is decided."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Judged:
     """A tested record beside the limits: its ``medians`` by key, those ``beyond`` their limit and
     those ``above`` every healthy average, the ``verdict``, where the change is (``places``);
-    ``level``: its rms over that of the nearest healthy record, 1 within their range."""
+    ``unlike``: what of it is not the baseline's, its own value and the baseline's: of its level
+    rms over that of the nearest healthy record and 1, its speed [rad/s], its mesh line's order."""
 
     name: str
     medians: dict[Key, float]
@@ -312,7 +318,7 @@ class Judged:
     above: tuple[Key, ...]
     verdict: str
     places: tuple[Place, ...]
-    level: float
+    unlike: tuple[float, float]
 
 
 def diagnose(
@@ -401,13 +407,17 @@ def _judged(row: Reduced, limits: dict[Key, Healthy], base: Sequence[Reduced]) -
     decided = [key for key in limits if key[2] in DECIDED and key in medians]
     beyond = tuple(key for key in decided if medians[key] > limits[key].limit)
     above = tuple(key for key in decided if medians[key] > limits[key].greatest)
-    verdict, level = UNCHANGED if base else NO_BASELINE, _level(row, base)
+    verdict, unlike = UNCHANGED if base else NO_BASELINE, (_level(row, base), 1.0)
     if base and above:
         verdict = CHANGED if beyond else OPEN
-    if abs(np.log(level)) > np.log1p(LEVEL):
+    if abs(np.log(unlike[0])) > np.log1p(LEVEL):
         verdict = OTHER_LEVEL
     if len(base) == 1:
         verdict = ONE_BASELINE
+    for name, other in (("speed", OTHER_SPEED), ("mesh", OTHER_GEARS)) if base else ():
+        own, healthy = getattr(row, name), float(np.median([getattr(b, name) for b in base]))
+        if abs(own / healthy - 1.0) > UNLIKE:
+            verdict, unlike = other, (own, healthy)
     places = []
     for shaft in row.shafts:
         keys = [key for key in medians if key[1] == shaft.name]
@@ -425,7 +435,7 @@ def _judged(row: Reduced, limits: dict[Key, Healthy], base: Sequence[Reduced]) -
         above=above,
         verdict=verdict,
         places=tuple(places),
-        level=level,
+        unlike=unlike,
     )
 
 
@@ -474,12 +484,6 @@ def _notices(
             )
     if not last.marked:
         notices.append(Notice.of("tooth_one_arbitrary", origin=last.origin))
-    speed = float(np.median([row.speed for row in base])) if base else np.nan
-    for row in tested:
-        if abs(row.speed / speed - 1.0) > SPEEDS:
-            notices.append(
-                Notice.of("other_speed", record=row.name, speed=row.speed, baseline=speed)
-            )
     named: dict[Notice, list[str]] = {}
     for row in (*base, *tested):
         for notice in row.notices:
@@ -604,7 +608,7 @@ def _figures(
                 "record": each.name,
                 "verdict": each.verdict,
                 "shaft": changed_shaft(each, limits, row.shafts),
-                "level": each.level,
+                "unlike": list(each.unlike),
                 "beyond": len(each.beyond),
                 "above": len(each.above),
                 "indicators": len(family),

@@ -8,7 +8,14 @@ from typing import Any
 import numpy as np
 
 from thermogear.base.arrays import Dataset
-from thermogear.base.display import DEGREE, MILLIMETRE_PER_SECOND, PERCENT, exactly, number
+from thermogear.base.display import (
+    DEGREE,
+    MILLIMETRE_PER_SECOND,
+    PERCENT,
+    SPEED,
+    exactly,
+    number,
+)
 from thermogear.results.result import Result
 from thermogear.results.tables import rows_along
 from thermogear.views.columns import PLAIN, Column, Row, declared
@@ -106,6 +113,7 @@ def page(result: Result) -> Page:
 def summary(figures: dict[str, Any]) -> str:
     """The verdict on the last record in two or three sentences."""
     last = figures["verdicts"][-1]
+    own, healthy = last["unlike"]
     of = f"{last['above']} of {last['indicators']} indicators are above every healthy average"
     rest = {
         "no baseline": "No verdict: no indicator has a limit that holds for every machine. Give "
@@ -114,14 +122,20 @@ def summary(figures: dict[str, Any]) -> str:
         "much one assembly, or one day, differs from the next; give further ones.",
         "undecided": f"Undecided: {of}, and none is beyond what records of this baseline may "
         "scatter. Further healthy records narrow that.",
-        "another level": f"Undecided: its rms is {last['level']:.2g} times that of the baseline, "
-        "so that load, gain or noise are others. Give a baseline like it.",
+        "another level": f"Undecided: its rms is {own:.2g} times that of the baseline, so that "
+        "load, gain or noise are others. Give a baseline like it.",
+        "another speed": f"Undecided: it turns at {SPEED(own):.0f} rpm, the baseline at "
+        f"{SPEED(healthy):.0f} rpm, so that what differs is not the gears' alone. Give a baseline "
+        "like it.",
+        "other gears": f"Undecided: its mesh line is order {own:.4g} of the shaft, that of the "
+        f"baseline order {healthy:.4g}: other gears, or the tacho on another shaft. Give a "
+        "baseline of this machine.",
         "no change": "No change: no indicator is above every healthy average.",
         "changed": f"Changed: {last['beyond']} of {last['indicators']} indicators are beyond their "
         f"limits, most on the {last['shaft']}.",
     }[last["verdict"]]
     spare = ""
-    if len(figures["baseline"]) > 1 and last["verdict"] != "another level":
+    if len(figures["baseline"]) > 1 and last["verdict"] in ("undecided", "no change", "changed"):
         spare = (
             f" In at most {PERCENT(figures['alarm']):g} % of healthy records would any of them be "
             "beyond its limit, where logarithms scatter normally from record to record; fewer than "
