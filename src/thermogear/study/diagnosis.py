@@ -35,6 +35,7 @@ from thermogear.signals.indicators import (
     gear_indicators,
     moment_scatter,
     na4_of_moments,
+    order_amplitudes,
     tooth_deviations,
 )
 from thermogear.signals.kurtogram import real_cepstrum
@@ -65,6 +66,8 @@ ALIKE = 0.5
 UNLIKE = 0.02
 """Relative difference of speed, or of the mesh line's order, from which a record is not like the
 baseline (chosen)."""
+FIRST_HARMONIC = 0.1
+"""Share of a mesh harmonic that the first one has at least, where they are one gear's (chosen)."""
 MOST_DRAWN = 4096
 
 EITHER = "pinion or wheel"
@@ -140,7 +143,7 @@ def reduced(
         per_turn=per_turn,
         raw=raw_values(record),
         speed=record.speed,
-        mesh=record.mesh,
+        mesh=_mesh_order(record.mesh, shafts[0]),
         length=record.length,
         marked=record.marked,
         origin=record.origin,
@@ -148,6 +151,17 @@ def reduced(
         notices=tuple(notices),
         unit=record.record.channel(record.channels[0]).unit or "",
     )
+
+
+def _mesh_order(found: float, pinion: ShaftAverage) -> float:
+    """The order at which the mesh line was ``found``, or the teeth of the pinion where that is a
+    harmonic of theirs, and the first one is there."""
+    rank = round(found / pinion.teeth)
+    lines = order_amplitudes(pinion.average).max(axis=0)
+    harmonic = rank * pinion.teeth
+    if rank < 2 or harmonic > pinion.highest or abs(found / harmonic - 1.0) > UNLIKE:
+        return found
+    return float(pinion.teeth) if lines[pinion.teeth] > FIRST_HARMONIC * lines[harmonic] else found
 
 
 def with_na4(rows: Sequence[Reduced], healthy: int) -> list[Reduced]:
