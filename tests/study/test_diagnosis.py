@@ -76,8 +76,8 @@ def test_the_shaft_and_the_tooth_are_found(shaft: int, tooth: int) -> None:
     assert verdict(found) == ("changed", name)
     place = next(row for row in found.table("figures")["places"] if row["shaft"] == name)
     assert place["named"]
-    if shaft == 0:  # the tacho marks the pinion
-        assert place["tooth"] == tooth + 1
+    # tooth 1 is at the first pulse: there the pinion has turned once, the wheel by eleven teeth
+    assert place["tooth"] == (tooth - 11 * shaft) % PAIR.teeth[shaft] + 1
     assert all(change < 0 for change in place["amplitude"] if change)
 
 

@@ -31,8 +31,10 @@ from thermogear.measured.diagnosis import (
 from thermogear.measured.impacts import HEARD, BearingLine, BearingRates, Impacts
 from thermogear.results.result import Notice, Result, now
 from thermogear.signals.indicators import (
+    amplitude_half_width,
     demodulated_harmonics,
     gear_indicators,
+    modulation_depths,
     moment_scatter,
     na4_of_moments,
     order_amplitudes,
@@ -244,13 +246,22 @@ def trend_of(values: Sequence[float]) -> tuple[float, float]:
 # --- where ---------------------------------------------------------------------------------------
 
 
+MODULATION = (
+    "amplitude", "delay", "depth", "swing", "amplitude_half_width", "delay_half_width",
+)  # fmt: skip
+"""What of a :class:`Place` is told of each mesh harmonic."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Place:
     """The tooth (from 1) of a ``shaft`` where the difference signal of a ``channel`` is greatest.
 
     ``agreeing`` of ``averages`` have it there, by chance as many with ``chance``; of each mesh
     harmonic the change of ``amplitude`` [-] and the ``delay`` [pitches] there against the other
-    teeth (0 where it is less than 4 of their standard deviations). ``alike``: two harmonics or more
+    teeth (0 where it is less than 4 of their standard deviations), the ``depth`` [-] and the
+    ``swing`` [pitches] over the turn, and the 95 % half widths of all by noise
+    (:func:`~thermogear.signals.indicators.amplitude_half_width`): ``amplitude_half_width`` of
+    amplitude and depth, ``delay_half_width`` of delay and swing. ``alike``: two harmonics or more
     have one delay.
     """
 
@@ -262,6 +273,10 @@ class Place:
     chance: float
     amplitude: tuple[float, ...]
     delay: tuple[float, ...]
+    depth: tuple[float, ...]
+    swing: tuple[float, ...]
+    amplitude_half_width: tuple[float, ...]
+    delay_half_width: tuple[float, ...]
     alike: bool
 
 
@@ -279,14 +294,12 @@ def place_of(shaft: ShaftAverage, channel: int, name: str) -> Place:
     places = np.argmax(energy(shaft.blocks[channel]), axis=-1)
     agreeing = int(np.count_nonzero(places == tooth))
     near = [(tooth + off) % teeth for off in (-1, 0, 1)]
-    amplitudes, delays = [], []
-    for k in demodulated_harmonics(mesh_order=teeth, highest=shaft.highest):
-        a = demodulated(average, mesh_order=teeth, harmonic=k)
-        phase = np.angle(a * np.conj(a.mean())) / (2.0 * np.pi * k)
-        size = tooth_means(np.abs(a) / np.median(np.abs(a)), teeth=teeth) - 1.0
-        amplitudes.append(_beyond(size, near))
-        delays.append(_beyond(-tooth_means(phase, teeth=teeth), near))
-    seen = np.array([delay for delay in delays if delay != 0.0])
+    rows = [
+        _modulation(shaft, channel, k, near)
+        for k in demodulated_harmonics(mesh_order=teeth, highest=shaft.highest)
+    ]
+    harmonics = {name: tuple(row[name] for row in rows) for name in MODULATION}
+    seen = np.array([delay for delay in harmonics["delay"] if delay != 0.0])
     alike = seen.size >= 2 and bool(np.ptp(seen) <= ALIKE * np.abs(seen).max())
     return Place(
         channel=name,
@@ -295,10 +308,34 @@ def place_of(shaft: ShaftAverage, channel: int, name: str) -> Place:
         agreeing=agreeing,
         averages=places.size,
         chance=float(stats.binom.sf(agreeing - 1, places.size, 1.0 / teeth)),
-        amplitude=tuple(amplitudes),
-        delay=tuple(delays),
         alike=alike,
+        **harmonics,
     )
+
+
+def _modulation(
+    shaft: ShaftAverage, channel: int, harmonic: int, near: Sequence[int]
+) -> dict[str, float]:
+    """What of a :class:`Place` counts for each mesh harmonic, by :data:`MODULATION`."""
+    a, bands = (
+        demodulated(signals[channel], mesh_order=shaft.teeth, harmonic=harmonic)
+        for signals in (shaft.average, shaft.blocks)
+    )
+    size, pitch = np.abs(a), 2.0 * np.pi * harmonic
+    phase = np.angle(a * np.conj(a.mean())) / pitch
+    depth, swing = modulation_depths(a)
+    wide = float(
+        amplitude_half_width(bands, mesh_order=shaft.teeth, share=shaft.block_turns / shaft.turns)
+    )
+    values = (
+        _beyond(tooth_means(size / np.median(size), teeth=shaft.teeth) - 1.0, near),
+        _beyond(-tooth_means(phase, teeth=shaft.teeth), near),
+        float(depth),
+        float(swing) / pitch,
+        2.0 * wide / max(float(size.max() + size.min()), 1e-300),
+        wide / max(float(size.min()), 1e-300) / pitch,
+    )
+    return dict(zip(MODULATION, values, strict=True))
 
 
 def _beyond(values: Floats, near: Sequence[int]) -> float:

@@ -196,13 +196,21 @@ def _tables(result: Result, figures: dict[str, Any], *, last: bool = False) -> d
             "The tooth at which the difference signal is greatest, in how many averages, and the "
             "chance of as many in noise. A sound gear has such a tooth, too: teeth differ. It is "
             "a fault's only where the verdict names its shaft. Change of amplitude and delay "
-            "there, of mesh harmonics 1, 2, 3 (0: not clear of the other teeth).",
+            "there, of mesh harmonics 1, 2, 3 (0: not clear of the other teeth), and modulation of "
+            "amplitude and timing over the turn; after ± what noise may make of either, 95 %.",
             (
                 record,
                 Column("shaft", "shaft"),
                 Column("channel", "channel"),
-                Column("amplitude [%]", lambda row: _listed(PERCENT(row["amplitude"]))),
-                Column("delay [% of a pitch]", lambda row: _listed(PERCENT(row["delay"]))),
+                *(
+                    Column(head, partial(_listed, name=name, wide=f"{wide}_half_width"))
+                    for head, name, wide in (
+                        ("amplitude [%]", "amplitude", "amplitude"),
+                        ("delay [% of a pitch]", "delay", "delay"),
+                        ("modulation [%]", "depth", "amplitude"),
+                        ("of timing [% of a pitch]", "swing", "delay"),
+                    )
+                ),
                 Column("tooth", "tooth"),
                 Column("averages", lambda row: f"{row['agreeing']} of {row['averages']}"),
                 Column("chance", "chance", 2),
@@ -333,8 +341,10 @@ def _value(row: Row, name: str) -> float:
     return DEGREE(value) if row["indicator"] == "phase_depth" else value
 
 
-def _listed(values: Any) -> str:
-    return ", ".join(exactly(float(value), 2) for value in values) or "–"
+def _listed(row: Row, name: str, wide: str) -> str:
+    pairs = zip(row[name], row[wide], strict=True)
+    shown = [f"{exactly(PERCENT(v), 2)} ± {exactly(PERCENT(w), 1)}" for v, w in pairs]
+    return ", ".join(shown) or "–"
 
 
 # --- pictures -----------------------------------------------------------------------------------
