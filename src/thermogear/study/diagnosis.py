@@ -188,12 +188,17 @@ def with_na4(rows: Sequence[Reduced], healthy: int) -> list[Reduced]:
 
 @dataclass(frozen=True, kw_only=True)
 class Healthy:
-    """What a baseline says of one indicator: the ``least`` and the ``greatest`` of its averages,
-    and the ``limit`` (infinite where one record tells no scatter from record to record)."""
+    """What a baseline says of one indicator: the ``least``, the ``median`` and the ``greatest`` of
+    its averages, and the ``limit`` (infinite where one record tells no scatter between records)."""
 
     least: float
+    median: float
     greatest: float
     limit: float
+
+
+UNKNOWN = Healthy(least=np.nan, median=np.nan, greatest=np.nan, limit=np.nan)
+"""Without a baseline."""
 
 
 def healthy_limit(baseline: Sequence[Floats], *, family: int, alarm: float = ALARM) -> Healthy:
@@ -215,7 +220,7 @@ def healthy_limit(baseline: Sequence[Floats], *, family: int, alarm: float = ALA
     known = [np.median(row[np.isfinite(row)]) for row in baseline if np.isfinite(row).any()]
     medians = np.array([median for median in known if median > 0.0])
     if not medians.size:
-        return Healthy(least=np.nan, greatest=np.nan, limit=np.nan)
+        return UNKNOWN
     limit = np.inf
     if medians.size > 1:
         from scipy import stats
@@ -223,8 +228,8 @@ def healthy_limit(baseline: Sequence[Floats], *, family: int, alarm: float = ALA
         logs, count = np.log(medians), medians.size
         t = float(stats.t.isf(alarm / family, count - 1))
         limit = float(np.exp(logs.mean() + t * logs.std(ddof=1) * np.sqrt(1.0 + 1.0 / count)))
-    greatest = float(pooled.max())
-    return Healthy(least=float(pooled.min()), greatest=greatest, limit=max(limit, greatest))
+    least, middle, greatest = (float(np.quantile(pooled, share)) for share in (0.0, 0.5, 1.0))
+    return Healthy(least=least, median=middle, greatest=greatest, limit=max(limit, greatest))
 
 
 def trend_of(values: Sequence[float]) -> tuple[float, float]:
@@ -549,12 +554,7 @@ def _groups(
     """Group ``indicators`` (record, row), and of the last record each shaft's turn, the envelope
     that is clearest, and the cepstra."""
     keys = list(judged[-1].medians)
-    blank = Healthy(least=np.nan, greatest=np.nan, limit=np.nan)
-    healthy = [limits.get(key, blank) for key in keys]
-    bounds = [
-        scatter.limit if key[2] in DECIDED else np.nan
-        for key, scatter in zip(keys, healthy, strict=True)
-    ]
+    healthy = [limits.get(key, UNKNOWN) for key in keys]
     value = [[each.medians.get(key, np.nan) for key in keys] for each in judged]
     beyond = [[float(key in each.beyond) for key in keys] for each in judged]
     last = tested[-1]
@@ -562,19 +562,19 @@ def _groups(
         {
             "indicator_value": (("record", "row"), value, "", "median of the averages"),
             "indicator_beyond": (("record", "row"), beyond, "1", "beyond its limit"),
-            "healthy_least": (
+            **{
+                f"healthy_{name}": (("row",), [getattr(h, name) for h in healthy], "", name)
+                for name in ("least", "median", "greatest")
+            },
+            "indicator_limit": (
                 ("row",),
-                [scatter.least for scatter in healthy],
+                [
+                    scatter.limit if key[2] in DECIDED else np.nan
+                    for key, scatter in zip(keys, healthy, strict=True)
+                ],
                 "",
-                "of the baseline",
+                "limit",
             ),
-            "healthy_greatest": (
-                ("row",),
-                [scatter.greatest for scatter in healthy],
-                "",
-                "of the baseline",
-            ),
-            "indicator_limit": (("row",), bounds, "", "limit"),
         }
     ).assign_coords(
         record=[row.name for row in tested],

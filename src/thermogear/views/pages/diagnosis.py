@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
@@ -17,7 +18,7 @@ from thermogear.base.display import (
     number,
 )
 from thermogear.results.result import Result
-from thermogear.results.tables import rows_along
+from thermogear.results.tables import csv_text, rows_along
 from thermogear.views.columns import PLAIN, Column, Row, declared
 from thermogear.views.page import Page, Pictures, Section, Table, Text
 from thermogear.views.picture import Axis, Panel, Picture
@@ -43,7 +44,8 @@ WORDS = {
     "crest": "crest factor",
 }
 """Indicators as a reader knows them."""
-_UNITS = {"rms", "residual_rms", "sideband_index"}
+OPEN = ("verdict", "where", "simulated")
+"""Tables that are unfolded."""
 _ORDERS = 8  # of those removed that are told
 
 
@@ -94,7 +96,12 @@ def page(result: Result) -> Page:
     sections = [
         Section("pictures", "In pictures", pictures.take(), folded=False),
         *(
-            Section(name, name.capitalize(), [table], folded=name not in ("verdict", "where"))
+            Section(
+                name,
+                name.capitalize(),
+                [table],
+                folded=name not in ("verdict", "where", "simulated"),
+            )
             for name, table in tables.items()
         ),
     ]
@@ -105,6 +112,12 @@ def page(result: Result) -> Page:
         numbers=lambda: {
             **figures,
             "indicators": rows_along(result.groups["indicators"], "record", "row"),
+            "simulated": _simulated(result),
+        },
+        tables=lambda: {
+            f"csv/{name}.csv": csv_text(data.to_dataframe())
+            for name, data in result.groups.items()
+            if name == "simulated"
         },
         told=lambda: [Text(summary(figures)), *_tables(result, figures, last=True).values()],
     )
@@ -242,6 +255,26 @@ def _tables(result: Result, figures: dict[str, Any], *, last: bool = False) -> d
             names=4,
             marked=lambda row: bool(row["indicator_beyond"]),
         ),
+        "simulated": declared(
+            "The same of the computed acceleration of the teeth, with the faults of the case and "
+            "without, beside what was measured: compare the changes. No verdict is made of them.",
+            (
+                Column("shaft", "shaft"),
+                Column("indicator", lambda row: WORDS[row["indicator"]]),
+                Column("channel", "channel"),
+                *(
+                    Column(f"{side} {name}", partial(_value, name=f"{side}_{name}"), 4, PLAIN)
+                    for side, other in (("measured", "suspect"), ("simulated", "fault"))
+                    for name in ("healthy", other)
+                ),
+                *(
+                    Column(f"change {side}", f"{side}_change", "+.3g", PERCENT)
+                    for side in ("measured", "simulated")
+                ),
+            ),
+            _simulated(result),
+            names=3,
+        ),
         "bearings": declared(
             "Lines of the envelope within 2 % of a bearing's rate; orders of the bearing's shaft.",
             (
@@ -308,6 +341,12 @@ def _tables(result: Result, figures: dict[str, Any], *, last: bool = False) -> d
         ),
     }
     return {name: table for name, table in listed.items() if table.rows}
+
+
+def _simulated(result: Result) -> Sequence[Row]:
+    """Rows of the group ``simulated``, which a comparison alone has."""
+    data = result.group("simulated")
+    return () if data is None else rows_along(data, "row")
 
 
 def _chosen(row: Row) -> str:
