@@ -256,9 +256,8 @@ def test_faults_are_written_and_refused_under_their_field(
     assert main(["new", *options(NEEDED), *crack, *spall, "-o", str(path)]) == 0
     case = load_case(path)
     assert isinstance(case, GearCase)
-    assert case.faults() == [
-        "crack of 2 mm at 45 deg, pinion tooth 3",
-        "spall of 2 mm x 0.1 mm, 0.5 of the face width, wheel tooth 1",
-    ]
+    kinds = [(fault.kind, fault.gear, fault.place) for fault in case.file.faults]
+    assert kinds == [("crack", "pinion", 2), ("spall", "wheel", 0)]
+    assert (case.file.faults[0].depth, case.file.faults[1].width_share) == (2e-3, 0.5)
     assert main(["new", *options(NEEDED), "--fault", "crak, gear=pinion"]) == 2
     assert "faults[0].kind: got 'crak'" in capsys.readouterr().err

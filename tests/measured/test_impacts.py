@@ -67,7 +67,7 @@ def test_measure_names_a_defect_in_turns_and_hertz() -> None:
     found = measured(seed, bearing, part)
     speed = record(seed, bearing, part)[1]
     line = found.defects[0]
-    assert (line.part, line.bearing, line.shaft) == (part, bearing, "first shaft")
+    assert (line.part, line.bearing) == (part, bearing)
     assert line.order == pytest.approx(order(bearing, part), rel=0.02)
     told = figures(found)
     assert line.words in told["evidence"]

@@ -59,7 +59,7 @@ def test_modulation_of_known_depth_is_within_its_interval(noise: float) -> None:
     missed, widths = np.zeros(2), []
     for _ in range(SETS):
         place = found(drawn, noise, 0.0, m, b)
-        off = np.abs(place.depth[0] - m), np.abs(place.swing[0] - b)
+        off = np.abs(place.depth[0] - m), np.abs(place.timing[0] - b)
         widths.append((place.amplitude_half_width[0], place.delay_half_width[0]))
         missed += np.array(off) > widths[-1]
     print(f"noise {noise:g}: missed {missed} of {SETS}, half widths {np.mean(widths, axis=0)}")

@@ -47,7 +47,7 @@ _ORDERS = np.arange(1.0, 11.0)  # of the mate, whose leakage is told
 class InAngle:
     """A record with the pinion's angle: ``table`` (channel, sample) in the channel's unit,
     ``turns`` of the pinion at each sample, ``origin`` of the angle, ``marked``: a tacho marks its
-    zero; ``mesh``: the order at which the mesh line stands; ``noise`` of the angle [turns, rms];
+    zero; ``mesh``: the order of the mesh line; ``noise`` of the angle [turns, rms];
     ``withheld`` why a channel is not to be trusted."""
 
     record: Record

@@ -252,7 +252,7 @@ def trend_of(values: Sequence[float]) -> tuple[float, float]:
 
 
 MODULATION = (
-    "amplitude", "delay", "depth", "swing", "amplitude_half_width", "delay_half_width",
+    "amplitude", "delay", "depth", "timing", "amplitude_half_width", "delay_half_width",
 )  # fmt: skip
 """What of a :class:`Place` is told of each mesh harmonic."""
 
@@ -264,9 +264,9 @@ class Place:
     ``agreeing`` of ``averages`` have it there, by chance as many with ``chance``; of each mesh
     harmonic the change of ``amplitude`` [-] and the ``delay`` [pitches] there against the other
     teeth (0 where it is less than 4 of their standard deviations), the ``depth`` [-] and the
-    ``swing`` [pitches] over the turn, and the 95 % half widths of all by noise
+    modulation of ``timing`` [pitches] over the turn, and the 95 % half widths of all by noise
     (:func:`~thermogear.signals.indicators.amplitude_half_width`): ``amplitude_half_width`` of
-    amplitude and depth, ``delay_half_width`` of delay and swing. ``alike``: two harmonics or more
+    amplitude and depth, ``delay_half_width`` of delay and timing. ``alike``: two harmonics or more
     have one delay.
     """
 
@@ -279,7 +279,7 @@ class Place:
     amplitude: tuple[float, ...]
     delay: tuple[float, ...]
     depth: tuple[float, ...]
-    swing: tuple[float, ...]
+    timing: tuple[float, ...]
     amplitude_half_width: tuple[float, ...]
     delay_half_width: tuple[float, ...]
     alike: bool
@@ -328,7 +328,7 @@ def _modulation(
     )
     size, pitch = np.abs(a), 2.0 * np.pi * harmonic
     phase = np.angle(a * np.conj(a.mean())) / pitch
-    depth, swing = modulation_depths(a)
+    depth, turned = modulation_depths(a)
     wide = float(
         amplitude_half_width(bands, mesh_order=shaft.teeth, share=shaft.block_turns / shaft.turns)
     )
@@ -336,7 +336,7 @@ def _modulation(
         _beyond(tooth_means(size / np.median(size), teeth=shaft.teeth) - 1.0, near),
         _beyond(-tooth_means(phase, teeth=shaft.teeth), near),
         float(depth),
-        float(swing) / pitch,
+        float(turned) / pitch,
         2.0 * wide / max(float(size.max() + size.min()), 1e-300),
         wide / max(float(size.min()), 1e-300) / pitch,
     )

@@ -221,7 +221,7 @@ def _tables(result: Result, figures: dict[str, Any], *, last: bool = False) -> d
                         ("amplitude [%]", "amplitude", "amplitude"),
                         ("delay [% of a pitch]", "delay", "delay"),
                         ("modulation [%]", "depth", "amplitude"),
-                        ("of timing [% of a pitch]", "swing", "delay"),
+                        ("of timing [% of a pitch]", "timing", "delay"),
                     )
                 ),
                 Column("tooth", "tooth"),
