@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
+from scipy import fft
 
 from thermogear.base.arrays import Floats
 from thermogear.signals.kurtogram import (
@@ -138,8 +139,9 @@ def impacts(
     Raises InputError for a record that is too short for a band.
     """
     bands, chosen, spectra = [], [], []
-    turns = straight.shape[-1] // per_turn
-    for values in straight:
+    # a few turns fewer make a length that the transform likes
+    turns = int(fft.prev_fast_len(straight.shape[-1] // per_turn, real=True))
+    for values in straight[:, : turns * per_turn]:
         random = without_lines(values, spacings=[turns * ratio for ratio in ratios.values()])
         part = random[:BAND_SAMPLES]
         wide = [

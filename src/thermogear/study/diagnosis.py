@@ -28,7 +28,7 @@ from thermogear.measured.diagnosis import (
     raw_values,
     shaft_average,
 )
-from thermogear.measured.impacts import HEARD, BearingLine, BearingRates, Impacts
+from thermogear.measured.impacts import BAND_SAMPLES, HEARD, BearingLine, BearingRates, Impacts
 from thermogear.results.result import Notice, Result, now
 from thermogear.signals.indicators import (
     amplitude_half_width,
@@ -141,7 +141,7 @@ def reduced(
         values=values,
         shafts=tuple(shafts),
         impacts=heard(record, teeth=teeth[0], mate=teeth[1], bearings=bearings, band=band),
-        cepstrum=real_cepstrum(straight),
+        cepstrum=real_cepstrum(straight[:, :BAND_SAMPLES]),
         per_turn=per_turn,
         raw=raw_values(record),
         speed=record.speed,
