@@ -16,18 +16,16 @@ from thermogear.measured.record import Channel, Record
 from thermogear.measured.reduction import Measurement, measure
 from thermogear.signals.kurtogram import without_lines
 from thermogear.signals.orders import resample_by_angle
+from thermogear.signals.tracking import samples_per_turn
 from thermogear.study.bearing_rates import bearing_rates
 
 
 def heard(x: np.ndarray, speed: float, bearing: str) -> Impacts:
     """By the known angle of the shaft."""
     angle = speed / RATE * np.arange(x.size)
-    straight = resample_by_angle(x[None], angle, samples_per_turn=1024)
+    straight = resample_by_angle(x[None], angle, samples_per_turn=samples_per_turn(angle))
     rates = [("first shaft", bearing_rates([bearing])[0])]
-    top = 0.39 * RATE / speed / 1024
-    return impacts(
-        straight, 1024, top=top, channels=["a"], ratios={"first shaft": 1.0}, bearings=rates
-    )
+    return impacts(straight, angle, channels=["a"], ratios={"first shaft": 1.0}, bearings=rates)
 
 
 def measured(seed: int, bearing: str, part: str, *, known: bool = True) -> Measurement:

@@ -254,19 +254,9 @@ def compare(
         )
     if baselines:
         lines = {"tolerance": tolerances, "samples": samples, "at": at, "u-data": u_data}
-        lines |= {name: options[name] for name in _OF_LINES}
-        for name in (name for name, given in lines.items() if given):
-            why = "beside --baseline indicators are compared, not lines"
-            option, given = f"--{name.replace('_', '-')}", lines[name]
-            got = ", ".join(map(str, given)) if isinstance(given, tuple) else given
-            raise InputError(option, got, why=why, fix="leave one out")
-        if not computes(case):
-            why = "it is no case, and has no motion with faults"
-            raise InputError("CASE", case, why=why, fix="name the case itself")
-        options["speed"] = next(iter(speed), None) or case_speed(read)
-        delivery.deliver(
-            partial(_faults, read, measured, baselines, options), output, as_json=as_json
-        )
+        options["speed"] = next(iter(speed), None)
+        faults = partial(_faults, read, measured, baselines, lines, options)
+        delivery.deliver(faults, output, as_json=as_json)
         return
     if samples is not None and not tolerances:
         raise InputError("--samples", samples, why="beside no --tolerance", fix="leave it out")
@@ -317,6 +307,7 @@ def _faults(
     case: Any,
     records: tuple[str, ...],
     baseline: tuple[str, ...],
+    lines: dict[str, Any],
     options: dict[str, Any],
     report: Progress,
 ) -> Result:
@@ -325,7 +316,17 @@ def _faults(
     from thermogear.study.bearing_rates import bearing_rates
     from thermogear.study.compare_faults import compare_faults
 
+    for name, given in (lines | {name: options[name] for name in _OF_LINES}).items():
+        if given:
+            got = ", ".join(map(str, given)) if isinstance(given, tuple) else given
+            why = "beside --baseline indicators are compared, not lines"
+            option = f"--{name.replace('_', '-')}"
+            raise InputError(option, got, why=why, fix="leave one out")
+    if isinstance(case, str):
+        why = "it is no case, and has no motion with faults"
+        raise InputError("CASE", case, why=why, fix="name the case itself")
     pair = gear_case(case)
+    options["speed"] = options["speed"] or case_speed(case)
     return compare_faults(
         pair,
         *in_angles(records, baseline, pair.pair.pinion.teeth, options),

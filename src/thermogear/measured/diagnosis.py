@@ -13,7 +13,7 @@ from thermogear.base.errors import InputError
 from thermogear.base.units import RPM
 from thermogear.measured.choosing import chosen_channels
 from thermogear.measured.gate import Passed, passed, require_samples, require_sampling_rate
-from thermogear.measured.impacts import HIGHEST, BearingRates, Impacts, impacts
+from thermogear.measured.impacts import HIGHEST
 from thermogear.measured.order_angle import order_angle
 from thermogear.measured.record import Notice, Record
 from thermogear.measured.reduction import LONGEST, require_teeth
@@ -253,29 +253,6 @@ def shaft_average(
         highest=min(int(HIGHEST / fastest), per_turn // 2 - 1),
         step=None if mate is None else shared_step(mesh_order=shaft_teeth, mate_order=mate),
         leakage=tuple(leakage),
-    )
-
-
-def heard(
-    record: InAngle,
-    *,
-    teeth: int,
-    mate: int | None,
-    bearings: Sequence[tuple[str, BearingRates]] = (),
-    band: tuple[float, float] | None = None,
-) -> Impacts:
-    """What gears and shafts leave of a record, over the pinion's angle."""
-    straight, per_turn = record.straightened
-    # a band's edges are where the converter's filter ends, not the resampled record
-    top = min(0.5, HIGHEST / float(np.percentile(np.diff(record.turns), 99.0)) / per_turn)
-    return impacts(
-        straight,
-        per_turn,
-        top=top,
-        channels=record.channels,
-        ratios={PINION: 1.0, WHEEL: 1.0 if mate is None else teeth / mate},
-        bearings=bearings,
-        band=band,
     )
 
 

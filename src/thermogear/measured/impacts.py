@@ -21,6 +21,7 @@ from thermogear.signals.kurtogram import (
     kurtogram,
     without_lines,
 )
+from thermogear.signals.tracking import samples_per_turn
 
 HEARD = 0.01
 """Chance of a line of noise up to which it is told (chosen)."""
@@ -122,9 +123,8 @@ class Impacts:
 
 def impacts(
     straight: Floats,
-    per_turn: int,
+    angle: Floats,
     *,
-    top: float,
     channels: Sequence[str],
     ratios: Mapping[str, float],
     bearings: Sequence[tuple[str, BearingRates]] = (),
@@ -132,13 +132,16 @@ def impacts(
 ) -> Impacts:
     """Kurtogram and squared envelope spectrum of what gears and shafts leave.
 
-    ``straight`` (channel, sample) over whole turns of a shaft, ``per_turn`` samples each; ``top``
-    [cycles/sample] up to which it is known; ``ratios``: turns of each shaft in one of that angle.
-    Orders of these shafts and all else that is a line are set to 0. ``bearings``: (shaft, rates);
-    ``band`` [orders] to demodulate in place of the kurtogram's.
+    ``straight`` (channel, sample) over whole turns of a shaft, of a record whose samples have the
+    ``angle`` [turns]; ``ratios``: turns of each shaft in one of that angle. Orders of these shafts
+    and all else that is a line are set to 0. ``bearings``: (shaft, rates); ``band`` [orders] to
+    demodulate in place of the kurtogram's.
     Raises InputError for a record that is too short for a band.
     """
     bands, chosen, spectra = [], [], []
+    per_turn = samples_per_turn(angle)
+    # a band's edges are where the converter's filter ends, not the resampled record
+    top = min(0.5, HIGHEST / float(np.percentile(np.diff(angle), 99.0)) / per_turn)
     # a few turns fewer make a length that the transform likes
     turns = int(fft.prev_fast_len(straight.shape[-1] // per_turn, real=True))
     for values in straight[:, : turns * per_turn]:

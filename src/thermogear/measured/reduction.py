@@ -31,10 +31,8 @@ from thermogear.measured.gearing import Gearing
 from thermogear.measured.impacts import (
     BAND_SAMPLES,
     HEARD,
-    HIGHEST,
     BearingLine,
     BearingRates,
-    Impacts,
     Swelling,
     clearest_line,
     impacts,
@@ -262,12 +260,7 @@ def measure(
     lines = [of_velocity(line, record.channel(line.channel)) for line in lines]
     notices += [*_hidden(lines), *_untold(record, chosen, sensor_tolerance)]
     notices += _filtered(wanted, rate, mesh, gearing)
-    shaft = gearing.shaft if gearing is not None else None
-    shaft = _turns(record, speed) if shaft is None else shaft
-    heard = _impacts(through, gearing, turns, shaft, bearings)
-    names = [one.name for one in chosen]
-    known = None if record.rate_doubt else record.rate
-    clear = clearest_line(heard, names, shaft=shaft, rate=known) if heard and shaft else None
+    swellings, defects = _heard(record, through, gearing, turns, speed, bearings)
     return Measurement(
         record,
         tuple(c.name for c in chosen),
@@ -281,8 +274,8 @@ def measure(
         tuple(through.findings),
         table,
         given=given,
-        swellings=() if clear is None else (clear,),
-        defects=tuple(line for line in heard.lines if line.chance <= HEARD) if heard else (),
+        swellings=swellings,
+        defects=defects,
     )
 
 
@@ -307,34 +300,41 @@ def _turns(record: Record, speed: float | None) -> float | None:
     return None if speed is None or not record.rate else speed / (2.0 * np.pi * record.rate)
 
 
-def _impacts(
+def _heard(
+    record: Record,
     through: Passed,
     gearing: Gearing | None,
     turns: MeshTurns | None,
-    shaft: float | None,
+    speed: float | None,
     bearings: Sequence[BearingRates],
-) -> Impacts | None:
-    """What is no line over the angle of a ``shaft`` [turns/sample], of the first samples; None
-    without a shaft and for a record too short to have a band."""
+) -> tuple[tuple[Swelling, ...], tuple[BearingLine, ...]]:
+    """The clearest line of the envelope over the angle of the shaft, and those of ``bearings``, of
+    the first samples; none without its speed, by the lines or as said [rad/s], and for a record too
+    short to have a band."""
+    shaft = gearing.shaft if gearing is not None else None
+    shaft = _turns(record, speed) if shaft is None else shaft
     if shaft is None:
-        return None
+        return (), ()
     first, angle = 0, shaft * np.arange(min(BAND_SAMPLES, through.table.shape[-1]))
     if gearing is not None and turns is not None and turns.turning is not None:
         first, cycles = turns.turning.dropped, turns.turning.cycles[:BAND_SAMPLES]
         angle = cycles * (shaft / gearing.mesh_frequency)
-    table = through.table[:, first : first + angle.size]
+    channels = [channel.name for channel in through.channels]
     try:
-        per_turn = samples_per_turn(angle)
-        return impacts(
+        table, per_turn = through.table[:, first : first + angle.size], samples_per_turn(angle)
+        found = impacts(
             resample_by_angle(table, angle, samples_per_turn=per_turn),
-            per_turn,
-            top=min(0.5, HIGHEST / float(np.percentile(np.diff(angle), 99.0)) / per_turn),
-            channels=[channel.name for channel in through.channels],
+            angle,
+            channels=channels,
             ratios={FIRST: 1.0},
             bearings=[(FIRST, rates) for rates in bearings],
         )
     except InputError:
-        return None
+        return (), ()
+    rate = None if record.rate_doubt else record.rate
+    clear = clearest_line(found, channels, shaft=shaft, rate=rate)
+    heard = tuple(line for line in found.lines if line.chance <= HEARD)
+    return () if clear is None else (clear,), heard
 
 
 def _require(

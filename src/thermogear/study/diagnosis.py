@@ -24,11 +24,17 @@ from thermogear.measured.diagnosis import (
     WHEEL,
     InAngle,
     ShaftAverage,
-    heard,
     raw_values,
     shaft_average,
 )
-from thermogear.measured.impacts import BAND_SAMPLES, HEARD, BearingLine, BearingRates, Impacts
+from thermogear.measured.impacts import (
+    BAND_SAMPLES,
+    HEARD,
+    BearingLine,
+    BearingRates,
+    Impacts,
+    impacts,
+)
 from thermogear.results.result import Notice, Result, now
 from thermogear.signals.indicators import (
     amplitude_half_width,
@@ -94,7 +100,6 @@ class Reduced:
     raw: dict[str, Floats]
     speed: float
     mesh: float
-    length: int
     marked: bool
     origin: str
     noise: float
@@ -140,13 +145,19 @@ def reduced(
         channels=record.channels,
         values=values,
         shafts=tuple(shafts),
-        impacts=heard(record, teeth=teeth[0], mate=teeth[1], bearings=bearings, band=band),
+        impacts=impacts(
+            straight,
+            record.turns,
+            channels=record.channels,
+            ratios={PINION: 1.0, WHEEL: teeth[0] / (teeth[1] or teeth[0])},
+            bearings=bearings,
+            band=band,
+        ),
         cepstrum=real_cepstrum(straight[:, :BAND_SAMPLES]),
         per_turn=per_turn,
         raw=raw_values(record),
         speed=record.speed,
         mesh=_mesh_order(record.mesh, shafts[0]),
-        length=record.length,
         marked=record.marked,
         origin=record.origin,
         noise=record.noise,
