@@ -11,13 +11,12 @@ from scipy import fft, ndimage, special
 
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
-from thermogear.signals.spectra import finite_record
+from thermogear.signals.spectra import finite_record, running_median
 
 FEWEST = 128
 """Complex samples of a band at least: fewer have a kurtosis of more noise than 0.18 (chosen, as the
 levels of Antoni's fast kurtogram end, log2 N - 7)."""
 _BESIDE = 101  # bins over which the floor of an envelope spectrum is taken
-_FLOOR = 301  # bins over which the floor beside a line is taken
 _LINE = 12.0  # times the floor's power: a line, which one bin of noise in 160 000 is (chosen)
 _LOBE = 3  # bins to each side that a line fills
 
@@ -119,10 +118,7 @@ def without_lines(x: ArrayLike, *, spacings: Sequence[float] = ()) -> Floats:
     values = finite_record(x)
     lines = fft.rfft(values)
     power = np.abs(lines) ** 2
-    reach = min(_FLOOR, power.size)
-    starts = np.append(np.arange(power.size // reach) * reach, power.size - reach)
-    medians = np.median(power[starts[:, None] + np.arange(reach)], axis=1) / np.log(2.0)
-    floor = np.interp(np.arange(power.size), starts + 0.5 * reach, medians)
+    floor = running_median(power[None])[0] / np.log(2.0)
     high = (power > _LINE * floor).astype(float)
     lines[np.convolve(high, np.ones(2 * _LOBE + 1), mode="same") > 0.0] = 0.0
     for spacing in spacings:
