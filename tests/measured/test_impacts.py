@@ -25,7 +25,9 @@ def heard(x: np.ndarray, speed: float, bearing: str) -> Impacts:
     angle = speed / RATE * np.arange(x.size)
     straight = resample_by_angle(x[None], angle, samples_per_turn=samples_per_turn(angle))
     rates = [("first shaft", bearing_rates([bearing])[0])]
-    return impacts(straight, angle, channels=["a"], ratios={"first shaft": 1.0}, bearings=rates)
+    return impacts(
+        straight, angle=angle, channels=["a"], ratios={"first shaft": 1.0}, bearings=rates
+    )
 
 
 def measured(seed: int, bearing: str, part: str, *, known: bool = True) -> Measurement:

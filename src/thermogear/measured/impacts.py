@@ -123,8 +123,8 @@ class Impacts:
 
 def impacts(
     straight: Floats,
-    angle: Floats,
     *,
+    angle: Floats,
     channels: Sequence[str],
     ratios: Mapping[str, float],
     bearings: Sequence[tuple[str, BearingRates]] = (),

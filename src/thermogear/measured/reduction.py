@@ -324,7 +324,7 @@ def _heard(
         table, per_turn = through.table[:, first : first + angle.size], samples_per_turn(angle)
         found = impacts(
             resample_by_angle(table, angle, samples_per_turn=per_turn),
-            angle,
+            angle=angle,
             channels=channels,
             ratios={FIRST: 1.0},
             bearings=[(FIRST, rates) for rates in bearings],

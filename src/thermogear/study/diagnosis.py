@@ -147,7 +147,7 @@ def reduced(
         shafts=tuple(shafts),
         impacts=impacts(
             straight,
-            record.turns,
+            angle=record.turns,
             channels=record.channels,
             ratios={PINION: 1.0, WHEEL: teeth[0] / (teeth[1] or teeth[0])},
             bearings=bearings,
