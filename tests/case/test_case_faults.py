@@ -84,10 +84,14 @@ def test_a_fault_of_no_size_is_the_sound_pair_to_the_last_digit() -> None:
         'kind = "crack"\ngear = "pinion"\ndepth = "0 mm"',
         'kind = "chip"\ngear = "wheel"\nheight = "0 mm"',
         'kind = "spall"\ngear = "wheel"\nlength = "1 mm"\ndepth = "0 mm"',
+        'kind = "spall"\ngear = "wheel"\nlength = "1 mm"\ndepth = "1 mm"\nwidth_share = 0',
         'kind = "wear"\ngear = "wheel"\ncoefficient = "1e-17 m^2/N"\nrevolutions = 0',
+        'kind = "pitch"\ngear = "wheel"\namount = "0 um"',
+        'kind = "eccentricity"\ngear = "pinion"\namount = "0 um"',
     )
     sound = gear_case(load_case(TEXT))
     assert none.deviations == ()
+    assert none.faults() == none.all_faults == [*fault_notices(none)] == []
     model = sound.models[0]
     one, two = (UNDEFORMED.cycle(case, model) for case in (none, sound))
     assert one.identical(two)
@@ -195,11 +199,14 @@ def test_refusals_are_one_line_under_the_field(fault: str, refused: str) -> None
 
 
 def test_one_crack_and_one_break_of_a_tooth() -> None:
-    with pytest.raises(InputError, match=r"faults\[1\]: got a second crack of tooth 3 of the pin"):
+    with pytest.raises(InputError, match=r"faults\[1\]: got crack of tooth 3 of the pinion"):
         faulty(of("crack"), of("crack"))
     gone = 'kind = "missing"\ngear = "wheel"\ntooth = 47'
-    with pytest.raises(InputError, match=r"faults\[1\]: got a second break of tooth 47"):
+    with pytest.raises(InputError, match=r"faults\[1\]: got missing of tooth 47 of the wheel"):
         faulty(of("chip"), gone)
+    chip = 'kind = "chip"\ngear = "pinion"\ntooth = 3\nheight = "1 mm"'
+    with pytest.raises(InputError, match=r"faults\[1\]: got chip of tooth 3 .* another, crack"):
+        faulty(of("crack"), chip)
     assert len(faulty(of("chip"), of("missing"), of("crack")).faults()) == 3
 
 

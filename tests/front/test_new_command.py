@@ -245,3 +245,19 @@ def test_a_bad_answer_at_the_terminal_is_one_line(tmp_path: Path) -> None:
     assert '"2.5 mm"?' in shown
     assert "Traceback" not in shown
     assert not (tmp_path / "own.toml").exists()
+
+
+def test_faults_are_written_and_refused_under_their_field(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    crack = ["--fault", "crack, gear=pinion, tooth=3, depth=2 mm"]
+    spall = ["--fault", "spall,gear=wheel,length=2 mm,depth=0.1 mm,width_share=0.5"]
+    path = tmp_path / "mine.toml"
+    assert main(["new", *options(NEEDED), *crack, *spall, "-o", str(path)]) == 0
+    case = load_case(path)
+    assert isinstance(case, GearCase)
+    kinds = [(fault.kind, fault.gear, fault.place) for fault in case.file.faults]
+    assert kinds == [("crack", "pinion", 2), ("spall", "wheel", 0)]
+    assert (case.file.faults[0].depth, case.file.faults[1].width_share) == (2e-3, 0.5)
+    assert main(["new", *options(NEEDED), "--fault", "crak, gear=pinion"]) == 2
+    assert "faults[0].kind: got 'crak'" in capsys.readouterr().err

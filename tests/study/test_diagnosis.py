@@ -5,6 +5,7 @@ Seeds were fixed before anything was compared.
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Callable
 from functools import cache, partial
@@ -18,10 +19,11 @@ from thermogear.base.errors import InputError
 from thermogear.base.limits import VIBRATION_ZONES, zone_of
 from thermogear.front.diagnose_command import MACHINES
 from thermogear.measured.diagnosis import InAngle, in_angle
+from thermogear.measured.impacts import BearingRates
 from thermogear.measured.record import Channel, Record
-from thermogear.measured.swelling import BearingRates
 from thermogear.results.result import Result
 from thermogear.study.diagnosis import diagnose, healthy_limit, trend_of
+from thermogear.views.pages.diagnosis import summary
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "measured"))
 from faulty_gears import Gears
@@ -30,9 +32,11 @@ PAIR = Gears(teeth=(11, 13))
 SPEED = 2 * np.pi * PAIR.speed
 
 
-def read(seed: int, *, tacho: bool = True, extra: float = 0.0, **fault: float) -> InAngle:
-    """A record of the pair in the angle of its pinion; ``extra``: bursts of an outer race."""
-    x, turns = PAIR.record(seed, **fault)  # type: ignore[arg-type]
+def read(
+    seed: int, *, tacho: bool = True, extra: float = 0.0, gears: Gears = PAIR, **fault: float
+) -> InAngle:
+    """A record in the angle of the pair's pinion; ``extra``: bursts of an outer race."""
+    x, turns = gears.record(seed, **fault)  # type: ignore[arg-type]
     if extra:
         drawn = np.random.default_rng(seed + 1)
         slip = 0.003 * np.cumsum(drawn.normal(size=turns.size)) / np.sqrt(turns.size)
@@ -72,8 +76,8 @@ def test_the_shaft_and_the_tooth_are_found(shaft: int, tooth: int) -> None:
     assert verdict(found) == ("changed", name)
     place = next(row for row in found.table("figures")["places"] if row["shaft"] == name)
     assert place["named"]
-    if shaft == 0:  # the tacho marks the pinion
-        assert place["tooth"] == tooth + 1
+    # tooth 1 is at the first pulse: there the pinion has turned once, the wheel by eleven teeth
+    assert place["tooth"] == (tooth - 11 * shaft) % PAIR.teeth[shaft] + 1
     assert all(change < 0 for change in place["amplitude"] if change)
 
 
@@ -131,6 +135,27 @@ def test_a_bearing_is_heard_by_its_rate_and_gears_alone_are_not() -> None:
     assert lines[0][0]["part"] == "outer race"
     assert lines[0][0]["order"] == pytest.approx(3.572, rel=0.01)
     assert lines[1] == []
+
+
+@pytest.mark.parametrize(
+    ("gears", "verdict_of", "words"),
+    [
+        (Gears(teeth=(12, 13)), "other gears", "order 12 .* order 11"),
+        (Gears(teeth=(19, 48), speed=30.0), "other gears", "order 19 .* order 11"),
+        (Gears(teeth=(11, 13), speed=30.0), "another speed", "1800 rpm, the baseline at 1500 rpm"),
+    ],
+)
+def test_a_record_of_another_machine_is_not_judged(
+    gears: Gears, verdict_of: str, words: str
+) -> None:
+    found = judged(partial(read, 360, gears=gears))
+    assert verdict(found) == (verdict_of, "")
+    assert re.match(f"new: Undecided: [^.]*{words}", summary(found.table("figures")))
+
+
+def test_other_teeth_without_a_tacho_are_refused_in_one_line() -> None:
+    with pytest.raises(InputError, match=r"^--speed: got no mesh line of 11 teeth at it"):
+        read(361, tacho=False, gears=Gears(teeth=(15, 40)))
 
 
 def test_a_trend_over_records() -> None:

@@ -125,7 +125,7 @@ def _put(inside: Any, keys: list[str], depth: int, text: str) -> Any:
         below = inside.get(key, {}) if isinstance(inside, dict) else inside[key]
         made[key] = _put(below, keys, depth + 1, text)
     elif text.strip():
-        made[key] = _value(text)
+        made[key] = value_of(text)
     else:
         del made[key]
     return made
@@ -224,11 +224,11 @@ def given(value: Any) -> str:
     >>> given("5 mm"), given("12"), given(12), given([{"order": 1}])
     ('5 mm', '"12"', '12', '[{ order = 1 }]')
     """
-    plain = isinstance(value, str) and value and value == value.strip() and _value(value) == value
+    plain = isinstance(value, str) and value and value == value.strip() and value_of(value) == value
     return value if plain else literal(value)
 
 
-def _value(text: str) -> Any:
+def value_of(text: str) -> Any:
     """The value of an override: TOML where it is TOML, else the text itself."""
     try:
         parsed = tomllib.loads(f"value = {text}")

@@ -36,6 +36,7 @@ from thermogear.case.charts import Chart, charts, enclosed
 from thermogear.case.dimensionless import Point, points_of
 from thermogear.case.dimensionless_schema import DimensionlessFile
 from thermogear.case.examples import example_text
+from thermogear.case.fault_schema import FaultTable
 from thermogear.case.faults import fault_words, whole_turn
 from thermogear.case.flanks import (
     accuracy,
@@ -247,15 +248,19 @@ class GearCase(Case):
         """
         gears = self.file.gears
         return [
-            words
-            for fault, words in zip(self.file.faults, self.all_faults, strict=True)
+            fault_words(fault)
+            for fault in self._acting
             if gears.part == "case" and not (whole_turn(fault) and gears.period == "mesh")
         ]
 
     @property
     def all_faults(self) -> list[str]:
-        """Every fault that the file states, in words."""
-        return [fault_words(fault) for fault in self.file.faults]
+        """Every fault that the file states, in words; one of no size is none."""
+        return [fault_words(fault) for fault in self._acting]
+
+    @property
+    def _acting(self) -> list[FaultTable]:
+        return [fault for fault in self.file.faults if fault.acts]
 
     def sound(self) -> GearCase:
         """The case without its faults; the case itself where it has none."""
@@ -284,7 +289,7 @@ class GearCase(Case):
 
         Over the turn with a fault of one tooth, which is stated to be seen.
         """
-        faulty = any(whole_turn(fault) for fault in self.file.faults)
+        faulty = any(whole_turn(fault) for fault in self._acting)
         return self if faulty else self.unless_stated("period", "mesh")
 
     def assemblies(self) -> tuple[GearCase, ...]:

@@ -110,6 +110,11 @@ class FaultTable(Table):
             )
 
     @property
+    def acts(self) -> bool:
+        """Whether none of its sizes is 0: a fault of no size is none."""
+        return all(getattr(self, name) != 0.0 for name in _SIZES)
+
+    @property
     def slope(self) -> float:
         """Angle [rad] of a crack to the tooth's axis."""
         return math.radians(45.0) if self.angle is None else self.angle
@@ -121,3 +126,4 @@ class FaultTable(Table):
 
 
 _WORN = ("coefficient", "revolutions")
+_SIZES = ("depth", "share", "width_share", "height", "length", "amount", *_WORN)

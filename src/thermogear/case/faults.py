@@ -26,8 +26,8 @@ from thermogear.gears.tooth_damage import Chip, Crack, Damage, MissingTooth, way
 from thermogear.gears.touch import first_touch
 from thermogear.gears.turn import Eccentricity, turn_period
 
-_ONCE = {"crack": "crack", "chip": "break", "missing": "break"}
-"""Kinds of which a tooth has one; a chipped tooth cannot be missing."""
+_ROOT_OR_TIP = ("crack", "chip", "missing")
+"""Kinds of which a tooth has one: each is solved on a tooth that is whole else."""
 EVERY = 8
 """Positions of a mesh period at which some tooth must touch."""
 _NAMES = {"radius": "diameter", "error": "amount", "meshes": "revolutions"}
@@ -38,20 +38,25 @@ def fault_deviations(file: GearFile, pair: GearPair) -> Iterator[Deviation]:
     """What the faults of a file do to the teeth of ``pair``, numbered as in the file.
 
     A fault of no size is none. InputError under the field of the file for a tooth that there is
-    not, a second crack or break of one tooth, and what the teeth cannot have.
+    not, a crack or break of a tooth that has one, and what the teeth cannot have.
     """
-    seen: set[tuple[str, str, int]] = set()
+    seen: dict[tuple[str, int], str] = {}
     damaged: list[Deviation] = []
     for number, fault in enumerate(file.faults):
         field, teeth = f"faults[{number}]", pair.gear(fault.gear).teeth
         if fault.place >= teeth:
             why = f"the {fault.gear} has no more teeth"
             raise InputError(f"{field}.tooth", fault.tooth, allowed=f"1..{teeth}", why=why)
-        here = (_ONCE.get(fault.kind, ""), fault.gear, fault.place)
-        if here in seen and here[0]:
-            got = f"a second {here[0]} of tooth {fault.place + 1} of the {fault.gear}"
-            raise InputError(field, got, allowed="one of a tooth", fix="leave one out")
-        seen.add(here)
+        if not fault.acts:
+            continue
+        if fault.kind in _ROOT_OR_TIP:
+            here = fault.gear, fault.place
+            if here in seen:
+                got = f"{fault.kind} of tooth {fault.place + 1} of the {fault.gear}"
+                why = f"it has another, {seen[here]}, and the two together are not solved"
+                allowed = "one of crack, chip and missing on a tooth"
+                raise InputError(field, got, allowed=allowed, why=why, fix="leave one out")
+            seen[here] = fault.kind
         try:
             deviation = _deviation(fault, file, pair)
             if isinstance(deviation, Crack):
@@ -93,17 +98,16 @@ def _deviation(fault: FaultTable, file: GearFile, pair: GearPair) -> Deviation |
         depth = fault.depth
         if fault.share is not None:
             depth = fault.share * way_across(pair.gear(gear), fault.slope)
-        crack = Crack(gear, tooth=tooth, depth=depth or 0.0, angle=fault.slope, width_share=width)
-        return crack if crack.differs else None
+        return Crack(gear, tooth=tooth, depth=depth or 0.0, angle=fault.slope, width_share=width)
     if fault.kind == "chip":
         chip = Chip(gear, tooth=tooth, height=fault.height or 0.0)
         chip.left(pair.gear(gear))
-        return chip if chip.differs else None
+        return chip
     force = max(file.operating.torque) / pair.pinion.base_radius
     return (_spall if fault.kind == "spall" else _wear)(fault, pair, force)
 
 
-def _spall(fault: FaultTable, pair: GearPair, force: float) -> Deviation | None:
+def _spall(fault: FaultTable, pair: GearPair, force: float) -> Deviation:
     """A pocket as wide as the face, or one beside which the rest of the face carries ``force``."""
     gear, depth, length = fault.gear, fault.depth or 0.0, fault.length or 0.0
     width = 1.0 if fault.width_share is None else fault.width_share
@@ -113,8 +117,6 @@ def _spall(fault: FaultTable, pair: GearPair, force: float) -> Deviation | None:
         string = pair.path.c if gear == "pinion" else pair.line_of_action - pair.path.c
         radius = math.hypot(pair.gear(gear).base_radius, string)
     spalled(pair, gear, radius=radius, length=length)
-    if 0.0 in (depth, width):
-        return None
     if width == 1.0:
         whole, pocket = (Pocket(gear, radius=radius, length=length, depth=d) for d in (0.0, depth))
         return _on_tooth(whole, pocket, fault, pair)
@@ -132,8 +134,7 @@ def _spall(fault: FaultTable, pair: GearPair, force: float) -> Deviation | None:
 
 
 def _wear(fault: FaultTable, pair: GearPair, force: float) -> Deviation | None:
-    size = fault.depth if fault.depth is not None else fault.revolutions
-    if not size or not force:
+    if not force:
         return None
     made = worn(
         pair, fault.gear, force, depth=fault.depth,

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from thermogear.base.errors import InputError
-from thermogear.base.toml import line, table
+from thermogear.base.toml import line, pairs, table, value_of
 from thermogear.case.case import GearCase, gear_case, load_case
 from thermogear.shafts.bearings.catalogue import CATALOGUE
 
@@ -51,6 +51,7 @@ class NewCase:
     pinion_flanks: str | None = None
     wheel_flanks: str | None = None
     allow_undercut: bool = False
+    faults: tuple[str, ...] = ()
     shafts: bool = False
 
     def text(self, folder: Path | None = None) -> str:
@@ -109,11 +110,17 @@ class NewCase:
             line("pinion", self.pinion_flanks, "inspection chart, beside this file"),
             line("wheel", self.wheel_flanks),
         )
-        return lines + table(
+        lines += table(
             "operating",
             line("speed", self.speed, "of the pinion, which drives"),
             line("torque", self.torque, "at the pinion"),
         )
+        for fault in self.faults:
+            fields = pairs(
+                [f"kind={part}" if "=" not in part else part for part in fault.split(",")]
+            )
+            lines += table("[faults]", *(line(name, value_of(text)) for name, text in fields))
+        return lines
 
     def _shafts(self, case: GearCase) -> list[str]:
         """Two plain shafts sized by their torque, each between two bearings of the catalogue."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,14 +9,12 @@ import click
 
 from thermogear.base.errors import InputError
 from thermogear.base.progress import Progress
-from thermogear.base.units import RPM
 from thermogear.front import delivery
 from thermogear.front.measure_commands import case_speed, reads, require_gear
-from thermogear.front.measuring import read_by
+from thermogear.front.measuring import in_angles
 from thermogear.front.numbers import number
 
 if TYPE_CHECKING:
-    from thermogear.measured.diagnosis import InAngle
     from thermogear.results.result import Result
 
 MACHINES = ("large rigid", "large flexible", "medium rigid", "medium flexible")
@@ -95,26 +92,14 @@ def diagnose(
     edges = None if band is None else _band(band)
 
     def make(report: Progress) -> Result:
-        from thermogear.measured.several import files_of
         from thermogear.study.bearing_rates import bearing_rates
         from thermogear.study.diagnosis import diagnose as study
 
-        hung = [("pinion", rates) for rates in bearing_rates(bearings)] if bearings else []
-        hung += (
-            [("wheel", rates) for rates in bearing_rates(wheel_bearings)] if wheel_bearings else []
-        )
+        hung = [("pinion", rates) for rates in bearing_rates(bearings)]
+        hung += [("wheel", rates) for rates in bearing_rates(wheel_bearings)]
 
-        def sources(there: list[Path]) -> list[tuple[str, Any]]:
-            return [(file.name, partial(_in_angle, str(file), teeth[0], options)) for file in there]
-
-        tested, healthy = files_of(named), files_of(baselines) if baselines else []
-        for file in tested:
-            if any(file.resolve() == other.resolve() for other in healthy):
-                why = "the record is in the baseline that it is held against"
-                raise InputError("--baseline", file.name, why=why, fix="leave it out of one")
         return study(
-            sources(tested),
-            sources(healthy),
+            *in_angles(named, baselines, teeth[0] or 0, options),
             teeth=(teeth[0] or 0, teeth[1]),
             bearings=hung,
             band=edges,
@@ -148,22 +133,6 @@ def _band(text: str) -> tuple[float, float]:
     if not (sign and 0.0 <= edges[0] < edges[1] < 1e6):
         raise InputError("--band", repr(text), allowed="LOW:HIGH in orders, as 60:200")
     return edges
-
-
-def _in_angle(file: str, teeth: int, options: dict[str, Any]) -> InAngle:
-    """A file in the angle of its pinion."""
-    from thermogear.measured.diagnosis import in_angle
-
-    record, other = read_by(file, options)
-    speed = options["speed"]
-    return in_angle(
-        record,
-        channels=options["channels"],
-        teeth=teeth,
-        speed=None if speed is None else speed * RPM,
-        pulses_per_turn=options["pulses"],
-        tacho=other,
-    )
 
 
 COMMANDS: tuple[click.Command, ...] = (diagnose,)

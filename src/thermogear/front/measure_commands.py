@@ -13,7 +13,7 @@ from thermogear.base.errors import InputError
 from thermogear.base.progress import Progress
 from thermogear.base.units import RPM
 from thermogear.front import delivery
-from thermogear.front.measuring import measured_among, measured_by, measured_files
+from thermogear.front.measuring import in_angles, measured_among, measured_by, measured_files
 from thermogear.front.numbers import number
 
 if TYPE_CHECKING:
@@ -88,8 +88,8 @@ def supplies(command: Any, *, speeds: bool = False) -> Any:
             "bearings",
             metavar="TYPE",
             multiple=True,
-            help="Rolling bearing on the first shaft, as 6205: swelling noise is held against its "
-            "rates [those of the catalogue]. May be repeated.",
+            help="Rolling bearing on the first shaft, as 6205: its rates are looked for in the "
+            "envelope. May be repeated.",
         ),
         number(
             "--start",
@@ -197,6 +197,14 @@ def measure(
     "a2=housing:y or a3=bearing:wheel left:30 (degrees from x). May be repeated.",
 )
 @click.option("--u-data", type=float, metavar="PERCENT", help="Uncertainty of the measurement.")
+@click.option(
+    "--baseline",
+    "baselines",
+    metavar="RECORD|DIR",
+    multiple=True,
+    help="Healthy record: condition indicators are compared, simulated with the [[faults]] of CASE "
+    "and without. May be repeated.",
+)
 @delivery.overrides
 @delivery.as_json
 @delivery.output("Also write comparison.nc and comparison.html.", required=False)
@@ -207,6 +215,7 @@ def compare(
     samples: int | None,
     at: tuple[str, ...],
     u_data: float | None,
+    baselines: tuple[str, ...],
     overrides: tuple[str, ...],
     as_json: bool,
     output: str | None,
@@ -222,6 +231,9 @@ def compare(
     A case with shafts and --at: mesh lines of accelerometers on bearings or housing are compared
     with the drive train's at the same place, along the same axis. Places: bearing:NAME, housing,
     journal:NAME, gear:pinion, gear:wheel.
+
+    With --baseline the indicators of `diagnose`: of the baseline, of the record, and of the motion
+    without the faults of CASE and with them, with the change of both.
     """
     from thermogear.measured.comparison import result_of
     from thermogear.measured.published import PUBLISHED, is_table
@@ -231,7 +243,7 @@ def compare(
 
     require_gear(options["teeth"], *speed)
     read: Any = case
-    if computes(case) and measured:
+    if computes(case) and (measured or baselines):
         read = delivery.load(case, overrides)
     elif overrides:
         raise InputError(
@@ -240,6 +252,12 @@ def compare(
             why="stored lines are not computed anew",
             fix="name the case instead of its results",
         )
+    if baselines:
+        lines = {"tolerance": tolerances, "samples": samples, "at": at, "u-data": u_data}
+        options["speed"] = next(iter(speed), None)
+        faults = partial(_faults, read, measured, baselines, lines, options)
+        delivery.deliver(faults, output, as_json=as_json)
+        return
     if samples is not None and not tolerances:
         raise InputError("--samples", samples, why="beside no --tolerance", fix="leave it out")
     found = ([name] if name in PUBLISHED else files_of([name]) for name in measured)
@@ -280,6 +298,41 @@ def compare(
         )
 
     delivery.deliver(make, output, as_json=as_json)
+
+
+_OF_LINES = ("orders", "start", "harmonics", "sidebands", "sensor_tolerance")
+
+
+def _faults(
+    case: Any,
+    records: tuple[str, ...],
+    baseline: tuple[str, ...],
+    lines: dict[str, Any],
+    options: dict[str, Any],
+    report: Progress,
+) -> Result:
+    """Indicators of records beside those of a case's motion with its faults and without."""
+    from thermogear.case.case import gear_case
+    from thermogear.study.bearing_rates import bearing_rates
+    from thermogear.study.compare_faults import compare_faults
+
+    for name, given in (lines | {name: options[name] for name in _OF_LINES}).items():
+        if given:
+            got = ", ".join(map(str, given)) if isinstance(given, tuple) else given
+            why = "beside --baseline indicators are compared, not lines"
+            option = f"--{name.replace('_', '-')}"
+            raise InputError(option, got, why=why, fix="leave one out")
+    if isinstance(case, str):
+        why = "it is no case, and has no motion with faults"
+        raise InputError("CASE", case, why=why, fix="name the case itself")
+    pair = gear_case(case)
+    options["speed"] = options["speed"] or case_speed(case)
+    return compare_faults(
+        pair,
+        *in_angles(records, baseline, pair.pair.pinion.teeth, options),
+        bearings=[("pinion", rates) for rates in bearing_rates(options["bearings"])],
+        progress=report,
+    )
 
 
 def case_speed(case: Any) -> float | None:

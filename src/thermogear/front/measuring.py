@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,9 +12,11 @@ from thermogear.base.progress import Progress
 from thermogear.base.units import RPM
 
 if TYPE_CHECKING:
+    from thermogear.measured.diagnosis import InAngle
     from thermogear.measured.record import Record
     from thermogear.measured.reduction import Measurement
     from thermogear.results.result import Result
+    from thermogear.study.diagnosis import Source
 
 SIGN = "::"
 
@@ -43,6 +46,43 @@ def read_by(file: str, options: dict[str, Any]) -> tuple[Record, Record | None]:
     if options["tacho_scale"] is not None:
         return _as_speed(record, other, options["tacho_scale"])
     return record, other
+
+
+def in_angles(
+    records: Sequence[str], baseline: Sequence[str], teeth: int, options: dict[str, Any]
+) -> tuple[list[Source], list[Source]]:
+    """What reads each record, and each of a baseline, into the angle of a pinion of so many teeth;
+    files or folders of them, of which none may be in both."""
+    from thermogear.measured.several import files_of
+
+    if not records:
+        raise InputError("RECORD", "none", fix="name a record to hold against the baseline")
+    tested, healthy = files_of(records), files_of(baseline) if baseline else []
+    resolved = {file.resolve() for file in healthy}
+    for file in tested:
+        if file.resolve() in resolved:
+            why = "the record is in the baseline that it is held against"
+            raise InputError("--baseline", file.name, why=why, fix="leave it out of one")
+    return tuple(
+        [(file.name, partial(_in_angle, str(file), teeth, options)) for file in files]
+        for files in (tested, healthy)
+    )  # type: ignore[return-value]
+
+
+def _in_angle(file: str, teeth: int, options: dict[str, Any]) -> InAngle:
+    """A file in the angle of its pinion."""
+    from thermogear.measured.diagnosis import in_angle
+
+    record, other = read_by(file, options)
+    speed = options["speed"]
+    return in_angle(
+        record,
+        channels=options["channels"],
+        teeth=teeth,
+        speed=None if speed is None else speed * RPM,
+        pulses_per_turn=options["pulses"],
+        tacho=other,
+    )
 
 
 def measured_among(file: str | Path, options: dict[str, Any]) -> Measurement:
@@ -152,8 +192,6 @@ def measured_files(
     report: Progress,
 ) -> Result:
     """Several files: one run where they are joined, else records beside a baseline."""
-    from functools import partial
-
     from thermogear.measured.at_once import cores_here
     from thermogear.measured.dataset import result_of
     from thermogear.measured.several import result_of_several, several

@@ -71,6 +71,13 @@ NEEDED = {
 @click.option(
     "--allow-undercut", is_flag=True, help="Take teeth whose undercut shortens the path of contact."
 )
+@click.option(
+    "--fault",
+    "faults",
+    metavar="KIND, FIELD=VALUE, ...",
+    multiple=True,
+    help='A fault of one gear: "crack, gear=pinion, tooth=3, depth=2 mm". May be repeated.',
+)
 @click.option("--shafts", is_flag=True, help="Two shafts between four ball bearings too.")
 @click.option("-o", "--output", metavar="FILE", help="Write a new FILE instead of printing.")
 def new(output: str | None, **given: Any) -> None:

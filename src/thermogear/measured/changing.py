@@ -17,7 +17,7 @@ from thermogear.measured.order_angle import MESHES, OrderAngle, order_angle
 from thermogear.measured.over_speed import OrderMap, OrderSlices
 from thermogear.measured.quantities import quantities
 from thermogear.measured.record import Notice, Record
-from thermogear.measured.shaft import VARIES, Shaft, given_shaft, locked, tracked_shaft
+from thermogear.measured.shaft import VARIES, Shaft, locked, tracked_shaft, usable_shaft
 from thermogear.measured.turns import MeshTurns
 from thermogear.measured.units import kind_of
 from thermogear.signals.filters import thinned
@@ -116,18 +116,9 @@ def read_in_angle(
     """
     notices: list[Notice] = []
     table = through.table
-    shaft = given_shaft(
-        record,
-        samples=table.shape[-1],
-        start=through.start,
-        pulses_per_turn=pulses_per_turn,
-        tacho=tacho,
+    shaft = usable_shaft(
+        record, through, pulses_per_turn=pulses_per_turn, tacho=tacho, notices=notices
     )
-    if shaft is None and pulses_per_turn is not None:
-        notices.append(Notice.of("pulses_without_tacho", given=pulses_per_turn))
-    if shaft is not None and shaft.turns.size == 0:
-        notices += shaft.told
-        shaft = None
     if shaft is not None and shaft.by_speed:
         if shaft.span < VARIES:
             told = Notice.of("speed_steady", channel=shaft.channel, within=shaft.span - 1.0)

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import product
 
 import numpy as np
 
@@ -14,24 +13,16 @@ from thermogear.base.errors import InputError
 from thermogear.base.units import RPM
 from thermogear.measured.choosing import chosen_channels
 from thermogear.measured.gate import Passed, passed, require_samples, require_sampling_rate
+from thermogear.measured.impacts import HIGHEST
 from thermogear.measured.order_angle import order_angle
 from thermogear.measured.record import Notice, Record
 from thermogear.measured.reduction import LONGEST, require_teeth
-from thermogear.measured.shaft import given_shaft, locked, tracked_shaft
+from thermogear.measured.shaft import locked, tracked_shaft, usable_shaft
 from thermogear.measured.stated import expected_mesh, stated_gearing
-from thermogear.measured.swelling import PARTS, SLIP, BearingRates
 from thermogear.measured.turns import mesh_turns
 from thermogear.measured.units import kind_of
 from thermogear.signals.indicators import crest_factor, normalised_moment
 from thermogear.signals.integration import velocity_rms
-from thermogear.signals.kurtogram import (
-    Band,
-    EnvelopeSpectrum,
-    envelope_spectrum,
-    impulsive_band,
-    kurtogram,
-    real_cepstrum,
-)
 from thermogear.signals.orders import resample_by_angle
 from thermogear.signals.synchronous import (
     comb_gain,
@@ -49,20 +40,15 @@ BLOCKS = (4, 8)
 scatter, more leave few turns in each."""
 SLOW = 600.0 * RPM
 """Speed [rad/s] below which velocities count from 2 Hz on: ISO 20816-3."""
-_CUT = 1.0 / 2.56  # of the sampling rate: the highest frequency that counts
-_LONGEST = 1 << 18  # samples that a band is chosen by
 _ORDERS = np.arange(1.0, 11.0)  # of the mate, whose leakage is told
-NARROWEST = 16.0
-"""Orders of the pinion that a band of the kurtogram is at least wide: an envelope reaches as far as
-its band, and rates of bearings up to some 12 (chosen)."""
-_FULL_BAND = 0.8  # of half the samples a turn, where no band stands out
 
 
 @dataclass(frozen=True, kw_only=True)
 class InAngle:
     """A record with the pinion's angle: ``table`` (channel, sample) in the channel's unit,
     ``turns`` of the pinion at each sample, ``origin`` of the angle, ``marked``: a tacho marks its
-    zero; ``noise`` of the angle [turns, rms]; ``withheld`` why a channel is not to be trusted."""
+    zero; ``mesh``: the order of the mesh line; ``noise`` of the angle [turns, rms];
+    ``withheld`` why a channel is not to be trusted."""
 
     record: Record
     channels: tuple[str, ...]
@@ -70,6 +56,7 @@ class InAngle:
     turns: Floats = field(repr=False)
     origin: str
     marked: bool
+    mesh: float
     noise: float
     notices: tuple[Notice, ...]
     withheld: dict[str, str]
@@ -118,25 +105,19 @@ def in_angle(
     notices = list(record.notices)
     through = passed(chosen_channels(record, channels, notices), LONGEST)
     table = through.table
-    shaft = given_shaft(
-        record,
-        samples=table.shape[-1],
-        start=through.start,
-        pulses_per_turn=pulses_per_turn,
-        tacho=tacho,
+    shaft = usable_shaft(
+        record, through, pulses_per_turn=pulses_per_turn, tacho=tacho, notices=notices
     )
-    marked = shaft is not None and shaft.turns.size > 0 and not shaft.by_speed
-    if shaft is not None:
-        notices += shaft.told
-        shaft = shaft if shaft.turns.size else None
+    marked = shaft is not None and not shaft.by_speed
     if shaft is not None and shaft.by_speed:
         shaft = locked(shaft, table, teeth)
     if shaft is None and speed is None:
         shaft = tracked_shaft(table)
     if shaft is None:
         turns, first, noise = _by_mesh_line(record, through, teeth, speed, notices)
-        origin = "the mesh line"
+        origin, mesh = "the mesh line", float(teeth)
     else:
+        notices += shaft.told
         angle = order_angle(
             shaft, table, teeth=teeth, speed=speed, rate=record.rate, notices=notices
         )
@@ -145,6 +126,7 @@ def in_angle(
             field = "--speed" if shaft.line else "--pulses"
             raise InputError(field, "none", why=why, fix=f"give {field} and --teeth")
         turns, first, noise, origin = angle.turns, angle.first, angle.noise, shaft.origin
+        mesh = float(teeth) if angle.mesh is None else angle.mesh
     table = table[:, first : first + turns.size]
     notices += through.findings
     angle_record = InAngle(
@@ -154,6 +136,7 @@ def in_angle(
         turns=turns,
         origin=origin,
         marked=marked,
+        mesh=mesh,
         noise=noise,
         notices=tuple(dict.fromkeys(notices)),
         withheld=dict(through.withheld),
@@ -267,140 +250,10 @@ def shaft_average(
         block_turns=block,
         average=synchronous_averages(straight, samples_per_turn=per_turn, turns=longest)[:, 0],
         blocks=blocks[:, : BLOCKS[1]],
-        highest=min(int(_CUT / fastest), per_turn // 2 - 1),
+        highest=min(int(HIGHEST / fastest), per_turn // 2 - 1),
         step=None if mate is None else shared_step(mesh_order=shaft_teeth, mate_order=mate),
         leakage=tuple(leakage),
     )
-
-
-@dataclass(frozen=True, kw_only=True)
-class BearingLine:
-    """The highest line of a channel's envelope spectrum within 2 % of a bearing's rate.
-
-    ``expected`` and ``order`` count turns of its ``shaft``; ``level``: power over that of noise,
-    ``chance`` that noise has one as high in any of the windows that were looked at.
-    """
-
-    channel: str
-    bearing: str
-    shaft: str
-    part: str
-    expected: float
-    order: float
-    level: float
-    chance: float
-
-
-@dataclass(frozen=True, kw_only=True)
-class Impacts:
-    """What is no line of a gear, channel by channel, over the pinion's angle.
-
-    ``band`` [orders of the pinion] that was demodulated, with its kurtosis; ``chosen``: by the
-    kurtogram or given, or all (False); ``spectrum`` of the squared envelope, its positions in
-    orders; ``cepstrum`` (channel, quefrency in turns of the pinion x ``per_turn``).
-    """
-
-    bands: tuple[Band, ...]
-    chosen: tuple[bool, ...]
-    spectra: tuple[EnvelopeSpectrum, ...]
-    cepstrum: Floats
-    per_turn: int
-    lines: tuple[BearingLine, ...]
-
-
-def impacts(
-    record: InAngle,
-    *,
-    teeth: int,
-    mate: int | None,
-    bearings: Sequence[tuple[str, BearingRates]] = (),
-    band: tuple[float, float] | None = None,
-) -> Impacts:
-    """Kurtogram, squared envelope spectrum and cepstrum of what gears and shafts leave.
-
-    The record over the pinion's angle, the bins of both shafts' orders set to 0. ``bearings``:
-    (shaft, rates); ``band`` [orders of the pinion] to demodulate in place of the kurtogram's.
-    """
-    straight, per_turn = record.straightened
-    # a band's edges are where the converter's filter ends, not the resampled record
-    top = min(0.5, _CUT / float(np.percentile(np.diff(record.turns), 99.0)) / per_turn)
-    bands, chosen, spectra = [], [], []
-    for values in straight:
-        random = _without_orders(values, per_turn, 1.0 if mate is None else teeth / mate)
-        part = random[:_LONGEST]
-        wide = [
-            b for b in kurtogram(part)
-            if b.high <= top and (b.high - b.low) * per_turn >= NARROWEST
-        ]  # fmt: skip
-        best = impulsive_band(wide, samples=part.size)
-        whole = Band(low=0.0, high=_FULL_BAND * top, kurtosis=float("nan"))
-        if band is not None:
-            low, high = (edge / per_turn for edge in band)
-            best = Band(low=low, high=high, kurtosis=float("nan"))
-        used = best or whole
-        spectrum = envelope_spectrum(random, low=used.low, high=used.high)
-        bands.append(
-            Band(low=used.low * per_turn, high=used.high * per_turn, kurtosis=used.kurtosis)
-        )
-        chosen.append(best is not None)
-        spectra.append(
-            EnvelopeSpectrum(
-                position=spectrum.position * per_turn,
-                amplitude=spectrum.amplitude,
-                floor=spectrum.floor,
-            )
-        )
-    ratio = {PINION: 1.0, WHEEL: 1.0 if mate is None else teeth / mate}
-    return Impacts(
-        bands=tuple(bands),
-        chosen=tuple(chosen),
-        spectra=tuple(spectra),
-        cepstrum=real_cepstrum(straight),
-        per_turn=per_turn,
-        lines=_bearing_lines(record.channels, spectra, bearings, ratio),
-    )
-
-
-def _without_orders(values: Floats, per_turn: int, ratio: float) -> Floats:
-    """A record over the pinion's angle, whole turns, without the bins of whole orders of the pinion
-    and, with those beside, of a wheel that turns ``ratio`` as fast."""
-    lines = np.fft.rfft(values)
-    turns = values.size // per_turn
-    lines[::turns] = 0.0
-    places = np.rint(np.arange(0.0, lines.size - 1.0, turns * ratio)).astype(int)
-    for offset in (-1, 0, 1):
-        lines[np.clip(places + offset, 0, lines.size - 1)] = 0.0
-    return np.asarray(np.fft.irfft(lines, n=values.size))
-
-
-def _bearing_lines(
-    channels: Sequence[str],
-    spectra: Sequence[EnvelopeSpectrum],
-    bearings: Sequence[tuple[str, BearingRates]],
-    ratio: dict[str, float],
-) -> tuple[BearingLine, ...]:
-    """The highest line near every rate, the least likely by chance first."""
-    lines: list[BearingLine] = []
-    windows = 0.0
-    heard = zip(channels, spectra, strict=True)
-    for (channel, spectrum), (shaft, bearing), part in product(heard, bearings, PARTS):
-        rate = bearing.order(part) * ratio[shaft]
-        place, level = spectrum.level(low=(1.0 - SLIP) * rate, high=(1.0 + SLIP) * rate)
-        windows += max(1.0, 2.0 * SLIP * rate / spectrum.position[0])
-        lines.append(
-            BearingLine(
-                channel=channel,
-                bearing=bearing.name,
-                shaft=shaft,
-                part=part,
-                expected=bearing.order(part),
-                order=place / ratio[shaft],
-                level=level,
-                chance=float(np.exp(-level)),
-            )
-        )
-    corrected = [replace(line, chance=min(1.0, windows * line.chance)) for line in lines]
-    return tuple(sorted(corrected, key=lambda line: line.chance))
 
 
 def raw_values(record: InAngle) -> dict[str, Floats]:

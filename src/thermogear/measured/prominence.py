@@ -8,7 +8,7 @@ import numpy as np
 
 from thermogear.base.arrays import Floats
 from thermogear.signals.lines import hann_offset
-from thermogear.signals.spectra import amplitude_spectrum
+from thermogear.signals.spectra import amplitude_spectrum, running_median
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,15 +57,3 @@ def prominence(channels: Floats, rate: float) -> Prominence:
         per_unit=1.0 / spectrum.bin_width,
         spread=max(spread, 1e-12),
     )
-
-
-def running_median(logs: Floats, width: int = 301) -> Floats:
-    """Median over about ``width`` bins, on a grid of half widths, straight between."""
-    count = logs.shape[-1]
-    width = min(width, max(9, count // 8))
-    starts = np.arange(0, max(1, count - width + 1), max(1, width // 2))
-    middles = starts + 0.5 * (width - 1)
-    windows = np.lib.stride_tricks.sliding_window_view(logs, width, axis=-1)
-    medians = np.median(windows[:, starts], axis=-1)
-    grid = np.arange(count)
-    return np.stack([np.interp(grid, middles, row) for row in medians])

@@ -28,6 +28,15 @@ from thermogear.measured.gate import (
     require_sampling_rate,
 )
 from thermogear.measured.gearing import Gearing
+from thermogear.measured.impacts import (
+    BAND_SAMPLES,
+    HEARD,
+    BearingLine,
+    BearingRates,
+    Swelling,
+    clearest_line,
+    impacts,
+)
 from thermogear.measured.lines import (
     Doubts,
     MeasuredLine,
@@ -41,21 +50,17 @@ from thermogear.measured.rate_check import check_rate
 from thermogear.measured.readers import read_record
 from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.stated import expected_mesh, speed_undecided, stated_gearing
-from thermogear.measured.swelling import (
-    BearingRates,
-    Defect,
-    Swelling,
-    defects_of,
-    swellings_of,
-)
 from thermogear.measured.traps import unknown_unit
 from thermogear.measured.turns import MeshTurns, few_turns, mesh_turns
+from thermogear.signals.orders import resample_by_angle
+from thermogear.signals.tracking import samples_per_turn
 from thermogear.signals.windows import Window
 
 LONGEST = 1 << 21
 """Samples per channel reduced at once; a longer record is cut there with a notice."""
 
 
+FIRST = "first shaft"
 _MOST = 64
 """Harmonics, sidebands and orders that may be asked for."""
 _HIGHEST_ORDER = 10_000.0
@@ -68,8 +73,8 @@ class Measurement:
     ``teeth``: those orders are counted with, given or found; ``given``: what the user said (teeth,
     speed [rad/s]), None where he said nothing.
     ``findings``: damage of the record and what was done about it; ``values`` (channel, sample):
-    what the lines were read from, in the file's unit; ``swellings``: impacts that slip, and the
-    ``defects`` of bearings whose rates they have.
+    what the lines were read from, in the file's unit; ``swellings``: the clearest line of the
+    envelope, () where noise may have it, and ``defects``: its lines at rates of bearings named.
     """
 
     record: Record
@@ -86,7 +91,7 @@ class Measurement:
     slices: OrderSlices | None = None
     given: tuple[int | None, float | None] = (None, None)
     swellings: tuple[Swelling, ...] = ()
-    defects: tuple[Defect, ...] = ()
+    defects: tuple[BearingLine, ...] = ()
 
     @property
     def readings(self) -> tuple[MeasuredLine, ...]:
@@ -255,7 +260,7 @@ def measure(
     lines = [of_velocity(line, record.channel(line.channel)) for line in lines]
     notices += [*_hidden(lines), *_untold(record, chosen, sensor_tolerance)]
     notices += _filtered(wanted, rate, mesh, gearing)
-    swellings = _swellings(record, chosen, table, gearing, speed) if changing is None else ()
+    swellings, defects = _heard(record, through, gearing, turns, speed, bearings)
     return Measurement(
         record,
         tuple(c.name for c in chosen),
@@ -270,7 +275,7 @@ def measure(
         table,
         given=given,
         swellings=swellings,
-        defects=defects_of(swellings, bearings),
+        defects=defects,
     )
 
 
@@ -295,18 +300,41 @@ def _turns(record: Record, speed: float | None) -> float | None:
     return None if speed is None or not record.rate else speed / (2.0 * np.pi * record.rate)
 
 
-def _swellings(
+def _heard(
     record: Record,
-    chosen: Sequence[Channel],
-    table: NDArray[np.float64],
+    through: Passed,
     gearing: Gearing | None,
+    turns: MeshTurns | None,
     speed: float | None,
-) -> tuple[Swelling, ...]:
-    """Impacts that slip, beside the shaft by its lines or by the speed said [rad/s]."""
+    bearings: Sequence[BearingRates],
+) -> tuple[tuple[Swelling, ...], tuple[BearingLine, ...]]:
+    """The clearest line of the envelope over the angle of the shaft, and those of ``bearings``, of
+    the first samples; none without its speed, by the lines or as said [rad/s], and for a record too
+    short to have a band."""
     shaft = gearing.shaft if gearing is not None else None
     shaft = _turns(record, speed) if shaft is None else shaft
+    if shaft is None:
+        return (), ()
+    first, angle = 0, shaft * np.arange(min(BAND_SAMPLES, through.table.shape[-1]))
+    if gearing is not None and turns is not None and turns.turning is not None:
+        first, cycles = turns.turning.dropped, turns.turning.cycles[:BAND_SAMPLES]
+        angle = cycles * (shaft / gearing.mesh_frequency)
+    channels = [channel.name for channel in through.channels]
+    try:
+        table, per_turn = through.table[:, first : first + angle.size], samples_per_turn(angle)
+        found = impacts(
+            resample_by_angle(table, angle, samples_per_turn=per_turn),
+            angle=angle,
+            channels=channels,
+            ratios={FIRST: 1.0},
+            bearings=[(FIRST, rates) for rates in bearings],
+        )
+    except InputError:
+        return (), ()
     rate = None if record.rate_doubt else record.rate
-    return swellings_of([one.name for one in chosen], table, rate, shaft)
+    clear = clearest_line(found, channels, shaft=shaft, rate=rate)
+    heard = tuple(line for line in found.lines if line.chance <= HEARD)
+    return () if clear is None else (clear,), heard
 
 
 def _require(

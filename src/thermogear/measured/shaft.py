@@ -9,6 +9,7 @@ import numpy as np
 
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
+from thermogear.measured.gate import Passed
 from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.traps import is_tacho_name
 from thermogear.measured.units import counts_turns, kind_of
@@ -125,6 +126,31 @@ def given_shaft(
     if not told:
         return None
     return Shaft(turns=np.zeros(0), first=0, noise=0.0, origin="", told=tuple(told))
+
+
+def usable_shaft(
+    record: Record,
+    through: Passed,
+    *,
+    pulses_per_turn: float | None,
+    tacho: Record | None,
+    notices: list[Notice],
+) -> Shaft | None:
+    """:func:`given_shaft` over what came ``through`` the gate, None where nothing is of use: why
+    goes to ``notices``."""
+    shaft = given_shaft(
+        record,
+        samples=through.table.shape[-1],
+        start=through.start,
+        pulses_per_turn=pulses_per_turn,
+        tacho=tacho,
+    )
+    if shaft is None and pulses_per_turn is not None:
+        notices.append(Notice.of("pulses_without_tacho", given=pulses_per_turn))
+    if shaft is not None and not shaft.turns.size:
+        notices += shaft.told
+        return None
+    return shaft
 
 
 def _sources(record: Record, tacho: Record | None) -> list[tuple[Record, Channel, bool]]:

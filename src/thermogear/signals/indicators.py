@@ -21,6 +21,8 @@ MESH_HARMONICS = 5
 """Mesh harmonics in FM0 at most: beyond, a housing's resonances decide (chosen)."""
 DEMODULATED = 3
 """Mesh harmonics that are demodulated at most (chosen)."""
+RARE = 0.05
+"""Share of turns that leave a 95 % interval."""
 GAUSS = {4: (3.0, 24.0), 6: (15.0, 6120.0), 8: (105.0, 1663200.0)}
 """Power -> normalised moment of Gaussian noise and its variance times the samples."""
 
@@ -90,31 +92,16 @@ def fm0(average: ArrayLike, *, mesh_order: int, harmonics: int) -> Floats:
     return _ratio(np.ptp(values, axis=-1), lines.sum(axis=-1))
 
 
-def na4(residual: ArrayLike) -> Floats:
-    """NA4 of the residuals of runs in their order, (run, sample): one of each run.
-
-    mean (r - mean r)^4/M^2, M the mean of the variances of runs 1 .. this one. A single run has the
-    kurtosis of r. It keeps growing where a fault spreads, which FM4 does not.
-    Source: Zakrajsek, Townsend and Decker 1993, NASA TM-105950.
-
-    >>> rows = np.cos(0.02 * np.pi * np.arange(100)) * np.array([[1.0], [1.0], [2.0]])
-    >>> na4(rows).round(3)
-    array([1.5, 1.5, 6. ])
-    """
-    rows = np.atleast_2d(finite_record(residual))
-    centred = rows - rows.mean(axis=-1, keepdims=True)
-    return na4_of_moments(
-        fourth=np.mean(centred**4, axis=-1), variance=np.mean(centred**2, axis=-1)
-    )
-
-
 def na4_of_moments(
     *, fourth: ArrayLike, variance: ArrayLike, healthy: float | None = None
 ) -> Floats:
     """NA4 of runs by the ``fourth`` central moment and the ``variance`` of each residual: (run,).
 
-    ``healthy``: the mean variance of healthy runs in place of that of the runs up to each; it does
-    not grow with the fault. Source of that form: Decker and Zakrajsek 1999, NASA TM-209046.
+    mean (r - mean r)^4/M^2, M the mean of the variances of runs 1 .. this one. A single run has the
+    kurtosis of r. It keeps growing where a fault spreads, which FM4 does not. ``healthy``: the mean
+    variance of healthy runs in place of M; it does not grow with the fault.
+    Sources: Zakrajsek, Townsend and Decker 1993, NASA TM-105950; Decker and Zakrajsek 1999, NASA
+    TM-209046, for the healthy form.
 
     >>> na4_of_moments(fourth=[1.5, 24.0], variance=[1.0, 4.0], healthy=1.0)
     array([ 1.5, 24. ])
@@ -199,6 +186,24 @@ def modulation_depths(amplitude: ArrayLike) -> tuple[Floats, Floats]:
     high, low = size.max(axis=-1), size.min(axis=-1)
     turned = np.angle(a * np.conj(a.mean(axis=-1, keepdims=True)))
     return _ratio(high - low, high + low), np.asarray(0.5 * np.ptp(turned, axis=-1))
+
+
+def amplitude_half_width(bands: ArrayLike, *, mesh_order: int, share: float) -> Floats:
+    """How far noise moves the amplitude of the mean of demodulated ``bands`` anywhere, 95 %: (...).
+
+    u s, s the standard deviation of what is in phase with the mean: the root of ``share``/2 times
+    the variance of ``bands`` (..., block, sample), each of ``share`` of the turns. u is the root of
+    2 ln(z/(0.05 sqrt(3))): Gaussian noise in a band of z orders goes through +-u 0.05 times a turn.
+    The greatest and the least amplitude of a turn are off by no more, nor is a tooth chosen by it.
+    Source: Rice 1945, Bell Syst. Tech. J. 24, 46-156, section 3.3.
+
+    >>> noise = np.random.default_rng(1).normal(size=(8, 512, 2)) @ [1.0, 1j]
+    >>> f"{float(amplitude_half_width(noise, mesh_order=19, share=1 / 8)):.2f}"
+    '1.15'
+    """
+    variance = np.var(np.asarray(bands), axis=-2, ddof=1).mean(axis=-1)
+    level = np.sqrt(2.0 * np.log(mesh_order / (RARE * np.sqrt(3.0))))
+    return np.asarray(level * np.sqrt(0.5 * share * variance))
 
 
 def tooth_deviations(values: ArrayLike) -> Floats:

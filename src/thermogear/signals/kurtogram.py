@@ -11,12 +11,14 @@ from scipy import fft, ndimage, special
 
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
-from thermogear.signals.spectra import finite_record
+from thermogear.signals.spectra import finite_record, running_median
 
 FEWEST = 128
 """Complex samples of a band at least: fewer have a kurtosis of more noise than 0.18 (chosen, as the
 levels of Antoni's fast kurtogram end, log2 N - 7)."""
 _BESIDE = 101  # bins over which the floor of an envelope spectrum is taken
+_LINE = 12.0  # times the floor's power: a line, which one bin of noise in 160 000 is (chosen)
+_LOBE = 3  # bins to each side that a line fills
 
 
 def spectral_kurtosis(coefficients: ArrayLike) -> Floats:
@@ -99,6 +101,31 @@ def impulsive_band(bands: Sequence[Band], *, samples: int, chance: float = 0.01)
 
     clear = [band for band in known if beyond(band) > 1.0]
     return max(clear, key=lambda band: band.kurtosis, default=None)
+
+
+def without_lines(x: ArrayLike, *, spacings: Sequence[float] = ()) -> Floats:
+    """``x`` without its lines: bins of its DFT set to 0 at all multiples of each of ``spacings``
+    [bins] and one beside, and where power is 12 times the floor's and three beside.
+
+    The floor is the median over 301 bins over ln 2, the mean power of Gaussian noise. A line in no
+    bin of its own leaves its ends, which are below 12 times the floor.
+
+    >>> line = np.cos(0.125 * np.pi * np.arange(4096))
+    >>> noise = np.random.default_rng(1).normal(size=4096)
+    >>> round(float(np.std(without_lines(20.0 * line + noise))), 1)
+    1.0
+    """
+    values = finite_record(x)
+    lines = fft.rfft(values)
+    power = np.abs(lines) ** 2
+    floor = running_median(power[None])[0] / np.log(2.0)
+    high = (power > _LINE * floor).astype(float)
+    lines[np.convolve(high, np.ones(2 * _LOBE + 1), mode="same") > 0.0] = 0.0
+    for spacing in spacings:
+        places = np.rint(np.arange(0.0, lines.size - 1.0, spacing)).astype(int)
+        for offset in (-1, 0, 1):
+            lines[np.clip(places + offset, 0, lines.size - 1)] = 0.0
+    return np.asarray(fft.irfft(lines, n=values.size))
 
 
 @dataclass(frozen=True, kw_only=True)

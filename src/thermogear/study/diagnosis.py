@@ -22,23 +22,31 @@ from thermogear.measured.diagnosis import (
     PINION,
     SHAFTS,
     WHEEL,
-    BearingLine,
-    Impacts,
     InAngle,
     ShaftAverage,
-    impacts,
     raw_values,
     shaft_average,
 )
-from thermogear.measured.swelling import BearingRates
+from thermogear.measured.impacts import (
+    BAND_SAMPLES,
+    HEARD,
+    BearingLine,
+    BearingRates,
+    Impacts,
+    impacts,
+)
 from thermogear.results.result import Notice, Result, now
 from thermogear.signals.indicators import (
+    amplitude_half_width,
     demodulated_harmonics,
     gear_indicators,
+    modulation_depths,
     moment_scatter,
     na4_of_moments,
+    order_amplitudes,
     tooth_deviations,
 )
+from thermogear.signals.kurtogram import real_cepstrum
 from thermogear.signals.synchronous import demodulated, separated, tooth_means
 
 INDICATORS = (
@@ -58,15 +66,16 @@ ALARM = 0.05
 BY_CHANCE = 0.001
 """Chance that as many averages have their greatest residual at one tooth, up to which the tooth is
 named (chosen)."""
-HEARD = 0.01
-"""Chance of a line of a bearing up to which it is told (chosen)."""
 CLEAR = 4.0
 """Robust standard deviations of the other teeth from which a tooth's amplitude or timing counts as
 off (chosen)."""
 ALIKE = 0.5
 """Relative difference of the delays of mesh harmonics up to which they are one delay (chosen)."""
-SPEEDS = 0.02
-"""Relative difference of speed from which a record is not like the baseline (chosen)."""
+UNLIKE = 0.02
+"""Relative difference of speed, or of the mesh line's order, from which a record is not like the
+baseline (chosen)."""
+FIRST_HARMONIC = 0.1
+"""Share of a mesh harmonic that the first one has at least, where they are one gear's (chosen)."""
 MOST_DRAWN = 4096
 
 EITHER = "pinion or wheel"
@@ -78,16 +87,19 @@ Key = tuple[str, str, str]
 @dataclass(frozen=True, kw_only=True)
 class Reduced:
     """A record's ``values`` of every average by channel, shaft and indicator; its ``shafts``, what
-    else is heard (``impacts``), ``raw`` values by channel; the rest as in the record."""
+    else is heard (``impacts``), ``cepstrum`` (channel, quefrency in turns of the pinion x
+    ``per_turn``), ``raw`` values by channel; the rest as in the record."""
 
     name: str
     channels: tuple[str, ...]
     values: dict[Key, Floats]
     shafts: tuple[ShaftAverage, ...]
     impacts: Impacts
+    cepstrum: Floats
+    per_turn: int
     raw: dict[str, Floats]
     speed: float
-    length: int
+    mesh: float
     marked: bool
     origin: str
     noise: float
@@ -118,6 +130,7 @@ def reduced(
             turns = record.length * teeth[0] / teeth[1]
             notices.append(Notice.of("few_turns_of_wheel", turns=turns))
     given = dict(zip(SHAFTS, held, strict=False))
+    straight, per_turn = record.straightened
     shafts = [shaft_average(record, shaft, teeth=teeth, turns=given.get(shaft)) for shaft in names]
     values: dict[Key, Floats] = {}
     for shaft in shafts:
@@ -132,16 +145,36 @@ def reduced(
         channels=record.channels,
         values=values,
         shafts=tuple(shafts),
-        impacts=impacts(record, teeth=teeth[0], mate=teeth[1], bearings=bearings, band=band),
+        impacts=impacts(
+            straight,
+            angle=record.turns,
+            channels=record.channels,
+            ratios={PINION: 1.0, WHEEL: teeth[0] / (teeth[1] or teeth[0])},
+            bearings=bearings,
+            band=band,
+        ),
+        cepstrum=real_cepstrum(straight[:, :BAND_SAMPLES]),
+        per_turn=per_turn,
         raw=raw_values(record),
         speed=record.speed,
-        length=record.length,
+        mesh=_mesh_order(record.mesh, shafts[0]),
         marked=record.marked,
         origin=record.origin,
         noise=record.noise,
         notices=tuple(notices),
         unit=record.record.channel(record.channels[0]).unit or "",
     )
+
+
+def _mesh_order(found: float, pinion: ShaftAverage) -> float:
+    """The order at which the mesh line was ``found``, or the teeth of the pinion where that is a
+    harmonic of theirs, and the first one is there."""
+    rank = round(found / pinion.teeth)
+    lines = order_amplitudes(pinion.average).max(axis=0)
+    harmonic = rank * pinion.teeth
+    if rank < 2 or harmonic > pinion.highest or abs(found / harmonic - 1.0) > UNLIKE:
+        return found
+    return float(pinion.teeth) if lines[pinion.teeth] > FIRST_HARMONIC * lines[harmonic] else found
 
 
 def with_na4(rows: Sequence[Reduced], healthy: int) -> list[Reduced]:
@@ -166,12 +199,17 @@ def with_na4(rows: Sequence[Reduced], healthy: int) -> list[Reduced]:
 
 @dataclass(frozen=True, kw_only=True)
 class Healthy:
-    """What a baseline says of one indicator: the ``least`` and the ``greatest`` of its averages,
-    and the ``limit`` (infinite where one record tells no scatter from record to record)."""
+    """What a baseline says of one indicator: the ``least``, the ``median`` and the ``greatest`` of
+    its averages, and the ``limit`` (infinite where one record tells no scatter between records)."""
 
     least: float
+    median: float
     greatest: float
     limit: float
+
+
+UNKNOWN = Healthy(least=np.nan, median=np.nan, greatest=np.nan, limit=np.nan)
+"""Without a baseline."""
 
 
 def healthy_limit(baseline: Sequence[Floats], *, family: int, alarm: float = ALARM) -> Healthy:
@@ -193,7 +231,7 @@ def healthy_limit(baseline: Sequence[Floats], *, family: int, alarm: float = ALA
     known = [np.median(row[np.isfinite(row)]) for row in baseline if np.isfinite(row).any()]
     medians = np.array([median for median in known if median > 0.0])
     if not medians.size:
-        return Healthy(least=np.nan, greatest=np.nan, limit=np.nan)
+        return UNKNOWN
     limit = np.inf
     if medians.size > 1:
         from scipy import stats
@@ -201,8 +239,8 @@ def healthy_limit(baseline: Sequence[Floats], *, family: int, alarm: float = ALA
         logs, count = np.log(medians), medians.size
         t = float(stats.t.isf(alarm / family, count - 1))
         limit = float(np.exp(logs.mean() + t * logs.std(ddof=1) * np.sqrt(1.0 + 1.0 / count)))
-    greatest = float(pooled.max())
-    return Healthy(least=float(pooled.min()), greatest=greatest, limit=max(limit, greatest))
+    least, middle, greatest = (float(np.quantile(pooled, share)) for share in (0.0, 0.5, 1.0))
+    return Healthy(least=least, median=middle, greatest=greatest, limit=max(limit, greatest))
 
 
 def trend_of(values: Sequence[float]) -> tuple[float, float]:
@@ -224,13 +262,22 @@ def trend_of(values: Sequence[float]) -> tuple[float, float]:
 # --- where ---------------------------------------------------------------------------------------
 
 
+MODULATION = (
+    "amplitude", "delay", "depth", "timing", "amplitude_half_width", "delay_half_width",
+)  # fmt: skip
+"""What of a :class:`Place` is told of each mesh harmonic."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Place:
     """The tooth (from 1) of a ``shaft`` where the difference signal of a ``channel`` is greatest.
 
     ``agreeing`` of ``averages`` have it there, by chance as many with ``chance``; of each mesh
     harmonic the change of ``amplitude`` [-] and the ``delay`` [pitches] there against the other
-    teeth (0 where it is less than 4 of their standard deviations). ``alike``: two harmonics or more
+    teeth (0 where it is less than 4 of their standard deviations), the ``depth`` [-] and the
+    modulation of ``timing`` [pitches] over the turn, and the 95 % half widths of all by noise
+    (:func:`~thermogear.signals.indicators.amplitude_half_width`): ``amplitude_half_width`` of
+    amplitude and depth, ``delay_half_width`` of delay and timing. ``alike``: two harmonics or more
     have one delay.
     """
 
@@ -242,6 +289,10 @@ class Place:
     chance: float
     amplitude: tuple[float, ...]
     delay: tuple[float, ...]
+    depth: tuple[float, ...]
+    timing: tuple[float, ...]
+    amplitude_half_width: tuple[float, ...]
+    delay_half_width: tuple[float, ...]
     alike: bool
 
 
@@ -259,14 +310,12 @@ def place_of(shaft: ShaftAverage, channel: int, name: str) -> Place:
     places = np.argmax(energy(shaft.blocks[channel]), axis=-1)
     agreeing = int(np.count_nonzero(places == tooth))
     near = [(tooth + off) % teeth for off in (-1, 0, 1)]
-    amplitudes, delays = [], []
-    for k in demodulated_harmonics(mesh_order=teeth, highest=shaft.highest):
-        a = demodulated(average, mesh_order=teeth, harmonic=k)
-        phase = np.angle(a * np.conj(a.mean())) / (2.0 * np.pi * k)
-        size = tooth_means(np.abs(a) / np.median(np.abs(a)), teeth=teeth) - 1.0
-        amplitudes.append(_beyond(size, near))
-        delays.append(_beyond(-tooth_means(phase, teeth=teeth), near))
-    seen = np.array([delay for delay in delays if delay != 0.0])
+    rows = [
+        _modulation(shaft, channel, k, near)
+        for k in demodulated_harmonics(mesh_order=teeth, highest=shaft.highest)
+    ]
+    harmonics = {name: tuple(row[name] for row in rows) for name in MODULATION}
+    seen = np.array([delay for delay in harmonics["delay"] if delay != 0.0])
     alike = seen.size >= 2 and bool(np.ptp(seen) <= ALIKE * np.abs(seen).max())
     return Place(
         channel=name,
@@ -275,10 +324,34 @@ def place_of(shaft: ShaftAverage, channel: int, name: str) -> Place:
         agreeing=agreeing,
         averages=places.size,
         chance=float(stats.binom.sf(agreeing - 1, places.size, 1.0 / teeth)),
-        amplitude=tuple(amplitudes),
-        delay=tuple(delays),
         alike=alike,
+        **harmonics,
     )
+
+
+def _modulation(
+    shaft: ShaftAverage, channel: int, harmonic: int, near: Sequence[int]
+) -> dict[str, float]:
+    """What of a :class:`Place` counts for each mesh harmonic, by :data:`MODULATION`."""
+    a, bands = (
+        demodulated(signals[channel], mesh_order=shaft.teeth, harmonic=harmonic)
+        for signals in (shaft.average, shaft.blocks)
+    )
+    size, pitch = np.abs(a), 2.0 * np.pi * harmonic
+    phase = np.angle(a * np.conj(a.mean())) / pitch
+    depth, turned = modulation_depths(a)
+    wide = float(
+        amplitude_half_width(bands, mesh_order=shaft.teeth, share=shaft.block_turns / shaft.turns)
+    )
+    values = (
+        _beyond(tooth_means(size / np.median(size), teeth=shaft.teeth) - 1.0, near),
+        _beyond(-tooth_means(phase, teeth=shaft.teeth), near),
+        float(depth),
+        float(turned) / pitch,
+        2.0 * wide / max(float(size.max() + size.min()), 1e-300),
+        wide / max(float(size.min()), 1e-300) / pitch,
+    )
+    return dict(zip(MODULATION, values, strict=True))
 
 
 def _beyond(values: Floats, near: Sequence[int]) -> float:
@@ -292,16 +365,19 @@ def _beyond(values: Floats, near: Sequence[int]) -> float:
 
 Source = tuple[str, Callable[[], InAngle]]
 """The name of a record and what reads it into its angle."""
-NO_BASELINE, ONE_BASELINE, OTHER_LEVEL, CHANGED, OPEN, UNCHANGED = (
-    "no baseline", "one baseline record", "another level", "changed", "undecided", "no change",
+NO_BASELINE, ONE_BASELINE, CHANGED, OPEN, UNCHANGED = (
+    "no baseline", "one baseline record", "changed", "undecided", "no change",
 )  # fmt: skip
+OTHER_LEVEL, OTHER_SPEED, OTHER_GEARS = "another level", "another speed", "other gears"
+"""Of a record that is not like the baseline: nothing is decided."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Judged:
     """A tested record beside the limits: its ``medians`` by key, those ``beyond`` their limit and
     those ``above`` every healthy average, the ``verdict``, where the change is (``places``);
-    ``level``: its rms over that of the nearest healthy record, 1 within their range."""
+    ``unlike``: what of it is not the baseline's, its own value and the baseline's: of its level
+    rms over that of the nearest healthy record and 1, its speed [rad/s], its mesh line's order."""
 
     name: str
     medians: dict[Key, float]
@@ -309,7 +385,7 @@ class Judged:
     above: tuple[Key, ...]
     verdict: str
     places: tuple[Place, ...]
-    level: float
+    unlike: tuple[float, float]
 
 
 def diagnose(
@@ -398,13 +474,17 @@ def _judged(row: Reduced, limits: dict[Key, Healthy], base: Sequence[Reduced]) -
     decided = [key for key in limits if key[2] in DECIDED and key in medians]
     beyond = tuple(key for key in decided if medians[key] > limits[key].limit)
     above = tuple(key for key in decided if medians[key] > limits[key].greatest)
-    verdict, level = UNCHANGED if base else NO_BASELINE, _level(row, base)
+    verdict, unlike = UNCHANGED if base else NO_BASELINE, (_level(row, base), 1.0)
     if base and above:
         verdict = CHANGED if beyond else OPEN
-    if abs(np.log(level)) > np.log1p(LEVEL):
+    if abs(np.log(unlike[0])) > np.log1p(LEVEL):
         verdict = OTHER_LEVEL
     if len(base) == 1:
         verdict = ONE_BASELINE
+    for name, other in (("speed", OTHER_SPEED), ("mesh", OTHER_GEARS)) if base else ():
+        own, healthy = getattr(row, name), float(np.median([getattr(b, name) for b in base]))
+        if abs(own / healthy - 1.0) > UNLIKE:
+            verdict, unlike = other, (own, healthy)
     places = []
     for shaft in row.shafts:
         keys = [key for key in medians if key[1] == shaft.name]
@@ -422,7 +502,7 @@ def _judged(row: Reduced, limits: dict[Key, Healthy], base: Sequence[Reduced]) -
         above=above,
         verdict=verdict,
         places=tuple(places),
-        level=level,
+        unlike=unlike,
     )
 
 
@@ -471,12 +551,6 @@ def _notices(
             )
     if not last.marked:
         notices.append(Notice.of("tooth_one_arbitrary", origin=last.origin))
-    speed = float(np.median([row.speed for row in base])) if base else np.nan
-    for row in tested:
-        if abs(row.speed / speed - 1.0) > SPEEDS:
-            notices.append(
-                Notice.of("other_speed", record=row.name, speed=row.speed, baseline=speed)
-            )
     named: dict[Notice, list[str]] = {}
     for row in (*base, *tested):
         for notice in row.notices:
@@ -491,12 +565,7 @@ def _groups(
     """Group ``indicators`` (record, row), and of the last record each shaft's turn, the envelope
     that is clearest, and the cepstra."""
     keys = list(judged[-1].medians)
-    blank = Healthy(least=np.nan, greatest=np.nan, limit=np.nan)
-    healthy = [limits.get(key, blank) for key in keys]
-    bounds = [
-        scatter.limit if key[2] in DECIDED else np.nan
-        for key, scatter in zip(keys, healthy, strict=True)
-    ]
+    healthy = [limits.get(key, UNKNOWN) for key in keys]
     value = [[each.medians.get(key, np.nan) for key in keys] for each in judged]
     beyond = [[float(key in each.beyond) for key in keys] for each in judged]
     last = tested[-1]
@@ -504,19 +573,19 @@ def _groups(
         {
             "indicator_value": (("record", "row"), value, "", "median of the averages"),
             "indicator_beyond": (("record", "row"), beyond, "1", "beyond its limit"),
-            "healthy_least": (
+            **{
+                f"healthy_{name}": (("row",), [getattr(h, name) for h in healthy], "", name)
+                for name in ("least", "median", "greatest")
+            },
+            "indicator_limit": (
                 ("row",),
-                [scatter.least for scatter in healthy],
+                [
+                    scatter.limit if key[2] in DECIDED else np.nan
+                    for key, scatter in zip(keys, healthy, strict=True)
+                ],
                 "",
-                "of the baseline",
+                "limit",
             ),
-            "healthy_greatest": (
-                ("row",),
-                [scatter.greatest for scatter in healthy],
-                "",
-                "of the baseline",
-            ),
-            "indicator_limit": (("row",), bounds, "", "limit"),
         }
     ).assign_coords(
         record=[row.name for row in tested],
@@ -527,13 +596,11 @@ def _groups(
     groups = {"indicators": indicators}
     for shaft in last.shafts:
         groups[shaft.name] = _turn(shaft, last.channels)
-    heard = last.impacts
-    clear = int(
-        np.argmax([np.max(spectrum.amplitude / spectrum.floor) for spectrum in heard.spectra])
-    )
-    spectrum = heard.spectra[clear]
-    shown = spectrum.position <= _highest_shown(heard)
-    half = heard.cepstrum.shape[-1] // 2
+    spectra = last.impacts.spectra
+    clear = int(np.argmax([np.max(each.amplitude / each.floor) for each in spectra]))
+    spectrum = spectra[clear]
+    shown = spectrum.position <= _highest_shown(last.impacts)
+    half = last.cepstrum.shape[-1] // 2
     count = min(half, MOST_DRAWN)
     groups["envelope"] = label(
         {
@@ -542,19 +609,19 @@ def _groups(
             "envelope_order": (("line",), spectrum.position[shown], "1", "order of the pinion"),
         }
     ).assign_attrs(channel=last.channels[clear])
-    quefrency = np.arange(1, count) / heard.per_turn
+    quefrency = np.arange(1, count) / last.per_turn
     groups["cepstrum"] = label(
         {
-            "cepstrum": (("channel", "quefrency"), heard.cepstrum[:, 1:count], "1", "cepstrum"),
+            "cepstrum": (("channel", "quefrency"), last.cepstrum[:, 1:count], "1", "cepstrum"),
             "turns": (("quefrency",), quefrency, "1", "turns of the pinion"),
         }
     ).assign_coords(channel=list(last.channels))
     return groups
 
 
-def _highest_shown(heard: Impacts) -> float:
+def _highest_shown(found: Impacts) -> float:
     """The order up to which an envelope is drawn: past the highest rate that was looked for."""
-    return max([10.0, *(1.5 * line.order for line in heard.lines if np.isfinite(line.order))])
+    return max([10.0, *(1.5 * line.order for line in found.lines if np.isfinite(line.order))])
 
 
 def _turn(shaft: ShaftAverage, channels: Sequence[str]) -> Dataset:
@@ -603,7 +670,7 @@ def _figures(
                 "record": each.name,
                 "verdict": each.verdict,
                 "shaft": changed_shaft(each, limits, row.shafts),
-                "level": each.level,
+                "unlike": list(each.unlike),
                 "beyond": len(each.beyond),
                 "above": len(each.above),
                 "indicators": len(family),
@@ -629,6 +696,7 @@ def _figures(
             {
                 "record": row.name,
                 **{name: getattr(line, name) for name in BearingLine.__dataclass_fields__},
+                "words": line.words,
                 "in_baseline": line.bearing + line.shaft + line.part in known,
             }
             for row in tested

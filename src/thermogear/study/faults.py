@@ -108,7 +108,7 @@ def fault_motions(
     """
     if STEPS % samples:
         raise InputError("samples", samples, allowed=f"a divisor of {STEPS}")
-    if not case.faults():
+    if not case.file.faults or (case.all_faults and not case.faults()):
         raise InputError("faults", "none", fix="state [[faults]] in the case")
     if case.models[0].stiffness != "loaded":
         raise InputError("model.stiffness", case.models[0].stiffness, allowed="loaded")

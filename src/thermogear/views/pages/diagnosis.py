@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
 import numpy as np
 
 from thermogear.base.arrays import Dataset
-from thermogear.base.display import DEGREE, MILLIMETRE_PER_SECOND, PERCENT, exactly, number
+from thermogear.base.display import (
+    DEGREE,
+    MILLIMETRE_PER_SECOND,
+    PERCENT,
+    SPEED,
+    exactly,
+    number,
+)
 from thermogear.results.result import Result
-from thermogear.results.tables import rows_along
+from thermogear.results.tables import csv_text, rows_along
 from thermogear.views.columns import PLAIN, Column, Row, declared
 from thermogear.views.page import Page, Pictures, Section, Table, Text
 from thermogear.views.picture import Axis, Panel, Picture
@@ -36,7 +44,8 @@ WORDS = {
     "crest": "crest factor",
 }
 """Indicators as a reader knows them."""
-_UNITS = {"rms", "residual_rms", "sideband_index"}
+OPEN = ("verdict", "where", "simulated")
+"""Tables that are unfolded."""
 _ORDERS = 8  # of those removed that are told
 
 
@@ -87,7 +96,12 @@ def page(result: Result) -> Page:
     sections = [
         Section("pictures", "In pictures", pictures.take(), folded=False),
         *(
-            Section(name, name.capitalize(), [table], folded=name not in ("verdict", "where"))
+            Section(
+                name,
+                name.capitalize(),
+                [table],
+                folded=name not in ("verdict", "where", "simulated"),
+            )
             for name, table in tables.items()
         ),
     ]
@@ -98,6 +112,12 @@ def page(result: Result) -> Page:
         numbers=lambda: {
             **figures,
             "indicators": rows_along(result.groups["indicators"], "record", "row"),
+            "simulated": _simulated(result),
+        },
+        tables=lambda: {
+            f"csv/{name}.csv": csv_text(data.to_dataframe())
+            for name, data in result.groups.items()
+            if name == "simulated"
         },
         told=lambda: [Text(summary(figures)), *_tables(result, figures, last=True).values()],
     )
@@ -106,6 +126,7 @@ def page(result: Result) -> Page:
 def summary(figures: dict[str, Any]) -> str:
     """The verdict on the last record in two or three sentences."""
     last = figures["verdicts"][-1]
+    own, healthy = last["unlike"]
     of = f"{last['above']} of {last['indicators']} indicators are above every healthy average"
     rest = {
         "no baseline": "No verdict: no indicator has a limit that holds for every machine. Give "
@@ -114,14 +135,20 @@ def summary(figures: dict[str, Any]) -> str:
         "much one assembly, or one day, differs from the next; give further ones.",
         "undecided": f"Undecided: {of}, and none is beyond what records of this baseline may "
         "scatter. Further healthy records narrow that.",
-        "another level": f"Undecided: its rms is {last['level']:.2g} times that of the baseline, "
-        "so that load, gain or noise are others. Give a baseline like it.",
+        "another level": f"Undecided: its rms is {own:.2g} times that of the baseline, so that "
+        "load, gain or noise are others. Give a baseline like it.",
+        "another speed": f"Undecided: it turns at {SPEED(own):.0f} rpm, the baseline at "
+        f"{SPEED(healthy):.0f} rpm, so that what differs is not the gears' alone. Give a baseline "
+        "like it.",
+        "other gears": f"Undecided: its mesh line is order {own:.4g} of the shaft, that of the "
+        f"baseline order {healthy:.4g}: other gears, or the tacho on another shaft. Give a "
+        "baseline of this machine.",
         "no change": "No change: no indicator is above every healthy average.",
         "changed": f"Changed: {last['beyond']} of {last['indicators']} indicators are beyond their "
         f"limits, most on the {last['shaft']}.",
     }[last["verdict"]]
     spare = ""
-    if len(figures["baseline"]) > 1 and last["verdict"] != "another level":
+    if len(figures["baseline"]) > 1 and last["verdict"] in ("undecided", "no change", "changed"):
         spare = (
             f" In at most {PERCENT(figures['alarm']):g} % of healthy records would any of them be "
             "beyond its limit, where logarithms scatter normally from record to record; fewer than "
@@ -129,8 +156,7 @@ def summary(figures: dict[str, Any]) -> str:
             f"{figures['averages']} of the baseline (95 %)."
         )
     heard = [
-        f"The envelope has a line of the {row['bearing']}'s {row['part']} ({row['shaft']}), which "
-        "the baseline has not."
+        f"T{row['words'][1:]}; the baseline has not."
         for row in figures["bearings"]
         if row["record"] == last["record"] and figures["baseline"] and not row["in_baseline"]
     ]
@@ -183,13 +209,21 @@ def _tables(result: Result, figures: dict[str, Any], *, last: bool = False) -> d
             "The tooth at which the difference signal is greatest, in how many averages, and the "
             "chance of as many in noise. A sound gear has such a tooth, too: teeth differ. It is "
             "a fault's only where the verdict names its shaft. Change of amplitude and delay "
-            "there, of mesh harmonics 1, 2, 3 (0: not clear of the other teeth).",
+            "there, of mesh harmonics 1, 2, 3 (0: not clear of the other teeth), and modulation of "
+            "amplitude and timing over the turn; after ± what noise may make of either, 95 %.",
             (
                 record,
                 Column("shaft", "shaft"),
                 Column("channel", "channel"),
-                Column("amplitude [%]", lambda row: _listed(PERCENT(row["amplitude"]))),
-                Column("delay [% of a pitch]", lambda row: _listed(PERCENT(row["delay"]))),
+                *(
+                    Column(head, partial(_listed, name=name, wide=f"{wide}_half_width"))
+                    for head, name, wide in (
+                        ("amplitude [%]", "amplitude", "amplitude"),
+                        ("delay [% of a pitch]", "delay", "delay"),
+                        ("modulation [%]", "depth", "amplitude"),
+                        ("of timing [% of a pitch]", "timing", "delay"),
+                    )
+                ),
                 Column("tooth", "tooth"),
                 Column("averages", lambda row: f"{row['agreeing']} of {row['averages']}"),
                 Column("chance", "chance", 2),
@@ -220,6 +254,26 @@ def _tables(result: Result, figures: dict[str, Any], *, last: bool = False) -> d
             rows,
             names=4,
             marked=lambda row: bool(row["indicator_beyond"]),
+        ),
+        "simulated": declared(
+            "The same of the computed acceleration of the teeth, with the faults of the case and "
+            "without, beside what was measured: compare the changes. No verdict is made of them.",
+            (
+                Column("shaft", "shaft"),
+                Column("indicator", lambda row: WORDS[row["indicator"]]),
+                Column("channel", "channel"),
+                *(
+                    Column(f"{side} {name}", partial(_value, name=f"{side}_{name}"), 4, PLAIN)
+                    for side, other in (("measured", "suspect"), ("simulated", "fault"))
+                    for name in ("healthy", other)
+                ),
+                *(
+                    Column(f"change {side}", f"{side}_change", "+.3g", PERCENT)
+                    for side in ("measured", "simulated")
+                ),
+            ),
+            _simulated(result),
+            names=3,
         ),
         "bearings": declared(
             "Lines of the envelope within 2 % of a bearing's rate; orders of the bearing's shaft.",
@@ -289,6 +343,12 @@ def _tables(result: Result, figures: dict[str, Any], *, last: bool = False) -> d
     return {name: table for name, table in listed.items() if table.rows}
 
 
+def _simulated(result: Result) -> Sequence[Row]:
+    """Rows of the group ``simulated``, which a comparison alone has."""
+    data = result.group("simulated")
+    return () if data is None else rows_along(data, "row")
+
+
 def _chosen(row: Row) -> str:
     if not row["chosen"]:
         return "none stands out"
@@ -320,8 +380,10 @@ def _value(row: Row, name: str) -> float:
     return DEGREE(value) if row["indicator"] == "phase_depth" else value
 
 
-def _listed(values: Any) -> str:
-    return ", ".join(exactly(float(value), 2) for value in values) or "–"
+def _listed(row: Row, name: str, wide: str) -> str:
+    pairs = zip(row[name], row[wide], strict=True)
+    shown = [f"{exactly(PERCENT(v), 2)} ± {exactly(PERCENT(w), 1)}" for v, w in pairs]
+    return ", ".join(shown) or "–"
 
 
 # --- pictures -----------------------------------------------------------------------------------
