@@ -7,6 +7,8 @@ without any power has no ratio: nan. None of them has a limit that holds for eve
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import fft
@@ -38,8 +40,10 @@ def normalised_moment(x: ArrayLike, *, power: int) -> Floats:
     """
     values = finite_record(x)
     centred = values - values.mean(axis=-1, keepdims=True)
-    spread = np.mean(centred**2, axis=-1)
-    return _ratio(np.mean(centred**power, axis=-1), spread ** (power // 2))
+    square = centred**2
+    # numpy raises to a power a tenth as fast as it multiplies
+    raised = math.prod([square] * (power // 2))
+    return _ratio(np.mean(raised, axis=-1), np.mean(square, axis=-1) ** (power // 2))
 
 
 def moment_scatter(power: int, *, count: int) -> float:

@@ -11,9 +11,10 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from thermogear.analysis.order_statistics import proportion
-from thermogear.base.arrays import Dataset, Floats
+from thermogear.base.arrays import Dataset, Floats, Whole
 from thermogear.base.errors import InputError
 from thermogear.base.limits import zone_of
 from thermogear.base.progress import Progress, silent
@@ -245,19 +246,33 @@ class Place:
     alike: bool
 
 
+def loudest_teeth(
+    averages: ArrayLike, *, teeth: int, highest: int, step: int | None = None
+) -> Whole:
+    """The tooth, from 0, over which each average's difference signal has the most power, (...).
+
+    ``averages`` over one turn of a gear (..., sample), ``highest`` and ``step`` as of
+    :func:`~thermogear.signals.synchronous.separated`.
+
+    >>> angle = 2.0 * np.pi * np.arange(256) / 256
+    >>> burst = np.cos(52 * angle) * (np.abs(angle - 0.9 * np.pi) < 0.1)
+    >>> int(loudest_teeth(burst, teeth=20, highest=100))
+    9
+    """
+    parts = separated(averages, mesh_order=teeth, highest=highest, step=step)
+    return np.asarray(np.argmax(tooth_means(parts.difference**2, teeth=teeth), axis=-1))
+
+
 def place_of(shaft: ShaftAverage, channel: int, name: str) -> Place:
     """Where on a shaft a channel's difference signal is greatest, with its evidence."""
     from scipy import stats
 
     teeth, average = shaft.teeth, shaft.average[channel]
-
-    def energy(signal: Floats) -> Floats:
-        parts = separated(signal, mesh_order=teeth, highest=shaft.highest, step=shaft.step)
-        return tooth_means(parts.difference**2, teeth=teeth)
-
-    tooth = int(np.argmax(energy(average)))
-    places = np.argmax(energy(shaft.blocks[channel]), axis=-1)
-    agreeing = int(np.count_nonzero(places == tooth))
+    signals = [average, *shaft.blocks[channel]]
+    tooth, *places = loudest_teeth(
+        signals, teeth=teeth, highest=shaft.highest, step=shaft.step
+    ).tolist()
+    agreeing = places.count(tooth)
     near = [(tooth + off) % teeth for off in (-1, 0, 1)]
     amplitudes, delays = [], []
     for k in demodulated_harmonics(mesh_order=teeth, highest=shaft.highest):
@@ -273,8 +288,8 @@ def place_of(shaft: ShaftAverage, channel: int, name: str) -> Place:
         shaft=shaft.name,
         tooth=tooth + 1,
         agreeing=agreeing,
-        averages=places.size,
-        chance=float(stats.binom.sf(agreeing - 1, places.size, 1.0 / teeth)),
+        averages=len(places),
+        chance=float(stats.binom.sf(agreeing - 1, len(places), 1.0 / teeth)),
         amplitude=tuple(amplitudes),
         delay=tuple(delays),
         alike=alike,
