@@ -63,6 +63,11 @@ class SeriesMesh:
     whole: bool
     ahead: int = 0
 
+    def of(self, which: slice) -> SeriesMesh:
+        """Some of the parts."""
+        names = ("transmission_error", "spring_error", "stiffness", "half_backlash")
+        return replace(self, **{name: getattr(self, name)[which] for name in names})
+
     @cached_property
     def peak_to_peak(self) -> Floats:
         """Transmission error peak to peak over the whole turn [m], (part,).
