@@ -378,7 +378,7 @@ def detect(
     at a quarter, half and all of its size, and without: four usual faults where the case states
     none. Loads are the case's torques, or .5, 1 and 1.5 times the one it has. The indicators of
     `diagnose` are held against limits of healthy averages, of the same machine and of other pairs
-    of the class. CASE needs flanks.accuracy.
+    of the class.
     """
     from thermogear.study.detection import detection_plan
 

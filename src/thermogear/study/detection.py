@@ -10,6 +10,7 @@ Checked by ``tests/study/test_detection.py`` and ``checks/trial_detection.py``.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -17,6 +18,7 @@ from itertools import chain, product
 from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from thermogear.analysis.order_statistics import proportion
 from thermogear.base.arrays import Dataset, Floats, Whole
@@ -177,7 +179,7 @@ class DetectionPlan:
             "state": [state.kind for state in STATES], "signal": SIGNALS,
             "indicator": INDICATORS, "question": QUESTIONS,
         }  # fmt: skip
-        return axes | {name: ((name,), np.array(some), {}) for name, some in words.items()}
+        return axes | {name: _named(name, some) for name, some in words.items()}
 
     def needs(self, key: Key) -> Key | None:
         return None
@@ -368,6 +370,11 @@ class DetectionPlan:
         return _labelled(self, data, detected(self, data))
 
 
+def _named(dim: str, words: Sequence[str]) -> Coordinate:
+    """A coordinate of names."""
+    return (dim,), np.arange(len(words)), {"names": json.dumps(list(words))}
+
+
 # --- what is counted ------------------------------------------------------------------------------
 
 
@@ -444,9 +451,15 @@ def _labelled(plan: DetectionPlan, data: Dataset, counted: Arrays) -> Dataset:
             "noise": (("signal",), plan.level, "", "noise, rms"),
         },
         {
-            "sight": list(SIGHTS),
-            "variant": ["none, pinion", "none, wheel", *chain(*words)],
-            "fault": [f"{w[-1].partition(' of ')[0]}, {w[-1].rpartition(', ')[2]}" for w in words],
+            name: xr.Variable(*_named(name, some))
+            for name, some in {
+                "sight": SIGHTS,
+                "variant": ["none, pinion", "none, wheel", *chain(*words)],
+                "fault": [
+                    f"{some[-1].partition(' of ')[0]}, {some[-1].rpartition(', ')[2]}"
+                    for some in words
+                ],
+            }.items()
         },
     )
     told = Notice.of(

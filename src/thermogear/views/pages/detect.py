@@ -11,6 +11,7 @@ import numpy as np
 from thermogear.base.arrays import Dataset
 from thermogear.base.display import PERCENT, SPEED
 from thermogear.results.result import Result
+from thermogear.results.tables import in_words
 from thermogear.views.columns import Column, declared, rows_along
 from thermogear.views.page import Page, Shown, Table
 from thermogear.views.pages.diagnosis import WORDS
@@ -26,7 +27,7 @@ STATES = {"hot": HOT, "undeformed": COLD}
 
 def page(result: Result) -> Page:
     """Smallest sizes first, the shares as a heat table, shares over size hot and undeformed."""
-    data = result.data
+    data = in_words(result.data)
     at = middle(data)
     where = (
         f"At {SPEED(at['pinion_speed'].item()):.6g} rpm and {at['pinion_torque'].item():.4g} N m, "
@@ -45,9 +46,11 @@ def page(result: Result) -> Page:
         Shown("sizes", "Over the size, hot and undeformed", curves, partial(over_size, at)),
     ]
     heat = hot_or_cold(data)
-    counted = replace(result, groups={"": data[[*COUNTED, "smallest", "relative_size", "noise"]]})
+    counted = replace(
+        result, groups={"": result.data[[*COUNTED, "smallest", "relative_size", "noise"]]}
+    )
     return survey(
-        counted,
+        replace(result, groups={"": stored}),
         summary(at),
         pictures,
         [smallest(data), heat],
