@@ -14,7 +14,7 @@ BENCH_STAMP := .bench-venv/.installed
 AUDIT_BIN := .audit-venv/bin
 AUDIT_STAMP := .audit-venv/.installed
 
-.PHONY: audit bench bench-coordinates bench-geared bench-measure bench-paths bench-shafts bench-train-map check chromium clean compile demo friction-evidence house licences lint lock look lowest mutate release-check same sbom test trial-answers trial-app trial-attacks trial-base-sets trial-branches trial-coverage trial-damage trial-defects trial-experiment trial-heat trial-hostile trial-kills trial-labels trial-located trial-long trial-pairs trial-public trial-series trial-shafts trial-stamps trial-swings trial-trains trial-turn trial-turning trial-verdicts unit
+.PHONY: audit bench bench-coordinates bench-geared bench-measure bench-paths bench-shafts bench-train-map check chromium clean compile demo friction-evidence house licences lint lock look lowest mutate release-check same sbom test trial-answers trial-app trial-attacks trial-base-sets trial-branches trial-coverage trial-damage trial-defects trial-detection trial-experiment trial-heat trial-hostile trial-kills trial-labels trial-located trial-long trial-pairs trial-public trial-series trial-shafts trial-stamps trial-swings trial-trains trial-turn trial-turning trial-verdicts unit
 
 demo: $(STAMP)  ## the main job: the rig's case file to a report
 	$(BIN)/thermogear example rig > .venv/rig.toml
@@ -175,6 +175,9 @@ trial-app: $(STAMP)  ## the app walked through in a browser: actions, times, the
 
 trial-defects: $(STAMP)  ## records with one defect each: error before and now, or withheld, a minute; docs/trial_defects.md
 	@OPENBLAS_NUM_THREADS=1 $(BIN)/python checks/trial_defects.py
+
+trial-detection: $(STAMP)  ## does a detection table hold for other pairs and another integration? ten minutes; docs/trial_detection.md
+	@OPENBLAS_NUM_THREADS=1 $(BIN)/python checks/trial_detection.py
 
 trial-coverage: $(STAMP)  ## do stated 95 % intervals of lines hold? 500 records a scenario, half an hour; docs/trial_coverage.md
 	@OPENBLAS_NUM_THREADS=1 $(BIN)/python checks/trial_coverage.py $(COVERAGE)

@@ -281,7 +281,7 @@ COMMANDS = [
     *("statics", "modes", "campbell", "waterfall"),
     *("orbit", "lyapunov", "continue"),
     *("bifurcation", "map", "basins", "runup", "sweep"),
-    *("measure", "compare", "diagnose", "thesis", "sensitivity", "versus"),
+    *("measure", "compare", "detect", "diagnose", "thesis", "sensitivity", "versus"),
 ]
 SMALL_THESIS = (
     "-c 'from pathlib import Path; from thermogear.thesis import report; "

@@ -24,6 +24,7 @@ from thermogear.analysis.order_statistics import proportion
 from thermogear.base.plan import gather
 from thermogear.case.case import gear_case
 from thermogear.case.faults import fault_words
+from thermogear.gears.deviations import GEARS
 from thermogear.mesh.series import series_mesh
 from thermogear.results.tables import in_words
 from thermogear.signals.indicators import gear_indicators
@@ -37,14 +38,14 @@ Floats = NDArray[np.float64]
 
 SEED = 60_2026
 """Of the trial's noise; fixed before the first run."""
-FIRST = 1000
+FIRST = 100
 """Drawing of the first fresh pair: the table knows drawings 0 to 59."""
 FAULTY, HEALTHY = 100, 200
 STEPS = 160
 """Steps of a mesh period; the package takes 192 of other equations."""
 TURNS = 3
 """Turns that are followed; the last is the record."""
-SAMPLES, BASELINE, BLOCK = 80, 59, 20
+SAMPLES, BASELINE, BLOCK = 80, 59, 50
 PAGE = Path(__file__).parents[1] / "docs" / "trial_detection.md"
 CASE = """
 [gears]
@@ -156,7 +157,8 @@ def _resampled(curve: Floats, plan: DetectionPlan, order: int, period: float) ->
     lines = np.fft.rfft(curve, axis=1)[:, : plan.case.harmonics * plan.turn + 1]
     rate = 2j * np.pi * np.arange(lines.shape[1]) / (plan.turn * period)
     count = 2 * STEPS * plan.turn
-    return np.fft.irfft(lines * rate**order, count, axis=1).T * (count / curve.shape[1])
+    bent = np.fft.irfft(lines * rate**order, count, axis=1)
+    return np.asarray(bent.T * (count / curve.shape[1]))
 
 
 def averaged(
@@ -210,8 +212,8 @@ def main(faulty: int, healthy: int, parts: int, page: Path | None) -> dict[str, 
         entry = plan.entry(plan.variants[fault.variant][0])  # type: ignore[arg-type]
         seen = near = exact = 0
         for part, (before, after) in enumerate(both, start=first):
-            own = averaged(plan, before, gear, noise, 2 * part, BASELINE)
-            (row,) = averaged(plan, after, gear, noise, 2 * part + 1, 1)
+            own = averaged(plan, before, gear, noise=noise, seed=2 * part, n=BASELINE)
+            (row,) = averaged(plan, after, gear, noise=noise, seed=2 * part + 1, n=1)
             limit = value(plan, own, gear, fault.indicator).max()
             seen += bool(value(plan, row, gear, fault.indicator) > limit)
             tooth = int(
@@ -229,8 +231,8 @@ def main(faulty: int, healthy: int, parts: int, page: Path | None) -> dict[str, 
     for part, curve in enumerate(records(plan, healthy, first, None), start=first):
         for number, fault in enumerate(named):
             gear = plan.variants[fault.variant][1]
-            own = averaged(plan, curve, gear, noise, 2 * part, BASELINE)
-            (row,) = averaged(plan, curve, gear, noise, 2 * part + 1, 1)
+            own = averaged(plan, curve, gear, noise=noise, seed=2 * part, n=BASELINE)
+            (row,) = averaged(plan, curve, gear, noise=noise, seed=2 * part + 1, n=1)
             got = float(value(plan, row, gear, fault.indicator))
             beyond, _ = against(
                 np.array([got]), value(plan, own, gear, fault.indicator)[None], axis=1
@@ -239,11 +241,11 @@ def main(faulty: int, healthy: int, parts: int, page: Path | None) -> dict[str, 
             limit = limits[gear, INDICATORS.index(fault.indicator)]
             false_class[number] += got > limit
     for number, fault in enumerate(named):
-        gear = ("pinion", "wheel")[plan.variants[fault.variant][1]]
-        counts[f"healthy, {fault.indicator} of the {gear}: beyond its own limit"] = (
+        whose = f"{fault.indicator} of the {GEARS[plan.variants[fault.variant][1]]}"
+        counts[f"healthy, {whose}: beyond its own limit"] = (
             false_own[number], healthy,
         )  # fmt: skip
-        counts[f"healthy, {fault.indicator} of the {gear}: beyond the class's limit"] = (
+        counts[f"healthy, {whose}: beyond the class's limit"] = (
             false_class[number], healthy,
         )  # fmt: skip
     lines = []
@@ -254,11 +256,12 @@ def main(faulty: int, healthy: int, parts: int, page: Path | None) -> dict[str, 
         )
     text = f"""# Detection: does a table hold for other pairs and another integration?
 
-Made by `make trial-detection`. {plan.teeth[0]}/{plan.teeth[1]} teeth, module 3 mm, class 6, 1500 rpm,
-80 N m, hot. A table of {parts} pairs (drawings 0 to 59) named these sizes as the smallest that the
-indicator beside them sees in the same machine; the records are of drawings from {FIRST} on, integrated by
-the script's own code, with other noise ({noise:.0f} m/s²). A limit is the greatest of {BASELINE} healthy averages
-of the same pair; the class's limit is the table's. The tooth is where the change is loudest.
+Made by `make trial-detection`. {plan.teeth[0]}/{plan.teeth[1]} teeth, module 3 mm, class 6,
+1500 rpm, 80 N m, hot. A table of {parts} pairs (drawings 0 to 59) named these sizes as the smallest
+that the indicator beside them sees in the same machine; the records are of drawings from {FIRST}
+on, integrated by the script's own code, with other noise ({noise:.0f} m/s²). A limit is the
+greatest of {BASELINE} healthy averages of the same pair; the class's limit is the table's. The
+tooth is where the change is loudest.
 
 | what | count | interval of 95 % [%] |
 |---|---|---|
