@@ -60,8 +60,6 @@ HEALTHY = 60
 """Parts of the class whose healthy series are known: the greatest of the 59 others is exceeded by
 more than 5 % of all parts with a chance of .95^59 = 5 %, whatever their distribution (Wilks 1941).
 As many averages of one machine set its own limits."""
-SEEN = 0.95
-"""Share of faulty parts beyond a limit from which on a fault is "seen"."""
 PARTS = 16
 """Parts that get the faults: chosen, so that an own pair takes two minutes."""
 NOISE = 0.3
@@ -366,7 +364,7 @@ class DetectionPlan:
         return np.where(np.isnan(averages).any(axis=-1), np.int64(-1), tooth)
 
     def finish(self, data: Dataset) -> Dataset:
-        """Shares detected with their intervals, and the smallest sizes."""
+        """Shares detected with their intervals."""
         return _labelled(self, data, detected(self, data))
 
 
@@ -425,49 +423,34 @@ def detected(plan: DetectionPlan, data: Dataset) -> Arrays:
 
 
 def _labelled(plan: DetectionPlan, data: Dataset, counted: Arrays) -> Dataset:
-    """``data`` with what was ``counted``; ``smallest`` (..., fault, signal, sight) is the least
-    size over the largest from which on a fault is seen, nan where none is."""
-    over = ("question", "state", "pinion_speed", "pinion_torque")
-    behind = ("signal", "sight")
-    families = [[size_of(fault)[1] / size_of(family[-1])[1] for fault in family]
-                for family in plan.families]  # fmt: skip
-    seen = counted["detected_share"] >= SEEN
-    smallest, first = np.full((*seen.shape[:4], len(families), *seen.shape[5:]), np.nan), 2
-    for place, sizes in enumerate(families):
-        still = np.ones_like(seen[..., 0, :, :])
-        for number, size in reversed([*enumerate(sizes, start=first)]):
-            still &= seen[..., number, :, :]
-            smallest[..., place, :, :][still] = size
-        first += len(sizes)
+    """``data`` with what was ``counted``, and which faults and sizes the variants are."""
+    dims = ("question", "state", "pinion_speed", "pinion_torque", "variant", "signal", "sight")
     words = [[fault_words(fault) for fault in family] for family in plan.families]
-    added = label(
-        {
-            name: ((*over, "variant", *behind), values, "1", name.replace("_", " parts, "))
-            for name, values in counted.items()
-        }
-        | {
-            "smallest": ((*over, "fault", *behind), smallest, "1", "smallest size that is seen"),
-            "relative_size": (("variant",), [0, 0, *chain(*families)], "1", "over the largest"),
-            "noise": (("signal",), plan.level, "", "noise, rms"),
-        },
-        {
-            name: xr.Variable(*_named(name, some))
-            for name, some in {
-                "sight": SIGHTS,
-                "variant": ["none, pinion", "none, wheel", *chain(*words)],
-                "fault": [
-                    f"{some[-1].partition(' of ')[0]}, {some[-1].rpartition(', ')[2]}"
-                    for some in words
-                ],
-            }.items()
-        },
-    )
+    sizes = [
+        size_of(fault)[1] / size_of(family[-1])[1] for family in plan.families for fault in family
+    ]
+    names = {
+        "sight": SIGHTS,
+        "variant": ["none, pinion", "none, wheel", *chain(*words)],
+        "fault": [f"{w[-1].partition(' of ')[0]}, {w[-1].rpartition(', ')[2]}" for w in words],
+    }
     told = Notice.of(
         "detection_of_a_class", parts=plan.parts, healthy=plan.healthy - 1,
         accuracy=plan.case.accuracy, seed=plan.case.seed, turns=plan.averaged[0],
         share=plan.noise, lost=int((~moves(data["status"].values)).sum()) or None,
     )  # fmt: skip
     train = [Notice.of("detection_without_train")] * (plan.case.train is not None)
+    added = label(
+        {
+            name: (dims, values, "1", name.replace("_", " parts, "))
+            for name, values in counted.items()
+        }
+        | {
+            "relative_size": (("variant",), [0, 0, *sizes], "1", "size over the largest"),
+            "noise": (("signal",), plan.level, "", "noise, rms"),
+        },
+        {name: xr.Variable(*_named(name, some)) for name, some in names.items()},
+    )
     return data.merge(added).assign_attrs(
         families=[len(family) for family in plan.families], parts=plan.parts,
         averaged=list(plan.averaged), notices=stored_notices([told, *train]),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -20,6 +21,8 @@ from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import COLD, HOT, WIDE, names_of, scale
 
 KINDS = ("detect",)
+SEEN = 0.95
+"""Share of the parts beyond a limit from which a fault counts as seen."""
 COUNTED = ("detected", "judged", "detected_share", "detected_low", "detected_high", "shift")
 ALONG = ("question", "state", "pinion_speed", "pinion_torque")
 STATES = {"hot": HOT, "undeformed": COLD}
@@ -46,11 +49,9 @@ def page(result: Result) -> Page:
         Shown("sizes", "Over the size, hot and undeformed", curves, partial(over_size, at)),
     ]
     heat = hot_or_cold(data)
-    counted = replace(
-        result, groups={"": result.data[[*COUNTED, "smallest", "relative_size", "noise"]]}
-    )
+    counted = replace(result, groups={"": result.data[[*COUNTED, "relative_size", "noise"]]})
     return survey(
-        replace(result, groups={"": stored}),
+        counted,
         summary(at),
         pictures,
         [smallest(data), heat],
@@ -73,23 +74,29 @@ def middle(data: Dataset) -> Dataset:
 def first_seen(data: Dataset) -> list[dict[str, Any]]:
     """Of each fault, question, state, load and signal: the smallest size, and what sees it there.
 
-    ``tooth``: the smallest size from which on the tooth is found; over the largest, like ``size``.
+    Seen are a size and all larger ones of the fault, by :data:`SEEN` of the parts or more.
+    ``tooth``: the smallest size from which on the tooth is found.
     """
-    families, ends = names_of(data, "fault"), np.cumsum([2, *np.ravel(data.attrs["families"])])
-    sights, words = names_of(data, "sight"), names_of(data, "variant")
-    rows = rows_along(data[["smallest"]].isel(sight=0, drop=True), *ALONG, "fault", "signal")
-    for row in rows:
-        del row["smallest"]
-        values = data["smallest"].sel(row).values
-        first, end = ends[families.index(row["fault"]) :][:2]
-        sizes = data["relative_size"].values[first:end].tolist()
-        named = dict(zip(sizes, words[first:end], strict=True))
-        row["size"], row["tooth"] = float(np.fmin.reduce(values[:-1])), float(values[-1])
-        row["seen"], row["tooth_seen"] = (
-            named.get(row[name], f"{row['fault']}: not seen") for name in ("size", "tooth")
-        )
-        row["by"] = [sights[n] for n in np.flatnonzero(values[:-1] == row["size"])]
+    sights, rows, dims = names_of(data, "sight"), [], (*ALONG, "signal")
+    for fault, sizes in by_fault(data):
+        seen = sizes["detected_share"].transpose("variant", *dims, "sight").values >= SEEN
+        count = np.logical_and.accumulate(seen[::-1]).sum(axis=0)  # from the largest down
+        words = [f"{fault}: not seen", *names_of(sizes, "variant")[::-1]]
+        for place in np.ndindex(count.shape[:-1]):
+            *each, tooth = count[place]
+            by = [sights[n] for n in np.flatnonzero(each == max(each))] if any(each) else []
+            at = {dim: data[dim].values[n].item() for dim, n in zip(dims, place, strict=True)}
+            rows.append(
+                {"fault": fault, **at, "seen": words[max(each)], "by": by, "tooth": words[tooth]}
+            )
     return rows
+
+
+def by_fault(data: Dataset) -> Iterator[tuple[str, Dataset]]:
+    """Each fault with its variants, its sizes rising."""
+    ends = np.cumsum([2, *np.ravel(data.attrs["families"])]).tolist()
+    for name, first, end in zip(names_of(data, "fault"), ends, ends[1:], strict=False):
+        yield name, data.isel(variant=slice(first, end))
 
 
 def smallest(data: Dataset) -> Table:
@@ -102,7 +109,7 @@ def smallest(data: Dataset) -> Table:
         Column("signal", lambda row: row["signal"].replace("_", " ")),
         Column("seen from", "seen"),
         Column("by", lambda row: ", ".join(WORDS[name] for name in row["by"]) or "–"),
-        Column("tooth from", "tooth_seen"),
+        Column("tooth from", "tooth"),
         Column("speed", "pinion_speed", ".6g", SPEED),
         Column("torque", "pinion_torque", ".4g"),
     )
@@ -119,7 +126,7 @@ def smallest(data: Dataset) -> Table:
 
 def hot_or_cold(data: Dataset) -> Table:
     """What is seen in one state of heat and not in the other."""
-    seen = data["detected_share"].isel(variant=slice(2, None)).values >= 0.95
+    seen = data["detected_share"].isel(variant=slice(2, None)).values >= SEEN
     ways = (
         ("seen hot alone", (True, False)),
         ("undeformed alone", (False, True)),
@@ -190,21 +197,21 @@ def heat_table(data: Dataset) -> Picture:
 
 def over_size(data: Dataset) -> Picture:
     """Share detected over the size of each fault, hot and undeformed, with intervals."""
-    ends = np.cumsum([2, *np.ravel(data.attrs["families"])])
-    panels = []
-    for place, fault in enumerate(names_of(data, "fault")):
-        here = data.isel(variant=slice(*ends[place : place + 2].tolist()), signal=0)
-        here = here.isel(pinion_speed=0, pinion_torque=0)
-        best = int(np.argmax(here["detected_share"].values[0, :, :, :-1].sum(axis=(0, 1))))
-        title = f"{fault}: {WORDS[names_of(data, 'sight')[best]]}"
-        panel = Panel(Axis("size, of the largest [%]"), Axis("parts detected [%]", low=0.0), title)
-        x = PERCENT(here["relative_size"].values)
+    panels: list[Panel] = []
+    for fault, sizes in by_fault(data.isel(pinion_speed=0, pinion_torque=0, signal=0)):
+        best = int(np.argmax(sizes["detected_share"].values[0, ..., :-1].sum(axis=(0, 1))))
         low, share, high = (
-            PERCENT(here[f"detected_{name}"].values[..., best]) for name in ("low", "share", "high")
+            PERCENT(sizes[f"detected_{name}"].values[..., best])
+            for name in ("low", "share", "high")
         )
+        x, title = PERCENT(sizes["relative_size"].values), WORDS[names_of(data, "sight")[best]]
+        panel = Panel(
+            Axis("size, of the largest [%]"), Axis("parts detected [%]", low=0.0),
+            f"{fault}: {title}",
+        )  # fmt: skip
         for state, (words, colour) in enumerate(STATES.items()):
             panel.band(x, low=low[0, state], high=high[0, state], colour=colour, opacity=0.2)
-            told = words * (place == 0)
+            told = words * (not panels)
             panel.curve(x, share[0, state], colour=colour, marker="circle", label=told)
             panel.curve(x, share[1, state], colour=colour, marker="circle", dash=(4, 2))
         panels.append(panel)
