@@ -608,6 +608,14 @@ CASES = (
         {"record.csv": _table(), "louder.csv": _table(gain=1.3)},
     ),
     Case(
+        "detect",
+        (
+            "detect rig --parts 8 --set model.bundle=consistent --set flanks.accuracy=6"
+            " --set 'operating.speed=\"2000 rpm\"' --set 'operating.torque=\"150 N m\"'"
+            ' --set \'faults=[{kind = "missing", gear = "pinion"}]\' -o out --json',
+        ),
+    ),
+    Case(
         "measure-formats",
         (
             f"-c {quote(RECORDS)}",

@@ -192,7 +192,8 @@ def test_the_command_its_page_and_its_store(
     monkeypatch.setattr(detection, "HEALTHY", 10)
     monkeypatch.setattr(DetectionPlan, "__init__", _few(DetectionPlan.__init__))
     file, out = tmp_path / "own.toml", tmp_path / "out"
-    file.write_text(TEXT + f"[[faults]]\n{FAULTS[4]}\n", encoding="utf-8")
+    text = TEXT.replace('torque = "80 N m"', 'torque = ["60 N m", "80 N m"]')
+    file.write_text(text + f"[[faults]]\n{FAULTS[4]}\n", encoding="utf-8")
     assert main(["detect", str(file), "-o", str(out), "--parts", "8"]) == 0
     told = capsys.readouterr().out
     assert "Same machine, hot: " in told
