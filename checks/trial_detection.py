@@ -235,7 +235,7 @@ def main(faulty: int, healthy: int, parts: int, page: Path | None) -> dict[str, 
             (row,) = averaged(plan, curve, gear, noise=noise, seed=2 * part + 1, n=1)
             got = float(value(plan, row, gear, fault.indicator))
             beyond, _ = against(
-                np.array([got]), value(plan, own, gear, fault.indicator)[None], axis=1
+                np.array([got]), healthy=value(plan, own, gear, fault.indicator)[None], axis=1
             )
             false_own[number] += int(beyond[0])
             limit = limits[gear, INDICATORS.index(fault.indicator)]

@@ -131,13 +131,13 @@ def test_the_greatest_of_59_bounds_the_false_alarms() -> None:
     drawn = np.random.default_rng(31)
     for law in (stats.norm, stats.lognorm(1.5), stats.expon):
         healthy = law.rvs(size=(2000, 59), random_state=drawn)
-        beyond, _ = against(np.full(2000, np.inf), healthy, axis=1)
+        beyond, _ = against(np.full(2000, np.inf), healthy=healthy, axis=1)
         assert beyond.all()
         often = np.mean(law.sf(healthy.max(axis=1)) > 0.05)
         print(f"{often:.3f}")
         assert abs(often - 0.95**59) < 4.0 * np.sqrt(0.05 / 2000)
     values, healthy = np.array([[1.0, 4.0]]), np.array([[[0.0, 1.0], [2.0, np.nan], [1.0, 3.0]]])
-    beyond, shift = against(values, healthy, axis=1)
+    beyond, shift = against(values, healthy=healthy, axis=1)
     assert beyond.tolist() == [[0.0, 1.0]]
     assert shift.tolist() == [[0.0, pytest.approx(np.sqrt(2.0))]]
 

@@ -76,7 +76,7 @@ QUESTIONS = ("same machine", "another machine")
 SIGHTS = (*INDICATORS, "tooth")
 """What sees a fault: the indicators; last, whether the difference signal is loudest at the faulty
 tooth or a neighbour: of the same machine that of the change, of another that of the average. A
-tooth that stands forward hits before its time, one that yields rings after it; by chance 3/z."""
+tooth too far forward hits before its time, one that yields rings after it; by chance 3/z."""
 SIZES = (0.25, 0.5, 1.0)
 """Of each fault, over what the case or :func:`usual_faults` states."""
 SIZED = {
@@ -218,7 +218,7 @@ class DetectionPlan:
             values = self._indicators(rows, gear)
             found["value"][0, 0, 0, : len(rows), variant] = values
             here, some = (0, 0, 0, faulty, variant), rows[faulty]
-            beside = against(values[faulty], limits[gear], axis=1)
+            beside = against(values[faulty], healthy=limits[gear], axis=1)
             found["own_beyond"][here], found["own_shift"][here] = beside
             changes = np.stack([some - own[gear].mean(axis=1), some], axis=2)
             found["loudest"][here] = self._teeth(changes, gear)
@@ -376,12 +376,12 @@ def _named(dim: str, words: Sequence[str]) -> Coordinate:
 # --- what is counted ------------------------------------------------------------------------------
 
 
-def against(values: Floats, healthy: Floats, *, axis: int) -> tuple[Floats, Floats]:
+def against(values: Floats, *, healthy: Floats, axis: int) -> tuple[Floats, Floats]:
     """Whether values are beyond the greatest of the healthy along their ``axis``, which they lack,
     and how many standard deviations from their mean; what is nan among the healthy is left out.
 
-    >>> beyond, shift = against(np.array([5.0, 2.0]), np.array([[1.0, 2.0, 3.0]] * 2), axis=1)
-    >>> beyond, shift
+    >>> healthy = np.array([[1.0, 2.0, 3.0]] * 2)
+    >>> against(np.array([5.0, 2.0]), healthy=healthy, axis=1)
     (array([1., 0.]), array([3., 0.]))
     """
     known = np.ma.masked_invalid(healthy)
@@ -399,7 +399,7 @@ def detected(plan: DetectionPlan, data: Dataset) -> Arrays:
     values, gears = data["value"].values, [gear for _, gear in plan.variants]
     own = [data[f"own_{name}"].values[:, :, :, : plan.parts] for name in ("beyond", "shift")]
     others = [
-        against(values[:, :, :, n], np.delete(values[:, :, :, :, gears], n, axis=3), axis=3)
+        against(values[:, :, :, n], healthy=np.delete(values[:, :, :, :, gears], n, axis=3), axis=3)
         for n in range(plan.parts)
     ]
     of_class = [np.stack(some, axis=3) for some in zip(*others, strict=True)]
