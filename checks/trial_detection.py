@@ -36,9 +36,9 @@ from thermogear.views.pages.detect import first_seen
 
 Floats = NDArray[np.float64]
 
-SEED = 60_2026
+SEED = 61_2026
 """Of the trial's noise; fixed before the first run."""
-FIRST = 100
+FIRST = 400
 """Drawing of the first fresh pair: the table knows drawings 0 to 59."""
 FAULTY, HEALTHY = 100, 200
 STEPS = 160
@@ -216,9 +216,10 @@ def main(faulty: int, healthy: int, parts: int, page: Path | None) -> dict[str, 
             (row,) = averaged(plan, after, gear, noise=noise, seed=2 * part + 1, n=1)
             limit = value(plan, own, gear, fault.indicator).max()
             seen += bool(value(plan, row, gear, fault.indicator) > limit)
-            tooth = int(
-                loudest_teeth(row - own.mean(axis=0), teeth=plan.teeth[gear], **orders(plan, gear))
-            )
+            (tooth,) = loudest_teeth(
+                row[None] - own.mean(axis=0), teeth=plan.teeth[gear],
+                contact_ratio=plan.case.pair.contact_ratio, **orders(plan, gear),
+            ).tolist()  # fmt: skip
             exact += tooth == entry
             near += (tooth - entry + 1) % plan.teeth[gear] <= 2
         words = f"{fault.words}, {fault.indicator}"
@@ -261,7 +262,9 @@ Made by `make trial-detection`. {plan.teeth[0]}/{plan.teeth[1]} teeth, module 3 
 that the indicator beside them sees in the same machine; the records are of drawings from {FIRST}
 on, integrated by the script's own code, with other noise ({noise:.0f} m/s²). A limit is the
 greatest of {BASELINE} healthy averages of the same pair; the class's limit is the table's. The
-tooth is where the change is loudest.
+tooth is that over whose contact the change is loudest. An earlier trial (drawings 100 to 399, other
+noise) looked at one pitch alone: it found a neighbour in 50 of 50, the very tooth of the crack in
+39 of 50; the contact ratio was taken into account after it, and nothing else.
 
 | what | count | interval of 95 % [%] |
 |---|---|---|

@@ -74,9 +74,10 @@ STATES = (HOT, UNDEFORMED)
 SIGNALS = ("acceleration", "mesh_force")
 QUESTIONS = ("same machine", "another machine")
 SIGHTS = (*INDICATORS, "tooth")
-"""What sees a fault: the indicators; last, whether the difference signal is loudest at the faulty
-tooth or a neighbour: of the same machine that of the change, of another that of the average. A
-tooth too far forward hits before its time, one that yields rings after it; by chance 3/z."""
+"""What sees a fault: the indicators; last, whether the difference signal is loudest over the
+contact of the faulty tooth or of a neighbour: of the same machine that of the change, of another
+that of the average. A tooth too far forward hits before its time, one that yields rings after it;
+by chance 3/z."""
 SIZES = (0.25, 0.5, 1.0)
 """Of each fault, over what the case or :func:`usual_faults` states."""
 SIZED = {
@@ -360,7 +361,10 @@ class DetectionPlan:
     def _teeth(self, averages: Floats, gear: int) -> Whole:
         """The loudest tooth of averages of a gear, -1 where they are not known."""
         known = np.nan_to_num(averages)
-        tooth = loudest_teeth(known, teeth=self.teeth[gear], **self._orders(gear))
+        ratio = self.case.pair.contact_ratio
+        tooth = loudest_teeth(
+            known, teeth=self.teeth[gear], contact_ratio=ratio, **self._orders(gear)
+        )
         return np.where(np.isnan(averages).any(axis=-1), np.int64(-1), tooth)
 
     def finish(self, data: Dataset) -> Dataset:

@@ -247,12 +247,18 @@ class Place:
 
 
 def loudest_teeth(
-    averages: ArrayLike, *, teeth: int, highest: int, step: int | None = None
+    averages: ArrayLike,
+    *,
+    teeth: int,
+    highest: int,
+    step: int | None = None,
+    contact_ratio: float = 1.0,
 ) -> Whole:
-    """The tooth, from 0, over which each average's difference signal has the most power, (...).
+    """The tooth, from 0, over whose contact each average's difference signal has most power, (...).
 
     ``averages`` over one turn of a gear (..., sample), ``highest`` and ``step`` as of
-    :func:`~thermogear.signals.synchronous.separated`.
+    :func:`~thermogear.signals.synchronous.separated`. Tooth n meshes in pitch n and, of a
+    ``contact_ratio`` up to 2, as much beyond 1 of the next; 1 where it is not known.
 
     >>> angle = 2.0 * np.pi * np.arange(256) / 256
     >>> burst = np.cos(52 * angle) * (np.abs(angle - 0.9 * np.pi) < 0.1)
@@ -260,7 +266,9 @@ def loudest_teeth(
     9
     """
     parts = separated(averages, mesh_order=teeth, highest=highest, step=step)
-    return np.asarray(np.argmax(tooth_means(parts.difference**2, teeth=teeth), axis=-1))
+    power = tooth_means(parts.difference**2, teeth=teeth)
+    late = min(contact_ratio - 1.0, 1.0) * np.roll(power, -1, axis=-1)
+    return np.asarray(np.argmax(power + late, axis=-1))
 
 
 def place_of(shaft: ShaftAverage, channel: int, name: str) -> Place:
