@@ -186,8 +186,8 @@ class DetectionPlan:
     def pilot(self, share: float, *, turn: int) -> float:
         """Compute a block of parts with their faults; what share it was."""
         self.compute((turn % len(STATES), 0, turn % len(self.torques), 0), None, keep_going)
-        # a fault is solved where it acts alone: a third of a part, about
-        blocks = (self.parts + 3.0 * self.healthy / len(self.variants)) / BLOCK
+        # a fault is solved where it acts alone: two thirds of a healthy part, about
+        blocks = (self.parts + 1.5 * self.healthy / len(self.variants)) / BLOCK
         return 1.0 / (blocks * len(STATES) * len(self.speeds) * len(self.torques))
 
     def compute(self, key: Key, before: Arrays | None, alive: Alive) -> Arrays:
