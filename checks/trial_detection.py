@@ -36,9 +36,9 @@ from thermogear.views.pages.detect import first_seen
 
 Floats = NDArray[np.float64]
 
-SEED = 61_2026
+SEED = 62_2026
 """Of the trial's noise; fixed before the first run."""
-FIRST = 400
+FIRST = 700
 """Drawing of the first fresh pair: the table knows drawings 0 to 59."""
 FAULTY, HEALTHY = 100, 200
 STEPS = 160
@@ -262,9 +262,12 @@ Made by `make trial-detection`. {plan.teeth[0]}/{plan.teeth[1]} teeth, module 3 
 that the indicator beside them sees in the same machine; the records are of drawings from {FIRST}
 on, integrated by the script's own code, with other noise ({noise:.0f} m/s²). A limit is the
 greatest of {BASELINE} healthy averages of the same pair; the class's limit is the table's. The
-tooth is that over whose contact the change is loudest. An earlier trial (drawings 100 to 399, other
-noise) looked at one pitch alone: it found a neighbour in 50 of 50, the very tooth of the crack in
-39 of 50; the contact ratio was taken into account after it, and nothing else.
+tooth is that over whose contact the change is loudest.
+
+Two earlier trials on other pairs each changed one thing. The first looked for the tooth in one
+pitch alone, and found the very tooth of the crack in 39 of 50; the contact ratio is taken into
+account since. In both, 45 and 41 of 50 spalls were detected where the table had 58 of 60: its
+contact was solved at 64 positions of a mesh period, too few, and is at 96 now.
 
 | what | count | interval of 95 % [%] |
 |---|---|---|

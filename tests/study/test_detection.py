@@ -14,7 +14,6 @@ from thermogear.base.errors import InputError
 from thermogear.base.plan import empty_arrays, keep_going
 from thermogear.case.case import GearCase, gear_case, load_case
 from thermogear.front.cli import main
-from thermogear.mesh.elastic import TURN_POSITIONS
 from thermogear.mesh.series import changed_mesh, series_mesh
 from thermogear.signals.synchronous import synchronous_averages
 from thermogear.study import detection
@@ -86,13 +85,10 @@ def test_a_fault_is_solved_where_it_acts_as_over_the_whole_turn(plan: DetectionP
         assert some.half_backlash == pytest.approx(whole.half_backlash, rel=bound)
 
 
-def test_averages_are_those_of_both_motions_side_by_side(
-    plan: DetectionPlan, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_averages_are_those_of_both_motions_side_by_side(plan: DetectionPlan) -> None:
     """The door of one pair: every contact of the turn solved again for it alone."""
-    monkeypatch.setattr(detection, "POSITIONS", TURN_POSITIONS)
     hot, excited = plan._scenes[COLD, 0, 1]
-    sound = series_mesh(hot, plan.series[0][1:2], plan.turn, positions=TURN_POSITIONS)
+    sound = series_mesh(hot, plan.series[0][1:2], plan.turn)
     for number in (3, 7, 15):
         fault, gear = plan.variants[number + 1]
         assert fault is not None
