@@ -14,7 +14,7 @@ import json
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import chain, product
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -43,7 +43,7 @@ from thermogear.case.family import GearFamily
 from thermogear.case.fault_schema import FaultTable
 from thermogear.case.faults import fault_words, whole_turn
 from thermogear.case.points import points_of
-from thermogear.case.thermal_state import HOT, UNDEFORMED
+from thermogear.case.thermal_state import HOT, UNDEFORMED, ThermalState
 from thermogear.gears.deviations import GEARS, Deviation
 from thermogear.gears.tooth_table import MATES
 from thermogear.mesh.excite import excitations
@@ -153,7 +153,7 @@ class DetectionPlan:
 
     def inputs(self) -> dict[str, Any]:
         return {
-            "model": self._families[0].inputs(),
+            "model": self._family(HOT).inputs(),
             "faults": [fault.model_dump() for family in self.families for fault in family],
             "speeds": list(self.speeds), "torques": list(self.torques), "parts": self.parts,
             "healthy": self.healthy, "noise": self.noise, "turns": self.turns,
@@ -228,22 +228,22 @@ class DetectionPlan:
 
     # --- what all parts share -----------------------------------------------------------------
 
-    @cached_property
-    def _families(self) -> list[GearFamily]:
-        """Of each state of heat, over speed and torque."""
-        mean, names = self.case.mean_tooth(), ("pinion_speed", "pinion_torque")
-        return [GearFamily(mean, names, self.bundle, state) for state in STATES]
+    def _family(self, state: ThermalState) -> GearFamily:
+        """The mean tooth over speed and torque."""
+        names = ("pinion_speed", "pinion_torque")
+        return GearFamily(self.case.mean_tooth(), names, self.bundle, state)
 
     @cached_property
     def _scenes(self) -> dict[Key, tuple[HotPair, Excitations]]:
         """The sound pair at each point, and what excites its mean tooth."""
-        points = product(enumerate(self._families), enumerate(self.speeds), enumerate(self.torques))
         return {
             (state, i, j): (
                 family.quasi_static([[speed, torque]], HEATED)["hot_pair"][0],
                 family.excitations(np.array([[speed, torque]])),
             )
-            for (state, family), (i, speed), (j, torque) in points
+            for state, family in enumerate(map(self._family, STATES))
+            for i, speed in enumerate(self.speeds)
+            for j, torque in enumerate(self.torques)
         }
 
     @cached_property
