@@ -260,7 +260,7 @@ def gear_indicators(
     return {
         "rms": np.std(x, axis=-1),
         "residual_rms": np.std(parts.residual, axis=-1),
-        "residual_fourth": np.mean(centred**4, axis=-1),
+        "residual_fourth": np.mean((centred**2) ** 2, axis=-1),
         "fm0": fm0(x, mesh_order=mesh_order, harmonics=min(MESH_HARMONICS, highest // mesh_order)),
         "fm4": normalised_moment(parts.difference, power=4),
         "m6a": normalised_moment(parts.difference, power=6),
