@@ -281,7 +281,7 @@ COMMANDS = [
     *("statics", "modes", "campbell", "waterfall"),
     *("orbit", "lyapunov", "continue"),
     *("bifurcation", "map", "basins", "runup", "sweep"),
-    *("measure", "compare", "diagnose", "thesis", "sensitivity", "versus"),
+    *("measure", "compare", "detect", "diagnose", "thesis", "sensitivity", "versus"),
 ]
 SMALL_THESIS = (
     "-c 'from pathlib import Path; from thermogear.thesis import report; "
@@ -603,6 +603,14 @@ CASES = (
             "diagnose record.csv --teeth 25 --speed 1000",
         ),
         {"record.csv": _table(), "louder.csv": _table(gain=1.3)},
+    ),
+    Case(
+        "detect",
+        (
+            "detect rig --parts 8 --set model.bundle=consistent --set flanks.accuracy=6"
+            " --set 'operating.speed=\"2000 rpm\"' --set 'operating.torque=\"150 N m\"'"
+            ' --set \'faults=[{kind = "missing", gear = "pinion"}]\' -o out --json',
+        ),
     ),
     Case(
         "measure-formats",

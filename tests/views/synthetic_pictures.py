@@ -12,6 +12,7 @@ from thermogear.base.vocabulary import STATUS
 from thermogear.views.gears import DrawnState, GearDrawing
 from thermogear.views.pages import contact as loaded
 from thermogear.views.pages import (
+    detect,
     diagnosis,
     measured,
     records,
@@ -50,6 +51,7 @@ SIZES = {
     "pinion_position": 12, "wheel_position": 12, "mode": 5, "stiffness_level": 3, "line": 3,
     "source": 3, "response_speed": 12, "map_column": 5, "slice": 3, "step": 6, "record": 4,
     "quantile": 3, "damping": 3, "relief": 3, "gear": 2, "place": 3,
+    "question": 2, "pinion_torque": 1, "variant": 5, "signal": 1, "sight": 3,
 }  # fmt: skip
 S = "path_position"
 
@@ -204,6 +206,17 @@ def two_gears(teeth: int = 12) -> GearDrawing:
     )
 
 
+def of_detection() -> dict[str, Picture]:
+    over = "question state pinion_speed pinion_torque variant signal sight"
+    shares = made(over, "detected_share", "detected_low", "detected_high").assign(
+        relative_size=rising("variant", low=0.0, high=1.0),
+        variant=["none, pinion", "none, wheel", "crack 1", "crack 2", "crack 4"],
+        question=["same machine", "another machine"], sight=["fm4", "rms", "tooth"],
+        state=["hot", "undeformed"], fault=["crack"],
+    ).assign_attrs(families=[3])  # fmt: skip
+    return {"detect-shares": detect.heat_table(shares), "detect-sizes": detect.over_size(shares)}
+
+
 def of_surveys() -> dict[str, Picture]:
     points = json.dumps({"A": 1.0, "C": 1.5, "E": 2.0})
     chart = made("sample", "diameter", "drive_fit", "drive_acting").assign(
@@ -257,6 +270,7 @@ def of_surveys() -> dict[str, Picture]:
         **of_warm_up(),
         **of_records(),
         **of_diagnosis(),
+        **of_detection(),
     }
 
 

@@ -58,7 +58,7 @@ class TurnTables:
 
         So a run begins at the same teeth however they are numbered.
         """
-        error = self.sampled(STEPS)[2][::STEPS]
+        error = _series(self.error, STEPS * self.mesh_periods)[::STEPS]
         first = int(np.argmax(error))
         stiffness, error = (
             row * np.exp(2j * np.pi * first / self.mesh_periods * np.arange(row.size))

@@ -85,6 +85,7 @@ GROUPS = {
     "Records": {
         "measure": "Read a record and print its lines with their uncertainty.",
         "compare": "Compare CASE with records or tables of lines.",
+        "detect": "Find which fault, of which size, which indicator sees.",
         "diagnose": "Hold gears and bearings in records against a baseline.",
     },
     "Research": {

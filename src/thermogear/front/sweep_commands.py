@@ -314,7 +314,42 @@ def waterfall(
     _carry(plan, Path(output), read.title, as_json, options)
 
 
-COMMANDS: tuple[click.Command, ...] = (bifurcation, map_, basins, runup, waterfall, sweep)
+@click.command()
+@delivery.case
+@click.option("--parts", type=int, default=16, show_default=True, metavar="N",
+              help="Pairs of the class that get each fault, 8 to 60.")  # fmt: skip
+@click.option("--noise", type=float, default=0.3, show_default=True, metavar="SHARE",
+              help="Noise over the rms of the first healthy pair, white; chosen.")  # fmt: skip
+@click.option("--turns", type=int, default=100, show_default=True, metavar="N",
+              help="Turns of the pinion in an average, about; chosen.")  # fmt: skip
+@delivery.output("Store of the results; the same command goes on with an unfinished one.")
+@delivery.overrides
+@click.option("--bundle", help="Bundle of choices; default: the case's first.")
+@click.option("--threads", type=click.IntRange(1, 1024), help="Default: all cores.")
+@click.option("--force", is_flag=True, help="Run even if it may not fit.")
+@click.option("--estimate", "only_estimate", is_flag=True,
+              help="Print time, memory and disk it will take, and stop.")  # fmt: skip
+@delivery.as_json
+def detect(
+    case: str, parts: int, noise: float, turns: int, bundle: str | None, output: str,
+    as_json: bool, **options: Any,
+) -> None:  # fmt: skip
+    """Which indicator sees a fault of CASE, of which size, at which load, hot and cold.
+
+    Drawn pairs of the case's class run over their whole turn with each fault of [[faults]] alone,
+    at a quarter, half and all of its size, and without: four usual faults where the case states
+    none. Loads are the case's torques, or .5, 1 and 1.5 times the one it has. The indicators of
+    `diagnose` are held against limits of healthy averages, of the same machine and of other pairs
+    of the class.
+    """
+    from thermogear.study.detection import detection_plan
+
+    read = delivery.load_gears(case, options["overrides"])
+    plan = detection_plan(read, bundle=bundle or "", parts=parts, noise=noise, turns=turns)
+    _carry(plan, Path(output), read.title, as_json, options)
+
+
+COMMANDS: tuple[click.Command, ...] = (bifurcation, map_, basins, runup, waterfall, sweep, detect)
 """What the main group registers."""
 
 

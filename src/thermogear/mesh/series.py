@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, reduce
 from itertools import groupby
 
 import numpy as np
 
-from thermogear.base.arrays import Floats
+from thermogear.base.arrays import Floats, Whole
 from thermogear.gears.candidates import mesh_points
 from thermogear.gears.deviations import Deviation
 from thermogear.gears.loaded import LEAST_LINE_LOAD
@@ -62,6 +62,11 @@ class SeriesMesh:
     mesh_periods: int
     whole: bool
     ahead: int = 0
+
+    def of(self, which: slice) -> SeriesMesh:
+        """Some of the parts."""
+        names = ("transmission_error", "spring_error", "stiffness", "half_backlash")
+        return replace(self, **{name: getattr(self, name)[which] for name in names})
 
     @cached_property
     def peak_to_peak(self) -> Floats:
@@ -156,6 +161,38 @@ def series_mesh(
         stiffness=stiffness, half_backlash=backlash[:, seldom], mesh_periods=periods, whole=whole,
         ahead=ahead,
     )  # fmt: skip
+
+
+def changed_mesh(
+    mesh: SeriesMesh, hot: HotPair, parts: Sequence[Sequence[Deviation]], periods: Whole
+) -> SeriesMesh:
+    """``mesh``, of whole turns at ``hot``, with what its parts do in some ``periods`` solved again.
+
+    ``parts``: the deviations of each with what acts in these mesh periods alone, as a fault of one
+    tooth, whose number is the same in all of them. Before them one period is solved that stays as
+    it is: errors are told about a mean, and it says how far the means are apart.
+    """
+    rest = np.setdiff1d(np.arange(mesh.mesh_periods), periods)
+    if not rest.size:
+        return series_mesh(
+            hot, parts, mesh.mesh_periods, positions=mesh.stiffness.shape[1] // mesh.mesh_periods
+        )
+    solved = np.append(rest[0], periods)
+    size = mesh.stiffness.shape[1] // mesh.mesh_periods
+    phase = (solved[:, None] + np.arange(size) / size).ravel()
+    step = max(BLOCK // phase.size, 1)
+    blocks = [
+        _curves(hot, parts[first : first + step], phase) for first in range(0, len(parts), step)
+    ]
+    names = ("transmission_error", "spring_error", "stiffness", "half_backlash")
+    changed = {}
+    for name, several in zip(names, zip(*blocks, strict=True), strict=True):
+        whole = getattr(mesh, name).reshape(len(parts), mesh.mesh_periods, -1).copy()
+        new = np.concatenate(several).reshape(len(parts), solved.size, -1)
+        new += (whole[:, rest[0]] - new[:, 0]).mean(axis=-1)[:, None, None]
+        whole[:, periods] = new[:, 1:]
+        changed[name] = whole.reshape(len(parts), -1)
+    return replace(mesh, **changed)
 
 
 def _from(pair: GearPair, deviation: Deviation, first: int) -> Deviation:

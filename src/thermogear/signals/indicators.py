@@ -7,6 +7,8 @@ without any power has no ratio: nan. None of them has a limit that holds for eve
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import fft
@@ -40,8 +42,10 @@ def normalised_moment(x: ArrayLike, *, power: int) -> Floats:
     """
     values = finite_record(x)
     centred = values - values.mean(axis=-1, keepdims=True)
-    spread = np.mean(centred**2, axis=-1)
-    return _ratio(np.mean(centred**power, axis=-1), spread ** (power // 2))
+    square = centred**2
+    # numpy raises to a power a tenth as fast as it multiplies
+    raised = math.prod([square] * (power // 2))
+    return _ratio(np.mean(raised, axis=-1), np.mean(square, axis=-1) ** (power // 2))
 
 
 def moment_scatter(power: int, *, count: int) -> float:
@@ -261,7 +265,7 @@ def gear_indicators(
     return {
         "rms": np.std(x, axis=-1),
         "residual_rms": np.std(parts.residual, axis=-1),
-        "residual_fourth": np.mean(centred**4, axis=-1),
+        "residual_fourth": np.mean((centred**2) ** 2, axis=-1),
         "fm0": fm0(x, mesh_order=mesh_order, harmonics=min(MESH_HARMONICS, highest // mesh_order)),
         "fm4": normalised_moment(parts.difference, power=4),
         "m6a": normalised_moment(parts.difference, power=6),

@@ -11,9 +11,10 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from thermogear.analysis.order_statistics import proportion
-from thermogear.base.arrays import Dataset, Floats
+from thermogear.base.arrays import Dataset, Floats, Whole
 from thermogear.base.errors import InputError
 from thermogear.base.limits import zone_of
 from thermogear.base.progress import Progress, silent
@@ -296,19 +297,41 @@ class Place:
     alike: bool
 
 
+def loudest_teeth(
+    averages: ArrayLike,
+    *,
+    teeth: int,
+    highest: int,
+    step: int | None = None,
+    contact_ratio: float = 1.0,
+) -> Whole:
+    """The tooth, from 0, over whose contact each average's difference signal has most power, (...).
+
+    ``averages`` over one turn of a gear (..., sample), ``highest`` and ``step`` as of
+    :func:`~thermogear.signals.synchronous.separated`. Tooth n meshes in pitch n and, of a
+    ``contact_ratio`` up to 2, as much beyond 1 of the next; 1 where it is not known.
+
+    >>> angle = 2.0 * np.pi * np.arange(256) / 256
+    >>> burst = np.cos(52 * angle) * (np.abs(angle - 0.9 * np.pi) < 0.1)
+    >>> int(loudest_teeth(burst, teeth=20, highest=100))
+    9
+    """
+    parts = separated(averages, mesh_order=teeth, highest=highest, step=step)
+    power = tooth_means(parts.difference**2, teeth=teeth)
+    late = min(contact_ratio - 1.0, 1.0) * np.roll(power, -1, axis=-1)
+    return np.asarray(np.argmax(power + late, axis=-1))
+
+
 def place_of(shaft: ShaftAverage, channel: int, name: str) -> Place:
     """Where on a shaft a channel's difference signal is greatest, with its evidence."""
     from scipy import stats
 
     teeth, average = shaft.teeth, shaft.average[channel]
-
-    def energy(signal: Floats) -> Floats:
-        parts = separated(signal, mesh_order=teeth, highest=shaft.highest, step=shaft.step)
-        return tooth_means(parts.difference**2, teeth=teeth)
-
-    tooth = int(np.argmax(energy(average)))
-    places = np.argmax(energy(shaft.blocks[channel]), axis=-1)
-    agreeing = int(np.count_nonzero(places == tooth))
+    signals = [average, *shaft.blocks[channel]]
+    tooth, *places = loudest_teeth(
+        signals, teeth=teeth, highest=shaft.highest, step=shaft.step
+    ).tolist()
+    agreeing = places.count(tooth)
     near = [(tooth + off) % teeth for off in (-1, 0, 1)]
     rows = [
         _modulation(shaft, channel, k, near)
@@ -322,8 +345,8 @@ def place_of(shaft: ShaftAverage, channel: int, name: str) -> Place:
         shaft=shaft.name,
         tooth=tooth + 1,
         agreeing=agreeing,
-        averages=places.size,
-        chance=float(stats.binom.sf(agreeing - 1, places.size, 1.0 / teeth)),
+        averages=len(places),
+        chance=float(stats.binom.sf(agreeing - 1, len(places), 1.0 / teeth)),
         alike=alike,
         **harmonics,
     )

@@ -123,7 +123,7 @@ def fault_motions(
         drawn = replace(pair, deviations=flanks)
         both.append(family(drawn, ("pinion_speed", "pinion_torque"), state=state)(rows))
     turn = max(points.mesh_periods for points in both)
-    faulty, sound = (_motions(case, over_turns(points, turn), rows, samples) for points in both)
+    faulty, sound = (turn_motions(case, over_turns(points, turn), rows, samples) for points in both)
     return tuple(map(FaultMotion, faulty, sound))
 
 
@@ -141,8 +141,9 @@ def over_turns(points: Points, mesh_periods: int) -> Points:
     return replace(points, flat=of_turn, error=spread(points.error, times))
 
 
-def _motions(case: GearCase, points: Points, rows: Floats, samples: int) -> list[TurnMotion]:
-    """The motion at each of ``points``, which have the speeds and torques of ``rows``."""
+def turn_motions(case: GearCase, points: Points, rows: Floats, samples: int) -> list[TurnMotion]:
+    """The motion at each of ``points``, which have the speeds [rad/s] and torques [N m] of
+    ``rows`` (point, 2); ``samples`` of a mesh period. What :func:`fault_motions` is made of."""
     turn, teeth = points.mesh_periods, (case.pair.pinion.teeth, case.pair.wheel.teeth)
     whole = np.full(turn * samples, np.nan)
     recorded = [

@@ -24,6 +24,7 @@ STUDIES = {
     "shared": "Two forms of the mesh force",
     "drawing": "Drawing", "versus": "Comparison of cases", "thesis": "The thesis's claims",
     "measurement": "Measurement", "comparison": "Comparison with a record",
+    "detect": "Detection of faults",
     "sensitivity": "Sensitivity", "statics": "Loads of shafts and bearings",
     "modes": "Modes of the drive train", "campbell": "Campbell diagram",
 }  # fmt: skip
