@@ -14,7 +14,7 @@ BENCH_STAMP := .bench-venv/.installed
 AUDIT_BIN := .audit-venv/bin
 AUDIT_STAMP := .audit-venv/.installed
 
-.PHONY: audit bench bench-coordinates bench-geared bench-measure bench-paths bench-shafts bench-train-map check chromium clean compile demo friction-evidence house licences lint lock look lowest mutate release-check same sbom test trial-answers trial-app trial-attacks trial-base-sets trial-branches trial-coverage trial-damage trial-defects trial-experiment trial-heat trial-hostile trial-kills trial-labels trial-located trial-long trial-pairs trial-public trial-series trial-shafts trial-stamps trial-swings trial-trains trial-turn trial-turning trial-verdicts unit
+.PHONY: audit bench bench-coordinates bench-geared bench-measure bench-paths bench-shafts bench-train-map check chromium clean compile demo friction-evidence house licences lint lock look lowest mutate release-check same sbom test trial-answers trial-app trial-attacks trial-base-sets trial-branches trial-coverage trial-damage trial-defects trial-experiment trial-heat trial-hostile trial-kills trial-labels trial-located trial-long trial-multipliers trial-pairs trial-public trial-series trial-shafts trial-stamps trial-swings trial-trains trial-turn trial-turning trial-verdicts unit
 
 demo: $(STAMP)  ## the main job: the rig's case file to a report
 	$(BIN)/thermogear example rig > .venv/rig.toml
@@ -154,6 +154,9 @@ trial-kills: $(STAMP)  ## 200 kills of eight commands, folders compared, half an
 
 trial-heat: $(STAMP)  ## every steady state of the heat balance, from cold, hot and warm-ups, half an hour; docs/trial_heat.md
 	@$(BIN)/python checks/trial_heat.py
+
+trial-multipliers: $(STAMP)  ## printed digits of 40 trains on rolling bearings against another integration, ten minutes; docs/trial_multipliers.md
+	@OPENBLAS_NUM_THREADS=1 $(BIN)/python -W ignore checks/trial_multipliers.py
 
 trial-labels: $(STAMP)  ## 2 000 random motions: every label put to another test, ten minutes; docs/trial_labels.md
 	@$(BIN)/python checks/trial_labels.py

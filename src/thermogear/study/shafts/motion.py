@@ -276,6 +276,7 @@ def _table(case: GearCase, found: Sequence[Sequence[Moved]]) -> Dataset:
         "followed_starts": (POINT, [
             [0 if m.motion is None else m.motion.starts for m in row] for row in found]),
         "multiplier_modulus": (POINT, _of(flat, lambda m: abs(m.multiplier)).reshape(shape)),
+        "multiplier_error": (POINT, _of(flat, lambda m: m.multiplier_error).reshape(shape)),
         "used_periods": (POINT, _of(flat, lambda m: m.discarded).reshape(shape), "1",
                          "periods of the return map run until it was known"),
     }  # fmt: skip

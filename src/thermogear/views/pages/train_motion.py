@@ -8,9 +8,16 @@ from functools import partial
 import numpy as np
 
 from thermogear.base.arrays import Dataset, Floats
-from thermogear.base.display import MICROMETRE, MILLIMETRE_PER_SECOND, NEWTON, PERCENT, number
+from thermogear.base.display import (
+    MICROMETRE,
+    MILLIMETRE_PER_SECOND,
+    NEWTON,
+    PERCENT,
+    number,
+    shared,
+)
 from thermogear.results.result import Result
-from thermogear.views.columns import OF_STATE, Column, declared, rows_along
+from thermogear.views.columns import OF_STATE, Column, Row, declared, rows_along
 from thermogear.views.moving import Dial
 from thermogear.views.page import Block, Pictures, Section, Table, Text
 from thermogear.views.picture import Axis, Panel, Picture
@@ -151,6 +158,13 @@ def _frame(data: Dataset, place: int, frame: int) -> Picture:
     return bearing_orbits(data, place, sample=sample)
 
 
+def _multiplier(row: Row) -> str | None:
+    """Its figures that finer steps confirm; of a result stored without them the first four."""
+    size = row["multiplier_modulus"]
+    error = row.get("multiplier_error", 5e-5 * size)
+    return shared(size, error) if np.isfinite(size) else None
+
+
 FLANKS = (
     *OF_STATE,
     Column("motion", "motion"),
@@ -159,7 +173,7 @@ FLANKS = (
     Column("over that at rest", "train_dynamic_factor", ".3f"),
     Column("contact losses per mesh period", "losses_per_period", ".2f"),
     Column("back-side impacts", "back_impacts_per_period", ".2f"),
-    Column("largest multiplier", "multiplier_modulus", ".4f"),
+    Column("largest multiplier", _multiplier),
 )
 RINGS = (
     *OF_STATE,
