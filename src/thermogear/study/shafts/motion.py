@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import chain
 from typing import Any
 
@@ -50,15 +50,39 @@ ERRORS = 12
 """Natural frequencies of the whole train that the reduced one is held against."""
 
 
+CAGES = (1.0 / 3.0, 2.0 / 3.0)
+"""Other positions of the cages, in pitches of the elements on from the drawn one: the fewest
+that lie evenly over a pitch with it (chosen)."""
+CAGE_SPREAD = 0.05
+"""Share by which the greatest force on a bearing may differ over the cages' positions without a
+notice: chosen, above the 1 % by which positions differ at rest."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class AtCages:
+    """What a train settles on with its cages elsewhere, and its greatest forces [N] there.
+
+    ``mesh_force`` of the drive flanks, ``bearing_force`` (bearing,).
+    """
+
+    motion: Motion
+    mesh_force: float
+    bearing_force: Floats
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Moved:
-    """A train at one point: its equations, what it settles on, its record; None where jammed."""
+    """A train at one point: its equations, what it settles on, its record; None where jammed.
+
+    ``cages``: the same at :data:`CAGES`, of a train that has rolling elements.
+    """
 
     state: TrainState
     train: MovingTrain | None = None
     motion: Motion | None = None
     record: Record | None = None
     torus_sections: Floats | None = None
+    cages: tuple[AtCages, ...] = ()
 
     @property
     def status(self) -> int:
@@ -74,11 +98,7 @@ def moved(case: GearCase, state: TrainState, *, coordinates: int | None = None) 
         return Moved(state=state)
     train = moving(case, state, coordinates=coordinates, friction=rubbing(case, state))
     cycle = train.model.cycle
-    found = (
-        _followed(train)
-        if cycle > LONGEST
-        else settle(train.model.return_map(), train.start, search_of(cycle))
-    )
+    found = _settled_on(train, search_of(cycle))
     if found.name == "diverged":
         return Moved(state=state, train=train, motion=found)
     teeth = max(case.pair.pinion.teeth, case.pair.wheel.teeth)
@@ -88,13 +108,38 @@ def moved(case: GearCase, state: TrainState, *, coordinates: int | None = None) 
     if found.name == "quasi-periodic":
         periods = max(periods, TORUS_PERIODS)
         turning = _on_torus(train, found.state)
+    rolling = any(one.elements for one in train.model.bearings)
     return Moved(
         state=state,
         train=train,
         motion=found,
         record=recorded(train, found.state, periods),
         torus_sections=turning,
+        cages=tuple(_at_cages(train, share, periods) for share in CAGES * rolling),
     )
+
+
+def _settled_on(train: MovingTrain, search: Search) -> Motion:
+    """What the train settles on from its start."""
+    if train.model.cycle > LONGEST:
+        return _followed(train)
+    return settle(train.model.return_map(), train.start, search)
+
+
+def _at_cages(train: MovingTrain, share: float, periods: int) -> AtCages:
+    """Motion and greatest forces with every cage ``share`` of its own pitch further on.
+
+    From the same start, of which no others apart by rounding are followed. Mesh and centres stay
+    those of the drawn position.
+    """
+    there = replace(train, model=train.model.with_cages_on(share))
+    found = _settled_on(there, replace(search_of(train.model.cycle), starts=1))
+    force, rings = np.nan, np.full(len(train.state.assembly.bearings), np.nan)
+    if found.name != "diverged":
+        record = recorded(there, found.state, periods)
+        force = float(record.mesh_force.max())
+        rings = np.linalg.norm(record.bearing_force, axis=2).max(axis=0)
+    return AtCages(motion=found, mesh_force=force, bearing_force=rings)
 
 
 def search_of(cycle: int) -> Search:
@@ -308,7 +353,35 @@ def _table(case: GearCase, found: Sequence[Sequence[Moved]]) -> Dataset:
     texts = {
         name: (POINT, np.array(told, dtype=str).reshape(shape)) for name, told in words.items()
     }
-    return data.assign(texts)
+    return _over_cages(data, flat).assign(texts)
+
+
+def _over_cages(data: Dataset, flat: Sequence[Moved]) -> Dataset:
+    """Motion and greatest forces over (state, operating, cage), where a train has elements."""
+    if not any(one.cages for one in flat):
+        return data
+    shape, count = tuple(data.sizes[name] for name in POINT), 1 + len(CAGES)
+    rings = data.sizes["bearing"]
+    mesh, bearing = np.full((len(flat), count), np.nan), np.full((len(flat), rings, count), np.nan)
+    names = np.full((len(flat), count), "", dtype=object)
+    mesh[:, 0] = data["greatest_mesh_force"].values.ravel()
+    bearing[..., 0] = data["greatest_bearing_force"].values.reshape(-1, rings)
+    for place, one in enumerate(flat):
+        names[place, 0] = _name(one)
+        for cage, there in enumerate(one.cages, start=1):
+            names[place, cage] = there.motion.name
+            mesh[place, cage], bearing[place, :, cage] = there.mesh_force, there.bearing_force
+    over = (*POINT, "cage")
+    found = label(
+        {
+            "cage_mesh_force": (over, mesh.reshape(*shape, count)),
+            "cage_bearing_force": ((*POINT, "bearing", "cage"),
+                                   bearing.reshape(*shape, rings, count)),
+        },
+        {"cage": ("cage", np.array([0.0, *CAGES]))},
+    )  # fmt: skip
+    words = {"cage_label": (over, names.astype(str).reshape(*shape, count))}
+    return data.merge(found.assign(words))
 
 
 def _of(flat: Sequence[Moved], of: Any) -> Floats:
@@ -374,4 +447,38 @@ def _told(found: Sequence[Sequence[Moved]]) -> list[Notice]:
             for one in chain.from_iterable(found)
             if one.motion is not None and one.motion.name in ("undecided", "diverged")
         ),
+        *_told_of_cages([one for one in chain.from_iterable(found) if one.cages]),
     ]
+
+
+def _told_of_cages(found: Sequence[Moved]) -> list[Notice]:
+    """What other positions of the cages cost and change."""
+    if not found:
+        return []
+    told = []
+    for one in found:
+        assert one.motion is not None
+        assert one.record is not None
+        names = [there.motion.name for there in one.cages]
+        own = np.linalg.norm(one.record.bearing_force, axis=2).max()
+        forces = [own, *(np.max(there.bearing_force) for there in one.cages)]
+        low, high = float(np.nanmin(forces)), float(np.nanmax(forces))
+        if {*names} != {one.motion.name} or high > (1.0 + CAGE_SPREAD) * low:
+            told.append(
+                Notice.of(
+                    "train_cages_matter",
+                    about=one.state.state.words,
+                    speed=one.state.speed,
+                    label=one.motion.name,
+                    others=" and ".join(names),
+                    low=low,
+                    high=high,
+                )
+            )
+    more = sum(
+        there.motion.discarded * one.train.model.cycle
+        for one in found
+        if one.train is not None
+        for there in one.cages
+    )
+    return [Notice.of("train_cages", differing=len(told), of=len(found), periods=more), *told]

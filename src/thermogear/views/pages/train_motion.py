@@ -188,6 +188,19 @@ PATHS = (
 )
 
 
+OF_CAGES = (
+    *OF_STATE,
+    Column("cages on by, of a pitch", "cage", ".2f"),
+    Column("motion", "cage_label"),
+    Column("greatest force of the flanks", "cage_mesh_force", ".0f", NEWTON),
+    Column("greatest on a bearing", "cage_bearing_force", ".0f", NEWTON),
+)
+CAGE_WORDS = (
+    "The same with the cages elsewhere: 0 is as drawn. Cages that turn pass through all positions, "
+    "so that what differs here is no property of the machine."
+)
+
+
 def _tables(data: Dataset) -> list[Table]:
     """Flanks and bearings in motion; of bearings stored without their paths the forces alone."""
     columns: tuple[Column, ...] = RINGS
@@ -197,10 +210,15 @@ def _tables(data: Dataset) -> list[Table]:
     caption = "The bearings in motion; a clearance below zero is a preload, a spring has none."
     flanks = rows_along(labelled(data), "state", "operating")
     rings = rows_along(data, "state", "operating", "bearing")
-    return [
+    found = [
         declared("Flanks of the drive train.", FLANKS, flanks, names=3),
         declared(caption, columns, rings, names=3),
     ]
+    if "cage_label" in data:
+        hardest = data.assign(cage_bearing_force=data["cage_bearing_force"].max("bearing"))
+        cages = rows_along(hardest, "state", "operating", "cage")
+        found.append(declared(CAGE_WORDS, OF_CAGES, cages, names=3))
+    return found
 
 
 def told(result: Result) -> list[Table]:
