@@ -1,10 +1,10 @@
 """Random drive trains on rolling bearings: is every printed digit of a Floquet multiplier right?
 
 ``make trial-multipliers`` draws trains (seed fixed before the first run) until so many settle on a
-periodic motion in which elements begin and cease to carry, in ten minutes at most, and takes the largest multiplier of each again by another
-integration: DOP853 of the equation with its variational equations to 1e-11 a step, its orbit found
-by Newton's rule with its own Jacobian. Nothing of the engine is in it. Writes
-docs/trial_multipliers.md; ``--count 4`` prints a short one.
+periodic motion in which elements begin and cease to carry, in ten minutes at most, and takes the
+largest multiplier of each again by another integration: DOP853 of the equation with its variational
+equations to 1e-11 a step, its orbit found by Newton's rule with its own Jacobian. Nothing of the
+engine is in it. Writes docs/trial_multipliers.md; ``--count 4`` prints a short one.
 """
 
 from __future__ import annotations
@@ -155,12 +155,14 @@ def page(rows: Sequence[Compared]) -> list[str]:
         "# Trial of Floquet multipliers on rolling bearings",
         "",
         f"Made by `make trial-multipliers` (seed {SEED}): {drawn_of} random drive trains, of which "
-        f"{len(rows)} have rolling",
-        "elements that begin and cease to carry, no forces at shaft orders, and settle on an orbit "
-        "within 1024 mesh periods. The",
-        f"largest multiplier of each against DOP853 of its variational equations at {TOLERANCE:g} a step, on an orbit of "
-        "its own. *Error*: what finer steps change,",
-        "which says how many digits are printed. *Away*: from the other integration's.",
+        f"{len(rows)} have rolling elements",
+        "that begin and cease to carry, no forces at shaft orders, and settle on an orbit within "
+        "1024 mesh periods.",
+        "The largest multiplier of each against DOP853 of its variational equations at "
+        f"{TOLERANCE:g} a step, on an orbit of its own.",
+        "*Changes*: how often an element begins or ceases to carry on the orbit. *Error*: what "
+        "finer steps change, which says how",
+        "many digits are printed. *Away*: from the other integration's, whose own error is in it.",
         "",
         f"**{len(wrong)} of {len(rows)} have a printed digit that is wrong.** The worst is "
         f"{worst.away:.1e} away (train {worst.number}, printed {worst.printed}).",
@@ -170,9 +172,10 @@ def page(rows: Sequence[Compared]) -> list[str]:
     ]
     for row in rows:
         powers = ", ".join(f"{n:.3g}" for n in row.exponents)
+        verdict = "" if row.right else "**wrong**"
         lines.append(
-            f"| {row.number} | {row.kind} | {powers} | {row.period} | {row.changes} | {row.printed} | "
-            f"{row.error:.1e} | {row.away:.1e} | {'' if row.right else '**wrong**'} |"
+            f"| {row.number} | {row.kind} | {powers} | {row.period} | {row.changes} | "
+            f"{row.printed} | {row.error:.1e} | {row.away:.1e} | {verdict} |"
         )
     return lines
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from thermogear.analysis.bifurcations import FLIP, PITCHFORK, Bifurcation
 from thermogear.analysis.continuation import GAP, Branch, continuation, switch_branch
 from thermogear.analysis.event_curve import EventCurve
-from thermogear.analysis.orbits import Orbit, periodic_orbit
+from thermogear.analysis.orbits import Orbit, multiplier_error, periodic_orbit
 from thermogear.base.arrays import Dataset
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.base.notice import Notice
