@@ -20,7 +20,7 @@ from scipy.integrate import DOP853
 
 from thermogear.base.excitation import Periodic
 from thermogear.base.pieces import Pieces
-from thermogear.dynamics.geared import GearedModel
+from thermogear.dynamics.geared_equation import GearedEquation
 
 Floats = NDArray[np.float64]
 TOLERANCE = 1e-10
@@ -266,7 +266,7 @@ def _rule() -> Floats:
 class Independent:
     """The motion of ``model`` by itself: :meth:`carry` like a return map's, by mesh periods."""
 
-    def __init__(self, model: GearedModel, tolerance: float = TOLERANCE) -> None:
+    def __init__(self, model: GearedEquation, tolerance: float = TOLERANCE) -> None:
         self.model, self.tolerance = model, tolerance
         self.to_q = np.linalg.inv(np.linalg.cholesky(model.mass)).T
         t, n, f = self.to_q, model.size, model.mesh_frequency

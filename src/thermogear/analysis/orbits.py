@@ -279,6 +279,15 @@ def by_finer_steps(orbit: Orbit) -> Orbit | None:
     return again if again.residual < 1e-9 else None
 
 
+def multiplier_error(orbit: Orbit) -> float:
+    """What finer steps along ``orbit`` change its largest multiplier by; 0 of an exact map."""
+    section: ReturnMap | None = getattr(orbit.section, "finer", None)
+    if section is None:
+        return 0.0
+    again = closed(section, orbit.state, orbit.period)
+    return float(abs(again.multipliers[0] - orbit.multipliers[0]))
+
+
 def periodic_orbit(
     model: object, period: int = 1, guess: ArrayLike = (0.0, 0.0), *, tolerance: float = 1e-13
 ) -> Orbit:

@@ -222,7 +222,7 @@ def _event(b: Bifurcation, parameter: Parameter) -> dict[str, Any]:
         "shown_unit": parameter.shown,
         "period": b.period,
         "state": [float(c) for c in b.state],
-        "multipliers": complex_rows(b.multipliers),
+        "multipliers": complex_rows(b.multipliers, multiplier_error(b.orbit)),
         "note": b.note,
     }
 

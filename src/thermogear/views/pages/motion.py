@@ -196,7 +196,9 @@ def _headline(kind: str, summary: Summary) -> str:
     if kind == "orbit":
         largest = summary["multipliers"][0]["modulus"]
         firm = "stable" if summary["stable"] else "unstable"
-        return f"{summary['label']}, {firm}: largest Floquet multiplier {largest:.9f} in modulus."
+        return (
+            f"{summary['label']}, {firm}: largest Floquet multiplier {_part(largest)} in modulus."
+        )
     if kind == "lyapunov":
         return (
             f"λ₁ = {summary['exponent']:.5f} ± {summary['error']:.5f} ({summary['verdict']}); "
@@ -216,7 +218,7 @@ def _orbit_tables(summary: Summary) -> list[Block]:
     values = {
         "period n": (str(summary["period"]), f"turns of {of} mesh periods" if of > 1 else MESH),
         **{
-            f"multiplier {i}": (_complex(mu), f"modulus {mu['modulus']:.9f}")
+            f"multiplier {i}": (_complex(mu), f"modulus {_part(mu['modulus'])}")
             for i, mu in enumerate(summary["multipliers"], start=1)
         },
         "state at phase 0": (
