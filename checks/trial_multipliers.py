@@ -103,7 +103,7 @@ def compared(number: int, seed: int = SEED) -> Compared | None:
         return None
     one, section, motion = found
     size, error = abs(motion.multiplier), motion.multiplier_error
-    printed, true = shared(size, error), other_multiplier(section, motion)
+    printed, true = shared(size, error=error), other_multiplier(section, motion)
     bearings = section.model.bearings
     return Compared(
         number=number,

@@ -94,8 +94,8 @@ def test_figures_that_all_within_an_error_share() -> None:
     for size, error in zip(
         10.0 ** rng.uniform(-9, 0, 200), 10.0 ** rng.uniform(-7, 0, 200), strict=True
     ):
-        text = shared(size, error * size)
+        text = shared(size, error=error * size)
         for true in size * (1.0 + error * rng.uniform(-1.0, 1.0, 5)):
             assert TRIAL.right(text, true)
-    assert shared(0.5, 0.0) == "0.500000"
-    assert shared(0.5, np.inf) == "–"
+    assert shared(0.5, error=0.0) == "0.500000"
+    assert shared(0.5, error=np.inf) == "–"

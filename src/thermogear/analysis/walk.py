@@ -286,7 +286,7 @@ def _proven(section: ReturnMap, orbit: Orbit, away: float, used: int, how: Searc
     size = abs(complex(every[0]))
     plural = "s" * (orbit.period > 1)
     words = "periodic with a long period: " if orbit.period > how.max_period else ""
-    shown = f"{words}largest Floquet multiplier |{shared(size, error)}|"
+    shown = f"{words}largest Floquet multiplier |{shared(size, error=error)}|"
     shown += f" over {orbit.period} period{plural}"
     below = max(largest, size) <= border
     allowed = np.inf if largest <= how.near_border else 0.25 * (1.0 - size)

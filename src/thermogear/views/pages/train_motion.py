@@ -162,7 +162,7 @@ def _multiplier(row: Row) -> str | None:
     """Its figures that finer steps confirm; of a result stored without them the first four."""
     size = row["multiplier_modulus"]
     error = row.get("multiplier_error", 5e-5 * size)
-    return shared(size, error) if np.isfinite(size) else None
+    return shared(size, error=error) if np.isfinite(size) else None
 
 
 FLANKS = (
