@@ -214,7 +214,7 @@ def test_what_a_run_stores_of_its_journals() -> None:
     assert np.isnan(data["second_frequency"].values).all()
     # cages elsewhere: the drawn place first, and what all three give
     for name in ("mesh", "bearing"):
-        forces = data[f"cage_{name}_force"]
+        forces = data[f"cage_{name}_force"].transpose(..., "cage")
         own = data[f"greatest_{name}_force"].values
         assert np.array_equal(forces.isel(cage=0).values, own)
         assert (np.ptp(forces.values, axis=-1) > 0.0).all()

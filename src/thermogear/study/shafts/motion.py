@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from thermogear.analysis.any_motion import settle
 from thermogear.analysis.torus import Torus
@@ -60,21 +61,31 @@ notice: chosen, above the 1 % by which positions differ at rest."""
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class AtCages:
-    """What a train settles on with its cages elsewhere, and its greatest forces [N] there.
+    """What a train settles on with its cages in one place, and its greatest forces [N] there.
 
-    ``mesh_force`` of the drive flanks, ``bearing_force`` (bearing,).
+    ``mesh_force`` of the drive flanks, ``bearing_force`` (bearing,); nan where it diverges.
     """
 
     motion: Motion
     mesh_force: float
     bearing_force: Floats
 
+    @staticmethod
+    def of(train: MovingTrain, motion: Motion, periods: int) -> AtCages:
+        """By a record of so many mesh ``periods`` of the ``motion`` of ``train``."""
+        if motion.name == "diverged":
+            none = np.full(len(train.state.assembly.bearings), np.nan)
+            return AtCages(motion=motion, mesh_force=np.nan, bearing_force=none)
+        own = recorded(train, motion.state, periods)
+        rings = np.linalg.norm(own.bearing_force, axis=2).max(axis=0)
+        return AtCages(motion=motion, mesh_force=float(own.mesh_force.max()), bearing_force=rings)
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Moved:
     """A train at one point: its equations, what it settles on, its record; None where jammed.
 
-    ``cages``: the same at :data:`CAGES`, of a train that has rolling elements.
+    ``cages``: as drawn, then at :data:`CAGES`, of a train that has rolling elements.
     """
 
     state: TrainState
@@ -108,14 +119,13 @@ def moved(case: GearCase, state: TrainState, *, coordinates: int | None = None) 
     if found.name == "quasi-periodic":
         periods = max(periods, TORUS_PERIODS)
         turning = _on_torus(train, found.state)
-    rolling = any(one.elements for one in train.model.bearings)
     return Moved(
         state=state,
         train=train,
         motion=found,
         record=recorded(train, found.state, periods),
         torus_sections=turning,
-        cages=tuple(_at_cages(train, share, periods) for share in CAGES * rolling),
+        cages=tuple(_over_cages(train, found, periods)),
     )
 
 
@@ -126,20 +136,19 @@ def _settled_on(train: MovingTrain, search: Search) -> Motion:
     return settle(train.model.return_map(), train.start, search)
 
 
-def _at_cages(train: MovingTrain, share: float, periods: int) -> AtCages:
-    """Motion and greatest forces with every cage ``share`` of its own pitch further on.
+def _over_cages(train: MovingTrain, motion: Motion, periods: int) -> Iterator[AtCages]:
+    """The ``motion``, and those with every cage further on, of a train with rolling elements.
 
     From the same start, of which no others apart by rounding are followed. Mesh and centres stay
     those of the drawn position.
     """
-    there = replace(train, model=train.model.with_cages_on(share))
-    found = _settled_on(there, replace(search_of(train.model.cycle), starts=1))
-    force, rings = np.nan, np.full(len(train.state.assembly.bearings), np.nan)
-    if found.name != "diverged":
-        record = recorded(there, found.state, periods)
-        force = float(record.mesh_force.max())
-        rings = np.linalg.norm(record.bearing_force, axis=2).max(axis=0)
-    return AtCages(motion=found, mesh_force=force, bearing_force=rings)
+    if not any(one.elements for one in train.model.bearings):
+        return
+    yield AtCages.of(train, motion, periods)
+    search = replace(search_of(train.model.cycle), starts=1)
+    for share in CAGES:
+        there = replace(train, model=train.model.with_cages_on(share))
+        yield AtCages.of(there, _settled_on(there, search), periods)
 
 
 def search_of(cycle: int) -> Search:
@@ -353,35 +362,31 @@ def _table(case: GearCase, found: Sequence[Sequence[Moved]]) -> Dataset:
     texts = {
         name: (POINT, np.array(told, dtype=str).reshape(shape)) for name, told in words.items()
     }
-    return _over_cages(data, flat).assign(texts)
+    return _with_cages(data, flat).assign(texts)
 
 
-def _over_cages(data: Dataset, flat: Sequence[Moved]) -> Dataset:
+def _with_cages(data: Dataset, flat: Sequence[Moved]) -> Dataset:
     """Motion and greatest forces over (state, operating, cage), where a train has elements."""
     if not any(one.cages for one in flat):
         return data
-    shape, count = tuple(data.sizes[name] for name in POINT), 1 + len(CAGES)
-    rings = data.sizes["bearing"]
-    mesh, bearing = np.full((len(flat), count), np.nan), np.full((len(flat), rings, count), np.nan)
-    names = np.full((len(flat), count), "", dtype=object)
-    mesh[:, 0] = data["greatest_mesh_force"].values.ravel()
-    bearing[..., 0] = data["greatest_bearing_force"].values.reshape(-1, rings)
-    for place, one in enumerate(flat):
-        names[place, 0] = _name(one)
-        for cage, there in enumerate(one.cages, start=1):
-            names[place, cage] = there.motion.name
-            mesh[place, cage], bearing[place, :, cage] = there.mesh_force, there.bearing_force
-    over = (*POINT, "cage")
+    count = 1 + len(CAGES)
+
+    def over(of: Callable[[AtCages], Any], none: Any) -> NDArray[Any]:
+        rows = [[of(at) for at in one.cages] or [none] * count for one in flat]
+        found = np.array(rows)
+        return found.reshape(*(data.sizes[name] for name in POINT), *found.shape[1:])
+
+    none = np.full(data.sizes["bearing"], np.nan)
     found = label(
         {
-            "cage_mesh_force": (over, mesh.reshape(*shape, count)),
-            "cage_bearing_force": ((*POINT, "bearing", "cage"),
-                                   bearing.reshape(*shape, rings, count)),
+            "cage_mesh_force": ((*POINT, "cage"), over(lambda at: at.mesh_force, np.nan)),
+            "cage_bearing_force": ((*POINT, "cage", "bearing"),
+                                   over(lambda at: at.bearing_force, none)),
         },
         {"cage": ("cage", np.array([0.0, *CAGES]))},
     )  # fmt: skip
-    words = {"cage_label": (over, names.astype(str).reshape(*shape, count))}
-    return data.merge(found.assign(words))
+    names = over(lambda at: at.motion.name, "")
+    return data.merge(found.assign(cage_label=((*POINT, "cage"), names)))
 
 
 def _of(flat: Sequence[Moved], of: Any) -> Floats:
@@ -455,30 +460,22 @@ def _told_of_cages(found: Sequence[Moved]) -> list[Notice]:
     """What other positions of the cages cost and change."""
     if not found:
         return []
-    told = []
+    told, more = [], 0
     for one in found:
-        assert one.motion is not None
-        assert one.record is not None
-        names = [there.motion.name for there in one.cages]
-        own = np.linalg.norm(one.record.bearing_force, axis=2).max()
-        forces = [own, *(np.max(there.bearing_force) for there in one.cages)]
+        own, *others = (at.motion for at in one.cages)
+        more += sum(motion.discarded for motion in others)
+        forces = [float(at.bearing_force.max()) for at in one.cages]
         low, high = float(np.nanmin(forces)), float(np.nanmax(forces))
-        if {*names} != {one.motion.name} or high > (1.0 + CAGE_SPREAD) * low:
+        if any(motion.name != own.name for motion in others) or high > (1.0 + CAGE_SPREAD) * low:
             told.append(
                 Notice.of(
                     "train_cages_matter",
                     about=one.state.state.words,
                     speed=one.state.speed,
-                    label=one.motion.name,
-                    others=" and ".join(names),
+                    label=own.name,
+                    others=" and ".join(motion.name for motion in others),
                     low=low,
                     high=high,
                 )
             )
-    more = sum(
-        there.motion.discarded * one.train.model.cycle
-        for one in found
-        if one.train is not None
-        for there in one.cages
-    )
     return [Notice.of("train_cages", differing=len(told), of=len(found), periods=more), *told]
