@@ -20,7 +20,7 @@ from scipy.integrate import DOP853
 
 from thermogear.base.excitation import Periodic
 from thermogear.base.pieces import Pieces
-from thermogear.dynamics.geared import GearedModel
+from thermogear.dynamics.geared_equation import GearedEquation
 
 Floats = NDArray[np.float64]
 TOLERANCE = 1e-10
@@ -56,8 +56,12 @@ class Arrays(NamedTuple):
 
 
 def _rates(t: float, x: Floats, out: Floats, a: Arrays, side: float) -> None:
-    """x' at time ``t``; ``side``: a phase inside the piece in which the step lies."""
+    """x' at time ``t``; ``side``: a phase inside the piece in which the step lies.
+
+    ``x`` may go on with tangent vectors, 2n each: their rates by the derivatives of every force.
+    """
     n = a.force.size
+    columns = x.size // (2 * n) - 1
     b, damper, f = a.scalars[0], a.scalars[1], a.scalars[2]
     turn = t * f
     z = complex(math.cos(2.0 * math.pi * turn), math.sin(2.0 * math.pi * turn))
@@ -75,12 +79,14 @@ def _rates(t: float, x: Floats, out: Floats, a: Arrays, side: float) -> None:
         e += a.wobbles[i, 1] * c - a.wobbles[i, 2] * s
         rate -= angle * f * (a.wobbles[i, 1] * s + a.wobbles[i, 2] * c)
         back_error += a.wobbles[i, 3] * c - a.wobbles[i, 4] * s
-    for i in range(n):
-        total = a.force[i]
-        for j in range(2 * n):
-            total += a.linear[i, j] * x[j]
-        out[i] = x[n + i]
-        out[n + i] = total
+    for c in range(columns + 1):
+        at = 2 * n * c
+        for i in range(n):
+            total = a.force[i] if c == 0 else 0.0
+            for j in range(2 * n):
+                total += a.linear[i, j] * x[at + j]
+            out[at + i] = x[at + n + i]
+            out[at + n + i] = total
     drive = back = 0.0
     for j in range(n):
         drive += a.rows[0, j] * x[j]
@@ -89,6 +95,10 @@ def _rates(t: float, x: Floats, out: Floats, a: Arrays, side: float) -> None:
     other = k * max(back - back_error - b, 0.0)
     for j in range(n):
         out[n + j] += (damper * rate - pressed) * a.rows[0, j] - other * a.rows[1, j]
+    if pressed > 0.0:
+        _couple(a.rows[0], a.rows[0], -k, x, out, n, columns)
+    if other > 0.0:
+        _couple(a.rows[1], a.rows[1], -k, x, out, n, columns)
     if a.friction.shape[0] and pressed > 0.0:
         place = np.searchsorted(a.starts, side, side="right") - 1
         at = turn - math.floor(turn)
@@ -103,6 +113,8 @@ def _rates(t: float, x: Floats, out: Floats, a: Arrays, side: float) -> None:
             chi1 = chi1 * at + a.pieces[place, power, 1]
         for j in range(n):
             out[n + j] += pressed * (chi0 * a.friction[0, j] + chi1 * a.friction[1, j])
+        _couple(a.friction[0], a.rows[0], k * chi0, x, out, n, columns)
+        _couple(a.friction[1], a.rows[0], k * chi1, x, out, n, columns)
     for i in range(a.laws.shape[0]):
         ux = uy = 0.0
         for j in range(n):
@@ -116,12 +128,19 @@ def _rates(t: float, x: Floats, out: Floats, a: Arrays, side: float) -> None:
             if r > clearance:
                 size = stiff * (r - clearance) ** exponent / r
                 fx, fy = -size * ux, -size * uy
+                slope = exponent * stiff * (r - clearance) ** (exponent - 1.0) - size
+                one, two = a.rows[2 + 2 * i], a.rows[3 + 2 * i]
+                _couple(one, one, -size - slope * ux * ux / r**2, x, out, n, columns)
+                _couple(one, two, -slope * ux * uy / r**2, x, out, n, columns)
+                _couple(two, one, -slope * ux * uy / r**2, x, out, n, columns)
+                _couple(two, two, -size - slope * uy * uy / r**2, x, out, n, columns)
         for m in range(first, first + many):
             deep = ux * a.rays[m, 0] + uy * a.rays[m, 1] - clearance
             if deep > 0.0:
                 size = stiff * deep**exponent
                 fx -= size * a.rays[m, 0]
                 fy -= size * a.rays[m, 1]
+                _ray(a, i, m, -exponent * size / deep, x, out, n, columns)
         for j in range(n):
             out[n + j] += fx * a.rows[2 + 2 * i, j] + fy * a.rows[3 + 2 * i, j]
     for i in range(a.outer.shape[0]):
@@ -130,12 +149,49 @@ def _rates(t: float, x: Floats, out: Floats, a: Arrays, side: float) -> None:
             out[n + j] += wave_of * a.outer[i, 2 + j]
 
 
+@numba.njit(error_model="numpy")  # type: ignore[untyped-decorator]
+def _couple(
+    onto: Floats, felt: Floats, stiff: float, x: Floats, out: Floats, n: int, columns: int
+) -> None:
+    """Add ``stiff`` ``onto`` (``felt`` . q) to the rates of every tangent vector."""
+    for c in range(1, columns + 1):
+        at = 2 * n * c
+        total = 0.0
+        for j in range(n):
+            total += felt[j] * x[at + j]
+        total *= stiff
+        for j in range(n):
+            out[at + n + j] += total * onto[j]
+
+
+@numba.njit(error_model="numpy")  # type: ignore[untyped-decorator]
+def _ray(
+    a: Arrays, bearing: int, ray: int, stiff: float, x: Floats, out: Floats, n: int, columns: int
+) -> None:
+    """The same of one rolling element, along its ray."""
+    one, two = a.rows[2 + 2 * bearing], a.rows[3 + 2 * bearing]
+    for c in range(1, columns + 1):
+        at = 2 * n * c
+        total = 0.0
+        for j in range(n):
+            total += (a.rays[ray, 0] * one[j] + a.rays[ray, 1] * two[j]) * x[at + j]
+        total *= stiff
+        for j in range(n):
+            out[at + n + j] += total * (a.rays[ray, 0] * one[j] + a.rays[ray, 1] * two[j])
+
+
 rates: Any = numba.njit(error_model="numpy")(_rates)
 
 
 @numba.njit(error_model="numpy")  # type: ignore[untyped-decorator]
 def _advance(
-    x: Floats, first: int, periods: int, a: Arrays, tolerance: float, sections: Floats
+    x: Floats,
+    first: int,
+    periods: int,
+    a: Arrays,
+    scale: Floats,
+    tolerance: float,
+    sections: Floats,
 ) -> int:
     """Carry ``x`` in place from mesh period ``first`` on; the steps taken, -1 where it fails."""
     size = x.size
@@ -173,8 +229,8 @@ def _advance(
                     for r in range(13):
                         e5 += a.rule[14, r] * stages[r, j]
                         e3 += a.rule[13, r] * stages[r, j]
-                    five += (e5 / a.scale[j]) ** 2
-                    three += (e3 / a.scale[j]) ** 2
+                    five += (e5 / scale[j]) ** 2
+                    three += (e3 / scale[j]) ** 2
                 error = 0.0
                 if five > 0.0:
                     error = h * five / math.sqrt((five + 0.01 * three) * size) / tolerance
@@ -193,7 +249,7 @@ def _advance(
                         step = max(step, h * min(factor, 6.0))
                 else:
                     step = h * max(factor, 0.2)
-        for j in range(size):
+        for j in range(sections.shape[1]):
             sections[number, j] = x[j]
     return taken
 
@@ -210,7 +266,7 @@ def _rule() -> Floats:
 class Independent:
     """The motion of ``model`` by itself: :meth:`carry` like a return map's, by mesh periods."""
 
-    def __init__(self, model: GearedModel, tolerance: float = TOLERANCE) -> None:
+    def __init__(self, model: GearedEquation, tolerance: float = TOLERANCE) -> None:
         self.model, self.tolerance = model, tolerance
         self.to_q = np.linalg.inv(np.linalg.cholesky(model.mass)).T
         t, n, f = self.to_q, model.size, model.mesh_frequency
@@ -258,10 +314,28 @@ class Independent:
         both = np.asarray(state, dtype=float).reshape(2, n)
         x = np.linalg.solve(self.to_q, both.T).T.ravel()
         sections = np.zeros((periods, 2 * n))
-        taken = _advance(x, first, periods, self.arrays, self.tolerance, sections)
+        a = self.arrays
+        taken = _advance(x, first, periods, a, a.scale, self.tolerance, sections)
         if taken < 0:
             raise RuntimeError("the independent integration fails")
         return np.hstack([sections[:, :n] @ self.to_q.T, sections[:, n:] @ self.to_q.T])
+
+    def jacobian(self, state: ArrayLike, periods: int) -> tuple[Floats, Floats]:
+        """The state (2n,) after ``periods`` from ``state``, and its derivatives (2n, 2n).
+
+        Tangent vectors in units of the motion's, their errors held to the same share of them.
+        """
+        n, a = self.model.size, self.arrays
+        whole = np.kron(np.eye(2), self.to_q)
+        x = np.linalg.solve(whole, np.asarray(state, dtype=float))
+        both = np.concatenate([x, np.diag(a.scale).ravel()])
+        scale = np.tile(a.scale, 2 * n + 1)
+        sections = np.zeros((periods, 2 * n))
+        if _advance(both, 0, periods, a, scale, self.tolerance, sections) < 0:
+            raise RuntimeError("the independent integration fails")
+        turned = both[2 * n :].reshape(2 * n, 2 * n).T / a.scale
+        found: Floats = whole @ turned @ np.linalg.inv(whole)
+        return whole @ both[: 2 * n], found
 
 
 def _pieces(pitch: object, metre: object) -> tuple[Floats, Floats]:

@@ -98,5 +98,9 @@ def test_a_multiplier_near_one_must_hold_with_finer_steps(finer: float, name: st
     """A decay of 0.999 at rest allows 0.9992, if finer steps change it little."""
     found = settle(Fading(0.9992, finer), np.array([0.01]))
     assert found.name == name
-    # far from 1 nobody asks
-    assert settle(Fading(0.9, 1.5), np.array([0.01])).name == "period-1"
+    # far from 1 they must find it stable, too
+    assert settle(Fading(0.9, 1.5), np.array([0.01])).name == "undecided"
+    sure = settle(Fading(0.9, 0.9001), np.array([0.01]))
+    assert (sure.name, sure.multiplier_error) == ("period-1", pytest.approx(1e-4))
+    # what is printed: all within the error agree on it
+    assert "|0.900|" in sure.reason

@@ -200,7 +200,7 @@ def test_lines_of_two_base_frequencies_are_kept() -> None:
 
 
 def test_what_a_run_stores_of_its_journals() -> None:
-    data, _ = train_motion(case(BALLS, RING, SPRING, SPRING))
+    data, notices = train_motion(case(BALLS, RING, SPRING, SPRING))
     path = data["journal_path"]
     assert path.dims == ("state", "operating", "bearing", "axis", "sample")
     assert path.attrs["units"] == "m"
@@ -212,3 +212,25 @@ def test_what_a_run_stores_of_its_journals() -> None:
     assert np.allclose(amount, data["mean_bearing_force"].values)
     assert (data["bearing_contact_share"].values == 1.0).all()
     assert np.isnan(data["second_frequency"].values).all()
+    # cages elsewhere: the drawn place first, and what all three give
+    for name in ("mesh", "bearing"):
+        forces = data[f"cage_{name}_force"].transpose(..., "cage")
+        own = data[f"greatest_{name}_force"].values
+        assert np.array_equal(forces.isel(cage=0).values, own)
+        assert (np.ptp(forces.values, axis=-1) > 0.0).all()
+        assert np.allclose(forces.values, own[..., None], rtol=0.02)
+    assert set(data["cage_label"].values.ravel()) == {"period-1"}
+    told = {one.code: one.data for one in notices}
+    assert "train_cages" in told
+    assert "train_cages_matter" not in told
+
+
+def test_cages_a_whole_pitch_on_are_the_same() -> None:
+    own = train(BALLS, RING, SPRING, SPRING)
+    whole, half = own.model.with_cages_on(1.0), own.model.with_cages_on(0.5)
+    state, same, apart = (
+        GearedMap(model=model).carry(own.start, 4)[-1] for model in (own.model, whole, half)
+    )
+    away = GearedMap(model=own.model).distance
+    assert away(state, same) < 1e-9
+    assert away(state, apart) > 1e-5

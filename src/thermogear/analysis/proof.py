@@ -17,6 +17,8 @@ from thermogear.dynamics.return_map import return_map
 NEAR_BORDER = 0.998
 SETTLED = 1e-7
 CLOSE = 1e-5
+SMALL = 1e-4
+"""A multiplier below it is written as a power of ten: six decimals would leave little of it."""
 
 
 @dataclass(frozen=True)
@@ -103,7 +105,9 @@ def periodic(
 
 def _shown(orbit: Orbit) -> str:
     mu = orbit.multipliers[0]
-    return f"{mu.real:.6f}" if mu.imag == 0.0 else f"|{abs(mu):.6f}|"
+    value = mu.real if mu.imag == 0.0 else abs(mu)
+    text = f"{value:.6f}" if abs(value) >= SMALL else f"{value:.5e}"
+    return text if mu.imag == 0.0 else f"|{text}|"
 
 
 def closing(scaled: Floats, max_period: int) -> bool:

@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.analysis.agreement import APART, FOLLOW, PARTED, SAME, STARTS, Told, beside
-from thermogear.analysis.orbits import Orbit, shoot
+from thermogear.analysis.orbits import Orbit, by_finer_steps, shoot
 from thermogear.analysis.torus import LONGEST, Torus
 from thermogear.base.arrays import Floats
+from thermogear.base.display import shared
 from thermogear.base.errors import ConvergenceError
 from thermogear.dynamics.return_map import ReturnMap
 
@@ -71,7 +72,8 @@ class Motion(Told):
     """What a start settles on: "period-n", "quasi-periodic", "chaotic", "undecided", "diverged".
 
     ``period`` n (0: none), ``reason`` in words, the last ``state`` (d,), on the ``orbit`` where
-    there is one; ``multiplier``, the largest by modulus (nan: not known); ``lyapunov`` [1/time]
+    there is one; ``multiplier``, the largest by modulus (nan: not known), by finer steps, which
+    change its modulus by ``multiplier_error``; ``lyapunov`` [1/time]
     with its ``lyapunov_error`` and the means of its ``batches``; ``exponents``: as much of the
     spectrum as the label needs, the largest first: all of a periodic orbit, two on a torus; the
     ``torus`` it is on; ``discarded`` periods run; ``away`` how far the motion itself still was from
@@ -80,6 +82,7 @@ class Motion(Told):
 
     state: Floats
     multiplier: complex = complex("nan")
+    multiplier_error: float = float("nan")
     lyapunov: float = float("nan")
     lyapunov_error: float = float("nan")
     batches: Floats = field(default_factory=lambda: np.empty(0))
@@ -269,40 +272,43 @@ def _border(section: ReturnMap, near_border: float, periods: int) -> float:
     return max(near_border, float(slowest ** (BESIDE_DAMPING * periods)))
 
 
-def _sure_of(section: ReturnMap, orbit: Orbit, border: float) -> bool:
-    """Whether a multiplier this near 1 stays below ``border`` with finer steps, too.
-
-    What both differ by is its error: a quarter of what is left to 1 at most.
-    """
-    finer: ReturnMap | None = getattr(section, "finer", None)
-    if finer is None:
-        return True
-    again = shoot(finer, orbit.state, orbit.period, tolerance=1e-11, most=12)
-    if again is None:
-        return False
-    mu, other = abs(complex(orbit.multipliers[0])), abs(complex(again.multipliers[0]))
-    return other <= border and abs(mu - other) <= 0.25 * (1.0 - other)
-
-
 def _proven(section: ReturnMap, orbit: Orbit, away: float, used: int, how: Search) -> Motion:
-    mu = complex(orbit.multipliers[0])
+    """The label of ``orbit``, whose largest multiplier finer steps must find below the border.
+
+    Beyond ``near_border`` both may differ by a quarter of what is left to 1 at most.
+    """
+    again = by_finer_steps(orbit)
+    border = _border(section, how.near_border, orbit.period)
+    every, largest, error = orbit.multipliers, abs(complex(orbit.multipliers[0])), np.inf
+    if again is not None:
+        every = again.multipliers
+        error = abs(largest - abs(complex(every[0])))
+    size = abs(complex(every[0]))
     plural = "s" * (orbit.period > 1)
     words = "periodic with a long period: " if orbit.period > how.max_period else ""
-    shown = f"{words}largest Floquet multiplier |{abs(mu):.6f}| over {orbit.period} period{plural}"
-    border = _border(section, how.near_border, orbit.period)
+    shown = f"{words}largest Floquet multiplier |{shared(size, error=error)}|"
+    shown += f" over {orbit.period} period{plural}"
+    below = max(largest, size) <= border
+    allowed = np.inf if largest <= how.near_border else 0.25 * (1.0 - size)
+    sure = below and error <= allowed and again is not None
+    if not below:
+        shown += f": within {1.0 - border:.2g} of a bifurcation"
+    elif not sure:
+        shown += ": finer steps do not confirm it"
     duration = orbit.period * orbit.section.period
-    sure = abs(mu) <= border and (abs(mu) <= how.near_border or _sure_of(section, orbit, border))
+    exponents = np.log(np.maximum(np.abs(every), 1e-300)) / duration
     return Motion(
         name=f"period-{orbit.period}" if sure else "undecided",
         period=orbit.period,
-        reason=shown if sure else f"{shown}: within {1.0 - border:.2g} of a bifurcation",
+        reason=shown,
         state=orbit.state,
         discarded=used,
         orbit=orbit,
-        multiplier=mu,
-        lyapunov=float(np.log(abs(mu)) / duration),
+        multiplier=complex(every[0]),
+        multiplier_error=error,
+        lyapunov=float(exponents[0]),
         lyapunov_error=0.0,
-        exponents=np.log(np.maximum(np.abs(orbit.multipliers), 1e-300)) / duration,
+        exponents=exponents,
         away=away,
     )
 

@@ -125,6 +125,24 @@ def number(value: float, digits: int = 3) -> str:
     return text.replace("-", "−")
 
 
+def shared(value: float, *, error: float, digits: int = 6) -> str:
+    """The figures of ``value`` >= 0, of ``digits`` at most, that all within ``error`` of it share.
+
+    Rounded; where not even the first is shared, the least power of ten that none of them exceeds;
+    a dash where the error is not finite.
+
+    >>> shared(0.874_43, error=5e-5), shared(3e-9, error=4e-9), shared(3e-9, error=1e-11)
+    ('0.874', 'below 10⁻⁸', '3.0·10⁻⁹')
+    """
+    if not math.isfinite(error):
+        return "–"
+    low, high = value - error, value + error
+    for count in range(digits, 0, -1):
+        if number(low, count) == number(high, count):
+            return number(value, count)
+    return f"below 10{raised(math.ceil(math.log10(high)))}"
+
+
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 

@@ -304,6 +304,10 @@ QUANTITIES: dict[str, Quantity] = {
     "multiplier_modulus": Quantity(
         "1", "largest Floquet multiplier of an orbit, modulus; chaos has none", "|μ|"
     ),
+    "cage": Quantity("1", "cages from the drawn position on, in pitches of the elements"),
+    "cage_mesh_force": Quantity("N", "greatest force of the drive flanks there"),
+    "cage_bearing_force": Quantity("N", "greatest force on the bearing there"),
+    "multiplier_error": Quantity("1", "what finer steps change its modulus by"),
     "lyapunov_exponent": Quantity("1", "largest Lyapunov exponent, per ω_n t", "λ₁"),
     "lyapunov_error": Quantity("1", "its standard error (batch means)", "s(λ₁)"),
     "followed_periods": Quantity("1", "mesh periods each start was followed in chaos, 0: no chaos"),

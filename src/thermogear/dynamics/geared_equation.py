@@ -7,8 +7,9 @@ phase. C holds the mesh damping c_m g_d g_d^T. Plain arrays in SI: nothing here 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -188,6 +189,14 @@ class GearedEquation:
         """What the contacts feel, (outputs, n): both flanks' deflections, (x, y) of bearings."""
         bearings = (row for one in self.bearings for row in one.directions.T)
         return np.stack([self.drive, self.back, *bearings])
+
+    def with_cages_on(self, share: float) -> Self:
+        """The same with the rolling elements ``share`` of their own pitch further on."""
+        turned = tuple(
+            replace(one, angle=one.angle + 2.0 * np.pi * share / max(one.elements, 1))
+            for one in self.bearings
+        )
+        return replace(self, bearings=turned)
 
     def determinant(self, periods: int = 1) -> float:
         """det of the Jacobian of ``periods`` mesh periods: exp(T tr A), with any contacts."""

@@ -24,6 +24,9 @@ DEGREE = 7
 """Of the polynomials that stand for the periodic functions on a panel."""
 FREE = 1e-12
 """A rate below this share of the greatest is that of a free motion."""
+GRADED, CROWDED = 16, 4
+"""Places of a rule for what is like a broken power of the distance from a border, over half of a
+piece, and the power in which they crowd there: (1/2)^-9 of what they miss of the power 1/9."""
 PANEL = 0.2
 """Half width of a panel [rad] in the highest harmonic."""
 
@@ -184,7 +187,10 @@ class Engine:
         shifted = np.polynomial.legendre.leg2poly(np.eye(s + 1)[s])
         # P_s(2 x - 1) in powers of x
         line = np.polynomial.Polynomial(shifted)(np.polynomial.Polynomial([-1.0, 2.0]))
-        size = how.rungs
+        # one more for a tangent's step to a cut
+        size = how.rungs + 1
+        gauss, weight = np.polynomial.legendre.leggauss(GRADED)
+        near = 0.5 * (gauss + 1.0)
         self.ladder = steps.Ladder(
             nodes=nodes,
             powers=np.ascontiguousarray(powers),
@@ -201,6 +207,7 @@ class Engine:
             miss=np.zeros(size * inputs),
             wider=np.linalg.inv(np.vander(places, s + 2, increasing=True)).ravel(),
             miss_within=np.zeros(size * inputs),
+            graded=np.stack([near**CROWDED, 0.5 * weight * CROWDED * near ** (CROWDED - 1)]),
         )
         train, work = self._train(), self._work(0)
         for rung in range(how.rungs):
@@ -253,8 +260,7 @@ class Engine:
             trial=np.zeros(span),
             full=np.zeros(big * big),
             right=np.zeros(max(c * wide, 2 * s)),
-            pushed=np.zeros(c * s * inputs),
-            pushed_shape=np.zeros(c * (s + 2) * inputs),
+            pushed=np.zeros(s * inputs),
             slope=np.zeros(s * (4 + 4 * count)),
             sample=np.zeros(span),
             added=np.zeros(4 * s),
@@ -262,10 +268,11 @@ class Engine:
             pace=np.array([1.0, 0.0]),
             start_force=np.zeros(max(inputs, 8)),
             lacking=np.zeros(inputs),
-            start_slope=np.zeros(4 + 4 * count),
-            end_slope=np.zeros(4 + 4 * count),
-            whole_end=np.zeros(felt),
-            edge=np.zeros(felt),
+            journal_x=np.zeros(s + 2),
+            journal_y=np.zeros(s + 2),
+            pieces=np.zeros(18),
+            moments=np.zeros(4 * s),
+            local=np.zeros(4),
         )
 
     def modal(self, states: ArrayLike) -> Floats:

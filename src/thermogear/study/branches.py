@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from thermogear.analysis.bifurcations import FLIP, PITCHFORK, Bifurcation
 from thermogear.analysis.continuation import GAP, Branch, continuation, switch_branch
 from thermogear.analysis.event_curve import EventCurve
-from thermogear.analysis.orbits import Orbit
+from thermogear.analysis.orbits import Orbit, multiplier_error
 from thermogear.base.arrays import Dataset
 from thermogear.base.errors import InputError
 from thermogear.base.notice import Notice
@@ -220,7 +220,7 @@ def _event(b: Bifurcation, parameter: Parameter) -> dict[str, Any]:
         "shown_unit": parameter.shown,
         "period": b.period,
         "state": [float(c) for c in b.state],
-        "multipliers": complex_rows(b.multipliers),
+        "multipliers": complex_rows(b.multipliers, multiplier_error(b.orbit)),
         "note": b.note,
     }
 

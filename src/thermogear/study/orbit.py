@@ -119,10 +119,12 @@ def _least(orbit: Orbit) -> Orbit:
     return periodic_orbit(orbit.model, orbit.minimal_period, orbit.state)
 
 
-def complex_rows(values: Any) -> list[dict[str, float]]:
-    """Multipliers as plain numbers."""
+def complex_rows(values: Any, error: float = 0.0) -> list[dict[str, float]]:
+    """Multipliers as plain numbers, each with its ``error`` where there is one."""
+    known = {"error": error} if error > 0.0 else {}
     return [
-        {"real": float(mu.real), "imag": float(mu.imag), "modulus": float(abs(mu))} for mu in values
+        {"real": float(mu.real), "imag": float(mu.imag), "modulus": float(abs(mu))} | known
+        for mu in values
     ]
 
 

@@ -76,6 +76,46 @@ def along(x: float, count: int, places: Real, weights: Real, values: Real) -> fl
 
 
 @part
+def root_between(
+    low: float,
+    high: float,
+    count: int,
+    places: Real,
+    weights: Real,
+    values: Real,
+    rounding: float,
+) -> float:
+    """The root of the polynomial through ``values`` from ``low`` to ``high``; there signs differ.
+
+    To 1e-13, or a value of ``rounding``. False position, the Illinois rule.
+    """
+    v_low = along(low, count, places, weights, values)
+    v_high = along(high, count, places, weights, values)
+    rising = v_high > 0.0
+    side = 0
+    for _ in range(60):
+        if high - low < 1e-13:
+            break
+        x = (low * v_high - high * v_low) / (v_high - v_low)
+        if not (low < x < high):
+            x = 0.5 * (low + high)
+        v = along(x, count, places, weights, values)
+        if (v > 0.0) == rising:
+            high, v_high = x, v
+            if side == 1:
+                v_low *= 0.5
+            side = 1
+        else:
+            low, v_low = x, v
+            if side == -1:
+                v_high *= 0.5
+            side = -1
+        if abs(v) < rounding:
+            return float(x)
+    return float(0.5 * (low + high))
+
+
+@part
 def first_root(
     count: int, places: Real, weights: Real, values: Real, rounding: float, fresh: bool
 ) -> float:
@@ -122,29 +162,7 @@ def first_root(
                 low *= 0.5
             if low <= 1e-4 * high:
                 return 0.0
-    v_low = along(low, count, places, weights, values)
-    v_high = along(high, count, places, weights, values)
-    side = 0
-    for _ in range(60):
-        if high - low < 1e-13:
-            break
-        x = (low * v_high - high * v_low) / (v_high - v_low)
-        if not (low < x < high):
-            x = 0.5 * (low + high)
-        v = along(x, count, places, weights, values)
-        if v > 0.0:
-            high, v_high = x, v
-            if side == 1:
-                v_low *= 0.5
-            side = 1
-        else:
-            low, v_low = x, v
-            if side == -1:
-                v_high *= 0.5
-            side = -1
-        if abs(v) < 1e-4 * rounding:
-            return float(x)
-    return float(0.5 * (low + high))
+    return root_between(low, high, count, places, weights, values, 1e-4 * rounding)
 
 
 @part

@@ -191,6 +191,15 @@ def outputs_of(train: Train, state: Real, found: Real, at: int) -> None:
 
 
 @small
+def located(train: Train, contact: int) -> bool:
+    """Whether the changes of a contact are located: its law has a kink there."""
+    if contact < 2:
+        return True
+    b = contact - 2
+    return bool(train.kinds[b, KIND] == RING and train.laws[b, EXPONENT] == 1.0)
+
+
+@small
 def gap_of(train: Train, contact: int, drive: float, back: float, error: float) -> float:
     """Penetration [m] of a contact, > 0 closed; a bearing's by (x, y) in place of both flanks'."""
     if contact == 0:

@@ -17,17 +17,14 @@ from thermogear.dynamics.kernels.drive import (
     BACKLASH,
     BEARINGS,
     ERROR,
-    EXPONENT,
     FELT,
     FREQUENCY,
     FRICTION,
     INPUTS,
-    KIND,
     MODES,
     NODES,
     OUTPUTS,
     RAMP,
-    RING,
     ROUGH,
     RUNGS,
     SPAN,
@@ -37,6 +34,7 @@ from thermogear.dynamics.kernels.drive import (
     Train,
     excite,
     gap_of,
+    located,
     outputs_of,
 )
 from thermogear.dynamics.kernels.drive_tangent import carry_tangent
@@ -54,6 +52,7 @@ from thermogear.dynamics.kernels.ladder import (
     Work,
     attempt,
     coefficients,
+    fill,
     periodic_values,
     within,
 )
@@ -65,15 +64,6 @@ TOUCHING = 1e-7
 """Share of the half backlash below which a gap is none: it moves no impact beyond rounding."""
 MOST_STEPS = 200_000
 """Steps in one period; more is taken for a motion that runs away."""
-
-
-@small
-def located(train: Train, contact: int) -> bool:
-    """Whether the changes of a contact are located: its law has a kink there."""
-    if contact < 2:
-        return True
-    b = contact - 2
-    return bool(train.kinds[b, KIND] == RING and train.laws[b, EXPONENT] == 1.0)
 
 
 @small
@@ -150,7 +140,7 @@ def polished(
     before = 0.0
     gap_before = 0.0
     for step in range(6):
-        within(train, ladder, work, share, h, 1, state, work.shape, work.trial)
+        within(train, ladder, work, share, h, state, work.trial)
         outputs_of(train, work.trial, work.ends, felt)
         now = t + share * h
         phase = (f0 + 0.5 * ramp * now) * now
@@ -232,7 +222,7 @@ def draw(
         at = 2.0 * phase / (f0 + math.sqrt(f0 * f0 + 2.0 * ramp * phase))
         if at >= after:
             break
-        within(train, ladder, work, (at - t) / h, h, 1, state, work.shape, work.sample)
+        within(train, ladder, work, (at - t) / h, h, state, work.sample)
         row = (period * samples + drawn) * span
         for k in range(span):
             sampled[row + k] = work.sample[k]
@@ -338,9 +328,6 @@ def advance(
                 low = 0 if cut or samples > 0 else first
                 high = inputs if cut or samples > 0 else outside
                 coefficients(train, ladder, work, low, high)
-                if columns > 0 and cut:
-                    for o in range(felt):
-                        work.whole_end[o] = work.ends[felt + o]
                 share = limit
                 if when < limit:
                     share = polished(train, ladder, work, state, who, when, h, t)
@@ -348,7 +335,7 @@ def advance(
                 else:
                     who = -1
                     if limit < 1.0:
-                        within(train, ladder, work, limit, h, 1, state, work.shape, work.trial)
+                        within(train, ladder, work, limit, h, state, work.trial)
                         outputs_of(train, work.trial, work.ends, felt)
                 after = t + share * h
                 if who < 0 and (limit < 1.0 or abs(t_border - after) <= close):
@@ -368,9 +355,22 @@ def advance(
                         after,
                     )
                 if columns > 0:
+                    whole = here
+                    pace = work.pace[0]
                     if cut:
-                        periodic_values(train, ladder, work, t, h, begin, border)
-                    carry_tangent(train, ladder, work, tangent, columns, here, share)
+                        # the tangent's own step ends where this one is cut
+                        whole = rungs
+                        for k in range(2 * modes):
+                            work.sample[k] = work.trial[k]
+                        fill(train, ladder, work, whole, share * h)
+                        periodic_values(train, ladder, work, t, share * h, begin, border)
+                        attempt(train, ladder, work, state, whole, t, 0.0, share)
+                    carry_tangent(train, ladder, work, tangent, columns, whole)
+                    if cut:
+                        work.pace[0] = pace
+                        for k in range(2 * modes):
+                            work.trial[k] = work.sample[k]
+                        outputs_of(train, work.trial, work.ends, felt)
                 place = 2 if work.closed[0] == 1 else (0 if work.closed[1] == 1 else 1)
                 work.spent[place] += after - t
                 for k in range(2 * modes):

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
-from thermogear.dynamics.kernels.calculus import gather, solve_lu
+import math
+
+from thermogear.dynamics.kernels.calculus import along, gather, root_between, solve_lu
 from thermogear.dynamics.kernels.compiled import part
 from thermogear.dynamics.kernels.drive import (
     BASE,
     BEARINGS,
+    CLEARANCE,
+    COUNT,
     FELT,
+    FIRST,
     FRICTION,
     INPUTS,
     METRE,
@@ -21,54 +26,114 @@ from thermogear.dynamics.kernels.drive import (
     Real,
     Train,
     bearing_slope,
+    located,
 )
-from thermogear.dynamics.kernels.ladder import (
-    Ladder,
-    Work,
-    within,
-)
+from thermogear.dynamics.kernels.ladder import Ladder, Work
 from thermogear.dynamics.kernels.vector import EIGHT
+
+MOST_PIECES = 16
+"""Of a step between borders of one bearing: more have never been met, their borders are passed
+over."""
 
 
 @part
-def slopes_at(train: Train, work: Work, y: Real, o: int, row: int, slope: Real) -> None:
-    """Derivatives of the forces at outputs ``y[o:]``: drive, back, friction, four of every bearing.
-
-    ``row`` of the periodic functions; to the place of that node in ``slope``.
-    """
-    count = train.sizes[BEARINGS]
-    k = work.values[EIGHT * row + STIFFNESS]
+def slopes_at(train: Train, work: Work, node: int, slope: Real) -> None:
+    """Derivatives of the forces at a node: drive, back, friction, four of every bearing."""
+    count, y = train.sizes[BEARINGS], work.y
+    o = node * train.sizes[OUTPUTS]
+    k = work.values[EIGHT * node + STIFFNESS]
     pressed = k if work.closed[0] == 1 else 0.0
-    at = row * (4 + 4 * count) if row < train.sizes[NODES] else 0
+    at = node * (4 + 4 * count)
     slope[at] = train.numbers[BASE] - pressed
     slope[at + 1] = -k if work.closed[1] == 1 else 0.0
-    slope[at + 2] = pressed * work.values[EIGHT * row + PITCH]
-    slope[at + 3] = pressed * work.values[EIGHT * row + METRE]
+    slope[at + 2] = pressed * work.values[EIGHT * node + PITCH]
+    slope[at + 3] = pressed * work.values[EIGHT * node + METRE]
     for b in range(count):
         x, z = y[o + 2 + 2 * b], y[o + 3 + 2 * b]
         bearing_slope(train, x, z, work.closed[2 + b], b, slope, at + 4 + 4 * b)
 
 
 @part
-def edge_forces(train: Train, work: Work, state: Real, row: int, slope: Real, found: Real) -> None:
-    """Derivatives of all forces at one end of a step along the column ``state[row:]``."""
-    sizes = train.sizes
-    first = 4 if sizes[FRICTION] == 1 else 2
-    felt = sizes[FELT]
-    for o in range(felt):
-        work.edge[o] = 0.0
-    gather(train.out, 0, 2 * sizes[MODES], felt, state, row, work.edge, 0)
-    found[0] = slope[0] * work.edge[0]
-    found[1] = slope[1] * work.edge[1]
-    for extra in range(2, first):
-        found[extra] = slope[extra] * work.edge[0]
-    for b in range(sizes[BEARINGS]):
-        c, p = first + 2 * b, 4 + 4 * b
-        x, z = work.edge[2 + 2 * b], work.edge[3 + 2 * b]
-        found[c] = slope[p] * x + slope[p + 1] * z
-        found[c + 1] = slope[p + 2] * x + slope[p + 3] * z
-    for c in range(first + 2 * sizes[BEARINGS], sizes[INPUTS]):
-        found[c] = 0.0
+def borders_within(train: Train, ladder: Ladder, work: Work, bearing: int) -> int:
+    """Shares of the step at which an element begins or ceases to carry; how many pieces they make.
+
+    In ``work.pieces``, from 0 to 1 in order. ``work.journal_x`` and ``journal_y`` are the bearing's
+    x and y at start, nodes and end.
+    """
+    count, gaps, pieces = train.sizes[NODES] + 2, work.gaps, work.pieces
+    c = train.laws[bearing, CLEARANCE]
+    elements, first = train.kinds[bearing, COUNT], train.kinds[bearing, FIRST]
+    number = 1
+    pieces[0], pieces[1] = 0.0, 1.0
+    for i in range(max(elements, 1)):
+        for m in range(count):
+            x, z = work.journal_x[m], work.journal_y[m]
+            if elements > 0:
+                at = 2 * (first + i)
+                gaps[m] = x * train.rays[at] + z * train.rays[at + 1] - c
+            else:
+                gaps[m] = math.sqrt(x * x + z * z) - c
+        for m in range(count - 1):
+            if (gaps[m] > 0.0) == (gaps[m + 1] > 0.0) or number == MOST_PIECES:
+                continue
+            low, high = ladder.places[m], ladder.places[m + 1]
+            border = root_between(low, high, count, ladder.places, ladder.weights, gaps, 0.0)
+            place = number
+            while pieces[place - 1] > border:
+                pieces[place] = pieces[place - 1]
+                place -= 1
+            pieces[place] = border
+            number += 1
+            pieces[number] = 1.0
+    return int(number)
+
+
+@part
+def projected_slopes(train: Train, ladder: Ladder, work: Work, bearing: int, slope: Real) -> None:
+    """Derivatives of a power law at the nodes, of the polynomial that is nearest over the step.
+
+    An element that begins to carry has a derivative like the (n - 1)th power of time, which no
+    polynomial is: its values at the nodes miss much of what it does to a tangent. Those of its
+    projection onto the polynomials through the nodes have the same integrals against them, which
+    is what a tangent, being smooth, is pushed by: J_j = int J l_j / int l_j over the step (product
+    integration). The integrals go from border to border in powers of the distance from it.
+    """
+    nodes, outputs, felt = train.sizes[NODES], train.sizes[OUTPUTS], train.sizes[FELT]
+    stride = 4 + 4 * train.sizes[BEARINGS]
+    places, weights, order, o = ladder.places, ladder.weights, nodes + 2, 2 + 2 * bearing
+    path_x, path_y = work.journal_x, work.journal_y
+    path_x[0], path_y[0] = work.ends[o], work.ends[o + 1]
+    path_x[nodes + 1], path_y[nodes + 1] = work.ends[felt + o], work.ends[felt + o + 1]
+    for j in range(nodes):
+        path_x[1 + j], path_y[1 + j] = work.y[j * outputs + o], work.y[j * outputs + o + 1]
+    number = borders_within(train, ladder, work, bearing)
+    moments, local = work.moments, work.local
+    for q in range(4 * nodes):
+        moments[q] = 0.0
+    for half in range(2 * number):
+        border, other = work.pieces[half // 2], work.pieces[half // 2 + 1]
+        if half % 2 == 1:
+            border, other = other, border
+        width = 0.5 * (other - border)
+        for i in range(ladder.graded.shape[1]):
+            share = border + width * ladder.graded[0, i]
+            x = along(share, order, places, weights, path_x)
+            y = along(share, order, places, weights, path_y)
+            bearing_slope(train, x, y, 1, bearing, local, 0)
+            weight = abs(width) * ladder.graded[1, i]
+            for q in range(nodes):
+                for part_of in range(4):
+                    moments[4 * q + part_of] += weight * local[part_of]
+                weight *= share
+    for j in range(nodes):
+        whole = 0.0
+        for q in range(nodes):
+            whole += ladder.powers[q, j] / (q + 1.0)
+        for part_of in range(4):
+            total = 0.0
+            for q in range(nodes):
+                total += ladder.powers[q, j] * moments[4 * q + part_of]
+            slope[j * stride + 4 + 4 * bearing + part_of] = total / whole
 
 
 @part
@@ -100,21 +165,18 @@ def node_equations(train: Train, ladder: Ladder, work: Work, rung: int) -> int:
 
 @part
 def carry_tangent(
-    train: Train,
-    ladder: Ladder,
-    work: Work,
-    tangent: Real,
-    columns: int,
-    rung: int,
-    share: float,
+    train: Train, ladder: Ladder, work: Work, tangent: Real, columns: int, rung: int
 ) -> None:
-    """Carry the columns of ``tangent`` (columns, span) through the step just solved."""
+    """Carry the columns of ``tangent`` (columns, span) through the whole step just solved."""
     sizes, right, pushed, slope = train.sizes, work.right, work.pushed, work.slope
     modes, nodes, outputs, inputs = sizes[MODES], sizes[NODES], sizes[OUTPUTS], sizes[INPUTS]
     wide, span = sizes[WIDE], sizes[SPAN]
     first = 4 if sizes[FRICTION] == 1 else 2
     for j in range(nodes):
-        slopes_at(train, work, work.y, j * outputs, j, slope)
+        slopes_at(train, work, j, slope)
+    for b in range(sizes[BEARINGS]):
+        if not located(train, 2 + b):
+            projected_slopes(train, ladder, work, b, slope)
     size = node_equations(train, ladder, work, rung)
     for column in range(columns):
         for i in range(wide):
@@ -124,51 +186,24 @@ def carry_tangent(
     solve_lu(size, columns, work.full, right, wide)
     rows = nodes * inputs
     for column in range(columns):
-        at = column * rows
         for j in range(rows):
-            pushed[at + j] = 0.0
+            pushed[j] = 0.0
         for j in range(nodes):
             o, s = column * wide + j * outputs, j * (4 + 4 * sizes[BEARINGS])
-            pushed[at + j] = slope[s] * right[o]
-            pushed[at + nodes + j] = slope[s + 1] * right[o + 1]
+            pushed[j] = slope[s] * right[o]
+            pushed[nodes + j] = slope[s + 1] * right[o + 1]
             for extra in range(2, first):
-                pushed[at + extra * nodes + j] = slope[s + extra] * right[o]
+                pushed[extra * nodes + j] = slope[s + extra] * right[o]
             for b in range(sizes[BEARINGS]):
-                c, p = at + (first + 2 * b) * nodes + j, s + 4 + 4 * b
+                c, p = (first + 2 * b) * nodes + j, s + 4 + 4 * b
                 x, z = right[o + 2 + 2 * b], right[o + 3 + 2 * b]
                 pushed[c] = slope[p] * x + slope[p + 1] * z
                 pushed[c + nodes] = slope[p + 2] * x + slope[p + 3] * z
-    kept = work.pushed_shape
-    order = nodes + 2
-    slopes_at(train, work, work.ends, 0, nodes, work.start_slope)
-    slopes_at(train, work, work.whole_end, 0, nodes + 1, work.end_slope)
-    for column in range(columns):
         row = column * span
-        if share < 1.0:
-            edge_forces(train, work, tangent, row, work.start_slope, work.start_force)
-        for k in range(span):
-            work.sample[k] = 0.0
         for k in range(modes):
             real, imaginary = tangent[row + 2 * k], tangent[row + 2 * k + 1]
             at = (rung * modes + k) * 2
             c, s = ladder.decay[at], ladder.decay[at + 1]
-            work.sample[2 * k] = c * real - s * imaginary
-            work.sample[2 * k + 1] = c * imaginary + s * real
-        gather(ladder.push, rung * rows, rows, span, pushed, column * rows, work.sample, 0)
-        if share < 1.0:
-            edge_forces(train, work, work.sample, 0, work.end_slope, work.end_force)
-            for c in range(inputs):
-                for q in range(order):
-                    total = ladder.wider[q * order] * work.start_force[c]
-                    total += ladder.wider[q * order + order - 1] * work.end_force[c]
-                    for j in range(nodes):
-                        total += (
-                            ladder.wider[q * order + 1 + j] * pushed[column * rows + c * nodes + j]
-                        )
-                    kept[(column * inputs + c) * order + q] = total
-        else:
-            for k in range(span):
-                tangent[row + k] = work.sample[k]
-    if share < 1.0:
-        h = ladder.lengths[rung]
-        within(train, ladder, work, share, h, columns, tangent, kept, tangent)
+            tangent[row + 2 * k] = c * real - s * imaginary
+            tangent[row + 2 * k + 1] = c * imaginary + s * real
+        gather(ladder.push, rung * rows, rows, span, pushed, 0, tangent, row)

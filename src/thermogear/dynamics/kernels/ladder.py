@@ -74,7 +74,8 @@ class Ladder(NamedTuple):
     (rung, inputs): error of the outputs [m] per unit of the coefficient of P_s of a force. A force
     has its nodes side by side, an output its node's outputs. Within a step the forces are the
     polynomials through start, nodes and end, of powers ``wider``, which lack P_(s+1) and more:
-    ``miss_within``.
+    ``miss_within``. One rung more than there are steps is for one of any length. ``graded``:
+    shares and weights of a rule over (0, 1) whose places crowd at 0.
     """
 
     nodes: Real
@@ -92,6 +93,7 @@ class Ladder(NamedTuple):
     miss: Real
     wider: Real
     miss_within: Real
+    graded: Real
 
 
 class Work(NamedTuple):
@@ -118,17 +120,17 @@ class Work(NamedTuple):
     pace: Real
     start_force: Real
     lacking: Real
-    start_slope: Real
-    end_slope: Real
-    whole_end: Real
-    edge: Real
     trial: Real
     full: Real
     right: Real
     pushed: Real
-    pushed_shape: Real
     slope: Real
     sample: Real
+    journal_x: Real
+    journal_y: Real
+    pieces: Real
+    moments: Real
+    local: Real
 
 
 @kernel
@@ -144,6 +146,7 @@ def fill(train: Train, ladder: Ladder, work: Work, rung: int, h: float) -> None:
         ladder.couple[rung * rows * wide + j] = 0.0
     for c in range(inputs):
         ladder.miss[rung * inputs + c] = 0.0
+        ladder.miss_within[rung * inputs + c] = 0.0
     for k in range(modes):
         largest = 0.0
         real_row, imaginary_row = 2 * k * felt, (2 * k + 1) * felt
@@ -212,37 +215,25 @@ def coefficients(train: Train, ladder: Ladder, work: Work, first: int, last: int
 
 @part
 def within(
-    train: Train,
-    ladder: Ladder,
-    work: Work,
-    share: float,
-    h: float,
-    columns: int,
-    state: Real,
-    shape: Real,
-    found: Real,
+    train: Train, ladder: Ladder, work: Work, share: float, h: float, state: Real, found: Real
 ) -> None:
-    """States (column, span) at ``share`` of the step: exact for the polynomials ``shape``."""
+    """The state at ``share`` of the step: exact for the forces' polynomials ``work.shape``."""
     sizes, into, phi = train.sizes, train.into, work.phi
-    modes, inputs, span = sizes[MODES], sizes[INPUTS], sizes[SPAN]
     order = sizes[NODES] + 2
-    for k in range(modes):
+    for k in range(sizes[MODES]):
         flows(train.lam[k] * (share * h), order, ladder.factorial, phi)
         scale = h
         for q in range(order):
             scale *= share
             phi[q + 1] *= scale * ladder.factorial[q]
-        for column in range(columns):
-            at = column * span + 2 * k
-            value = phi[0] * complex(state[at], state[at + 1])
-            row = column * inputs * order
-            for c in range(inputs):
-                total = 0.0j
-                for q in range(order):
-                    total += phi[q + 1] * shape[row + c * order + q]
-                value += into[k, c] * total
-            found[at] = value.real
-            found[at + 1] = value.imag
+        value = phi[0] * complex(state[2 * k], state[2 * k + 1])
+        for c in range(sizes[INPUTS]):
+            total = 0.0j
+            for q in range(order):
+                total += phi[q + 1] * work.shape[c * order + q]
+            value += into[k, c] * total
+        found[2 * k] = value.real
+        found[2 * k + 1] = value.imag
 
 
 @part

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from itertools import chain
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from thermogear.analysis.any_motion import settle
 from thermogear.analysis.torus import Torus
@@ -50,15 +51,49 @@ ERRORS = 12
 """Natural frequencies of the whole train that the reduced one is held against."""
 
 
+CAGES = (1.0 / 3.0, 2.0 / 3.0)
+"""Other positions of the cages, in pitches of the elements on from the drawn one: the fewest
+that lie evenly over a pitch with it (chosen)."""
+CAGE_SPREAD = 0.05
+"""Share by which the greatest force on a bearing may differ over the cages' positions without a
+notice: chosen, above the 1 % by which positions differ at rest."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class AtCages:
+    """What a train settles on with its cages in one place, and its greatest forces [N] there.
+
+    ``mesh_force`` of the drive flanks, ``bearing_force`` (bearing,); nan where it diverges.
+    """
+
+    motion: Motion
+    mesh_force: float
+    bearing_force: Floats
+
+    @staticmethod
+    def of(train: MovingTrain, motion: Motion, periods: int) -> AtCages:
+        """By a record of so many mesh ``periods`` of the ``motion`` of ``train``."""
+        if motion.name == "diverged":
+            none = np.full(len(train.state.assembly.bearings), np.nan)
+            return AtCages(motion=motion, mesh_force=np.nan, bearing_force=none)
+        own = recorded(train, motion.state, periods)
+        rings = np.linalg.norm(own.bearing_force, axis=2).max(axis=0)
+        return AtCages(motion=motion, mesh_force=float(own.mesh_force.max()), bearing_force=rings)
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Moved:
-    """A train at one point: its equations, what it settles on, its record; None where jammed."""
+    """A train at one point: its equations, what it settles on, its record; None where jammed.
+
+    ``cages``: as drawn, then at :data:`CAGES`, of a train that has rolling elements.
+    """
 
     state: TrainState
     train: MovingTrain | None = None
     motion: Motion | None = None
     record: Record | None = None
     torus_sections: Floats | None = None
+    cages: tuple[AtCages, ...] = ()
 
     @property
     def status(self) -> int:
@@ -74,11 +109,7 @@ def moved(case: GearCase, state: TrainState, *, coordinates: int | None = None) 
         return Moved(state=state)
     train = moving(case, state, coordinates=coordinates, friction=rubbing(case, state))
     cycle = train.model.cycle
-    found = (
-        _followed(train)
-        if cycle > LONGEST
-        else settle(train.model.return_map(), train.start, search_of(cycle))
-    )
+    found = _settled_on(train, search_of(cycle))
     if found.name == "diverged":
         return Moved(state=state, train=train, motion=found)
     teeth = max(case.pair.pinion.teeth, case.pair.wheel.teeth)
@@ -94,7 +125,30 @@ def moved(case: GearCase, state: TrainState, *, coordinates: int | None = None) 
         motion=found,
         record=recorded(train, found.state, periods),
         torus_sections=turning,
+        cages=tuple(_over_cages(train, found, periods)),
     )
+
+
+def _settled_on(train: MovingTrain, search: Search) -> Motion:
+    """What the train settles on from its start."""
+    if train.model.cycle > LONGEST:
+        return _followed(train)
+    return settle(train.model.return_map(), train.start, search)
+
+
+def _over_cages(train: MovingTrain, motion: Motion, periods: int) -> Iterator[AtCages]:
+    """The ``motion``, and those with every cage further on, of a train with rolling elements.
+
+    From the same start, of which no others apart by rounding are followed. Mesh and centres stay
+    those of the drawn position.
+    """
+    if not any(one.elements for one in train.model.bearings):
+        return
+    yield AtCages.of(train, motion, periods)
+    search = replace(search_of(train.model.cycle), starts=1)
+    for share in CAGES:
+        there = replace(train, model=train.model.with_cages_on(share))
+        yield AtCages.of(there, _settled_on(there, search), periods)
 
 
 def search_of(cycle: int) -> Search:
@@ -276,6 +330,7 @@ def _table(case: GearCase, found: Sequence[Sequence[Moved]]) -> Dataset:
         "followed_starts": (POINT, [
             [0 if m.motion is None else m.motion.starts for m in row] for row in found]),
         "multiplier_modulus": (POINT, _of(flat, lambda m: abs(m.multiplier)).reshape(shape)),
+        "multiplier_error": (POINT, _of(flat, lambda m: m.multiplier_error).reshape(shape)),
         "used_periods": (POINT, _of(flat, lambda m: m.discarded).reshape(shape), "1",
                          "periods of the return map run until it was known"),
     }  # fmt: skip
@@ -307,7 +362,31 @@ def _table(case: GearCase, found: Sequence[Sequence[Moved]]) -> Dataset:
     texts = {
         name: (POINT, np.array(told, dtype=str).reshape(shape)) for name, told in words.items()
     }
-    return data.assign(texts)
+    return _with_cages(data, flat).assign(texts)
+
+
+def _with_cages(data: Dataset, flat: Sequence[Moved]) -> Dataset:
+    """Motion and greatest forces over (state, operating, cage), where a train has elements."""
+    if not any(one.cages for one in flat):
+        return data
+    count = 1 + len(CAGES)
+
+    def over(of: Callable[[AtCages], Any], none: Any) -> NDArray[Any]:
+        rows = [[of(at) for at in one.cages] or [none] * count for one in flat]
+        found = np.array(rows)
+        return found.reshape(*(data.sizes[name] for name in POINT), *found.shape[1:])
+
+    none = np.full(data.sizes["bearing"], np.nan)
+    found = label(
+        {
+            "cage_mesh_force": ((*POINT, "cage"), over(lambda at: at.mesh_force, np.nan)),
+            "cage_bearing_force": ((*POINT, "cage", "bearing"),
+                                   over(lambda at: at.bearing_force, none)),
+        },
+        {"cage": ("cage", np.array([0.0, *CAGES]))},
+    )  # fmt: skip
+    names = over(lambda at: at.motion.name, "")
+    return data.merge(found.assign(cage_label=((*POINT, "cage"), names)))
 
 
 def _of(flat: Sequence[Moved], of: Any) -> Floats:
@@ -373,4 +452,30 @@ def _told(found: Sequence[Sequence[Moved]]) -> list[Notice]:
             for one in chain.from_iterable(found)
             if one.motion is not None and one.motion.name in ("undecided", "diverged")
         ),
+        *_told_of_cages([one for one in chain.from_iterable(found) if one.cages]),
     ]
+
+
+def _told_of_cages(found: Sequence[Moved]) -> list[Notice]:
+    """What other positions of the cages cost and change."""
+    if not found:
+        return []
+    told, more = [], 0
+    for one in found:
+        own, *others = (at.motion for at in one.cages)
+        more += sum(motion.discarded for motion in others)
+        forces = [float(at.bearing_force.max()) for at in one.cages]
+        low, high = float(np.nanmin(forces)), float(np.nanmax(forces))
+        if any(motion.name != own.name for motion in others) or high > (1.0 + CAGE_SPREAD) * low:
+            told.append(
+                Notice.of(
+                    "train_cages_matter",
+                    about=one.state.state.words,
+                    speed=one.state.speed,
+                    label=own.name,
+                    others=" and ".join(motion.name for motion in others),
+                    low=low,
+                    high=high,
+                )
+            )
+    return [Notice.of("train_cages", differing=len(told), of=len(found), periods=more), *told]

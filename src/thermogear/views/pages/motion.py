@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from functools import partial
 from operator import itemgetter
@@ -29,6 +30,8 @@ from thermogear.views.typesetting import prose
 
 Summary = dict[str, Any]
 MESH = "mesh periods"
+SMALL = 1e-4
+"""A multiplier below it is written as a power of ten: nine places would leave little of it."""
 SECOND = "second_shown"
 PLANE = "Where the motion jumps or changes"
 
@@ -184,7 +187,9 @@ def _headline(kind: str, summary: Summary) -> str:
     if kind == "orbit":
         largest = summary["multipliers"][0]["modulus"]
         firm = "stable" if summary["stable"] else "unstable"
-        return f"{summary['label']}, {firm}: largest Floquet multiplier {largest:.9f} in modulus."
+        return (
+            f"{summary['label']}, {firm}: largest Floquet multiplier {_part(largest)} in modulus."
+        )
     if kind == "lyapunov":
         return (
             f"λ₁ = {summary['exponent']:.5f} ± {summary['error']:.5f} ({summary['verdict']}); "
@@ -202,7 +207,7 @@ def _orbit_tables(summary: Summary) -> list[Block]:
     values = {
         "period n": (str(summary["period"]), f"turns of {of} mesh periods" if of > 1 else MESH),
         **{
-            f"multiplier {i}": (_complex(mu), f"modulus {mu['modulus']:.9f}")
+            f"multiplier {i}": (_complex(mu), f"modulus {_part(mu['modulus'])}")
             for i, mu in enumerate(summary["multipliers"], start=1)
         },
         "state at phase 0": (
@@ -241,10 +246,20 @@ def _orbit_tables(summary: Summary) -> list[Block]:
 
 
 def _complex(mu: dict[str, float]) -> str:
-    text = f"{mu['real']:z.9f}"
+    """A multiplier to nine places, of a train to those that finer steps confirm."""
+    error = mu.get("error", 0.0)
+    text = _part(mu["real"], error)
     if mu["imag"] != 0.0:
-        text += f" {'+' if mu['imag'] > 0 else '−'} {abs(mu['imag']):.9f} i"
-    return text.replace("-", "−")
+        text += f" {'+' if mu['imag'] > 0 else '−'} {_part(abs(mu['imag']), error)} i"
+    return text
+
+
+def _part(value: float, error: float = 0.0) -> str:
+    """``value`` to nine places, or fewer that ``error`` leaves; a small one as a power of ten."""
+    if error < abs(value) < SMALL:
+        return number(value, 1 if error else 5)
+    places = min(max(math.floor(-math.log10(2.0 * error)), 0), 9) if error else 9
+    return f"{value:z.{places}f}".replace("-", "−")
 
 
 def _lyapunov_tables(summary: Summary) -> list[Block]:

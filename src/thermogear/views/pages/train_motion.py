@@ -8,9 +8,16 @@ from functools import partial
 import numpy as np
 
 from thermogear.base.arrays import Dataset, Floats
-from thermogear.base.display import MICROMETRE, MILLIMETRE_PER_SECOND, NEWTON, PERCENT, number
+from thermogear.base.display import (
+    MICROMETRE,
+    MILLIMETRE_PER_SECOND,
+    NEWTON,
+    PERCENT,
+    number,
+    shared,
+)
 from thermogear.results.result import Result
-from thermogear.views.columns import OF_STATE, Column, declared, rows_along
+from thermogear.views.columns import OF_STATE, Column, Row, declared, rows_along
 from thermogear.views.moving import Dial
 from thermogear.views.page import Block, Pictures, Section, Table, Text
 from thermogear.views.picture import Axis, Panel, Picture
@@ -151,6 +158,13 @@ def _frame(data: Dataset, place: int, frame: int) -> Picture:
     return bearing_orbits(data, place, sample=sample)
 
 
+def _multiplier(row: Row) -> str | None:
+    """Its figures that finer steps confirm; of a result stored without them the first four."""
+    size = row["multiplier_modulus"]
+    error = row.get("multiplier_error", 5e-5 * size)
+    return shared(size, error=error) if np.isfinite(size) else None
+
+
 FLANKS = (
     *OF_STATE,
     Column("motion", "motion"),
@@ -159,7 +173,7 @@ FLANKS = (
     Column("over that at rest", "train_dynamic_factor", ".3f"),
     Column("contact losses per mesh period", "losses_per_period", ".2f"),
     Column("back-side impacts", "back_impacts_per_period", ".2f"),
-    Column("largest multiplier", "multiplier_modulus", ".4f"),
+    Column("largest multiplier", _multiplier),
 )
 RINGS = (
     *OF_STATE,
@@ -174,6 +188,19 @@ PATHS = (
 )
 
 
+OF_CAGES = (
+    *OF_STATE,
+    Column("cages on by, of a pitch", "cage", ".2f"),
+    Column("motion", "cage_label"),
+    Column("greatest force of the flanks", "cage_mesh_force", ".0f", NEWTON),
+    Column("greatest on a bearing", "cage_bearing_force", ".0f", NEWTON),
+)
+CAGE_WORDS = (
+    "The same with the cages elsewhere: 0 is as drawn. Cages that turn pass through all positions, "
+    "so that what differs here is no property of the machine."
+)
+
+
 def _tables(data: Dataset) -> list[Table]:
     """Flanks and bearings in motion; of bearings stored without their paths the forces alone."""
     columns: tuple[Column, ...] = RINGS
@@ -183,10 +210,15 @@ def _tables(data: Dataset) -> list[Table]:
     caption = "The bearings in motion; a clearance below zero is a preload, a spring has none."
     flanks = rows_along(labelled(data), "state", "operating")
     rings = rows_along(data, "state", "operating", "bearing")
-    return [
+    found = [
         declared("Flanks of the drive train.", FLANKS, flanks, names=3),
         declared(caption, columns, rings, names=3),
     ]
+    if "cage_label" in data:
+        hardest = data.assign(cage_bearing_force=data["cage_bearing_force"].max("bearing"))
+        cages = rows_along(hardest, "state", "operating", "cage")
+        found.append(declared(CAGE_WORDS, OF_CAGES, cages, names=3))
+    return found
 
 
 def told(result: Result) -> list[Table]:
