@@ -67,6 +67,15 @@ class EventCurve:
         steps = np.sign(np.diff(self.values[:, 1]))
         return tuple((np.flatnonzero(steps[1:] * steps[:-1] < 0.0) + 1).tolist())
 
+    @property
+    def closed(self) -> bool:
+        """Whether it comes back to its first point."""
+        return self.ended == AROUND_ONCE
+
+    def exchanged(self) -> EventCurve:
+        """The same with p and q exchanged."""
+        return replace(self, parameters=self.parameters[::-1], values=self.values[:, ::-1])
+
     def dataset(self) -> xr.Dataset:
         """The curve over ``point``."""
         first, second = self.parameters

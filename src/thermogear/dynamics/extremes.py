@@ -10,7 +10,7 @@ Checked by ``tests/dynamics/test_extremes.py`` against closed forms.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -27,14 +27,16 @@ FLANKS = ("drive flank", "back flank")
 """The first contacts; bearings follow, one by one."""
 
 
-def contact_name(contact: int) -> str:
-    """The contact's name: a flank, or the number of its bearing in the order of the model.
+def contact_name(contact: int, bearings: Sequence[str] = ()) -> str:
+    """The contact's name: a flank, or its bearing by name, else by its number in the model.
 
-    >>> contact_name(0), contact_name(2)
-    ('drive flank', 'bearing 1')
+    >>> contact_name(0), contact_name(2), contact_name(2, ["pinion left"])
+    ('drive flank', 'bearing 1', 'pinion left')
     """
     bearing = contact - len(FLANKS)
-    return FLANKS[contact] if bearing < 0 else f"bearing {bearing + 1}"
+    if bearing < 0:
+        return FLANKS[contact]
+    return bearings[bearing] if bearing < len(bearings) else f"bearing {bearing + 1}"
 
 
 class Touch(NamedTuple):

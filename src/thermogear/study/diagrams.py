@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import chain
 from pathlib import Path
 from typing import TypeAlias
@@ -12,6 +13,7 @@ from typing import TypeAlias
 import numpy as np
 
 from thermogear.analysis.basins import BASIN_RULE, BasinPlan, basin_plan
+from thermogear.analysis.bordered import Sheet
 from thermogear.analysis.branches import with_branches_of_states
 from thermogear.analysis.diagram import BRANCH_PERIOD, DIAGRAM_RULE, DiagramPlan, diagram_plan
 from thermogear.analysis.family import Family
@@ -24,10 +26,12 @@ from thermogear.base.stores import read_manifests
 from thermogear.case.base import Case
 from thermogear.case.case import GearCase, gear_case
 from thermogear.case.family import GearFamily, NumberFamily, Tabulated, family, moving
+from thermogear.case.points import Points
 from thermogear.case.thermal_state import HOT, StateLike, ThermalState
 from thermogear.results.beside import from_data
 from thermogear.results.result import Result
 from thermogear.results.work import Estimate, estimate
+from thermogear.study.shafts.branches import TrainGrid
 from thermogear.study.shafts.family import TabulatedTrains, TrainFamily
 from thermogear.study.shafts.motion import LONGEST
 from thermogear.study.shafts.state import STATES
@@ -141,19 +145,32 @@ def case_map(
     changes: Mapping[str, float] | None = None,
     refine: bool = False,
     train: Train | None = None,
+    borders: bool = False,
 ) -> MapPlan:
-    """The map of regimes of a case, or of its drive ``train``, over two parameters."""
+    """The map of regimes of a case, or of its drive ``train``, over two parameters.
+
+    With ``borders`` of contact loss; numbers of a train run straight between those of the map.
+    """
     whole = case_family(
         case, tuple(axes), bundle=bundle, state=state, changes=changes, train=train
     )  # fmt: skip
     whole.require(axes)
     start = case.simulation.initial_state
-    if not isinstance(whole, TrainFamily):
-        return map_plan(whole, axes, initial_state=start, refine=refine)
-    return map_plan(
-        whole, axes, initial_state=start, refine=refine, rule=rule_of(whole, MAP_RULE),
-        tile=TRAIN_TILE, stride=TRAIN_STRIDE,
-    )  # fmt: skip
+    if isinstance(whole, TrainFamily):
+        plan = map_plan(
+            whole, axes, initial_state=start, refine=refine, rule=rule_of(whole, MAP_RULE),
+            tile=TRAIN_TILE, stride=TRAIN_STRIDE,
+        )  # fmt: skip
+        sheet: Sheet = TrainGrid(whole, tuple(np.sort(values) for values in axes.values()))
+    else:
+        plan = map_plan(whole, axes, initial_state=start, refine=refine)
+        sheet = partial(_at, whole)
+    return replace(plan, sheet=sheet) if borders else plan
+
+
+def _at(family: GearFamily | NumberFamily, p: float, q: float) -> Points:
+    """The gears at one value of both parameters; InputError where nothing moves."""
+    return moving(family(np.array([[p, q]])), family)
 
 
 def train_maps(
@@ -163,6 +180,7 @@ def train_maps(
     bundle: str = "",
     refine: bool = False,
     train: Train | None = None,
+    borders: bool = False,
 ) -> StackedPlan:
     """The maps of a case's drive ``train`` undeformed and hot, side by side, over two parameters.
 
@@ -170,7 +188,9 @@ def train_maps(
     """
     chosen = Train() if train is None else train
     plans = [
-        case_map(case, axes, bundle=bundle, state=state, refine=refine, train=chosen)
+        case_map(
+            case, axes, bundle=bundle, state=state, refine=refine, train=chosen, borders=borders
+        )
         for state in STATES
     ]
     return StackedPlan(plans=tuple(plans), words=tuple(state.words for state in STATES))

@@ -17,7 +17,7 @@ from thermogear.base.errors import ConvergenceError
 from thermogear.base.notice import Notice
 from thermogear.base.parameters import Parameter
 from thermogear.base.progress import Progress
-from thermogear.dynamics.extremes import FLANKS, contact_name
+from thermogear.dynamics.extremes import contact_name
 from thermogear.dynamics.return_map import MovedMap
 
 if TYPE_CHECKING:
@@ -145,14 +145,7 @@ class Plane:
 
     def contact(self, curve: EventCurve) -> str:
         """What touches on the curve of a grazing, by name; else ""."""
-        if curve.contact is None:
-            return ""
-        bearing = curve.contact - len(FLANKS)
-        return (
-            self.bearings[bearing]
-            if 0 <= bearing < len(self.bearings)
-            else contact_name(curve.contact)
-        )
+        return "" if curve.contact is None else contact_name(curve.contact, self.bearings)
 
     def groups(self, curves: Sequence[EventCurve], first: Parameter) -> dict[str, xr.Dataset]:
         """The curves as they are stored."""
