@@ -31,6 +31,10 @@ from thermogear.dynamics.return_map import return_map
 
 MOST_CURVES, MOST_TRIES = 16, 24
 """Borders that are followed, and pairs of neighbours at which they are looked for; chosen."""
+SAME = 5e-3
+"""Share of a map's range [1]: an event this near to a curve lies on it; chosen."""
+PARTED, NEAR = 1e-9, 1e-9
+"""Share of the time and of a map's range [1] that are no more than rounding."""
 Edge = tuple[int, tuple[int, int], tuple[int, int]]
 """The axis along which two neighbours differ, and both places."""
 
@@ -80,14 +84,15 @@ def _curves(
     tries = 0
     for contact, flags in enumerate(_opened(data)):
         for edge in _edges(data, flags):
-            if any(_crosses(leg, contact, axes, edge) for legs in borders for leg in legs):
+            lines = [leg for legs in borders for leg in legs if leg.contact == contact]
+            if any(_crosses(leg, axes, edge) for leg in lines):
                 continue
             tries += 1
             if tries > MOST_TRIES or len(borders) >= MOST_CURVES:
                 return borders
             try:
                 event = _between(sheet, axes, edge, start, names, contact)
-                if event is not None:
+                if event is not None and not any(_near(event, edge[0], axes, c) for c in lines):
                     borders.append(_followed(event, sheet, axes, edge, names))
             except (ConvergenceError, InputError):
                 continue
@@ -97,7 +102,7 @@ def _curves(
 def _opened(data: Dataset) -> list[NDArray[np.bool_]]:
     """Of every contact whether it opens (the back flank: closes) at a point of the map."""
     if "lost_contact" not in data:
-        return [data["drive_share"].values < 1.0, data["back_share"].values > 0.0]
+        return [data["drive_share"].values < 1.0 - PARTED, data["back_share"].values > PARTED]
     lost = np.nan_to_num(data["lost_contact"].values).astype(int)
     masks = np.ravel(data["lost_contact"].attrs["flag_masks"])
     return [(lost & int(mask)) > 0 for mask in masks]
@@ -116,17 +121,32 @@ def _edges(data: Dataset, flags: NDArray[np.bool_]) -> Iterator[Edge]:
             yield axis, (i, j), (i + (axis == 0), j + (axis == 1))
 
 
-def _crosses(curve: EventCurve, contact: int, axes: Sequence[Floats], edge: Edge) -> bool:
-    """Whether a curve of the contact passes between both neighbours."""
+def _near(
+    event: tuple[Bifurcation, float], axis: int, axes: Sequence[Floats], curve: EventCurve
+) -> bool:
+    """Whether a curve passes where the event was located, a little beside its points."""
+    scale = np.array([np.ptp(values) for values in axes])
+    here = np.array([event[0].value, event[1]])[:: 1 - 2 * axis] / scale
+    line = curve.values / scale
+    steps = np.diff(line, axis=0)
+    shares = np.sum((here - line[:-1]) * steps, axis=1) / np.sum(steps**2, axis=1)
+    feet = line[:-1] + np.clip(shares, 0.0, 1.0)[:, None] * steps
+    return bool(np.linalg.norm(feet - here, axis=1).min() < SAME)
+
+
+def _crosses(curve: EventCurve, axes: Sequence[Floats], edge: Edge) -> bool:
+    """Whether a curve passes between both neighbours."""
     axis, low, high = edge
     along, across = curve.values[:, axis], curve.values[:, 1 - axis]
     level = axes[1 - axis][low[1 - axis]]
-    sides = np.flatnonzero((across[:-1] - level) * (across[1:] - level) <= 0.0)
+    near = NEAR * float(np.ptp(axes[1 - axis]))
+    ends = np.sort([across[:-1], across[1:]], axis=0) - level
+    sides = np.flatnonzero((ends[0] <= near) & (ends[1] >= -near))
     steps = np.diff(across)[sides]
-    share = (level - across[sides]) / np.where(steps == 0.0, 1.0, steps)
+    share = np.clip((level - across[sides]) / np.where(steps == 0.0, 1.0, steps), 0.0, 1.0)
     places = along[sides] + share * np.diff(along)[sides]
-    ends = sorted((axes[axis][low[axis]], axes[axis][high[axis]]))
-    return curve.contact == contact and bool(np.any((places >= ends[0]) & (places <= ends[1])))
+    first, last = sorted((axes[axis][low[axis]], axes[axis][high[axis]]))
+    return bool(np.any((places >= first) & (places <= last)))
 
 
 def _between(
@@ -149,8 +169,10 @@ def _between(
             continue
         branch = continuation(motion.orbit, names[axis], end, family=family, start=begin)
         for event in branch.of_kind(GRAZING):
-            seen: Any = event.orbit.section
-            if seen.extremes(event.state, event.period).touch().contact == contact:
+            own: Any = event.orbit.section
+            seen = own.extremes(event.state, event.period)
+            rest = seen.without(int(np.abs(seen.depth).argmin())).losses
+            if seen.touch().contact == contact and rest[contact] == 0:
                 return event, level
     return None
 
@@ -170,7 +192,7 @@ def _followed(
             continue
         curve = event_curve(
             grazing, turned, (names[axis], names[1 - axis]), start=level, asked=[end],
-            limits=(low, high), within=within,
+            limits=(low, high), within=within, alone=True,
         )  # fmt: skip
         legs.append(curve.exchanged() if axis else curve)
     return legs

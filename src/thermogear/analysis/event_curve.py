@@ -30,6 +30,9 @@ SHORT, AROUND = 1e-5, 0.2
 """The shortest step for a search on a circle, and how far it goes on that."""
 REACHED, BACK, LEFT = "reached the end", "came back", "left the range"
 AROUND_ONCE = "closes on itself"
+OPENED = "the same contact opens at another phase, too: that comes first beyond"
+MEETING = 1e-3
+"""Scaled step within which a curve ends at such a point; chosen, a tenth of a line's width."""
 LOST = "no further point"
 FOLDING = 0.02
 """A multiplier this near to +1 where no further orbit is found says why [1]; chosen."""
@@ -126,6 +129,7 @@ def event_curve(
     asked: ArrayLike,
     limits: tuple[float, float],
     within: tuple[float, float] | None = None,
+    alone: bool = False,
     most_points: int = 400,
     progress: Callable[[int, float], None] | None = None,
 ) -> EventCurve:
@@ -136,7 +140,8 @@ def event_curve(
     ``start`` to the last value asked for). Pseudo-arclength continuation, around turning points in
     either parameter; points are also computed at every value of q ``asked`` for on the way. It
     ends at the border of either range, where it closes on itself, where no further point is found,
-    where a complex pair of multipliers turns real, or after ``most_points``: ``ended`` says it.
+    where a complex pair of multipliers turns real, a grazing ``alone`` where its contact opens at
+    another phase, too, or after ``most_points``: ``ended`` says it.
 
     Raises InputError for a birth, which is the flip of another orbit; ConvergenceError where the
     bifurcation is not found at ``start``.
@@ -172,9 +177,11 @@ def event_curve(
             break
         found, ended = _landed(walk, here, there, marks, edges)
         far = _away(there, here)
-        if ended == LOST and far > SHORT:
+        opened = alone and there.touch is not None and there.losses[there.touch.contact] > 0
+        if (ended == LOST and far > SHORT) or (opened and far > MEETING):
             step, ended = 0.5 * far, ""
             continue
+        ended = ended or OPENED * opened
         for point, mark in found:
             points.append(point)
             at_mark.append(mark)
@@ -185,7 +192,7 @@ def event_curve(
         if len(points) > most_points:
             ended = ended or f"{most_points} points"
         if len(points) > 3 and max(_away(here, first), _away(there, first)) < far:
-            ended = ended or AROUND_ONCE
+            ended = ended or AROUND_ONCE * bool(there.tangent @ first.tangent > ALONG)
         ended, here = ended or _resonance(walk), there
     scaled = np.array([one.scaled for one in points])
     return EventCurve(

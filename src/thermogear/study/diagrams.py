@@ -5,15 +5,13 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from itertools import chain
 from pathlib import Path
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from thermogear.analysis.basins import BASIN_RULE, BasinPlan, basin_plan
-from thermogear.analysis.bordered import Sheet
 from thermogear.analysis.branches import with_branches_of_states
 from thermogear.analysis.diagram import BRANCH_PERIOD, DIAGRAM_RULE, DiagramPlan, diagram_plan
 from thermogear.analysis.family import Family
@@ -25,8 +23,14 @@ from thermogear.base.errors import InputError
 from thermogear.base.stores import read_manifests
 from thermogear.case.base import Case
 from thermogear.case.case import GearCase, gear_case
-from thermogear.case.family import GearFamily, NumberFamily, Tabulated, family, moving
-from thermogear.case.points import Points
+from thermogear.case.family import (
+    GearFamily,
+    NumberFamily,
+    Tabulated,
+    between_points,
+    family,
+    moving,
+)
 from thermogear.case.thermal_state import HOT, StateLike, ThermalState
 from thermogear.results.beside import from_data
 from thermogear.results.result import Result
@@ -161,16 +165,28 @@ def case_map(
             whole, axes, initial_state=start, refine=refine, rule=rule_of(whole, MAP_RULE),
             tile=TRAIN_TILE, stride=TRAIN_STRIDE,
         )  # fmt: skip
-        sheet: Sheet = TrainGrid(whole, tuple(np.sort(values) for values in axes.values()))
     else:
         plan = map_plan(whole, axes, initial_state=start, refine=refine)
-        sheet = partial(_at, whole)
-    return replace(plan, sheet=sheet) if borders else plan
+    if not borders:
+        return plan
+    grid = TrainGrid if isinstance(whole, TrainFamily) else PairGrid
+    return replace(plan, sheet=grid(whole, tuple(np.sort(values) for values in axes.values())))
 
 
-def _at(family: GearFamily | NumberFamily, p: float, q: float) -> Points:
-    """The gears at one value of both parameters; InputError where nothing moves."""
-    return moving(family(np.array([[p, q]])), family)
+class PairGrid(TrainGrid):
+    """A pair's family, as a train's; plain numbers are put in as they are."""
+
+    def __call__(self, *values: float) -> Any:
+        plain = isinstance(self.family, NumberFamily)
+        return self.model(list(values)) if plain else super().__call__(*values)
+
+    def between(self, low: Any, high: Any, weight: float) -> Any:
+        """Straight between two corners, the speed exactly."""
+        return between_points(low, high, np.array([weight]))
+
+    def model(self, row: list[float]) -> Any:
+        """The gears at one value of every parameter; InputError where nothing moves."""
+        return moving(self.family(np.array([row])), self.family)
 
 
 def train_maps(
