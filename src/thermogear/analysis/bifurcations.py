@@ -15,7 +15,7 @@ from thermogear.analysis.curve import Curve, Family, Point, Stretch
 from thermogear.analysis.orbits import Orbit
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import ConvergenceError, InputError
-from thermogear.dynamics.extremes import contact_name
+from thermogear.base.vocabulary import contact_name
 from thermogear.dynamics.return_map import MovedMap, is_moved
 
 FOLD = "fold"

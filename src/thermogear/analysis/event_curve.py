@@ -16,7 +16,7 @@ from thermogear.analysis.bifurcations import FLIP, FOLD, GRAZING, PITCHFORK, TOR
 from thermogear.analysis.bordered import Bordered, Located, Sheet
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import ConvergenceError, InputError
-from thermogear.dynamics.extremes import contact_name
+from thermogear.base.vocabulary import contact_name
 from thermogear.dynamics.return_map import is_moved
 
 CARRIED = (FOLD, FLIP, PITCHFORK, TORUS, GRAZING)
@@ -30,7 +30,7 @@ SHORT, AROUND = 1e-5, 0.2
 """The shortest step for a search on a circle, and how far it goes on that."""
 REACHED, BACK, LEFT = "reached the end", "came back", "left the range"
 AROUND_ONCE = "closes on itself"
-OPENED = "the same contact opens at another phase, too: that comes first beyond"
+OPENED = "beyond, another opening of the same contact comes first"
 MEETING = 1e-3
 """Scaled step within which a curve ends at such a point; chosen, a tenth of a line's width."""
 LOST = "no further point"

@@ -10,7 +10,7 @@ Checked by ``tests/dynamics/test_extremes.py`` against closed forms.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -23,20 +23,6 @@ WATCHED = 256
 """Samples a mesh period [1], chosen: an error of 6e-12 of a line of three times the mesh."""
 GRIDS, PLACES = 13, np.linspace(-1.0, 1.0, 9)
 """Grids, each a quarter as wide as the last [1], chosen: the place to 1e-8 of a step."""
-FLANKS = ("drive flank", "back flank")
-"""The first contacts; bearings follow, one by one."""
-
-
-def contact_name(contact: int, bearings: Sequence[str] = ()) -> str:
-    """The contact's name: a flank, or its bearing by name, else by its number in the model.
-
-    >>> contact_name(0), contact_name(2), contact_name(2, ["pinion left"])
-    ('drive flank', 'bearing 1', 'pinion left')
-    """
-    bearing = contact - len(FLANKS)
-    if bearing < 0:
-        return FLANKS[contact]
-    return bearings[bearing] if bearing < len(bearings) else f"bearing {bearing + 1}"
 
 
 class Touch(NamedTuple):

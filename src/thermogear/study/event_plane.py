@@ -17,7 +17,7 @@ from thermogear.base.errors import ConvergenceError
 from thermogear.base.notice import Notice
 from thermogear.base.parameters import Parameter
 from thermogear.base.progress import Progress
-from thermogear.dynamics.extremes import contact_name
+from thermogear.base.vocabulary import contact_name
 from thermogear.dynamics.return_map import MovedMap
 
 if TYPE_CHECKING:
