@@ -41,7 +41,9 @@ APART = {True: 1e-5, False: 1e-4}
 TOUCHING = {True: 1e-7, False: 1e-5}
 """The same of a grazing: the kink of G counts with the root of the step."""
 CLOSED = {True: 1e-12, False: 1e-10}
-"""A residual at which Newton's method ends, as :data:`APART`; of a grazing the looser one."""
+"""A residual at which Newton's method ends, as :data:`APART`."""
+GRAZED = {True: 1e-11, False: 1e-10}
+"""The same of a grazing, whose g carries the interpolation of a motion."""
 ROUNDING = 1e-8
 """A residual that no longer falls is rounding below this."""
 MOST_STEPS = 10
@@ -106,7 +108,7 @@ class Bordered:
         self.whole = np.append(self.unit, spans[1])
         one_mass = is_moved(bifurcation.orbit.section)
         self.apart = (TOUCHING if self.kind == GRAZING else APART)[one_mass]
-        self.closed = CLOSED[one_mass and self.kind != GRAZING]
+        self.closed = (GRAZED if self.kind == GRAZING else CLOSED)[one_mass]
         self.root = -1.0 if self.kind in (FLIP, PITCHFORK) else 1.0
         self.mu = complex(self.root)
         if self.kind == TORUS:
@@ -222,7 +224,7 @@ class Bordered:
                 left, sizes, ways = np.linalg.svd(found[:d])
                 back = ways[:d].T @ (left.T @ self.closing(scaled)[0] / sizes)
                 size = float(np.linalg.norm(back))
-                ahead = np.vstack([ways[d:], back / size]) if size > 0.0 else ways[d:]
+                ahead = np.vstack([ways[d:], back / size]) if size > ROUNDING else ways[d:]
                 found[d] = [self._apart(scaled, along, self.depth) for along in ahead] @ ahead
             return found
         _, v, w = self.vectors(jacobian)

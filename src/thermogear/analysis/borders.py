@@ -31,10 +31,10 @@ from thermogear.dynamics.return_map import return_map
 
 MOST_CURVES, MOST_TRIES = 16, 24
 """Borders that are followed, and pairs of neighbours at which they are looked for; chosen."""
-SAME = 5e-3
-"""Share of a map's range [1]: an event this near to a curve lies on it; chosen."""
-PARTED, NEAR = 1e-9, 1e-9
-"""Share of the time and of a map's range [1] that are no more than rounding."""
+SAME, RESAMPLED = 5e-3, 4000
+"""Share of a map's range [1] within which an event lies on a curve, drawn in so many points."""
+PARTED = 1e-9
+"""Share of the time [1] that is no more than rounding."""
 Edge = tuple[int, tuple[int, int], tuple[int, int]]
 """The axis along which two neighbours differ, and both places."""
 
@@ -45,8 +45,8 @@ def with_borders(
     """Add the borders of contact loss to a map over ``axes``, begun from ``start``.
 
     ``sheets`` (p, q) -> model, one for each state of heat. ``border_first`` and ``border_second``
-    (border, border_point), ``border_stable``, ``border_contact`` (the flag's number),
-    ``border_state`` (border); the attribute ``borders`` says how each ends and what it meets.
+    (border, border_point), ``border_contact`` (the flag's number), ``border_state`` (border); the
+    attribute ``borders`` says where and why each ends.
     """
     rows: list[tuple[int, list[EventCurve]]] = []
     names = tuple(map(str, data["label"].dims[-2:]))
@@ -55,20 +55,16 @@ def with_borders(
         rows += [(state, legs) for legs in _curves(here, sheet, axes, start, names)]
     longest = max([1, *(sum(len(leg.values) for leg in legs) for _, legs in rows)])
     values = np.full((2, len(rows), longest), np.nan)
-    stable = np.zeros((len(rows), longest), np.int8)
     about = []
     for number, (_, legs) in enumerate(rows):
         line = np.concatenate([legs[0].values[::-1], *(leg.values[1:] for leg in legs[1:])])
-        met = np.concatenate([legs[0].stable[::-1], *(leg.stable[1:] for leg in legs[1:])])
-        values[:, number, : len(line)], stable[number, : len(line)] = line.T, met
-        meets = [[*leg.values[at].tolist(), words] for leg in legs for at, words in leg.meets]
+        values[:, number, : len(line)] = line.T
         ends = [[*leg.values[-1].tolist(), leg.ended] for leg in legs]
-        about.append({"period": legs[0].period, "ends": ends, "meets": meets})
+        about.append({"period": legs[0].period, "ends": ends})
     dims, words = ("border", "border_point"), "along a border of contact loss"
     for name, axis, row in zip(("first", "second"), names, values, strict=True):
         units = str(data[axis].attrs.get("units", "1"))
         data[f"border_{name}"] = (dims, row, {"long_name": f"{axis} {words}", "units": units})
-    data["border_stable"] = (dims, stable, {"long_name": f"a stable motion {words}"})
     contacts = np.array([legs[0].contact for _, legs in rows], np.int32)
     data["border_contact"] = (("border",), contacts, {"long_name": "contact: flanks, bearings"})
     data["border_state"] = (("border",), np.array([state for state, _ in rows], np.int32))
@@ -85,14 +81,14 @@ def _curves(
     for contact, flags in enumerate(_opened(data)):
         for edge in _edges(data, flags):
             lines = [leg for legs in borders for leg in legs if leg.contact == contact]
-            if any(_crosses(leg, axes, edge) for leg in lines):
+            if any(_passes(leg, axes, edge) for leg in lines):
                 continue
             tries += 1
             if tries > MOST_TRIES or len(borders) >= MOST_CURVES:
                 return borders
             try:
                 event = _between(sheet, axes, edge, start, names, contact)
-                if event is not None and not any(_near(event, edge[0], axes, c) for c in lines):
+                if event is not None:
                     borders.append(_followed(event, sheet, axes, edge, names))
             except (ConvergenceError, InputError):
                 continue
@@ -121,32 +117,16 @@ def _edges(data: Dataset, flags: NDArray[np.bool_]) -> Iterator[Edge]:
             yield axis, (i, j), (i + (axis == 0), j + (axis == 1))
 
 
-def _near(
-    event: tuple[Bifurcation, float], axis: int, axes: Sequence[Floats], curve: EventCurve
-) -> bool:
-    """Whether a curve passes where the event was located, a little beside its points."""
+def _passes(curve: EventCurve, axes: Sequence[Floats], edge: Edge) -> bool:
+    """Whether a curve passes between both neighbours, or as near as :data:`SAME` by them."""
+    _, low, high = edge
     scale = np.array([np.ptp(values) for values in axes])
-    here = np.array([event[0].value, event[1]])[:: 1 - 2 * axis] / scale
-    line = curve.values / scale
-    steps = np.diff(line, axis=0)
-    shares = np.sum((here - line[:-1]) * steps, axis=1) / np.sum(steps**2, axis=1)
-    feet = line[:-1] + np.clip(shares, 0.0, 1.0)[:, None] * steps
-    return bool(np.linalg.norm(feet - here, axis=1).min() < SAME)
-
-
-def _crosses(curve: EventCurve, axes: Sequence[Floats], edge: Edge) -> bool:
-    """Whether a curve passes between both neighbours."""
-    axis, low, high = edge
-    along, across = curve.values[:, axis], curve.values[:, 1 - axis]
-    level = axes[1 - axis][low[1 - axis]]
-    near = NEAR * float(np.ptp(axes[1 - axis]))
-    ends = np.sort([across[:-1], across[1:]], axis=0) - level
-    sides = np.flatnonzero((ends[0] <= near) & (ends[1] >= -near))
-    steps = np.diff(across)[sides]
-    share = np.clip((level - across[sides]) / np.where(steps == 0.0, 1.0, steps), 0.0, 1.0)
-    places = along[sides] + share * np.diff(along)[sides]
-    first, last = sorted((axes[axis][low[axis]], axes[axis][high[axis]]))
-    return bool(np.any((places >= first) & (places <= last)))
+    places = np.arange(len(curve.values))
+    dense = np.linspace(0.0, places[-1], RESAMPLED)
+    line = np.stack([np.interp(dense, places, v) for v in curve.values.T], axis=1) / scale
+    ends = np.array([[axes[k][place[k]] for k in (0, 1)] for place in (low, high)]) / scale
+    near = (line >= ends.min(axis=0) - SAME) & (line <= ends.max(axis=0) + SAME)
+    return bool(near.all(axis=1).any())
 
 
 def _between(

@@ -181,7 +181,7 @@ def event_curve(
         if (ended == LOST and far > SHORT) or (opened and far > MEETING):
             step, ended = 0.5 * far, ""
             continue
-        ended = ended or OPENED * opened
+        found, ended = ([], OPENED) if opened else (found, ended)
         for point, mark in found:
             points.append(point)
             at_mark.append(mark)
