@@ -59,7 +59,7 @@ def test_onset_of_separation_of_a_linear_oscillator(
     compared("onset of separation", "closed form", np.abs(force / onset(w) - 1.0), 1e-9)
     assert curve.contact == 0
     assert curve.stable.all()
-    assert curve.ended == f"{LEFT} of frequency"
+    assert curve.ended.startswith(LEFT)
     assert w[-1] == pytest.approx(1.25)
     assert len(curve.turns) == 1
     zeta = LINEAR.damping_ratio
@@ -93,9 +93,7 @@ def test_a_map_has_its_border_once_by_name(compared: Compared) -> None:
     away = np.abs(second[known] / onset(first[known]) - 1.0)
     compared("border on a map", "closed form", away, 1e-9)
     (about,) = json.loads(data.attrs["borders"])
-    assert [end[2] for end in about["ends"]] == [
-        f"{LEFT} of force_amplitude", f"{LEFT} of frequency",
-    ]  # fmt: skip
+    assert all(end[2].startswith(LEFT) for end in about["ends"])
     assert "sheet" not in json.dumps(plan.inputs())
 
 
@@ -144,7 +142,6 @@ def test_a_bearing_lifts_at_drawn_speeds(compared: Compared) -> None:
     """Followed in speed, beside torques located afresh at speeds that were drawn before."""
     model, start, _ = train(72.0, 5010.0)
     event = lifting(periodic_orbit(model, 1, start), 68.0, start=72.0, rpm=5010.0)
-    assert event.note == "losses of bearing 1 per orbit 0 -> 1"
     speeds = np.sort(np.random.default_rng(28).uniform(4980.0, 5010.0, 2))[::-1]
     curve = event_curve(
         event, lambda t, rpm: train(t, rpm)[0], ("torque", "speed"), start=5010.0, asked=speeds,

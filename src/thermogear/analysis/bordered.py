@@ -206,9 +206,9 @@ class Bordered:
         gap, jacobian = self.closing(scaled)
         if not (np.all(np.isfinite(gap)) and np.all(np.isfinite(jacobian))):
             return np.full(gap.size + 1, np.nan), jacobian
-        return np.append(gap, self.measure(scaled, jacobian)), jacobian
+        return np.append(gap, self.measure(scaled, jacobian=jacobian)), jacobian
 
-    def measure(self, scaled: Floats, jacobian: Floats) -> float:
+    def measure(self, scaled: Floats, *, jacobian: Floats) -> float:
         """g, of a point with its J."""
         return self.depth(scaled) if self.kind == GRAZING else self.vectors(jacobian)[0]
 
@@ -372,7 +372,11 @@ class Bordered:
         def measured(point: Point) -> float:
             gap, jacobian, _ = curve.residual(point.scaled)
             whole_there = np.isfinite(gap).all()
-            return self.measure(whole(point), self._scaled(jacobian)) if whole_there else np.nan
+            return (
+                self.measure(whole(point), jacobian=self._scaled(jacobian))
+                if whole_there
+                else np.nan
+            )
 
         start = np.append(guess[:-2], path.start / path.span)
         found = zero_near(curve, measured, start, farthest=farthest, first=path.first)

@@ -40,7 +40,7 @@ Edge = tuple[int, tuple[int, int], tuple[int, int]]
 
 
 def with_borders(
-    data: Dataset, sheets: Sequence[Sheet], axes: Sequence[Floats], start: Floats
+    data: Dataset, sheets: Sequence[Sheet], *, axes: Sequence[Floats], start: Floats
 ) -> Dataset:
     """Add the borders of contact loss to a map over ``axes``, begun from ``start``.
 

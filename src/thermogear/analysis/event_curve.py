@@ -146,14 +146,8 @@ def event_curve(
     Raises InputError for a birth, which is the flip of another orbit; ConvergenceError where the
     bifurcation is not found at ``start``.
     """
-    if bifurcation.kind not in CARRIED:
-        raise InputError("bifurcation", bifurcation.kind, allowed=" | ".join(CARRIED))
-    one_mass = is_moved(bifurcation.orbit.section)
-    if bifurcation.kind == PITCHFORK and not one_mass:
-        raise InputError("bifurcation", PITCHFORK, why="of a model of more than one mass")
-    marks = np.atleast_1d(np.asarray(asked, dtype=float))
-    if not np.all(np.isfinite(marks)) or marks.size == 0 or marks[-1] == start:
-        raise InputError("asked", marks.tolist(), allowed=f"finite, the last not {start}")
+    _require_carried(bifurcation)
+    marks = _marks(asked, start)
     low, high = sorted(limits)
     spans = (max(high - low, 1e-300), abs(float(marks[-1]) - start))
     walk = Bordered(bifurcation, sheet, start, spans=spans)
@@ -166,25 +160,24 @@ def event_curve(
             f"the {bifurcation.kind} at {names[0]} = {bifurcation.value!r} was not found again at "
             f"{names[1]} = {start!r}"
         )
-    points, at_mark = [first], [bool(np.any(marks == start))]
-    ended, meets = "", []
-    step, here = FIRST, first
+    at_start = bool(np.any(marks == start))
+    points, at_mark, meets = [first], [at_start], list[tuple[int, str]]()
+    ended, step, here = "", FIRST, first
     walk.settle(first)
     while not ended:
         there, step = _step(walk, here, step)
         if there is None:
             ended = _lost(walk, here)
             break
-        found, ended = _landed(walk, here, there, marks, edges)
+        landed, ended = _landed(walk, here, there, marks, edges)
         far = _away(there, here)
         opened = alone and there.touch is not None and there.losses[there.touch.contact] > 0
         if (ended == LOST and far > SHORT) or (opened and far > MEETING):
             step, ended = 0.5 * far, ""
             continue
-        found, ended = ([], OPENED) if opened else (found, ended)
-        for point, mark in found:
-            points.append(point)
-            at_mark.append(mark)
+        landed, ended = ([], OPENED) if opened else (landed, ended)
+        points += [point for point, _ in landed]
+        at_mark += [mark for _, mark in landed]
         meets += [(len(points) - 1, words) for words in _met(here, points[-1])]
         if progress is not None:
             progress(len(points), float((points[-1].scaled * walk.whole)[-1]))
@@ -194,18 +187,47 @@ def event_curve(
         if len(points) > 3 and max(_away(here, first), _away(there, first)) < far:
             ended = ended or AROUND_ONCE * bool(there.tangent @ first.tangent > ALONG)
         ended, here = ended or _resonance(walk), there
-    scaled = np.array([one.scaled for one in points])
+    return _curve(walk, names, points, at_mark, ended, meets)
+
+
+def _require_carried(bifurcation: Bifurcation) -> None:
+    """Refuse what is not followed."""
+    if bifurcation.kind not in CARRIED:
+        raise InputError("bifurcation", bifurcation.kind, allowed=" | ".join(CARRIED))
+    one_mass = is_moved(bifurcation.orbit.section)
+    if bifurcation.kind == PITCHFORK and not one_mass:
+        raise InputError("bifurcation", PITCHFORK, why="of a model of more than one mass")
+
+
+def _marks(asked: ArrayLike, start: float) -> Floats:
+    """The values of q asked for; InputError where they lead nowhere."""
+    marks = np.atleast_1d(np.asarray(asked, dtype=float))
+    if not np.all(np.isfinite(marks)) or marks.size == 0 or marks[-1] == start:
+        raise InputError("asked", marks.tolist(), allowed=f"finite, the last not {start}")
+    return marks
+
+
+def _curve(
+    walk: Bordered,
+    names: tuple[str, str],
+    points: list[Located],
+    at_mark: list[bool],
+    ended: str,
+    meets: list[tuple[int, str]],
+) -> EventCurve:
+    """The points of a walk in units of the model."""
+    scaled, touch = np.array([point.scaled for point in points]), points[0].touch
     return EventCurve(
-        kind=bifurcation.kind,
+        kind=walk.kind,
         parameters=names,
-        period=bifurcation.period,
+        period=walk.bifurcation.period,
         values=scaled[:, -2:] * walk.whole[-2:],
         states=scaled[:, :-2] * walk.unit[:-1],
-        multipliers=np.array([one.multipliers for one in points]),
-        stable=np.array([walk.stable(one.multipliers) for one in points]),
+        multipliers=np.array([point.multipliers for point in points]),
+        stable=np.array([walk.stable(point.multipliers) for point in points]),
         asked=np.array(at_mark),
         ended=ended,
-        contact=None if first.touch is None else first.touch.contact,
+        contact=None if touch is None else touch.contact,
         meets=tuple(meets),
     )
 

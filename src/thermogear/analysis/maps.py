@@ -207,7 +207,7 @@ class MapPlan:
         if not sheets:
             return data
         axes = [np.array(values) for values in self.axes]
-        return with_borders(data, sheets, axes, np.array(self.start))
+        return with_borders(data, sheets, axes=axes, start=np.array(self.start))
 
 
 def _lattice(size: int, stride: int) -> NDArray[np.int64]:

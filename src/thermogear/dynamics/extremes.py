@@ -65,7 +65,7 @@ class Extremes:
         return Touch(int(self.contact[here]), float(self.phase[here]), bool(self.deepest[here]))
 
     def place(self, touch: Touch, *, within: float) -> int | None:
-        """Where the extreme nearest to ``touch`` stands; None ``within`` a phase of it."""
+        """Index of the extreme nearest to ``touch``; None without one ``within`` a phase."""
         away = np.abs((self.phase - touch.phase) / self.periods % 1.0)
         away = np.minimum(away, 1.0 - away) * self.periods
         alike = (self.contact == touch.contact) & (self.deepest == touch.deepest)
