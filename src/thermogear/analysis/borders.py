@@ -114,7 +114,9 @@ def _edges(data: Dataset, flags: NDArray[np.bool_]) -> Iterator[Edge]:
                      for k in (0, 1))  # fmt: skip
         here = (low[0] != high[0]) & low[1] & high[1] & (low[2] == high[2])
         for i, j in np.argwhere(here).tolist():
-            yield axis, (i, j), (i + (axis == 0), j + (axis == 1))
+            ends = (i, j), (i + (axis == 0), j + (axis == 1))
+            first, last = ends[::-1] if flags[i, j] else ends
+            yield axis, first, last  # from where the contact is never lost: fewest events
 
 
 def _passes(curve: EventCurve, axes: Sequence[Floats], edge: Edge) -> bool:
@@ -141,13 +143,16 @@ def _between(
     def family(value: float) -> object:
         return sheet(value, level) if axis == 0 else sheet(level, value)
 
-    for begin, end in (ends, ends[::-1]):
-        section = return_map(family(begin))
-        state = begun(start[None], (section,), section.dimension)[0]
-        motion = settle(section, state, Search(starts=1))
-        if motion.orbit is None:
-            continue
-        branch = continuation(motion.orbit, names[axis], end, family=family, start=begin)
+    begin, end = ends
+    section = return_map(family(begin))
+    state = begun(start[None], (section,), section.dimension)[0]
+    motion = settle(section, state, Search(starts=1))
+    if motion.orbit is None:
+        return None
+    for stop in (GRAZING, None):
+        branch = continuation(
+            motion.orbit, names[axis], end, family=family, start=begin, stop_at=stop
+        )
         for event in branch.of_kind(GRAZING):
             own: Any = event.orbit.section
             seen = own.extremes(event.state, event.period)
