@@ -155,8 +155,8 @@ def page(rows: Sequence[Compared]) -> list[str]:
         "---\norphan: true\n---",
         "# Trial of Floquet multipliers on rolling bearings",
         "",
-        f"Made by `make trial NAME=multipliers` (seed {SEED}): {drawn_of} random drive trains, of which "
-        f"{len(rows)} have rolling elements",
+        f"Made by `make trial NAME=multipliers` (seed {SEED}): {drawn_of} random drive trains, "
+        f"of which {len(rows)} have rolling elements",
         "that begin and cease to carry, no forces at shaft orders, and settle on an orbit within "
         "1024 mesh periods.",
         "The largest multiplier of each against DOP853 of its variational equations at "

@@ -252,3 +252,15 @@ def test_a_run_up_over_the_turn_writes_its_lines_by_name(cases, tmp_path):
     assert largest["order [–]"] == 1 / 25
     assert largest["dte_line [µm]"] == pytest.approx(10.0, rel=1e-3)
     assert len(path.read_text().splitlines()) == 1 + 2 * 2 * 2
+
+
+def test_a_map_with_borders(cases, tmp_path):
+    """Stored with the map, drawn by name; another start or base set may have none."""
+    call(
+        "map", cases / "table-4.2.toml", "--over", "w=0.4:0.6:2", "--over", "F_h=0.02:0.09:2",
+        "--but", "eps=0", "--but", "F_m=0.1", "--but", "zeta=0.2", "--borders",
+        "-o", tmp_path / "borders",
+    )  # fmt: skip
+    result = open_results(tmp_path / "borders")
+    assert result.data["border_contact"].values.tolist() == [0]
+    assert "1 drive flank" in "\n".join(page_of(result).lines())

@@ -15,6 +15,7 @@ from thermogear.analysis.curve import Curve, Family, Point, Stretch
 from thermogear.analysis.orbits import Orbit
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import ConvergenceError, InputError
+from thermogear.base.vocabulary import contact_name
 from thermogear.dynamics.return_map import MovedMap, is_moved
 
 FOLD = "fold"
@@ -146,16 +147,15 @@ def _grazes(stretch: Stretch) -> Iterator[tuple[float, str]]:
     of whether contact is still as it was, runs smoothly through 0.
     """
 
-    def counts(point: Point) -> tuple[int, int]:
+    def counts(point: Point) -> tuple[int, ...]:
         # both sides of a symmetric orbit graze at once, whichever rounding sees first
-        losses, impacts = point.contacts
-        return losses, losses if stretch.curve.symmetric else impacts
+        return point.contacts[:1] * 2 if stretch.curve.symmetric else point.contacts
 
     start, before = 0.0, counts(stretch.at(0.0))
     while before != counts(stretch.at(stretch.length)):
         known = before
 
-        def same(point: Point, known: tuple[int, int] = known) -> bool:
+        def same(point: Point, known: tuple[int, ...] = known) -> bool:
             return counts(point) == known
 
         def apart(point: Point, same: Callable[[Point], bool] = same) -> float:
@@ -172,7 +172,8 @@ def _grazes(stretch: Stretch) -> Iterator[tuple[float, str]]:
             if step > max(start, found - 2.0 * stretch.near) and counts(point) != before
         )
         after = counts(stretch.at(high))
-        rows = zip(("contact losses", "back-side impacts"), before, after, strict=True)
+        names = [f"losses of {contact_name(n)}" for n in range(2, len(after))]
+        rows = zip(("contact losses", "back-side impacts", *names), before, after, strict=True)
         yield high, ", ".join(f"{name} per orbit {a} -> {b}" for name, a, b in rows if a != b)
         start, before = high, after
 

@@ -10,16 +10,16 @@ that the bordered matrix is regular, also where the curve turns. Of a complex pa
 and dmu/da = w^H (dJ/da) v/(w^H v). As second derivatives commute, w^T (dJ/dz_i) v for all i is w^T
 times one difference of J along v: a step costs as many runs for thirty coordinates as for one.
 J is that of the variational equations; derivatives of J, and those by p and q, are central
-differences and steer Newton's method alone. Of a grazing g is how far the nearest extreme of x
-lies from an edge of the backlash, with the sign of whether the contacts are still those where a
-search began; it is bracketed along the branch of orbits, without Newton's method. Where two
-grazings cross, the phase of the extreme tells them apart.
+differences and steer Newton's method alone. Of a grazing g is the depth of the extreme that
+touches, which its contact and its phase tell from others. Derivatives of g are needed in three
+directions alone, the two in which G stays 0 and the one in which it gets there. Behind a grazing J
+changes as the root of the depth: Newton's method converges, of the order 3/2.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -30,21 +30,26 @@ from thermogear.analysis.nearby import zero_near
 from thermogear.analysis.orbits import multipliers
 from thermogear.base.arrays import Complexes, Floats
 from thermogear.base.errors import InputError
-from thermogear.dynamics.return_map import is_moved, return_map
+from thermogear.dynamics.extremes import Extremes, Touch
+from thermogear.dynamics.return_map import is_moved
 
 Sheet = Callable[[float, float], object]
 """(p, q) -> model."""
 
 APART = {True: 1e-5, False: 1e-4}
 """Scaled step of the differences: of one mass, and of maps that carry more rounding."""
+TOUCHING = {True: 1e-7, False: 1e-5}
+"""The same of a grazing: the kink of G counts with the root of the step."""
 CLOSED = {True: 1e-12, False: 1e-10}
 """A residual at which Newton's method ends, as :data:`APART`."""
+GRAZED = {True: 1e-11, False: 1e-10}
+"""The same of a grazing, whose g carries the interpolation of a motion."""
 ROUNDING = 1e-8
 """A residual that no longer falls is rounding below this."""
 MOST_STEPS = 10
 SLOW = 0.5
 """A residual that falls less in a step asks for fresh derivatives."""
-SAMPLES, PHASE = 128, 0.05
+PHASE = 0.05
 """A mesh period, to see which extreme of x touches; the same one from point to point [orbits]."""
 LEAP = 1e-3
 """A zero through which g jumps by more is none."""
@@ -65,8 +70,9 @@ class Located:
     tangent: Floats
     jacobian: Floats
     multipliers: Complexes
-    touch: tuple[float, float] = (np.nan, np.nan)
-    """Of a grazing the phase [mesh periods] of the extreme that touches, and x there [b]."""
+    touch: Touch | None = None
+    losses: tuple[int, ...] = ()
+    """Of a grazing how often every contact opens, with the one that touches left out."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -101,7 +107,8 @@ class Bordered:
         self.unit = self._made(second, bifurcation.value).unit
         self.whole = np.append(self.unit, spans[1])
         one_mass = is_moved(bifurcation.orbit.section)
-        self.apart, self.closed = APART[one_mass], CLOSED[one_mass]
+        self.apart = (TOUCHING if self.kind == GRAZING else APART)[one_mass]
+        self.closed = (GRAZED if self.kind == GRAZING else CLOSED)[one_mass]
         self.root = -1.0 if self.kind in (FLIP, PITCHFORK) else 1.0
         self.mu = complex(self.root)
         if self.kind == TORUS:
@@ -110,7 +117,11 @@ class Bordered:
             mu = complex(given[int(off.argmin())])
             self.mu = complex(mu.real, abs(mu.imag))
         self.borders: tuple[Floats, Floats] | None = None
-        self.touch = (np.nan, np.nan)
+        self.refused = ""
+        self.touch: Touch | None = None
+        if self.kind == GRAZING:
+            place = np.append(bifurcation.state, [bifurcation.value, second]) / self.whole
+            self.touch = self._extremes(place).touch()
 
     def _made(self, second: float, value: float) -> Curve:
         return self._over(lambda first: self.sheet(first, second), value, self.spans[0])
@@ -143,6 +154,28 @@ class Bordered:
         units = self.unit[:-1]
         return np.asarray(jacobian / units[:, None] * units)
 
+    def _extremes(self, scaled: Floats) -> Extremes:
+        """Those of the orbit through a point."""
+        value = scaled * self.whole
+        section: Any = self.curve(float(value[-1]), value=float(value[-2])).map_at(float(value[-2]))
+        seen: Extremes = section.extremes(value[:-2], self.bifurcation.period)
+        return seen
+
+    def depth(self, scaled: Floats) -> float:
+        """Of a grazing the depth of the extreme that touches [half backlashes]; nan without it."""
+        assert self.touch is not None
+        seen = self._extremes(scaled)
+        place = seen.place(self.touch, within=PHASE)
+        return np.nan if place is None else float(seen.depth[place])
+
+    def depths_beside(self, point: Located) -> float:
+        """How far the next extreme's depth is from 0 at a grazing [half backlashes]; else inf."""
+        if self.touch is None:
+            return np.inf
+        seen = self._extremes(point.scaled)
+        own = seen.depth[seen.contact == self.touch.contact]
+        return float(np.sort(np.abs(own))[1])
+
     def border(self, jacobian: Floats) -> None:
         """Take b and c from J, for the points that come."""
         left, _, right = np.linalg.svd(jacobian - self.root * np.eye(len(jacobian)))
@@ -173,42 +206,53 @@ class Bordered:
         gap, jacobian = self.closing(scaled)
         if not (np.all(np.isfinite(gap)) and np.all(np.isfinite(jacobian))):
             return np.full(gap.size + 1, np.nan), jacobian
-        return np.append(gap, self.vectors(jacobian)[0]), jacobian
+        return np.append(gap, self.measure(scaled, jacobian=jacobian)), jacobian
+
+    def measure(self, scaled: Floats, *, jacobian: Floats) -> float:
+        """g, of a point with its J."""
+        return self.depth(scaled) if self.kind == GRAZING else self.vectors(jacobian)[0]
 
     def matrix(self, scaled: Floats, *, jacobian: Floats) -> Floats:
         """d(G, g)/d(z, p, q), (d + 1, d + 2)."""
         d = len(jacobian)
         found = np.zeros((d + 1, d + 2))
         found[:d, :d] = jacobian - np.eye(d)
+        changes = [self._apart(scaled, along, self._closed) for along in np.eye(d + 2)[d:]]
+        found[:d, d:] = np.stack([change[:, 0] for change in changes], axis=1)
+        if self.kind == GRAZING:
+            if np.all(np.isfinite(found)):
+                left, sizes, ways = np.linalg.svd(found[:d])
+                back = ways[:d].T @ (left.T @ self.closing(scaled)[0] / sizes)
+                size = float(np.linalg.norm(back))
+                ahead = np.vstack([ways[d:], back / size]) if size > ROUNDING else ways[d:]
+                found[d] = [self._apart(scaled, along, self.depth) for along in ahead] @ ahead
+            return found
         _, v, w = self.vectors(jacobian)
         for factor, along in ((1.0, np.real(v)), (1j, np.imag(v))):
             size = float(np.linalg.norm(along))
             if size > 0.0:
-                _, change = self._apart(scaled, np.append(along / size, [0.0, 0.0]))
-                found[d, :d] += size * (factor * (w @ change)).real
-        for column in (d, d + 1):
-            gap, change = self._apart(scaled, np.eye(d + 2)[column])
-            found[:d, column] = gap
-            found[d, column] = (w @ change @ v).real
+                change = self._apart(scaled, np.append(along / size, [0.0, 0.0]), self._closed)
+                found[d, :d] += size * (factor * (w @ change[:, 1:])).real
+        found[d, d:] = [(w @ change[:, 1:] @ v).real for change in changes]
         return found
 
-    def _apart(self, scaled: Floats, along: Floats) -> tuple[Floats, Floats]:
-        """Derivatives of G and J along a direction, one-sided at a parameter's border."""
+    def _closed(self, scaled: Floats) -> Floats:
+        """G and J side by side (d, 1 + d)."""
+        gap, jacobian = self.closing(scaled)
+        return np.column_stack([gap, jacobian])
+
+    def _apart(self, scaled: Floats, along: Floats, what: Callable[[Floats], Any]) -> Any:
+        """The derivative of ``what`` along a direction, one-sided at a parameter's border."""
         for weights in (
             {-1: -0.5, 1: 0.5},
             {0: -1.5, 1: 2.0, 2: -0.5},
             {0: 1.5, -1: -2.0, -2: 0.5},
         ):
             try:
-                parts = [
-                    (weight, self.closing(scaled + k * self.apart * along))
-                    for k, weight in weights.items()
-                ]
+                parts = [w * what(scaled + k * self.apart * along) for k, w in weights.items()]
             except InputError:
                 continue
-            gap = sum(weight * one[0] for weight, one in parts)
-            change = sum(weight * one[1] for weight, one in parts)
-            return np.asarray(gap / self.apart), np.asarray(change / self.apart)
+            return sum(parts) / self.apart
         raise InputError("parameter", (scaled * self.whole)[-2:].tolist(), allowed="neighbours")
 
     def correct(
@@ -223,11 +267,9 @@ class Bordered:
         """Newton onto the curve in the plane through ``guess`` normal to ``normal``.
 
         It begins with a ``matrix`` from nearby, and takes a fresh one where that converges slowly.
-        None of a grazing, which is searched for.
         """
-        if self.kind == GRAZING:
-            return None
-        scaled, own = guess.copy(), None if matrix is None else matrix.copy()
+        own = None if matrix is None or self.kind == GRAZING else matrix.copy()
+        scaled = guess.copy()
         best: tuple[float, Floats, Floats] | None = None
         last, stalled = np.inf, 0
         step, before = np.zeros(guess.size), np.zeros(guess.size - 1)
@@ -270,13 +312,20 @@ class Bordered:
         tangent = np.linalg.svd(own)[2][-1]
         if direction is not None and tangent @ direction < 0.0:
             tangent = -tangent
-        return Located(
+        point = Located(
             scaled=scaled,
             matrix=own,
             tangent=tangent,
             jacobian=jacobian,
             multipliers=self.orbit_multipliers(scaled, jacobian=jacobian),
         )
+        if self.touch is None:
+            return point
+        seen = self._extremes(scaled)
+        place = seen.place(self.touch, within=PHASE)
+        if place is None:
+            return None
+        return replace(point, touch=seen.touch(place), losses=seen.without(place).losses)
 
     def on_line(self, guess: Floats, *, held: int) -> Path:
         """Through a point, on which its parameter ``held`` (-1: q, -2: p) stays."""
@@ -320,42 +369,21 @@ class Bordered:
             values = path.at(float(point.scaled[-1] * path.span))
             return np.append(point.scaled[:-1], np.array(values) / self.whole[-2:])
 
-        begun: list[tuple[int, int]] = []
-
         def measured(point: Point) -> float:
-            if self.kind == GRAZING:
-                begun.append(point.contacts)
-                size = min(max(point.margin, 1e-300), 1.0)
-                return size if point.contacts == begun[0] else -size
             gap, jacobian, _ = curve.residual(point.scaled)
-            return self.vectors(self._scaled(jacobian))[0] if np.isfinite(gap).all() else np.nan
+            whole_there = np.isfinite(gap).all()
+            return (
+                self.measure(whole(point), jacobian=self._scaled(jacobian))
+                if whole_there
+                else np.nan
+            )
 
         start = np.append(guess[:-2], path.start / path.span)
         found = zero_near(curve, measured, start, farthest=farthest, first=path.first)
         if found is None or not abs(measured(found)) < LEAP:
             return None
         scaled = whole(found)
-        jacobian = self.closing(scaled)[1]
-        if self.kind != GRAZING:
-            return self._located(scaled, jacobian, direction=direction)
-        touch = self._touch(scaled)
-        apart = np.abs((touch[0] - self.touch[0] + 0.5) % 1.0 - 0.5)
-        if apart > PHASE or touch[1] * self.touch[1] < 0.0:
-            return None  # another extreme that touches nearby
-        return Located(
-            scaled=scaled, matrix=np.zeros((0, scaled.size)), tangent=direction, touch=touch,
-            jacobian=jacobian, multipliers=self.orbit_multipliers(scaled, jacobian=jacobian),
-        )  # fmt: skip
-
-    def _touch(self, scaled: Floats) -> tuple[float, float]:
-        """Phase of the orbit's extreme nearest to an edge of the backlash, and x there."""
-        value = scaled * self.whole
-        section = return_map(self.sheet(float(value[-2]), float(value[-1])), SAMPLES)
-        period = self.bifurcation.period
-        x = section.visit(value[:-2], period, sampled=True).samples[:, 0] / section.unit[0]
-        turns = (x - np.roll(x, 1)) * (np.roll(x, -1) - x) <= 0.0
-        place = int(np.argmin(np.where(turns, np.abs(np.abs(x) - 1.0), np.inf)))
-        return place / SAMPLES / period, float(x[place])
+        return self._located(scaled, self.closing(scaled)[1], direction=direction)
 
     def orbit_multipliers(self, scaled: Floats, *, jacobian: Floats) -> Complexes:
         """Those of the whole orbit, also of a symmetric one."""
@@ -369,8 +397,10 @@ class Bordered:
 
     def settle(self, point: Located) -> None:
         """Take borders, multiplier and touch from a point, for those that come."""
+        if self.kind == GRAZING:
+            self.touch = point.touch
+            return
         self.border(point.jacobian)
-        self.touch = point.touch
         if self.kind == TORUS:
             values = np.linalg.eigvals(point.jacobian).astype(complex)
             self.mu = complex(values[int(np.argmin(np.abs(values - self.mu)))])

@@ -119,15 +119,18 @@ class Point:
     tests: Tests
     margin: float
     slope: Floats
+    losses: tuple[int, ...] | None = None
+    """How often every contact opens, where the map tells of its extremes."""
 
     @property
-    def contacts(self) -> tuple[int, int]:
-        return self.visit.contact_losses, self.visit.back_impacts
+    def contacts(self) -> tuple[int, ...]:
+        """How often the drive flank opens and the back flank closes, and bearings open."""
+        return self.losses or (self.visit.contact_losses, self.visit.back_impacts)
 
     @property
     def floats(self) -> bool:
         """Whether the orbit never touches a tooth."""
-        return self.contacts == (0, 0) and float(self.visit.shares[1]) > 0.5
+        return not any(self.contacts[:2]) and float(self.visit.shares[1]) > 0.5
 
 
 def mirrored(lanes: Lanes, period: int) -> bool:
@@ -352,9 +355,8 @@ class Curve:
         """The point at ``scaled``, its tangent along ``direction``; None without numbers."""
         units = self.unit[:-1]
         slope, margin = self.in_parameter(scaled, section)
-        watch = getattr(section, "margin", None)
-        if watch is not None:
-            margin = float(watch(scaled[:-1] * units, self.period))
+        watch = None if is_moved(section) else getattr(section, "extremes", None)
+        seen = None if watch is None else watch(scaled[:-1] * units, self.period)
         flat = jacobian / units[:, None] * units
         matrix = np.column_stack([flat - np.eye(self.dimension), slope])
         if not np.all(np.isfinite(matrix)):
@@ -367,8 +369,9 @@ class Curve:
             visit=self._visit(scaled, section),
             determinant=whole,
             tests=Tests.of(jacobian, float(np.sqrt(whole)) if self.symmetric else whole),
-            margin=margin,
+            margin=margin if seen is None else seen.margin,
             slope=slope,
+            losses=None if seen is None else seen.losses,
         )
 
     def orbit(self, point: Point) -> Orbit:

@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import binary_dilation
 
+from thermogear.analysis.bordered import Sheet
+from thermogear.analysis.borders import with_borders
 from thermogear.analysis.family import (
     Family,
     Watching,
@@ -65,6 +67,8 @@ class MapPlan:
     refine: bool = False
     tile: int = TILE
     stride: int = STRIDE
+    sheet: Sheet | None = None
+    """(p, q) -> model, where borders of contact loss are followed."""
     kind: str = "map"
 
     def __post_init__(self) -> None:
@@ -100,6 +104,7 @@ class MapPlan:
             "refine": self.refine,
             "tile": self.tile,
             "stride": self.stride,
+            **({} if self.sheet is None else {"borders": True}),
         }
 
     def variables(self) -> dict[str, Variable]:
@@ -194,7 +199,15 @@ class MapPlan:
             "computed_points": int((data["status"] != ASSUMED).sum()),
             "initial_state": list(self.start),
         }
-        return data
+        return self.bordered(data, (self,))
+
+    def bordered(self, data: Dataset, plans: Sequence[MapPlan]) -> Dataset:
+        """With borders of contact loss, of one plan for each state of heat, where wanted."""
+        sheets = [plan.sheet for plan in plans if plan.sheet is not None]
+        if not sheets:
+            return data
+        axes = [np.array(values) for values in self.axes]
+        return with_borders(data, sheets, axes=axes, start=np.array(self.start))
 
 
 def _lattice(size: int, stride: int) -> NDArray[np.int64]:

@@ -77,6 +77,6 @@ class StackedPlan:
         return {name: values[None] for name, values in found.items()}
 
     def finish(self, data: Dataset) -> Dataset:
-        whole = self.plans[0].finish(data)
+        whole = replace(self.plans[0], sheet=None).finish(data)
         whole.attrs["full_periods"] *= len(self.plans)
-        return whole
+        return self.plans[0].bordered(whole, self.plans)

@@ -6,7 +6,7 @@ into an xarray Dataset whose variables carry units, long name, symbol and source
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -527,3 +527,19 @@ def label(
         }
 
     return xr.Dataset(made(variables), made(coordinates or {}), dict(attributes_of_all or {}))
+
+
+FLANKS = ("drive flank", "back flank")
+"""The first contacts; bearings follow, one by one."""
+
+
+def contact_name(contact: int, bearings: Sequence[str] = ()) -> str:
+    """The contact's name: a flank, or its bearing by name, else by its number in the model.
+
+    >>> contact_name(0), contact_name(2), contact_name(2, ["pinion left"])
+    ('drive flank', 'bearing 1', 'pinion left')
+    """
+    bearing = contact - len(FLANKS)
+    if bearing < 0:
+        return FLANKS[contact]
+    return bearings[bearing] if bearing < len(bearings) else f"bearing {bearing + 1}"

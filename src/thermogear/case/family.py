@@ -465,38 +465,49 @@ class Tabulated:
         weight = np.minimum(np.maximum((at - low) / (high - low), -0.01), 1.01)
         a = self._first if self._fixed and at.size == 1 else self.points.take(place)
         b = a if self._fixed else self.points.take(place + 1)
+        mesh = self.points.mesh_frequency
+        return between_points(a, b, weight, mesh=(mesh[place], mesh[place + 1]))
 
-        def mix(one: NDArray[Any], two: NDArray[Any]) -> NDArray[Any]:
-            if one is two:
-                return one
-            share = weight[:, None] if one.ndim == 2 else weight
-            # exact at both points, so that a grid that ends there gives the same bits
-            below, beyond_two = one + share * (two - one), two + (share - 1.0) * (two - one)
-            return np.asarray(np.where(share < 1.0, below, beyond_two))
 
-        stiffness = mix(a.stiffness, b.stiffness)
-        length = mix(a.length, b.length)
-        rate = mix(a.rate, b.rate)
-        error = mix(a.error, b.error)
-        force = mix(a.force, b.force)
-        mesh = mix(self.points.mesh_frequency[place], self.points.mesh_frequency[place + 1])
-        frequency = mesh / rate / self.points.mesh_periods
-        ranks = np.arange(error.shape[1])
-        with np.errstate(invalid="ignore"):  # a point without a gap has no lengths
-            push = error * (ranks * frequency[:, None]) ** 2 / length[:, None]
-        push[:, 0] = force / (stiffness * length)
-        # a grid point has its own status; between two the worse one holds
-        worse = np.where(moves(a.status) & (b.status != 0), b.status, a.status)
-        status = np.where(weight == 0.0, a.status, np.where(weight == 1.0, b.status, worse))
-        flat = Lanes(
-            period=2.0 * np.pi / frequency,
-            damping=mix(a.flat.damping, b.flat.damping),
-            half_backlash=mix(a.flat.half_backlash, b.flat.half_backlash),
-            stiffness=mix(a.flat.stiffness, b.flat.stiffness),
-            force=push,
-            stiffness_pieces=a.flat.stiffness_pieces,
-            force_pieces=a.flat.force_pieces,
-            mesh_periods=a.mesh_periods,
-        )
-        hot = mix(a.half_backlash, b.half_backlash)
-        return Points(flat, status, length, rate, stiffness, force, error, mesh, hot)
+def between_points(
+    a: Points, b: Points, weight: Floats, *, mesh: tuple[Floats, Floats] | None = None
+) -> Points:
+    """``a`` + ``weight`` (b - a) of gears: stiffness, error, backlash straight, speed exactly.
+
+    ``mesh``: the mesh frequencies of both [rad/s] where a and b stand for other speeds.
+    """
+
+    def mix(one: NDArray[Any], two: NDArray[Any]) -> NDArray[Any]:
+        if one is two:
+            return one
+        share = weight[:, None] if one.ndim == 2 else weight
+        # exact at both points, so that a grid that ends there gives the same bits
+        below, beyond_two = one + share * (two - one), two + (share - 1.0) * (two - one)
+        return np.asarray(np.where(share < 1.0, below, beyond_two))
+
+    stiffness = mix(a.stiffness, b.stiffness)
+    length = mix(a.length, b.length)
+    rate = mix(a.rate, b.rate)
+    error = mix(a.error, b.error)
+    force = mix(a.force, b.force)
+    speed = mix(*((a.mesh_frequency, b.mesh_frequency) if mesh is None else mesh))
+    frequency = speed / rate / a.mesh_periods
+    ranks = np.arange(error.shape[1])
+    with np.errstate(invalid="ignore"):  # a point without a gap has no lengths
+        push = error * (ranks * frequency[:, None]) ** 2 / length[:, None]
+    push[:, 0] = force / (stiffness * length)
+    # a grid point has its own status; between two the worse one holds
+    worse = np.where(moves(a.status) & (b.status != 0), b.status, a.status)
+    status = np.where(weight == 0.0, a.status, np.where(weight == 1.0, b.status, worse))
+    flat = Lanes(
+        period=2.0 * np.pi / frequency,
+        damping=mix(a.flat.damping, b.flat.damping),
+        half_backlash=mix(a.flat.half_backlash, b.flat.half_backlash),
+        stiffness=mix(a.flat.stiffness, b.flat.stiffness),
+        force=push,
+        stiffness_pieces=a.flat.stiffness_pieces,
+        force_pieces=a.flat.force_pieces,
+        mesh_periods=a.mesh_periods,
+    )
+    hot = mix(a.half_backlash, b.half_backlash)
+    return Points(flat, status, length, rate, stiffness, force, error, speed, hot)

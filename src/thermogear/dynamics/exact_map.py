@@ -13,6 +13,7 @@ from thermogear.base.errors import InputError
 from thermogear.dynamics import exact
 from thermogear.dynamics.blocks import Pace, run_blocks
 from thermogear.dynamics.bundle import Prepared, Visits
+from thermogear.dynamics.extremes import WATCHED, Extremes, extremes_of
 from thermogear.dynamics.return_map import Stretch, Visit, stretched
 from thermogear.dynamics.tables import LaneTables
 
@@ -216,6 +217,28 @@ class ExactMap:
         steps = (halves // 2) * count + middle
         found, margin = exact.moved_by(self.maps, rates=rates, start=start, steps=steps)
         return found, margin / self.backlash
+
+    @cached_property
+    def _watched(self) -> tuple[ExactMap, Floats]:
+        """The same map with samples, and stiffness and force (samples, 2) at them."""
+        count = WATCHED * self.lanes.mesh_periods
+        phases = np.arange(count) / count
+        tables = [self.lanes.values(name, phases)[:, 0] for name in ("stiffness", "force")]
+        return ExactMap(self.lanes, count), np.stack(tables, axis=1)
+
+    def extremes(self, start: Floats, periods: int) -> Extremes:
+        """Extremes of the depths of both flanks along the closed orbit from ``start``."""
+        section, tables = self._watched
+        x, v = section.visit(start, periods, sampled=True).samples.T
+        b, step = self.backlash, self.period / len(tables)
+        stiffness, force = np.tile(tables, (periods, 1)).T
+        bend = force - self.lanes.damping[0] * v - stiffness * (x - np.clip(x, -b, b))
+        motion = np.stack([x, step * v, step**2 * bend])[..., None] / b
+
+        def depths(displacement: Floats, _: Floats) -> Floats:
+            return np.concatenate([displacement, -displacement], axis=-1) - 1.0
+
+        return extremes_of(motion, depths, periods=periods)
 
     def carry(self, start: Floats, periods: int) -> Floats:
         """The states (periods, 2) after 1, 2, ... periods from ``start``."""

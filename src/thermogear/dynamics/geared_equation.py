@@ -46,6 +46,15 @@ class LocalBearing:
         psi = self.angle + 2.0 * np.pi * np.arange(self.elements) / max(self.elements, 1)
         return np.stack([np.cos(psi), np.sin(psi)], axis=-1)
 
+    def depth(self, displacement: Floats) -> Floats:
+        """How deep the ring, or the deepest element, is pressed in [m] at (..., 2) [m]; < 0: open.
+
+        The bearing bears nothing where it is open.
+        """
+        if self.elements == 0:
+            return np.asarray(np.linalg.norm(displacement, axis=-1) - self.clearance)
+        return np.asarray((displacement @ self.rays.T).max(axis=-1) - self.clearance)
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class OuterForce:
@@ -211,6 +220,17 @@ class GearedEquation:
             turn = np.exp(2j * np.pi * one.order * phi)
             drive, back = drive + (one.drive * turn).real, back + (one.back * turn).real
         return drive, back
+
+    def depths(self, displacements: Floats, phase: Floats) -> Floats:
+        """Depths (..., 2 + bearings) [m] of flanks and bearings; > 0: in contact.
+
+        ``displacements`` (..., outputs) [m] as :attr:`outputs` gives them, at mesh ``phase`` (...).
+        """
+        errors = np.stack(self.errors_at(phase), axis=-1)
+        pairs = (displacements[..., 2 * n + 2 : 2 * n + 4] for n in range(len(self.bearings)))
+        rings = [b.depth(u)[..., None] for b, u in zip(self.bearings, pairs, strict=True)]
+        flanks = displacements[..., :2] - errors - self.half_backlash
+        return np.concatenate([flanks, *rings], axis=-1)
 
     def _error_rate(self, phase: Floats) -> Floats:
         """de/dphase [m] of the drive flank's error."""

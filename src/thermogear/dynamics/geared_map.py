@@ -9,14 +9,13 @@ from typing import ClassVar
 import numpy as np
 
 from thermogear.base.arrays import Floats
+from thermogear.dynamics.extremes import WATCHED, Extremes, extremes_of
 from thermogear.dynamics.geared_equation import GearedEquation
 from thermogear.dynamics.ladder import Engine, Steps
 from thermogear.dynamics.plane import Plane
 from thermogear.dynamics.return_map import Stretch, Visit
 
 MICROMETRE = 1e-6
-WATCHED = 128
-"""Samples a mesh period in which extremes of a gap are looked for."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -148,26 +147,21 @@ class GearedMap:
             samples=run.samples,
         )
 
-    def margin(self, start: Floats, periods: int) -> float:
-        """How near an extreme of a flank's gap comes to 0 along ``periods`` cycles, over b'.
+    def extremes(self, start: Floats, periods: int) -> Extremes:
+        """Extremes of the depths of flanks and bearings along the closed orbit from ``start``."""
+        model, n = self.model, self.model.size
+        whole = periods * model.cycle
+        run = self.engine.run(start, whole, samples=WATCHED)
+        bend = model.forces(run.sample_phase, states=run.samples)["acceleration"]
+        step = model.period / WATCHED
+        motion = np.stack(
+            [run.samples[:, :n], step * run.samples[:, n : 2 * n], step**2 * bend]
+        ) @ model.outputs.T  # fmt: skip
 
-        From samples, between them by parabolas. Where it is 0 a loss of contact, or a back impact,
-        begins or ends.
-        """
-        model = self.model
-        run = self.engine.run(start, periods * model.cycle, samples=WATCHED)
-        q = run.samples[:, : model.size]
-        drive, back = model.errors_at(run.sample_phase)
-        found = np.inf
-        for gap in (q @ model.drive - drive, q @ model.back - back):
-            y = gap - model.half_backlash
-            before, after = np.roll(y, 1), np.roll(y, -1)
-            turning = (y - before) * (after - y) <= 0.0
-            slope, bend = 0.5 * (after - before), after - 2.0 * y + before
-            away = y - 0.5 * slope**2 / np.where(bend == 0.0, np.inf, bend)
-            if turning.any():
-                found = min(found, float(np.abs(away[turning]).min()))
-        return found / model.half_backlash
+        def depths(displacements: Floats, phase: Floats) -> Floats:
+            return model.depths(displacements, phase * model.cycle) / model.half_backlash
+
+        return extremes_of(motion, depths, periods=periods)
 
 
 def _of_journal(model: GearedEquation, seen: Floats, rest: Floats) -> Plane:

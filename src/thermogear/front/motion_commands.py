@@ -136,8 +136,8 @@ def point_of(options: dict[str, Any]) -> OnePoint:
 )  # fmt: skip
 @click.option(
     "--and", "second", metavar="NAME=FROM:TO:COUNT",
-    help="A second parameter: every fold, doubling, pitchfork and torus point found at FROM is "
-    "followed to TO, as a curve in the plane of both.",
+    help="A second parameter: every fold, doubling, pitchfork, torus point and grazing found at "
+    "FROM is followed to TO, as a curve in the plane of both.",
 )  # fmt: skip
 @click.option(
     "--rigid", is_flag=True, help="The gear pair on rigid bearings, although CASE has [[shafts]]."

@@ -137,6 +137,11 @@ def bifurcation(
 @click.option("--full", is_flag=True,
               help="Compute every point; without it points whose neighbours are alike are assumed "
               "where all would take more than two minutes.")  # fmt: skip
+@click.option(
+    "--borders",
+    is_flag=True,
+    help="Follow the borders at which a flank or a bearing begins to part, as curves.",
+)
 @_train
 @_common
 def map_(
@@ -144,6 +149,7 @@ def map_(
     over: tuple[str, ...],
     but: tuple[str, ...],
     full: bool,
+    borders: bool,
     output: str,
     as_json: bool,
     **options: Any,
@@ -167,9 +173,11 @@ def map_(
     changes, train = parse_numbers(but), _train_of(read, options)
     plan: AnyMap
     if train is None or changes or GEARS_AT in axes or options["state"] is not None:
-        plan = case_map(read, axes, bundle=bundle, state=state, changes=changes, train=train)
+        plan = case_map(
+            read, axes, bundle=bundle, state=state, changes=changes, train=train, borders=borders
+        )
     else:
-        plan = train_maps(read, axes, bundle=bundle, train=train)
+        plan = train_maps(read, axes, bundle=bundle, train=train, borders=borders)
     if not full:
         require_space(plan, Path(output), threads=options["threads"], forced=options["force"])
         plan, options["estimated"] = whole_or_spared(plan, Path(output), threads=options["threads"])

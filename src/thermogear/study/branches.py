@@ -58,7 +58,7 @@ def branch_results(
 
     ``start`` a value of the parameter to begin at (default: the present one). Folds, flips,
     pitchforks and grazing are located; Ctrl+C keeps the branches walked so far. ``second``: a
-    parameter and values of it; the branch is walked at the first of these, and all but grazings are
+    parameter and values of it; the branch is walked at the first of these, and all that can be are
     followed on to the last, as curves in the plane of both parameters.
     """
     varied = parameter_of(point, parameter)

@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -22,9 +22,17 @@ from thermogear.base.errors import InputError
 from thermogear.base.stores import read_manifests
 from thermogear.case.base import Case
 from thermogear.case.case import GearCase, gear_case
-from thermogear.case.family import GearFamily, NumberFamily, Tabulated, family, moving
+from thermogear.case.family import (
+    GearFamily,
+    NumberFamily,
+    Tabulated,
+    between_points,
+    family,
+    moving,
+)
 from thermogear.case.thermal_state import HOT, StateLike, ThermalState
 from thermogear.results.work import Estimate, estimate
+from thermogear.study.shafts.branches import TrainGrid
 from thermogear.study.shafts.family import TabulatedTrains, TrainFamily
 from thermogear.study.shafts.motion import LONGEST
 from thermogear.study.shafts.state import STATES
@@ -138,19 +146,44 @@ def case_map(
     changes: Mapping[str, float] | None = None,
     refine: bool = False,
     train: Train | None = None,
+    borders: bool = False,
 ) -> MapPlan:
-    """The map of regimes of a case, or of its drive ``train``, over two parameters."""
+    """The map of regimes of a case, or of its drive ``train``, over two parameters.
+
+    With ``borders`` of contact loss; numbers of a train run straight between those of the map.
+    """
     whole = case_family(
         case, tuple(axes), bundle=bundle, state=state, changes=changes, train=train
     )  # fmt: skip
     whole.require(axes)
     start = case.simulation.initial_state
-    if not isinstance(whole, TrainFamily):
-        return map_plan(whole, axes, initial_state=start, refine=refine)
-    return map_plan(
-        whole, axes, initial_state=start, refine=refine, rule=rule_of(whole, MAP_RULE),
-        tile=TRAIN_TILE, stride=TRAIN_STRIDE,
-    )  # fmt: skip
+    if isinstance(whole, TrainFamily):
+        plan = map_plan(
+            whole, axes, initial_state=start, refine=refine, rule=rule_of(whole, MAP_RULE),
+            tile=TRAIN_TILE, stride=TRAIN_STRIDE,
+        )  # fmt: skip
+    else:
+        plan = map_plan(whole, axes, initial_state=start, refine=refine)
+    if not borders:
+        return plan
+    grid = TrainGrid if isinstance(whole, TrainFamily) else PairGrid
+    return replace(plan, sheet=grid(whole, tuple(np.sort(values) for values in axes.values())))
+
+
+class PairGrid(TrainGrid):
+    """A pair's family, as a train's; plain numbers are put in as they are."""
+
+    def __call__(self, *values: float) -> Any:
+        plain = isinstance(self.family, NumberFamily)
+        return self.model(list(values)) if plain else super().__call__(*values)
+
+    def between(self, low: Any, high: Any, weight: float) -> Any:
+        """Straight between two corners, the speed exactly."""
+        return between_points(low, high, np.array([weight]))
+
+    def model(self, row: list[float]) -> Any:
+        """The gears at one value of every parameter; InputError where nothing moves."""
+        return moving(self.family(np.array([row])), self.family)
 
 
 def train_maps(
@@ -160,6 +193,7 @@ def train_maps(
     bundle: str = "",
     refine: bool = False,
     train: Train | None = None,
+    borders: bool = False,
 ) -> StackedPlan:
     """The maps of a case's drive ``train`` undeformed and hot, side by side, over two parameters.
 
@@ -167,7 +201,9 @@ def train_maps(
     """
     chosen = Train() if train is None else train
     plans = [
-        case_map(case, axes, bundle=bundle, state=state, refine=refine, train=chosen)
+        case_map(
+            case, axes, bundle=bundle, state=state, refine=refine, train=chosen, borders=borders
+        )
         for state in STATES
     ]
     return StackedPlan(plans=tuple(plans), words=tuple(state.words for state in STATES))

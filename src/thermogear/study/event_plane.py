@@ -17,6 +17,7 @@ from thermogear.base.errors import ConvergenceError
 from thermogear.base.notice import Notice
 from thermogear.base.parameters import Parameter
 from thermogear.base.progress import Progress
+from thermogear.base.vocabulary import contact_name
 from thermogear.dynamics.return_map import MovedMap
 
 if TYPE_CHECKING:
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 
 MOST_CURVES = 16
 STEPS = 1000
-OF_ONE_MASS = (GRAZING, PITCHFORK)
+OF_ONE_MASS = (PITCHFORK,)
 """Followed where one mass moves alone."""
 SAME = 1e-3
 """Of the range: a curve that comes back this near to another event ends at it."""
@@ -34,11 +35,15 @@ SAME = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class Plane:
-    """The ``second`` parameter, the ``values`` asked for, and ``sheet`` (p, q) -> model."""
+    """The ``second`` parameter, the ``values`` asked for, and ``sheet`` (p, q) -> model.
+
+    ``bearings``: the names of a train's, for grazings.
+    """
 
     second: Parameter
     values: NDArray[np.float64]
     sheet: Sheet
+    bearings: tuple[str, ...] = ()
 
     @property
     def models(self) -> Callable[[float], object]:
@@ -122,19 +127,25 @@ class Plane:
         ]
         asked = [one for one, mark in zip(points, curve.asked, strict=True) if mark]
         turns = [points[place] for place in curve.turns]
-        ended = curve.ended
+        ended, _, why = curve.ended.partition(": ")
         if ended == LOST:
             p, q = map(float, curve.values[-1])
             beyond = (first.told(p), self.second.told(q))
             ended = f"{ended} beyond {' and '.join(beyond)}"
         return {
             "kind": curve.kind,
+            "contact": self.contact(curve),
+            "meets": [points[place] | {"what": words} for place, words in curve.meets],
             "period": curve.period,
             "points": len(curve.values),
-            "ended": ended,
+            "ended": f"{ended}: {why}" if why else ended,
             "asked": asked,
             "turns": turns,
         }
+
+    def contact(self, curve: EventCurve) -> str:
+        """What touches on the curve of a grazing, by name; else ""."""
+        return "" if curve.contact is None else contact_name(curve.contact, self.bearings)
 
     def groups(self, curves: Sequence[EventCurve], first: Parameter) -> dict[str, xr.Dataset]:
         """The curves as they are stored."""
@@ -143,6 +154,7 @@ class Plane:
             data = curve.dataset()
             data["first"].attrs["units"] = first.unit
             data["second"].attrs["units"] = self.second.unit
+            data.attrs["contact"] = self.contact(curve)
             found[f"curve_{number}"] = data
         return found
 

@@ -38,6 +38,7 @@ from thermogear.study.branches import (
 from thermogear.study.event_plane import Plane
 from thermogear.study.orbit import found
 from thermogear.study.shafts.family import TrainFamily
+from thermogear.study.shafts.state import plan_of
 
 BEYOND = 0.5
 """Cells of the grid by which a walk's steps may reach beyond its ends."""
@@ -45,13 +46,13 @@ BEYOND = 0.5
 
 @dataclass(frozen=True, eq=False)
 class TrainGrid:
-    """``family`` at the corners of ``axes`` (one or two, ascending), straight between them."""
+    """``family`` (of trains) at the corners of ``axes`` (ascending), straight between them."""
 
-    family: TrainFamily
+    family: Any
     axes: tuple[Floats, ...]
-    _kept: dict[tuple[int, ...], GearedModel] = field(init=False, repr=False, default_factory=dict)
+    _kept: dict[tuple[int, ...], Any] = field(init=False, repr=False, default_factory=dict)
 
-    def __call__(self, *values: float) -> GearedModel:
+    def __call__(self, *values: float) -> Any:
         """The train in motion at one value of each parameter.
 
         InputError beyond the grid, or where the train has no motion.
@@ -70,7 +71,7 @@ class TrainGrid:
             )
         return place, weight
 
-    def _mixed(self, corner: tuple[int, ...], rest: list[tuple[int, float]]) -> GearedModel:
+    def _mixed(self, corner: tuple[int, ...], rest: list[tuple[int, float]]) -> Any:
         if not rest:
             return self._corner(corner)
         (place, weight), *others = rest
@@ -78,13 +79,21 @@ class TrainGrid:
         if weight == 0.0:
             return low
         high = self._mixed((*corner, place + 1), others)
-        return high if weight == 1.0 else between(low, high, weight)
+        return high if weight == 1.0 else self.between(low, high, weight)
 
-    def _corner(self, corner: tuple[int, ...]) -> GearedModel:
-        found = self._kept.get(corner)
-        if found is not None:
-            return found
-        row = [float(axis[place]) for axis, place in zip(self.axes, corner, strict=True)]
+    def _corner(self, corner: tuple[int, ...]) -> Any:
+        model = self._kept.get(corner)
+        if model is None:
+            row = [float(axis[place]) for axis, place in zip(self.axes, corner, strict=True)]
+            model = self._kept[corner] = self.model(row)
+        return model
+
+    def between(self, low: Any, high: Any, weight: float) -> Any:
+        """Straight between two corners."""
+        return between(low, high, weight)
+
+    def model(self, row: list[float]) -> Any:
+        """What a corner holds, by its values of the parameters."""
         train = self.family.train(row)
         if train is None:
             rest = self.family.at_rest(row)[0]
@@ -97,7 +106,6 @@ class TrainGrid:
                 why=STILL[STATUS[rest.status]],
                 fix="choose a smaller range",
             )
-        self._kept[corner] = train.model
         return train.model
 
 
@@ -208,7 +216,7 @@ def train_branch_results(
     else:
         other = parameter_of(point, second[0])
         grid = trains.over((varied.name, other.name), (axis, second[1]))
-        plane = Plane(other, second[1], grid)
+        plane = Plane(other, second[1], grid, plan_of(trains.family.case).bearing_names)
         models = plane.models
     progress("settling", 0, 1)
     model = models(first)

@@ -46,6 +46,14 @@ def _turns(curve: Row) -> list[str]:
     return [f"{shown(one, 6)} at {shown(one, 6, SECOND)}" for one in curve["turns"]]
 
 
+def _meets(curve: Row) -> list[str]:
+    """What a grazing meets on its way, in both parameters."""
+    return [
+        f"{one['what']}: {shown(one, 6)} at {shown(one, 6, SECOND)}"
+        for one in curve.get("meets", ())
+    ]
+
+
 def plane_headline(summary: Summary) -> str:
     """How many were followed; "" without a second parameter."""
     if "curves" not in summary:
@@ -70,10 +78,10 @@ def plane_tables(summary: Summary) -> list[Block]:
     if not summary["curves"]:
         return [Text(f"No bifurcation was followed in the second parameter, {second}.")]
     turn = of_turn(summary.get("mesh_periods", 1))
-    curves = [
-        {**curve, "name": f"{number} {curve['kind']}, period {curve['period']}{turn}"}
-        for number, curve in enumerate(summary["curves"], start=1)
-    ]
+    curves = []
+    for row, curve in enumerate(summary["curves"], start=1):
+        words = plots.event_words(curve["kind"], curve.get("contact", ""))
+        curves.append({**curve, "name": f"{row} {words}, period {curve['period']}{turn}"})
     points = (
         Column("curve", "name"),
         Column(second, lambda point: shown(point, 6, SECOND)),
@@ -84,6 +92,7 @@ def plane_tables(summary: Summary) -> list[Block]:
         Column("curve", "name"),
         Column("points", "points"),
         Column("turns at", lambda curve: "; ".join(_turns(curve)) or "–"),
+        Column("meets", lambda curve: "; ".join(_meets(curve)) or "–"),
         Column("ended", "ended"),
     )
     asked = [{**point, "name": curve["name"]} for curve in curves for point in curve["asked"]]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
@@ -13,7 +14,7 @@ import numpy as np
 from thermogear.base.arrays import Dataset
 from thermogear.base.display import CELSIUS, MICROMETRE, PERCENT, SPEED, exactly, number
 from thermogear.base.period import line_names
-from thermogear.base.vocabulary import ASSUMED, FASTER_RULE, of_turn
+from thermogear.base.vocabulary import ASSUMED, FASTER_RULE, contact_name, of_turn
 from thermogear.results.result import Result
 from thermogear.results.tables import in_words
 from thermogear.views.columns import PLAIN, Column, Row, declared, in_full, key, pairs, rows_along
@@ -28,7 +29,7 @@ from thermogear.views.plots.lost_contact import (
     map_picture,
     things,
 )
-from thermogear.views.plots.parameters import page_words, parameter_of, shown
+from thermogear.views.plots.parameters import named, page_words, parameter_of, shown
 
 Words = Callable[[Dataset], str]
 TITLES = {
@@ -216,6 +217,7 @@ def _points(data: Dataset, result: Result) -> Section:
         blocks.append(_motions(data))
     if has_lost(data):
         blocks.append(declared("What loses contact.", LOST_AT, lost_rows(data)))
+    blocks += _borders(data)
     columns, found = bifurcations(data)
     if found:
         blocks.append(declared("Located bifurcations", columns, found))
@@ -253,6 +255,39 @@ def _points(data: Dataset, result: Result) -> Section:
     return Section("points", "Located points", blocks)
 
 
+def _borders(data: Dataset) -> list[Block]:
+    """Where the borders of contact loss end, and why."""
+    if "borders" not in data.attrs:
+        return []
+    bearings = named(data, "bearing") if "bearing" in data.coords else []
+    states = named(data, "state") if "state" in data.dims else [""]
+    rows = [
+        {
+            "border": f"{row + 1} {contact_name(int(data['border_contact'][row]), bearings)}",
+            "state": states[int(data["border_state"][row])],
+            "period": about["period"],
+            "at": end[:2],
+            "why": end[2],
+        }
+        for row, about in enumerate(json.loads(data.attrs["borders"]))
+        for end in about["ends"]
+    ]
+    dims = [str(name) for name in data["label"].dims[-2:]]
+    places = [
+        Column(page_words(name, data[name]), partial(_shown_end, data, name, place))
+        for place, name in enumerate(dims)
+    ]
+    columns = (*BORDER, *places, Column("why", "why"))
+    return [declared("Ends of borders.", columns, rows) if rows else Text(NO_BORDER)]
+
+
+def _shown_end(data: Dataset, name: str, place: int, row: Row) -> str:
+    """A parameter at the end of a border, as its axis shows it."""
+    return number(float(parameter_of(name, data[name]).show(row["at"][place])), 6)
+
+
+NO_BORDER = "No border of contact loss passes between closed orbits of one period."
+BORDER = (Column("border", "border"), Column("state", "state"), Column("period", "period"))
 LOST_AT = (
     Column("state", "state"),
     Column("what", "what"),

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.arrays import Dataset, Flags
 from thermogear.base.display import PERCENT
+from thermogear.base.vocabulary import contact_name
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.parameters import axis_words, each_state, named, shown
 from thermogear.views.plots.sweeps import edges, hatch_assumed, regimes
@@ -20,6 +21,8 @@ JAMMED = 4
 """Its label."""
 PARTED = 1e-9
 """Share of the time out of drive contact [1] that is more than rounding."""
+FIRST_BEARING, BORDERS = 2, ((), (5.0, 2.0), (1.5, 1.5))
+"""Number of the first contact that is a bearing; dashes of drive flank, back flank, bearings."""
 MOST = 6
 """Sets of bearings with a colour of their own."""
 ALIKE, UNKNOWN, LOCKED = FAINT, "#999999", "#ffffff"
@@ -104,7 +107,25 @@ def _put(
 def _teeth(data: Dataset, state: str) -> Panel:
     lost = lost_of(data)
     codes = np.where(lost & BACK, 2, np.where(lost & DRIVE, 1, 0))
-    return _put(_panel(data, f"teeth{f', {state}' * bool(state)}"), data, codes, list(TEETH))
+    panel = _put(_panel(data, f"teeth{f', {state}' * bool(state)}"), data, codes, list(TEETH))
+    draw_borders(panel, data, flanks=True)
+    return panel
+
+
+def draw_borders(panel: Panel, data: Dataset, flanks: bool) -> None:
+    """The borders of contact loss that were followed: of ``flanks``, else of bearings."""
+    state = int(data["state"]) if "state" in data.coords and not data["state"].ndim else 0
+    one, two = (str(name) for name in data["label"].dims[-2:])
+    bearings = named(data, "bearing") if "bearing" in data.coords else []
+    for row in range(data.sizes.get("border", 0)):
+        contact = int(data["border_contact"][row])
+        if int(data["border_state"][row]) == state and (contact < FIRST_BEARING) == flanks:
+            place = BORDERS[min(contact, FIRST_BEARING)]
+            panel.curve(
+                shown(one, data["border_first"][row]), shown(two, data["border_second"][row]),
+                colour=INK, dash=place, width=1.4, order=3.0,
+                label=f"border: {contact_name(contact, bearings)}",
+            )  # fmt: skip
 
 
 def _sets(data: Dataset) -> list[int]:
@@ -125,7 +146,9 @@ def _bearings(data: Dataset, state: str, sets: list[int]) -> Panel:
         looks.append((f"unloaded at times: {words}", SETS[place]))
         codes[own == one] = place + 1
     looks.append(("other bearings unloaded", INK))
-    return _put(_panel(data, f"bearings{f', {state}' * bool(state)}"), data, codes, looks)
+    panel = _put(_panel(data, f"bearings{f', {state}' * bool(state)}"), data, codes, looks)
+    draw_borders(panel, data, flanks=False)
+    return panel
 
 
 def forces_picture(data: Dataset) -> Picture:

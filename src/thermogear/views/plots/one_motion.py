@@ -238,6 +238,11 @@ def _marks(panel: Panel, branches: Sequence[Dataset], parameter: str, row: str =
                 )  # fmt: skip
 
 
+def event_words(kind: str, contact: str) -> str:
+    """A kind of bifurcation, of a grazing with what touches."""
+    return f"{kind} of {contact}" if contact else kind
+
+
 def plane_picture(curves: Sequence[Dataset]) -> Picture:
     """Every curve over both parameters: solid where a stable motion meets it, else dotted."""
     first, second = str(curves[0].attrs["first"]), str(curves[0].attrs["second"])
@@ -248,7 +253,8 @@ def plane_picture(curves: Sequence[Dataset]) -> Picture:
         kind = str(data.attrs["kind"])
         marker, colour = MARKS[kind]
         turn = of_turn(data.attrs.get("mesh_periods", 1))
-        label = f"{kind}, period {int(data.attrs['period'])}{turn}"
+        name = event_words(kind, str(data.attrs.get("contact", "")))
+        label = f"{name}, period {int(data.attrs['period'])}{turn}"
         x, y = shown(first, data["first"]), shown(second, data["second"])
         met = data["stable"].values.astype(bool)
         cuts = [0, *(np.flatnonzero(np.diff(met.astype(int))) + 1).tolist(), met.size]
