@@ -322,7 +322,13 @@ def common_period(rows: Sequence[Excitation] | Sequence[Excitations]) -> int:
     """The period that all ``rows`` have; InputError where they differ."""
     every = {one.mesh_periods for one in rows}
     if len(every) != 1:
-        raise InputError("mesh_periods", sorted(every), allowed="one number for all points")
+        raise InputError(
+            "gears.period",
+            f"points that come again after {sorted(every)} mesh periods",
+            allowed="one number for all points",
+            why="teeth are alike at some of them and differ at others, as with a fault of no size",
+            fix="leave the value out at which the teeth are alike",
+        )
     return every.pop()
 
 

@@ -30,7 +30,7 @@ _ROOT_OR_TIP = ("crack", "chip", "missing")
 """Kinds of which a tooth has one: each is solved on a tooth that is whole else."""
 EVERY = 8
 """Positions of a mesh period at which some tooth must touch."""
-_NAMES = {"radius": "diameter", "error": "amount", "meshes": "revolutions"}
+_NAMES = {"radius": "diameter", "error": "amount", "meshes": "revolutions", "added": "depth"}
 """Fields of the file by the names that the gears have for them."""
 
 

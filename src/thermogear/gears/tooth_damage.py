@@ -367,7 +367,8 @@ def _meshed(gear: Gear, poisson: float, depth: float, angle: float) -> tuple[Sec
     mouth = r * np.array([math.sin(phi), math.cos(phi)])
     across, down = math.sin(angle), max(math.cos(angle), 1e-9)
     most = DEEPEST * min(way_across(gear, angle), 0.5 * (r - gear.bore_radius) / down)
-    if not depth <= most:
+    # a share of the way across is a depth but for rounding
+    if not depth <= most * (1.0 + 1e-12):
         raise GeometryError(
             "crack.depth",
             millimetres(depth),

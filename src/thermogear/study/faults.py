@@ -22,6 +22,7 @@ from thermogear.case.points import Points
 from thermogear.case.thermal_state import HOT, StateLike
 from thermogear.case.turn_response import SAMPLES, turn_lanes, turn_tables
 from thermogear.dynamics.turns import STEPS, follow_turns, record_turns
+from thermogear.mesh.elastic import TURN_POSITIONS
 from thermogear.mesh.excite import over_turn as spread
 from thermogear.signals.spectra import Spectrum, amplitude_spectrum
 from thermogear.study.series import series_parts
@@ -118,13 +119,24 @@ def fault_motions(
     )
     rows = np.stack([np.ravel(values).astype(float) for values in operating], axis=1)
     both = []
-    for pair in (case, case.sound()):
+    for pair in (case, sound_pair(case)):
         flanks = pair.deviations if part is None else series_parts(pair, part + 1)[part]
         drawn = replace(pair, deviations=flanks)
         both.append(family(drawn, ("pinion_speed", "pinion_torque"), state=state)(rows))
     turn = max(points.mesh_periods for points in both)
     faulty, sound = (turn_motions(case, over_turns(points, turn), rows, samples) for points in both)
     return tuple(map(FaultMotion, faulty, sound))
+
+
+def sound_pair(case: GearCase) -> GearCase:
+    """The case without its faults, its mesh at the positions of a turn where the faults make one.
+
+    So what differs is the faults': a mesh period alone has other positions.
+    """
+    sound = case.sound()
+    if case.period.mesh_periods == sound.period.mesh_periods:
+        return sound
+    return replace(sound, mesh_positions=TURN_POSITIONS)
 
 
 def over_turns(points: Points, mesh_periods: int) -> Points:

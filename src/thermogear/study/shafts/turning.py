@@ -15,6 +15,7 @@ import numpy as np
 
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.base.excitation import Periodic
+from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import STATUS, moves
 from thermogear.case.case import GearCase
 from thermogear.case.thermal_state import HOT, StateLike, ThermalState
@@ -22,7 +23,7 @@ from thermogear.dynamics.geared import GearedModel
 from thermogear.dynamics.ladder import Engine
 from thermogear.dynamics.turns import CLOSE, LEAST_TURNS, LONGEST_CYCLE
 from thermogear.mesh.excite import over_turn as spread
-from thermogear.study.faults import FaultMotion, TurnMotion
+from thermogear.study.faults import FaultMotion, TurnMotion, sound_pair
 from thermogear.study.shafts.motion import LONGEST
 from thermogear.study.shafts.moving import MovingTrain, moving
 from thermogear.study.shafts.record import SAMPLES, shown
@@ -30,16 +31,22 @@ from thermogear.study.shafts.state import Meshing, TrainState, meshing, settled
 
 
 def train_fault_motion(
-    case: GearCase, *, place: int = 0, state: StateLike = HOT, samples: int = SAMPLES
+    case: GearCase,
+    *,
+    place: int = 0,
+    state: StateLike = HOT,
+    samples: int = SAMPLES,
+    progress: Progress = silent,
 ) -> FaultMotion:
     """The settled motion of a case's train at operating point ``place``, with faults and without.
 
     ``state`` "hot", "undeformed" or the gears' temperature [K]; ``samples`` of a mesh period. The
     turn is that after which all teeth, and forces that turn with a shaft, meet again. Motions start
     at rest under the mean load and are followed until the end of a turn is that of an earlier one;
-    no orbit is proven. ``acceleration`` and ``error`` are those of the gears' approach along the
-    drive flank's line of action. InputError without faults, without shafts, and for textbook
-    springs, which feel none.
+    no orbit is proven. Unbalance and eccentricity of shafts whose teeth have no common factor come
+    again only after all tooth pairs: minutes; ``progress`` is told of every turn. ``acceleration``
+    and ``error`` are those of the gears' approach along the drive flank's line of action.
+    InputError without faults, without shafts, and for textbook springs, which feel none.
     """
     if not case.faults():
         raise InputError("faults", "none", fix="state [[faults]] in the case")
@@ -48,7 +55,7 @@ def train_fault_motion(
     thermal = ThermalState.of(state)
     ((rest,),) = settled(case, [place], states=[thermal])
     at = thermal.operating(case, case.models[0])
-    both = [case, case.sound()]
+    both = [case, sound_pair(case)]
     teeth = (case.pair.pinion.teeth, case.pair.wheel.teeth)
     if not moves(rest.status):
         still = _still(rest, teeth, samples, STATUS[rest.status])
@@ -67,7 +74,9 @@ def train_fault_motion(
         )
         for each, mesh in zip(both, meshes, strict=True)
     )
-    return FaultMotion(*(_motion(replace(train, model=model), teeth, samples) for model in models))
+    return FaultMotion(
+        *(_motion(replace(train, model=model), teeth, samples, progress) for model in models)
+    )
 
 
 def over_turn(
@@ -96,13 +105,16 @@ def over_turn(
     )
 
 
-def _motion(train: MovingTrain, teeth: tuple[int, int], samples: int) -> TurnMotion:
+def _motion(
+    train: MovingTrain, teeth: tuple[int, int], samples: int, progress: Progress
+) -> TurnMotion:
     """What ``train`` settles on from rest, recorded over the turns that it repeats after."""
     model, rest = train.model, train.state
     engine, unit = Engine(model), model.return_map().unit
     turn, ends, turns = model.mesh_periods, [train.start], 0
     try:
         while not turns and len(ends) <= max(LEAST_TURNS, LONGEST // turn):
+            progress("turns of the train", len(ends), max(LEAST_TURNS, LONGEST // turn))
             ends.append(engine.run(ends[-1]).state)
             back = range(1, min(LONGEST_CYCLE, len(ends) - 1) + 1)
             apart = [float(np.abs((ends[-1] - ends[-1 - n]) / unit).max()) for n in back]
