@@ -11,6 +11,7 @@ from click.testing import CliRunner
 from own_trains import TRAIN
 from thermogear.base.display import number
 from thermogear.base.errors import InputError
+from thermogear.base.vocabulary import contact_name
 from thermogear.case.examples import example_text
 from thermogear.front.sweep_commands import COMMANDS
 from thermogear.results.result import open_results
@@ -263,4 +264,4 @@ def test_a_map_with_borders(cases, tmp_path):
     )  # fmt: skip
     result = open_results(tmp_path / "borders")
     assert result.data["border_contact"].values.tolist() == [0]
-    assert "1 drive flank" in "\n".join(page_of(result).lines())
+    assert contact_name(0) in "\n".join(page_of(result).lines())
