@@ -180,7 +180,9 @@ def test_the_frequency_of_the_tables_is_that_of_the_turn() -> None:
     columns = Excitations.of([at, replace(at, mesh_frequency=2e4)])
     assert columns.take([1]).one(0) == replace(at, mesh_frequency=2e4)
     assert Excitations.joined([columns, columns]).mesh_periods == 12
-    with pytest.raises(InputError, match=r"gears.period: got .* \[1, 12\] mesh periods; allowed one number"):
+    with pytest.raises(
+        InputError, match=r"gears.period: got .* \[1, 12\] mesh periods; allowed one number"
+    ):
         Excitations.of([at, excited()])
     with pytest.raises(InputError, match="mesh_periods"):
         replace(at, mesh_periods=1.5)  # type: ignore[arg-type]
