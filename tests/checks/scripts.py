@@ -19,6 +19,5 @@ def script(name: str) -> Any:
         raise ImportError(name)
     module = importlib.util.module_from_spec(spec)
     sys.modules[name] = module  # where dataclasses look their own module up
-    sys.modules.setdefault(path.stem, module)  # as its neighbours import it
     spec.loader.exec_module(module)
     return module

@@ -41,7 +41,15 @@ def call(name, *words):
 
 
 def test_names_of_the_commands():
-    assert list(BY_NAME) == ["bifurcation", "map", "basins", "runup", "waterfall", "sweep"]
+    assert list(BY_NAME) == [
+        "bifurcation",
+        "map",
+        "basins",
+        "runup",
+        "waterfall",
+        "sweep",
+        "detect",
+    ]
 
 
 @pytest.mark.slow

@@ -96,10 +96,6 @@ def _here(tmp_path, monkeypatch):
         ("run rig -o file/x", "output: got file/x; file is a file; name a directory"),
         ("runup rig -o file/x", "store: got file/x; file is a file; name a directory"),
         ("thesis -o file/x", "output: got file/x; file is a file; name a directory"),
-        (
-            "thesis rig -o out --experiment 9",
-            "--experiment: got 9; beside CASE; leave one out",
-        ),
         ("thesis -o out --values 9", "--values: got 9; no case is named"),
         ("thesis -o out --set a=1", "--set: got ('a=1',); no case is named"),
         (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import replace
 from typing import Any
 
@@ -15,7 +16,7 @@ from thermogear.case.case import gear_case, load_case
 from thermogear.thesis.base_sets import interval
 from thermogear.thesis.experiment import stored
 
-SAMPLES = script("trials/rig_samples")
+SAMPLES = sys.modules["rig_samples"] = script("trials/rig_samples")
 ANSWER = script("trials/rig_answer")
 ASSUMED, PRINTED, SEEN, SEED = SAMPLES.ASSUMED, SAMPLES.PRINTED, SAMPLES.SEEN, SAMPLES.SEED
 EITHER, NEAR = ANSWER.EITHER, ANSWER.NEAR

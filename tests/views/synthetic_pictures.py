@@ -588,15 +588,6 @@ def of_dials() -> dict[str, Picture]:
         {"order": np.arange(1, 9) / 1.0},
     )  # fmt: skip
     motions = {"the case's start": orbit, "running up": 0.5 * orbit}
-    grid = xr.Dataset(
-        {n: (("pinion_speed", "gear_temperature"), np.resize([0, 1, 2], (4, 3)))
-         for n in ("label", "period")},
-        {"pinion_speed": ("pinion_speed", speeds[:4], {"units": "rad/s"}),
-         "gear_temperature": ("gear_temperature", np.array([293.0, 350.0, 400.0]),
-                              {"units": "K"})},
-    )  # fmt: skip
-    lines = {"order": np.array([1.0, 2.0]), "amplitude": np.array([4e-6, 1e-6]),
-             "half": np.array([1e-6, np.nan])}  # fmt: skip
     factor = 1.5 + 0.1 * np.arange(6)[:, None] + 0.01 * speeds
     pairs = xr.Dataset(
         {"dynamic_factor": (("part", "speed"), factor),
@@ -610,8 +601,6 @@ def of_dials() -> dict[str, Picture]:
         "dial-gap": live.gap(gap),
         "dial-run-up": live.run_up({"hot": ran, "undeformed": ran}, 300.0),
         "dial-orbits": live.orbits(motions),
-        "dial-record": live.measured_orders(motions, **lines),
-        "dial-regimes": live.regimes(grid, np.arange(12).reshape(4, 3) > 2),
     }
 
 
