@@ -173,8 +173,8 @@ class Bordered:
         if self.touch is None:
             return np.inf
         seen = self._extremes(point.scaled)
-        own = seen.depth[seen.contact == self.touch.contact]
-        return float(np.sort(np.abs(own))[1])
+        of_contact = seen.depth[seen.contact == self.touch.contact]
+        return float(np.sort(np.abs(of_contact))[1])
 
     def border(self, jacobian: Floats) -> None:
         """Take b and c from J, for the points that come."""
@@ -268,7 +268,7 @@ class Bordered:
 
         It begins with a ``matrix`` from nearby, and takes a fresh one where that converges slowly.
         """
-        own = None if matrix is None or self.kind == GRAZING else matrix.copy()
+        kept_matrix = None if matrix is None or self.kind == GRAZING else matrix.copy()
         scaled = guess.copy()
         best: tuple[float, Floats, Floats] | None = None
         last, stalled = np.inf, 0
@@ -284,13 +284,15 @@ class Bordered:
                 stalled += 1
             if size <= self.closed or (stalled and best[0] < 0.1 * ROUNDING) or stalled > 2:
                 break
-            if own is None or size > SLOW * last:
-                own = self.matrix(scaled, jacobian=jacobian)
+            if kept_matrix is None or size > SLOW * last:
+                kept_matrix = self.matrix(scaled, jacobian=jacobian)
             elif step.any():
-                own = own + np.outer(rest - before - own @ step, step) / (step @ step)
-            own[:-1, :-2] = jacobian - np.eye(len(jacobian))
+                kept_matrix = kept_matrix + np.outer(rest - before - kept_matrix @ step, step) / (
+                    step @ step
+                )
+            kept_matrix[:-1, :-2] = jacobian - np.eye(len(jacobian))
             last, before = size, rest
-            whole = np.vstack([own, normal])
+            whole = np.vstack([kept_matrix, normal])
             try:
                 step = np.linalg.solve(whole, np.append(-rest, -normal @ (scaled - guess)))
             except np.linalg.LinAlgError:

@@ -154,8 +154,8 @@ def _between(
             motion.orbit, names[axis], end, family=family, start=begin, stop_at=stop
         )
         for event in branch.of_kind(GRAZING):
-            own: Any = event.orbit.section
-            seen = own.extremes(event.state, event.period)
+            orbit_map: Any = event.orbit.section
+            seen = orbit_map.extremes(event.state, event.period)
             rest = seen.without(int(np.abs(seen.depth).argmin())).losses
             if seen.touch().contact == contact and rest[contact] == 0:
                 return event, level

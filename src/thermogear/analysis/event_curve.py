@@ -199,9 +199,9 @@ def _require_carried(bifurcation: Bifurcation) -> None:
         raise InputError("bifurcation", PITCHFORK, why="of a model of more than one mass")
 
 
-def _marks(asked: ArrayLike, start: float) -> Floats:
+def _marks(values: ArrayLike, start: float) -> Floats:
     """The values of q asked for; InputError where they lead nowhere."""
-    marks = np.atleast_1d(np.asarray(asked, dtype=float))
+    marks = np.atleast_1d(np.asarray(values, dtype=float))
     if not np.all(np.isfinite(marks)) or marks.size == 0 or marks[-1] == start:
         raise InputError("asked", marks.tolist(), allowed=f"finite, the last not {start}")
     return marks

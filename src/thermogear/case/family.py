@@ -477,12 +477,15 @@ def between_points(
     ``mesh``: the mesh frequencies of both [rad/s] where a and b stand for other speeds.
     """
 
-    def mix(one: NDArray[Any], two: NDArray[Any]) -> NDArray[Any]:
-        if one is two:
-            return one
-        share = weight[:, None] if one.ndim == 2 else weight
+    def mix(first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
+        if first is second:
+            return first
+        share = weight[:, None] if first.ndim == 2 else weight
         # exact at both points, so that a grid that ends there gives the same bits
-        below, beyond_two = one + share * (two - one), two + (share - 1.0) * (two - one)
+        below, beyond_two = (
+            first + share * (second - first),
+            second + (share - 1.0) * (second - first),
+        )
         return np.asarray(np.where(share < 1.0, below, beyond_two))
 
     stiffness = mix(a.stiffness, b.stiffness)

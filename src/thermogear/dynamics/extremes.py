@@ -56,8 +56,8 @@ class Extremes:
     @property
     def losses(self) -> tuple[int, ...]:
         """How often every contact opens along the orbit."""
-        closed = [self.depth[self.contact == one] > 0.0 for one in range(self.contacts)]
-        return tuple(int(np.sum(one & ~np.roll(one, -1))) for one in closed)
+        closed = [self.depth[self.contact == contact] > 0.0 for contact in range(self.contacts)]
+        return tuple(int(np.sum(contact & ~np.roll(contact, -1))) for contact in closed)
 
     def touch(self, place: int | None = None) -> Touch:
         """The extreme at ``place``, else the one nearest to a change of contact."""
@@ -119,19 +119,19 @@ def extremes_of(
     )
 
 
-def _quintic(one: Floats, other: Floats, *, share: Floats) -> Floats:
+def _quintic(first: Floats, second: Floats, *, share: Floats) -> Floats:
     """The quintic between two samples (3, m, k) of value, slope and bend, at ``share`` (m, 1)."""
     t, square, cube = share, share**2, share**3
     return np.asarray(
-        one[0]
-        + t * one[1]
-        + 0.5 * square * one[2]
+        first[0]
+        + t * first[1]
+        + 0.5 * square * first[2]
         + cube
         * (
-            (10.0 - 15.0 * t + 6.0 * square) * (other[0] - one[0])
-            - (6.0 - 8.0 * t + 3.0 * square) * one[1]
-            - (4.0 - 7.0 * t + 3.0 * square) * other[1]
-            - 0.5 * (3.0 - 3.0 * t + square) * one[2]
-            + 0.5 * (1.0 - 2.0 * t + square) * other[2]
+            (10.0 - 15.0 * t + 6.0 * square) * (second[0] - first[0])
+            - (6.0 - 8.0 * t + 3.0 * square) * first[1]
+            - (4.0 - 7.0 * t + 3.0 * square) * second[1]
+            - 0.5 * (3.0 - 3.0 * t + square) * first[2]
+            + 0.5 * (1.0 - 2.0 * t + square) * second[2]
         )
     )

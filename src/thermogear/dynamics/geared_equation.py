@@ -202,8 +202,8 @@ class GearedEquation:
     def with_cages_on(self, share: float) -> Self:
         """The same with the rolling elements ``share`` of their own pitch further on."""
         turned = tuple(
-            replace(one, angle=one.angle + 2.0 * np.pi * share / max(one.elements, 1))
-            for one in self.bearings
+            replace(bearing, angle=bearing.angle + 2.0 * np.pi * share / max(bearing.elements, 1))
+            for bearing in self.bearings
         )
         return replace(self, bearings=turned)
 

@@ -204,7 +204,7 @@ def _bearing_lines(
             )
         )
     corrected = [replace(line, chance=min(1.0, windows * line.chance)) for line in lines]
-    own = [
+    lines_alone = [
         line
         for line in corrected
         if not any(
@@ -213,7 +213,7 @@ def _bearing_lines(
             if other.chance <= HEARD and other.channel == line.channel and other.shaft == line.shaft
         )
     ]
-    return tuple(sorted(own, key=lambda line: line.chance))
+    return tuple(sorted(lines_alone, key=lambda line: line.chance))
 
 
 def _is_sideband(line: BearingLine, other: BearingLine, step: float) -> bool:
@@ -279,8 +279,8 @@ def clearest_line(
         highest = place[np.argmax(level)]
         times = np.rint(highest / place[clear])
         whole = np.abs(times * place[clear] - highest) < _WHOLE * spectrum.position[0]
-        own = clear[whole & (times == times[whole].max())]
-        top = own[np.argmax(level[own])]
+        harmonics = clear[whole & (times == times[whole].max())]
+        top = harmonics[np.argmax(level[harmonics])]
         best = Swelling(
             channel=channel,
             order=float(place[top]),

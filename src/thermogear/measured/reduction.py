@@ -322,7 +322,7 @@ def _heard(
     channels = [channel.name for channel in through.channels]
     try:
         table, per_turn = through.table[:, first : first + angle.size], samples_per_turn(angle)
-        found = impacts(
+        struck = impacts(
             resample_by_angle(table, angle, samples_per_turn=per_turn),
             angle=angle,
             channels=channels,
@@ -332,8 +332,8 @@ def _heard(
     except InputError:
         return (), ()
     rate = None if record.rate_doubt else record.rate
-    clear = clearest_line(found, channels, shaft=shaft, rate=rate)
-    heard = tuple(line for line in found.lines if line.chance <= HEARD)
+    clear = clearest_line(struck, channels, shaft=shaft, rate=rate)
+    heard = tuple(line for line in struck.lines if line.chance <= HEARD)
     return () if clear is None else (clear,), heard
 
 

@@ -92,18 +92,22 @@ def csv_tables(groups: Mapping[str, Dataset], stem: str) -> dict[str, str]:
     SI; the heads name the units. What is the same at all :data:`PLACES`, such as a time, stands
     beside what differs there. Single numbers are left out.
     """
-    found = {}
+    texts = {}
     for group, data in groups.items():
         families = {frozenset(dims): frame for dims, frame in frames(data).items()}
         for dims, frame in families.items():
-            alike = [one for one in families if one < dims <= one | PLACES]
-            if any(dims < one <= dims | PLACES for one in families):
+            alike = [
+                dims_of_frame
+                for dims_of_frame in families
+                if dims_of_frame < dims <= dims_of_frame | PLACES
+            ]
+            if any(dims < dims_of_frame <= dims | PLACES for dims_of_frame in families):
                 continue
-            for one in alike:
-                frame = frame.merge(families[one], how="left")
+            for dims_of_frame in alike:
+                frame = frame.merge(families[dims_of_frame], how="left")
             name = f"{stem}{group.replace('/', '_')}_by_{'_'.join(sorted(dims))}.csv"
-            found[name] = csv_text(frame)
-    return found
+            texts[name] = csv_text(frame)
+    return texts
 
 
 def table_text(head: Iterable[object], rows: Iterable[Iterable[object]]) -> str:

@@ -49,8 +49,8 @@ def compare_faults(
     if not case.faults():
         raise InputError("faults", "none", fix="state [[faults]] in the case")
     teeth = case.pair.pinion.teeth, case.pair.wheel.teeth
-    found = diagnose(records, baseline, teeth=teeth, bearings=bearings, progress=progress)
-    figures = found.table("figures")
+    diagnosed = diagnose(records, baseline, teeth=teeth, bearings=bearings, progress=progress)
+    figures = diagnosed.table("figures")
     motions = fault_motions(case, figures["speed"])
     if len(motions) != 1:
         raise InputError("operating", f"{len(motions)} points", allowed="one, as of the records")
@@ -58,8 +58,8 @@ def compare_faults(
         name: _indicators((motions[0].sound, getattr(motions[0], name)), figures["shafts"])
         for name in ("sound", "faulty")
     }
-    groups = {**found.groups, "simulated": _beside(found.groups["indicators"], sides)}
-    return replace(found, groups=groups, notices=(*found.notices, *fault_notices(case)))
+    groups = {**diagnosed.groups, "simulated": _beside(diagnosed.groups["indicators"], sides)}
+    return replace(diagnosed, groups=groups, notices=(*diagnosed.notices, *fault_notices(case)))
 
 
 def _indicators(

@@ -192,21 +192,21 @@ class DetectionPlan:
         return 1.0 / (blocks * len(STATES) * len(self.speeds) * len(self.torques))
 
     def compute(self, key: Key, before: Arrays | None, alive: Alive) -> Arrays:
-        found = empty_arrays(self, key)
+        arrays = empty_arrays(self, key)
         hot, excited = self._scenes[key[:3]]
         parts = range(self.healthy)[ranges_of(self, key)["part"]]
         faulty = slice(min(max(self.parts - parts.start, 0), len(parts)))
-        found["status"][...] = excited.status
+        arrays["status"][...] = excited.status
         if not moves(excited.status).all():
-            return found
+            return arrays
         drawn = self.series[0][parts.start : parts.stop]
         mesh = series_mesh(hot, drawn, self.turn)
-        found["status"][0, 0, 0], sound = self._motions(excited, mesh)
-        own = [
+        arrays["status"][0, 0, 0], sound = self._motions(excited, mesh)
+        averages = [
             self._noisy(self._averages(sound[faulty], gear), gear, parts, HEALTHY - 1)
             for gear in range(len(GEARS))
         ]
-        limits = [self._indicators(rows, gear) for gear, rows in enumerate(own)]
+        limits = [self._indicators(rows, gear) for gear, rows in enumerate(averages)]
         for variant, (fault, gear) in enumerate(
             self.variants if faulty.stop else self.variants[:2]
         ):
@@ -218,13 +218,13 @@ class DetectionPlan:
                 motions = self._motions(excited, changed)[1]
             rows = self._noisy(self._averages(motions, gear), gear, parts, 1, variant + 1)[:, 0]
             values = self._indicators(rows, gear)
-            found["value"][0, 0, 0, : len(rows), variant] = values
+            arrays["value"][0, 0, 0, : len(rows), variant] = values
             here, some = (0, 0, 0, faulty, variant), rows[faulty]
-            beside = against(values[faulty], healthy=limits[gear], axis=1)
-            found["own_beyond"][here], found["own_shift"][here] = beside
-            changes = np.stack([some - own[gear].mean(axis=1), some], axis=2)
-            found["loudest"][here] = self._teeth(changes, gear)
-        return found
+            held = against(values[faulty], healthy=limits[gear], axis=1)
+            arrays["own_beyond"][here], arrays["own_shift"][here] = held
+            changes = np.stack([some - averages[gear].mean(axis=1), some], axis=2)
+            arrays["loudest"][here] = self._teeth(changes, gear)
+        return arrays
 
     # --- what all parts share -----------------------------------------------------------------
 
@@ -344,9 +344,9 @@ class DetectionPlan:
         return np.asarray(averages[:, None] + spread[:, None] * noise)
 
     def _orders(self, gear: int) -> dict[str, int]:
-        own, mate = self.teeth[gear], self.teeth[1 - gear]
-        highest = min(self.case.harmonics * own, own * SAMPLES // 2 - 1)
-        return {"highest": highest, "step": shared_step(mesh_order=own, mate_order=mate)}
+        teeth, mate = self.teeth[gear], self.teeth[1 - gear]
+        highest = min(self.case.harmonics * teeth, teeth * SAMPLES // 2 - 1)
+        return {"highest": highest, "step": shared_step(mesh_order=teeth, mate_order=mate)}
 
     def _indicators(self, averages: Floats, gear: int) -> Floats:
         """Indicators of averages (..., sample) of a gear, (..., indicator); nan where any is.
@@ -402,13 +402,13 @@ def detected(plan: DetectionPlan, data: Dataset) -> Arrays:
     of all parts but itself.
     """
     values, gears = data["value"].values, [gear for _, gear in plan.variants]
-    own = [data[f"own_{name}"].values[:, :, :, : plan.parts] for name in ("beyond", "shift")]
+    of_machine = [data[f"own_{name}"].values[:, :, :, : plan.parts] for name in ("beyond", "shift")]
     others = [
         against(values[:, :, :, n], healthy=np.delete(values[:, :, :, :, gears], n, axis=3), axis=3)
         for n in range(plan.parts)
     ]
     of_class = [np.stack(some, axis=3) for some in zip(*others, strict=True)]
-    beyond, shift = (np.stack(both) for both in zip(own, of_class, strict=True))
+    beyond, shift = (np.stack(both) for both in zip(of_machine, of_class, strict=True))
     entries = np.array([-9 if fault is None else plan.entry(fault) for fault, _ in plan.variants])
     loud = np.moveaxis(data["loudest"].values[:, :, :, : plan.parts], -1, 0)
     sought = (loud >= 0) & (entries >= 0)[:, None]
@@ -439,7 +439,7 @@ def _labelled(plan: DetectionPlan, data: Dataset, counted: Arrays) -> Dataset:
         "variant": ["none, pinion", "none, wheel", *chain(*words)],
         "fault": [f"{w[-1].partition(' of ')[0]}, {w[-1].rpartition(', ')[2]}" for w in words],
     }
-    told = Notice.of(
+    about_class = Notice.of(
         "detection_of_a_class", parts=plan.parts, healthy=plan.healthy - 1,
         accuracy=plan.case.accuracy, seed=plan.case.seed, turns=plan.averaged[0],
         share=plan.noise, lost=int((~moves(data["status"].values)).sum()) or None,
@@ -458,7 +458,7 @@ def _labelled(plan: DetectionPlan, data: Dataset, counted: Arrays) -> Dataset:
     )
     return data.merge(added).assign_attrs(
         families=[len(family) for family in plan.families], parts=plan.parts,
-        averaged=list(plan.averaged), notices=stored_notices([told, *train]),
+        averaged=list(plan.averaged), notices=stored_notices([about_class, *train]),
     )  # fmt: skip
 
 

@@ -505,9 +505,9 @@ def _judged(row: Reduced, limits: dict[Key, Healthy], base: Sequence[Reduced]) -
     if len(base) == 1:
         verdict = ONE_BASELINE
     for name, other in (("speed", OTHER_SPEED), ("mesh", OTHER_GEARS)) if base else ():
-        own, healthy = getattr(row, name), float(np.median([getattr(b, name) for b in base]))
-        if abs(own / healthy - 1.0) > UNLIKE:
-            verdict, unlike = other, (own, healthy)
+        value, healthy = getattr(row, name), float(np.median([getattr(b, name) for b in base]))
+        if abs(value / healthy - 1.0) > UNLIKE:
+            verdict, unlike = other, (value, healthy)
     places = []
     for shaft in row.shafts:
         keys = [key for key in medians if key[1] == shaft.name]

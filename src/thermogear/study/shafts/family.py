@@ -350,8 +350,8 @@ class TabulatedTrains(TrainFamily):
     @classmethod
     def of(cls, family: TrainFamily, values: Floats) -> TabulatedTrains:
         """``family`` at ``values``."""
-        own = {one.name: getattr(family, one.name) for one in fields(family) if one.init}
-        return cls(**own, values=values)
+        kept = {entry.name: getattr(family, entry.name) for entry in fields(family) if entry.init}
+        return cls(**kept, values=values)
 
     def _at(self, place: int) -> tuple[GearedModel | None, int]:
         kept = self._kept.setdefault("values", {})
@@ -359,8 +359,8 @@ class TabulatedTrains(TrainFamily):
             made = super().__call__(self.values[place : place + 1, None])
             model: Any = made.models[0]
             kept[place] = (model, int(made.status[0]))
-        found: tuple[GearedModel | None, int] = kept[place]
-        return found
+        model_and_status: tuple[GearedModel | None, int] = kept[place]
+        return model_and_status
 
     def __call__(self, points: Floats) -> Models:
         models: list[GearedModel | None] = []

@@ -76,9 +76,11 @@ class AtCages:
         if motion.name == "diverged":
             none = np.full(len(train.state.assembly.bearings), np.nan)
             return AtCages(motion=motion, mesh_force=np.nan, bearing_force=none)
-        own = recorded(train, motion.state, periods)
-        rings = np.linalg.norm(own.bearing_force, axis=2).max(axis=0)
-        return AtCages(motion=motion, mesh_force=float(own.mesh_force.max()), bearing_force=rings)
+        record = recorded(train, motion.state, periods)
+        rings = np.linalg.norm(record.bearing_force, axis=2).max(axis=0)
+        return AtCages(
+            motion=motion, mesh_force=float(record.mesh_force.max()), bearing_force=rings
+        )
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -142,7 +144,7 @@ def _over_cages(train: MovingTrain, motion: Motion, periods: int) -> Iterator[At
     From the same start, of which no others apart by rounding are followed. Mesh and centres stay
     those of the drawn position.
     """
-    if not any(one.elements for one in train.model.bearings):
+    if not any(bearing.elements for bearing in train.model.bearings):
         return
     yield AtCages.of(train, motion, periods)
     search = replace(search_of(train.model.cycle), starts=1)
@@ -367,17 +369,17 @@ def _table(case: GearCase, found: Sequence[Sequence[Moved]]) -> Dataset:
 
 def _with_cages(data: Dataset, flat: Sequence[Moved]) -> Dataset:
     """Motion and greatest forces over (state, operating, cage), where a train has elements."""
-    if not any(one.cages for one in flat):
+    if not any(train.cages for train in flat):
         return data
     count = 1 + len(CAGES)
 
     def over(of: Callable[[AtCages], Any], none: Any) -> NDArray[Any]:
-        rows = [[of(at) for at in one.cages] or [none] * count for one in flat]
-        found = np.array(rows)
-        return found.reshape(*(data.sizes[name] for name in POINT), *found.shape[1:])
+        rows = [[of(at) for at in train.cages] or [none] * count for train in flat]
+        of_cages = np.array(rows)
+        return of_cages.reshape(*(data.sizes[name] for name in POINT), *of_cages.shape[1:])
 
     none = np.full(data.sizes["bearing"], np.nan)
-    found = label(
+    of_cages = label(
         {
             "cage_mesh_force": ((*POINT, "cage"), over(lambda at: at.mesh_force, np.nan)),
             "cage_bearing_force": ((*POINT, "cage", "bearing"),
@@ -386,7 +388,7 @@ def _with_cages(data: Dataset, flat: Sequence[Moved]) -> Dataset:
         {"cage": ("cage", np.array([0.0, *CAGES]))},
     )  # fmt: skip
     names = over(lambda at: at.motion.name, "")
-    return data.merge(found.assign(cage_label=((*POINT, "cage"), names)))
+    return data.merge(of_cages.assign(cage_label=((*POINT, "cage"), names)))
 
 
 def _of(flat: Sequence[Moved], of: Any) -> Floats:
@@ -456,26 +458,29 @@ def _told(found: Sequence[Sequence[Moved]]) -> list[Notice]:
     ]
 
 
-def _told_of_cages(found: Sequence[Moved]) -> list[Notice]:
+def _told_of_cages(trains: Sequence[Moved]) -> list[Notice]:
     """What other positions of the cages cost and change."""
-    if not found:
+    if not trains:
         return []
-    told, more = [], 0
-    for one in found:
-        own, *others = (at.motion for at in one.cages)
+    notices, more = [], 0
+    for train in trains:
+        drawn, *others = (at.motion for at in train.cages)
         more += sum(motion.discarded for motion in others)
-        forces = [float(at.bearing_force.max()) for at in one.cages]
+        forces = [float(at.bearing_force.max()) for at in train.cages]
         low, high = float(np.nanmin(forces)), float(np.nanmax(forces))
-        if any(motion.name != own.name for motion in others) or high > (1.0 + CAGE_SPREAD) * low:
-            told.append(
+        if any(motion.name != drawn.name for motion in others) or high > (1.0 + CAGE_SPREAD) * low:
+            notices.append(
                 Notice.of(
                     "train_cages_matter",
-                    about=one.state.state.words,
-                    speed=one.state.speed,
-                    label=own.name,
+                    about=train.state.state.words,
+                    speed=train.state.speed,
+                    label=drawn.name,
                     others=" and ".join(motion.name for motion in others),
                     low=low,
                     high=high,
                 )
             )
-    return [Notice.of("train_cages", differing=len(told), of=len(found), periods=more), *told]
+    return [
+        Notice.of("train_cages", differing=len(notices), of=len(trains), periods=more),
+        *notices,
+    ]

@@ -117,8 +117,8 @@ def _motion(
             progress("turns of the train", len(ends), max(LEAST_TURNS, LONGEST // turn))
             ends.append(engine.run(ends[-1]).state)
             back = range(1, min(LONGEST_CYCLE, len(ends) - 1) + 1)
-            apart = [float(np.abs((ends[-1] - ends[-1 - n]) / unit).max()) for n in back]
-            turns = next((n for n, size in zip(back, apart, strict=True) if size < CLOSE), 0)
+            distances = [float(np.abs((ends[-1] - ends[-1 - n]) / unit).max()) for n in back]
+            turns = next((n for n, size in zip(back, distances, strict=True) if size < CLOSE), 0)
         run = engine.run(ends[-1], max(turns, 1), samples=samples * turn)
     except ConvergenceError:
         return _still(rest, teeth, samples, "diverged")

@@ -154,7 +154,7 @@ def hot_or_cold(data: Dataset) -> Table:
 def summary(data: Dataset) -> str:
     """The smallest sizes that are seen hot, in a sentence for each question."""
     rows = [row for row in first_seen(data) if row["state"] == "hot"]
-    told = {
+    sizes = {
         question: "; ".join(
             row["seen"] + "".join(f" ({WORDS[name]})" for name in row["by"][:1])
             for row in rows
@@ -162,7 +162,7 @@ def summary(data: Dataset) -> str:
         )
         for question in names_of(data, "question")
     }
-    return " ".join(f"{question.capitalize()}, hot: {words}." for question, words in told.items())
+    return " ".join(f"{question.capitalize()}, hot: {words}." for question, words in sizes.items())
 
 
 # --- pictures -----------------------------------------------------------------------------------
@@ -211,8 +211,8 @@ def over_size(data: Dataset) -> Picture:
         )  # fmt: skip
         for state, (words, colour) in enumerate(STATES.items()):
             panel.band(x, low=low[0, state], high=high[0, state], colour=colour, opacity=0.2)
-            told = words * (not panels)
-            panel.curve(x, share[0, state], colour=colour, marker="circle", label=told)
+            label = words * (not panels)
+            panel.curve(x, share[0, state], colour=colour, marker="circle", label=label)
             panel.curve(x, share[1, state], colour=colour, marker="circle", dash=(4, 2))
         panels.append(panel)
     rows = [panels[first : first + 2] for first in range(0, len(panels), 2)]

@@ -126,7 +126,7 @@ def page(result: Result) -> Page:
 def summary(figures: dict[str, Any]) -> str:
     """The verdict on the last record in two or three sentences."""
     last = figures["verdicts"][-1]
-    own, healthy = last["unlike"]
+    value, healthy = last["unlike"]
     of = f"{last['above']} of {last['indicators']} indicators are above every healthy average"
     rest = {
         "no baseline": "No verdict: no indicator has a limit that holds for every machine. Give "
@@ -135,12 +135,12 @@ def summary(figures: dict[str, Any]) -> str:
         "much one assembly, or one day, differs from the next; give further ones.",
         "undecided": f"Undecided: {of}, and none is beyond what records of this baseline may "
         "scatter. Further healthy records narrow that.",
-        "another level": f"Undecided: its rms is {own:.2g} times that of the baseline, so that "
+        "another level": f"Undecided: its rms is {value:.2g} times that of the baseline, so that "
         "load, gain or noise are others. Give a baseline like it.",
-        "another speed": f"Undecided: it turns at {SPEED(own):.0f} rpm, the baseline at "
+        "another speed": f"Undecided: it turns at {SPEED(value):.0f} rpm, the baseline at "
         f"{SPEED(healthy):.0f} rpm, so that what differs is not the gears' alone. Give a baseline "
         "like it.",
-        "other gears": f"Undecided: its mesh line is order {own:.4g} of the shaft, that of the "
+        "other gears": f"Undecided: its mesh line is order {value:.4g} of the shaft, that of the "
         f"baseline order {healthy:.4g}: other gears, or the tacho on another shaft. Give a "
         "baseline of this machine.",
         "no change": "No change: no indicator is above every healthy average.",

@@ -49,8 +49,8 @@ def _turns(curve: Row) -> list[str]:
 def _meets(curve: Row) -> list[str]:
     """What a grazing meets on its way, in both parameters."""
     return [
-        f"{one['what']}: {shown(one, 6)} at {shown(one, 6, SECOND)}"
-        for one in curve.get("meets", ())
+        f"{event['what']}: {shown(event, 6)} at {shown(event, 6, SECOND)}"
+        for event in curve.get("meets", ())
     ]
 
 
@@ -149,11 +149,13 @@ def curve_tables(kind: str, groups: Groups) -> dict[str, str]:
     parts: dict[str, list[pd.DataFrame]] = {}
     for name, data in groups.items():
         file = "plane" if name.startswith("curve_") else kind
-        own = {k: data.attrs[k] for k in ("kind", "period") if k in data.attrs}
+        attributes = {k: data.attrs[k] for k in ("kind", "period") if k in data.attrs}
         for (axis, *more), frame in frames(data).items():
             if not more and axis not in ("multiplier", "coordinate"):
-                columns = [*own, *frame.columns.drop(axis, errors="ignore")]
-                parts.setdefault(f"{file}_{axis}.csv", []).append(frame.assign(**own)[columns])
+                columns = [*attributes, *frame.columns.drop(axis, errors="ignore")]
+                parts.setdefault(f"{file}_{axis}.csv", []).append(
+                    frame.assign(**attributes)[columns]
+                )
     return {file: csv_text(pd.concat(each)) for file, each in parts.items()}
 
 
@@ -205,8 +207,8 @@ def _headline(kind: str, summary: Summary) -> str:
             f"the sum of both exponents is {summary['sum']:.6g}."
         )
     events, legs = len(summary["bifurcations"]), len(summary["branches"])
-    told = f"{events} bifurcation{'s' * (events != 1)} on {legs} branch{'es' * (legs != 1)}."
-    return f"{told} {plane_headline(summary)}".strip()
+    counts = f"{events} bifurcation{'s' * (events != 1)} on {legs} branch{'es' * (legs != 1)}."
+    return f"{counts} {plane_headline(summary)}".strip()
 
 
 def _orbit_tables(summary: Summary) -> list[Block]:

@@ -210,15 +210,15 @@ def _tables(data: Dataset) -> list[Table]:
     caption = "The bearings in motion; a clearance below zero is a preload, a spring has none."
     flanks = rows_along(labelled(data), "state", "operating")
     rings = rows_along(data, "state", "operating", "bearing")
-    found = [
+    tables = [
         declared("Flanks of the drive train.", FLANKS, flanks, names=3),
         declared(caption, columns, rings, names=3),
     ]
     if "cage_label" in data:
         hardest = data.assign(cage_bearing_force=data["cage_bearing_force"].max("bearing"))
         cages = rows_along(hardest, "state", "operating", "cage")
-        found.append(declared(CAGE_WORDS, OF_CAGES, cages, names=3))
-    return found
+        tables.append(declared(CAGE_WORDS, OF_CAGES, cages, names=3))
+    return tables
 
 
 def told(result: Result) -> list[Table]:

@@ -115,14 +115,14 @@ def _teeth(data: Dataset, state: str) -> Panel:
 def draw_borders(panel: Panel, data: Dataset, flanks: bool) -> None:
     """The borders of contact loss that were followed: of ``flanks``, else of bearings."""
     state = int(data["state"]) if "state" in data.coords and not data["state"].ndim else 0
-    one, two = (str(name) for name in data["label"].dims[-2:])
+    first, second = (str(name) for name in data["label"].dims[-2:])
     bearings = named(data, "bearing") if "bearing" in data.coords else []
     for row in range(data.sizes.get("border", 0)):
         contact = int(data["border_contact"][row])
         if int(data["border_state"][row]) == state and (contact < FIRST_BEARING) == flanks:
             place = BORDERS[min(contact, FIRST_BEARING)]
             panel.curve(
-                shown(one, data["border_first"][row]), shown(two, data["border_second"][row]),
+                shown(first, data["border_first"][row]), shown(second, data["border_second"][row]),
                 colour=INK, dash=place, width=1.4, order=3.0,
                 label=f"border: {contact_name(contact, bearings)}",
             )  # fmt: skip
