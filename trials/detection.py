@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from thermogear import load_case
@@ -119,7 +120,6 @@ def integrated(plan: DetectionPlan, parts: list[tuple[object, ...]]) -> Floats:
     hot, point = plan._scenes[0, 0, 0]
     mesh = series_mesh(hot, parts, plan.turn)  # type: ignore[arg-type]
     mass, force = float(point.equivalent_mass[0]), float(point.mean_force[0])
-    count = plan.turn * STEPS
     period = 2.0 * np.pi / float(point.mesh_frequency[0])
     k, bend = (
         _resampled(curve, plan, order, period)
@@ -127,30 +127,43 @@ def integrated(plan: DetectionPlan, parts: list[tuple[object, ...]]) -> Floats:
     )
     b = mesh.half_backlash.mean(axis=1)
     damping = 2.0 * float(point.damping_ratio[0]) * np.sqrt(mesh.stiffness.mean(axis=1) * mass)
-    h = period / STEPS
-    x, v = b + force / k[0], np.zeros(len(b))
-    out = np.empty((plan.turn * SAMPLES, len(b)))
+    return _last_turn(k, bend, b, force, damping, mass, period / STEPS, plan.turn * SAMPLES)
 
-    def pull(at: int, x: Floats, v: Floats) -> Floats:
-        spring = k[at] * (x - np.clip(x, -b, b))
-        return np.asarray((force - damping * v - spring) / mass)
 
-    for step in range(TURNS * count):
-        here = 2 * (step % count)
-        mid, after = here + 1, (here + 2) % (2 * count)
-        a0 = pull(here, x, v)
-        if step >= (TURNS - 1) * count and (step * SAMPLES) % STEPS == 0:
-            out[(step - (TURNS - 1) * count) * SAMPLES // STEPS] = a0
-        f1 = a0 - bend[here]
-        v2 = v + 0.5 * h * f1
-        f2 = pull(mid, x + 0.5 * h * v, v2) - bend[mid]
-        v3 = v + 0.5 * h * f2
-        f3 = pull(mid, x + 0.5 * h * v2, v3) - bend[mid]
-        v4 = v + h * f3
-        f4 = pull(after, x + h * v3, v4) - bend[after]
-        x = x + h / 6.0 * (v + 2.0 * v2 + 2.0 * v3 + v4)
-        v = v + h / 6.0 * (f1 + 2.0 * f2 + 2.0 * f3 + f4)
-    return out.T
+@njit
+def _last_turn(
+    k: Floats, bend: Floats, b: Floats, force: float, damping: Floats, mass: float, h: float,
+    samples: int,
+) -> Floats:  # fmt: skip
+    """Pull on the mass [m/s^2] (part, sample) over the last of the turns, by classic Runge-Kutta.
+
+    ``k`` and ``bend`` at half steps (half step, part), ``h`` the step [s].
+    """
+    count = len(k) // 2
+    out = np.empty((len(b), samples))
+    for part in range(len(b)):
+        half, c = b[part], damping[part]
+        x, v = half + force / k[0, part], 0.0
+        for step in range(TURNS * count):
+            here = 2 * (step % count)
+            mid, after = here + 1, (here + 2) % (2 * count)
+            a0 = (force - c * v - k[here, part] * (x - min(max(x, -half), half))) / mass
+            f1 = a0 - bend[here, part]
+            x2, v2 = x + 0.5 * h * v, v + 0.5 * h * f1
+            f2 = (force - c * v2 - k[mid, part] * (x2 - min(max(x2, -half), half))) / mass
+            f2 -= bend[mid, part]
+            x3, v3 = x + 0.5 * h * v2, v + 0.5 * h * f2
+            f3 = (force - c * v3 - k[mid, part] * (x3 - min(max(x3, -half), half))) / mass
+            f3 -= bend[mid, part]
+            x4, v4 = x + h * v3, v + h * f3
+            f4 = (force - c * v4 - k[after, part] * (x4 - min(max(x4, -half), half))) / mass
+            f4 -= bend[after, part]
+            place = step - (TURNS - 1) * count
+            if place >= 0 and (place * samples) % count == 0:
+                out[part, place * samples // count] = a0
+            x += h / 6.0 * (v + 2.0 * v2 + 2.0 * v3 + v4)
+            v += h / 6.0 * (f1 + 2.0 * f2 + 2.0 * f3 + f4)
+    return out
 
 
 def _resampled(curve: Floats, plan: DetectionPlan, order: int, period: float) -> Floats:
