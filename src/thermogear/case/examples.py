@@ -15,6 +15,8 @@ EXAMPLES = {
     "bgu-17-38": "17:38, lightly loaded: rattle, records of a rig with public code",
     "bgu-18-35": "18:35, lightly loaded: the same rig, wider gears",
     "loaded-27-35": "27:35 at 80 kW: tip relief, heavy load",
+    "rig-50-50": "50:50 of the rig whose measured pairs jump: ratios to hold against its curves",
+    "fe-17-43": "17:43 of module 1 mm: teeth that another code solved by finite elements",
     "pom-steel": "POM on steel, 20:20: plastic that grows and softens as it warms",
     "motor-train": "motor, two shafts, four ball bearings, 23:47: critical speeds, bearings",
     "table-4.2": "the dimensionless rows of the thesis's table 4.2",
