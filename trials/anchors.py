@@ -374,7 +374,7 @@ def page(groups: dict[str, list[Anchor]], ahead: list[Jumps]) -> str:
     parts = [
         "# What others measured or computed, beside ours",
         "",
-        "Made by `make trial NAME=anchors`; `tests/checks/test_trial_anchors.py` holds a part of it. "
+        "Made by `make trial NAME=anchors`; `tests/checks/test_trial_anchors.py` holds a part. "
         "Each group names its source and what decides the difference. No measured response curve "
         "of a spur gear stands in public with all its parameters: the speed-dependent part is held "
         "to an equation with published parameters, and the rest to statics.",

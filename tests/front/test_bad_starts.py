@@ -57,20 +57,14 @@ STARTS: dict[str, tuple[str, str, str]] = {
         f"line 2: gears.module: got '.125\"'; {NARROW}; a module in inches; in inches gears are "
         'named by the diametral pitch, here 8 1/in; write the metric module "3.175 mm"',
     ),
-    "a diametral pitch as module": (
-        '"3 mm"', '"8 DP"',
-        f"line 2: gears.module: got '8 DP'; {NARROW}; a diametral pitch, no module; "
-        'write the metric module "3.175 mm"',
-    ),
-    "a diametral pitch in its unit": (
-        '"3 mm"', '"10 1/in"',
-        f"line 2: gears.module: got '10 1/in'; {NARROW}; a diametral pitch, no module; "
-        'write the metric module "2.54 mm"',
+    "a diametral pitch of nothing": (
+        '"3 mm"', '"0.1 1/in"',
+        f"line 2: gears.module: got '254 mm'; {NARROW}; write for instance \"5 mm\"",
     ),
     "a diametral pitch by name": (
         'module = "3 mm"', "diametral_pitch = 8",
-        "line 2: gears.diametral_pitch: got a diametral pitch; gears are named by the metric "
-        "module; write module, 25.4 mm over the diametral pitch",
+        "line 2: gears.diametral_pitch: got a diametral pitch; the field is module; "
+        'write module = "8 1/in" for a diametral pitch of 8',
     ),
     "a text without unit": (
         '"3 mm"', '"3"',

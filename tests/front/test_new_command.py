@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import pty
 import sys
@@ -178,6 +179,15 @@ def test_an_existing_file_is_left_as_it_is(
     (line,) = capsys.readouterr().err.splitlines()
     assert "mine.toml" in line
     assert path.read_text(encoding="utf-8") == "kept\n"
+
+
+@pytest.mark.parametrize("pitch", ["8 1/in", "8 DP"])
+def test_a_pair_by_its_diametral_pitch(pitch: str, tmp_path: Path) -> None:
+    """28 teeth of 8 to the inch: a pitch circle of 3.5 in, and so a centre distance."""
+    given = {**NEEDED, "--module": [pitch], "--teeth": ["28", "28"], "--pressure-angle": ["25 deg"]}
+    pair = written(tmp_path / "inch.toml", given)[1].pair
+    assert pair.centre_distance == pytest.approx(3.5 * 25.4e-3, rel=1e-12)
+    assert pair.pinion.pressure_angle == pytest.approx(math.radians(25.0), rel=1e-15)
 
 
 @pytest.mark.parametrize(

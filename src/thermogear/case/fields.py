@@ -162,24 +162,25 @@ def measure(kind: str, allowed: Bounds, why: str | None = None, example: str = "
 
 
 class Module(Measure):
-    """A metric module: inches mean a diametral pitch as often as a module, and are refused."""
+    """A module by its length, or by its diametral pitch: "8 1/in" is 25.4 mm/8.
+
+    A module in inches is refused: so many inches mean a diametral pitch as often.
+    """
 
     def read(self, raw: object) -> float:
         inches = _INCHES.fullmatch(raw) if isinstance(raw, str) else None
         number = float(inches["number"]) if inches else 0.0
         if inches is None or not number:
             return super().read(raw)
-        pitch = inches["unit"].lower() in ("dp", "1/in", "1/inch")
-        metric = 25.4 / number if pitch else 25.4 * number
+        if inches["unit"].lower() in ("dp", "1/in", "1/inch"):
+            return super().read(f"{25.4 / number:.15g} mm")
         raise InputError(
             "",
             short(raw),
             allowed=self.allowed,
-            why="a diametral pitch, no module"
-            if pitch
-            else "a module in inches; in inches gears "
+            why="a module in inches; in inches gears "
             f"are named by the diametral pitch, here {1.0 / number:.4g} 1/in",
-            fix=f'write the metric module "{metric:.6g} mm"',
+            fix=f'write the metric module "{25.4 * number:.6g} mm"',
         )
 
 

@@ -36,6 +36,7 @@ class NewCase:
     speed: str
     torque: str
     title: str | None = None
+    pressure_angle: str | None = None
     profile_shift: tuple[float, float] | None = None
     centre_distance: str | None = None
     tip_rounding: str | None = None
@@ -74,6 +75,7 @@ class NewCase:
     def _lines(self) -> list[str]:
         gears = (
             line("module", self.module),
+            line("pressure_angle", self.pressure_angle),
             line("face_width", self.face_width),
             line("centre_distance", self.centre_distance, "left out: the mesh without backlash"),
         )

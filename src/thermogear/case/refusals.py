@@ -142,8 +142,8 @@ def _unknown_key(location: tuple[int | str, ...], field: str, file: type[BaseMod
         return InputError(
             field,
             "a diametral pitch",
-            why="gears are named by the metric module",
-            fix="write module, 25.4 mm over the diametral pitch",
+            why="the field is module",
+            fix='write module = "8 1/in" for a diametral pitch of 8',
         )
     table = table_at(file, location[:-1])
     # what is excluded is not written by hand

@@ -24,10 +24,11 @@ NEEDED = {
 
 @click.command()
 @click.option("--teeth", nargs=2, type=int, metavar="Z1 Z2", help="Teeth of pinion and wheel.")
-@click.option("--module", metavar="LENGTH", help='Module: "3 mm".')
+@click.option("--module", metavar="LENGTH", help='Module: "3 mm", or "8 1/in".')
 @click.option("--face-width", metavar="LENGTH", help="Face width of both gears.")
 @click.option("--torque", metavar="TORQUE", help='Torque at the pinion: "80 N m".')
 @click.option("--speed", metavar="SPEED", help='Speed of the pinion: "3000 rpm".')
+@click.option("--pressure-angle", metavar="ANGLE", help='"25 deg"; 20 deg if left out.')
 @click.option("--title", metavar="TEXT", help="Title of the page.")
 @click.option(
     "--profile-shift", nargs=2, type=float, metavar="X1 X2", help="Profile shifts, in modules; 0."
