@@ -1,9 +1,9 @@
 """Every friction law against measured losses and body temperatures of gears.
 
 ``make trial NAME=friction_evidence`` computes each case of trials/friction_cases.toml with each
-law and
-writes trials/records/friction_evidence.md with its picture;
-``python trials/friction_evidence.py --print`` prints the page and writes nothing. The cases were written down before any law was compared.
+law and writes trials/records/friction_evidence.md with its picture;
+``python trials/friction_evidence.py --print`` prints the page and writes nothing. The cases were
+written down before any law was compared.
 """
 
 from __future__ import annotations
