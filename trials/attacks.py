@@ -425,8 +425,8 @@ def attempts() -> list[Attempt]:
 HEAD = """# What a stranger may try with the app
 
 Made by `make trial NAME=attacks`: every attempt at a real server, `thermogear app rig`. The tests
-run the same list. {count} attempts, {bad} of them with another answer than expected. What the rules
-are, and what is left to you: [The app and strangers](../../docs/howto/app_security.md).
+run the same list. {count} attempts, {bad} of them with another answer than expected. What is
+left to you: [What a stranger may try](../../docs/howto/app.md#what-a-stranger-may-try).
 
 | attempt | expected | got |
 |---|---|---|
