@@ -88,7 +88,7 @@ licences: $(STAMP)  ## licence of every locked package; fails on GPL, AGPL or un
 sbom: $(AUDIT_STAMP)  ## CycloneDX bill of materials: dist/sbom.json
 	$(BIN)/python checks/supply.py sbom
 
-lowest: $(STAMP)  ## demo and quick tests with the lowest and the newest allowed libraries, half an hour; docs/bounds.md
+lowest: $(STAMP)  ## demo and quick tests with the lowest and the newest allowed libraries, half an hour; checks/records/bounds.md
 	$(BIN)/python checks/bounds.py
 
 audit: $(AUDIT_STAMP)  ## known vulnerabilities of the lock; needs the network
@@ -118,7 +118,7 @@ $(AUDIT_STAMP): $(STAMP) requirements/audit.txt
 same: $(STAMP)  ## do all commands still store the same numbers? SAME="HEAD~1 --only run" for another commit, some cases
 	@$(BIN)/python checks/same.py $(SAME)
 
-trial: $(STAMP)  ## long evidence, NAME=pairs; without it the list; ARGS="..." is passed on; most write a page docs/trial_NAME.md
+trial: $(STAMP)  ## long evidence, NAME=pairs; without it the list; ARGS="..." is passed on; most write a page trials/records/NAME.md
 	@OPENBLAS_NUM_THREADS=1 $(BIN)/python trials $(NAME) $(ARGS)
 
 house: $(STAMP)  ## docs/house.md anew: sizes, imports between floors, public names

@@ -1,7 +1,7 @@
 """What ``thermogear measure`` costs: one record by its length, stage by stage, a folder.
 
     python bench/measured.py            printed
-    python bench/measured.py --write    docs/measure_cost.md anew
+    python bench/measured.py --write    bench/records/measure_cost.md anew
 
 Processor seconds of the whole command, start included, and the most memory that one process
 held; the machine's clock is shown for the folder alone.
@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 
 ROOT = Path(__file__).parents[1]
-PAGE = ROOT / "docs" / "measure_cost.md"
+PAGE = ROOT / "bench" / "records" / "measure_cost.md"
 LENGTHS = (10_000, 100_000, 1_000_000, 2_000_000)
 RECORDS, LENGTH = 100, 100_000
 STAGES = {
@@ -110,7 +110,7 @@ def stages(path: Path) -> dict[str, float]:
 def page() -> str:
     """The tables."""
     lines = [
-        "---", "orphan: true", "---", "# What `measure` costs", "",
+        "# What `measure` costs", "",
         "Made by `make bench NAME=measured`: drawn drive trains of two channels, "
         "whole commands with",
         f"their start; {platform.python_implementation()} {platform.python_version()}, numpy "

@@ -2,7 +2,7 @@
 
 python bench/paths.py                 this tree beside the reference, both sides in one run
 python bench/paths.py --only orbit    some rows
-python bench/paths.py --write         and put the table into docs/paths.md
+python bench/paths.py --write         and put the table into bench/records/paths.md
 
 Each row is a piece of Python that prepares itself once and then runs a few times; counted is
 processor time on one thread, the median of the rounds, the two trees in turn. The reference is
@@ -27,7 +27,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 REFERENCE = "1cfadf5"
-PAGE = ROOT / "docs" / "paths.md"
+PAGE = ROOT / "bench" / "records" / "paths.md"
 
 HEAD = """
 import json, time, warnings, sys

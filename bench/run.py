@@ -1,4 +1,4 @@
-"""Run every benchmark and write docs/benchmarks.md and bench/results.json.
+"""Run every benchmark and write bench/records/benchmarks.md and bench/results.json.
 
 make bench                 the full run
 make bench ARGS=--quick   few points, to see that everything works
@@ -294,7 +294,7 @@ def three(values: list[float], digits: int = 3) -> str:
 
 
 def page(found: dict[str, Any]) -> str:
-    """docs/benchmarks.md."""
+    """bench/records/benchmarks.md."""
     from peers import EXACT, LANES
 
     speed = found["rates"]
@@ -479,7 +479,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true", help="few points, to see that it works")
     parser.add_argument("--rounds", type=int, default=7)
-    parser.add_argument("--output", type=Path, default=ROOT / "docs" / "benchmarks.md")
+    parser.add_argument("--output", type=Path, default=ROOT / "bench" / "records" / "benchmarks.md")
     arguments = parser.parse_args()
     quick = arguments.quick
     rounds = 2 if quick else arguments.rounds

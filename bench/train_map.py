@@ -1,7 +1,7 @@
 """A drive train's map on one thread and on two: ``make bench NAME=train_map``.
 
-Prints the table of docs/train_map.md and writes it with ``--write``. ``--grid 6x4`` takes another
-grid than 64 speeds by 24 gear temperatures. Every way computes the whole map anew, into
+Prints the table of bench/records/train_map.md and writes it with ``--write``. ``--grid 6x4`` takes
+another grid than 64 speeds by 24 gear temperatures. Every way computes the whole map anew, into
 a store of its own.
 """
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from thermogear.analysis.maps import MapPlan
 
-PAGE = Path(__file__).parents[1] / "docs" / "train_map.md"
+PAGE = Path(__file__).parents[1] / "bench" / "records" / "train_map.md"
 GRID = (64, 24)
 COORDINATES = 13
 CASE = """
@@ -142,11 +142,11 @@ def _threaded(made: MapPlan, store: Path, count: int) -> Callable[[], xr.Dataset
 
 
 def page(grid: tuple[int, int], rows: list[str]) -> str:
-    """docs/train_map.md."""
+    """bench/records/train_map.md."""
     cores = os.cpu_count()
     return "\n".join(
         [
-            "---", "orphan: true", "---",
+
             "# A map of a drive train on threads", "",
             f"Made by `make bench NAME=train_map`: a map of {grid[0]} speeds (1000 to 6000 rpm) by "
             f"{grid[1]} gear temperatures",

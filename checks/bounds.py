@@ -3,8 +3,8 @@
 ``make lowest`` installs the package with all its extras twice, each in an environment of its own
 below .bounds-venv: every direct dependency at its declared minimum, and the newest that the
 declaration allows. In both it runs a case from its file to a report and quick
-tests of each floor, and writes docs/bounds.md. ``python checks/bounds.py 3.12 3.13`` tries these
-versions of Python with the newest libraries instead, and prints the table.
+tests of each floor, and writes checks/records/bounds.md. ``python checks/bounds.py 3.12 3.13``
+tries these versions of Python with the newest libraries instead, and prints the table.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 PLACE = ROOT / ".bounds-venv"
-PAGE = ROOT / "docs" / "bounds.md"
+PAGE = ROOT / "checks" / "records" / "bounds.md"
 UV = ROOT / ".venv" / "bin" / "uv"
 EXTRAS = ("measure", "sensitivity", "app", "cad")
 TOOLS = ("pytest", "pytest-xdist", "hypothesis", "axe-core-python")
@@ -131,7 +131,7 @@ def main(pythons: list[str]) -> int:
     rows = table(every)
     print("\n".join(rows))
     if not pythons:
-        head = ["---", "orphan: true", "---", "# Declared bounds", ""]
+        head = ["# Declared bounds", ""]
         head += ["Made by `make lowest`: every direct dependency at its declared minimum, and the"]
         head += ["newest that the declaration allows, with all extras, on Linux.", ""]
         PAGE.write_text("\n".join([*head, *rows, ""]), "utf-8")

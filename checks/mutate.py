@@ -1,6 +1,6 @@
 """Mutation testing of the physics: does a changed formula fail a test?
 
-make mutate                                          the sample of docs/mutation.md
+make mutate                                          the sample of checks/records/mutation.md
 make mutate MUTATE="--seed 2 --only heat"            another sample, of one floor or one file
 make mutate MUTATE=--all                             every mutant of every place (days)
 

@@ -1,4 +1,4 @@
-"""Counts of a mutation run: what is written to docs/mutation.json and docs/mutation.md."""
+"""Counts of a mutation run: docs/mutation.json and checks/records/mutation.md."""
 
 from __future__ import annotations
 
@@ -90,4 +90,5 @@ def write(name: str, verdicts: list[dict[str, Any]], asked: int) -> None:
                 f"- `{s['file'].removeprefix('src/thermogear/')}:{s['line']}` `{s['before']}` -> "
                 f"`{s['after']}`" for s in survivors
             ]  # fmt: skip
-    (ROOT / "docs" / "mutation.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    text = "\n".join(lines) + "\n"
+    (ROOT / "checks" / "records" / "mutation.md").write_text(text, encoding="utf-8")

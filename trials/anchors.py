@@ -1,6 +1,6 @@
 """Figures that others published or that follow in closed form, each beside what we compute.
 
-``make trial NAME=anchors`` computes them and writes docs/anchors.md; ``python trials/anchors.py``
+``make trial NAME=anchors`` computes them and writes trials/records/anchors.md; ``python trials/anchors.py``
 prints the table alone. Nothing here is drawn at random and nothing is fitted.
 """
 
@@ -40,7 +40,7 @@ from thermogear.gears.mesh_system import LoadedModel
 from thermogear.gears.tooth_table import tooth_table
 
 Floats = NDArray[np.float64]
-PAGE = Path(__file__).parents[1] / "docs" / "anchors.md"
+PAGE = Path(__file__).parents[1] / "trials" / "records" / "anchors.md"
 STEEL = replace(MATERIALS["steel"], youngs_modulus=206e9, poisson_ratio=0.3)
 """Of the published elements; the other anchors take the steel of our list."""
 ELEMENTS_SOURCE = (
@@ -370,7 +370,7 @@ def prediction(rows: list[Jumps]) -> list[str]:
 
 
 def page(groups: dict[str, list[Anchor]], ahead: list[Jumps]) -> str:
-    """docs/anchors.md."""
+    """The page of the record."""
     parts = [
         "# What others measured or computed, beside ours",
         "",

@@ -2,7 +2,7 @@
 
 ``make trial NAME=answers`` puts 300 case files (seed fixed before the first run) through the
 answers
-and 60 of them through a run, and writes docs/trial_answers.md; ``python trials/answers.py 20
+and 60 of them through a run, and writes trials/records/answers.md; ``python trials/answers.py 20
 4`` prints a short one.
 
 :func:`contradictions` reads a result as its reader does. Every number of a sentence is a figure of
@@ -38,7 +38,7 @@ from thermogear.results.result import Result
 from thermogear.views.write import page_of
 
 SEED = 19_2026
-PAGE = Path(__file__).parents[1] / "docs" / "trial_answers.md"
+PAGE = Path(__file__).parents[1] / "trials" / "records" / "answers.md"
 GRID = "[grid]\npath_positions = 41\nmesh_positions = 48\nharmonics = 12\n"
 """Sentences do not know how fine a mesh is."""
 NUMBER = re.compile(r"(?<![\w.^])[-−+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w.]*\d)")
@@ -348,10 +348,7 @@ def answered(number: int, whole: bool = False, seed: int = SEED) -> Found:
     return found
 
 
-HEAD = f"""---
-orphan: true
----
-# Trial of the answers
+HEAD = f"""# Trial of the answers
 
 
 Made by `make trial NAME=answers` (seed {SEED}, fixed before the first run), which takes 300 cases
@@ -387,7 +384,7 @@ def trial(whole: bool, wanted: int) -> Iterator[Found]:
 
 
 def page(rows: Sequence[str]) -> str:
-    """The text of docs/trial_answers.md."""
+    """The text of trials/records/answers.md."""
     return "\n".join([HEAD, "| what | times |", "|---|---:|", *rows, ""])
 
 

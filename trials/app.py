@@ -2,7 +2,7 @@
 
 ``python trials/app.py`` (``make trial NAME=app``) starts the app on the rig, answers three
 questions by mouse and one by keyboard alone in a real browser, times moves beside the same
-answers by commands, and writes docs/trial_app.md with the pictures of docs/howto/app.md.
+answers by commands, and writes trials/records/app.md with the pictures of docs/howto/app.md.
 """
 
 from __future__ import annotations
@@ -246,7 +246,7 @@ def page_text(
     """The page of what was seen."""
     shown = {name: f"{middle:.0f} ({worst:.0f})" for name, (middle, worst) in times.items()}
     return "\n".join((
-        "---", "orphan: true", "---", "# The app walked through", "",
+        "# The app walked through", "",
         "Made by `make trial NAME=app`: the app on the rig in a real browser.", "",
         "| question | by | actions | which | what the page says |",
         "|---|---|---:|---|---|",
@@ -303,7 +303,7 @@ def main() -> int:
         one,
         rest,
     )
-    (DOCS / "trial_app.md").write_text(text, "utf-8")
+    (ROOT / "trials" / "records" / "app.md").write_text(text, "utf-8")
     print(text)
     return 0
 

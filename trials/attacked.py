@@ -19,7 +19,7 @@ from typing import Any
 from websockets.sync.client import ClientConnection, connect
 
 ROOT = Path(__file__).parents[1]
-PAGE = ROOT / "docs" / "trial_attacks.md"
+PAGE = ROOT / "trials" / "records" / "attacks.md"
 SERVED = ("/", "/app.js", "/app.css", "/schema.json", "/icon.svg")
 PATIENCE = 60.0
 """Seconds for an answer; a server that compiles its kernels first needs some."""

@@ -1,4 +1,4 @@
-"""What a stranger may try with the local app, each attempt at a real server: docs/trial_attacks.md.
+"""What a stranger may try with the app, each attempt at a real server: trials/records/attacks.md.
 
     python trials/attacks.py            the page anew, half a minute
 
@@ -422,14 +422,11 @@ def attempts() -> list[Attempt]:
 
 # --- the page -------------------------------------------------------------------------------------
 
-HEAD = """---
-orphan: true
----
-# What a stranger may try with the app
+HEAD = """# What a stranger may try with the app
 
 Made by `make trial NAME=attacks`: every attempt at a real server, `thermogear app rig`. The tests
-run the same list. {count} attempts, {bad} of them with another answer than expected. What the rules
-are, and what is left to you: [The app and strangers](howto/app_security.md).
+run the same list. {count} attempts, {bad} of them with another answer than expected. What is
+left to you: [What a stranger may try](../../docs/howto/app.md#what-a-stranger-may-try).
 
 | attempt | expected | got |
 |---|---|---|

@@ -3,7 +3,7 @@
 ``make trial NAME=branches`` follows 60 branches (seed fixed before the first run) with
 :func:`continuation` and again with a plain walker of its own in steps ten times as short, and runs
 40 random gear pairs up and down in steps of 100 and of 12.5 rpm; it writes
-docs/trial_branches.md. ``python trials/branches.py 5 3`` prints a short one: 5 branches, 3
+trials/records/branches.md. ``python trials/branches.py 5 3`` prints a short one: 5 branches, 3
 pairs.
 """
 
@@ -32,7 +32,7 @@ Floats = NDArray[np.float64]
 Random = np.random.Generator
 
 SEED = 14_2026
-PAGE = Path(__file__).parents[1] / "docs" / "trial_branches.md"
+PAGE = Path(__file__).parents[1] / "trials" / "records" / "branches.md"
 SHORT_STEP = 0.005
 """Arclength of the plain walker; the continuation's longest is 0.05."""
 SHORTEST = 1e-6
@@ -396,14 +396,11 @@ def run_ups(count: int, found: Found) -> None:
 
 
 def page(found: Found) -> str:
-    """The table of docs/trial_branches.md."""
+    """The table of trials/records/branches.md."""
     beside: list[tuple[str, int]] = [
         (what, n) for what, n in sorted(found.counts.items()) if what not in NEVER
     ]
     lines = [
-        "---",
-        "orphan: true",
-        "---",
         "# Trial of branches and run-ups",
         "",
         f"Made by `make trial NAME=branches` (seed {SEED}). {found.counts['branches']} "

@@ -3,7 +3,7 @@
 ``make trial NAME=damage`` makes three netCDF files and two stores by the commands' own functions
 and damages them in 300 ways drawn beforehand (seed fixed before the first run): bytes, blocks, what
 numbers mean, files exchanged. After each the package's readers are asked, and for a store the
-command that made it is given again. It writes docs/trial_damage.md. ``python
+command that made it is given again. It writes trials/records/damage.md. ``python
 trials/damage.py 40`` prints a short one, ``... costs``
 measures the reading alone anew.
 """
@@ -45,7 +45,7 @@ from thermogear.views.write import save_results
 
 SEED = 14_2026
 COUNT = 300
-PAGE = Path(__file__).parents[1] / "docs" / "trial_damage.md"
+PAGE = Path(__file__).parents[1] / "trials" / "records" / "damage.md"
 BLOCK = 512
 REFUSED, SAME, TOLD, SILENT, BROKEN = (
     "refused in one line",

@@ -4,7 +4,7 @@
 tells the
 error of the mesh line's amplitude without the gate and with it, or that it is withheld, beside
 the stated interval. It also counts undamaged records of which anything is withheld: drawn ones and,
-where they are at hand, real ones. It writes docs/trial_defects.md; ``python trials/defects.py
+where they are at hand, real ones. It writes trials/records/defects.md; ``python trials/defects.py
 3`` prints a table of three records for each defect.
 """
 
@@ -33,7 +33,7 @@ SEED = 41_2026
 RECORDS = 12
 UNDAMAGED = 50
 """Undamaged records of each kind."""
-PAGE = Path(__file__).parents[1] / "docs" / "trial_defects.md"
+PAGE = Path(__file__).parents[1] / "trials" / "records" / "defects.md"
 REAL = Path(__file__).parents[2] / "shared" / "data"
 RATE, TEETH, COUNT = 2560.0, 25, 10240
 

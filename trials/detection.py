@@ -48,7 +48,7 @@ STEPS = 160
 TURNS = 3
 """Turns that are followed; the last is the record."""
 SAMPLES, BASELINE, BLOCK = 80, 59, 50
-PAGE = Path(__file__).parents[1] / "docs" / "trial_detection.md"
+PAGE = Path(__file__).parents[1] / "trials" / "records" / "detection.md"
 CASE = """
 [gears]
 module = "3 mm"

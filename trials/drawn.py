@@ -1,7 +1,7 @@
 """Sixty drawn records of gear trains through ``measure``: what is named, and what is named wrongly.
 
     python trials/drawn.py            printed
-    python trials/drawn.py --write    docs/trial_drawn.md anew
+    python trials/drawn.py --write    trials/records/drawn.md anew
 
 The generator shares no code with the package. Every record is read three times: without any fact,
 with the nominal speed of the first shaft alone, and with its teeth too (where the header's rate is
@@ -25,7 +25,7 @@ from thermogear.base.errors import InputError
 from thermogear.measured.record import Channel, Record
 from thermogear.measured.reduction import Measurement, measure
 
-PAGE = Path(__file__).parents[1] / "docs" / "trial_drawn.md"
+PAGE = Path(__file__).parents[1] / "trials" / "records" / "drawn.md"
 SEED = 20261128
 RATE, SECONDS = 10_240.0, 10.0
 KINDS = {
@@ -195,7 +195,7 @@ def page() -> str:
                 if one.wrong == 1.0:
                     count_lines(one, found, held, "all")
     columns = ("right", "undecided", "false", "refused", "contradiction told")
-    lines = ["---", "orphan: true", "---", "# Drawn records of gear trains", "",
+    lines = ["# Drawn records of gear trains", "",
              "Made by `python trials/drawn.py --write`: sixty records of a generator that",
              f"shares no code with the package (seed {SEED}), {SECONDS:g} s at {RATE:g} samples/s;",
              "the speed that is told is within 1.5 % of the true one. A planetary set's teeth, its",

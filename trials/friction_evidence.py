@@ -1,9 +1,9 @@
 """Every friction law against measured losses and body temperatures of gears.
 
 ``make trial NAME=friction_evidence`` computes each case of trials/friction_cases.toml with each
-law and
-writes docs/friction_evidence.md with its picture; ``python trials/friction_evidence.py --print``
-prints the page and writes nothing. The cases were written down before any law was compared.
+law and writes trials/records/friction_evidence.md with its picture;
+``python trials/friction_evidence.py --print`` prints the page and writes nothing. The cases were
+written down before any law was compared.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ Floats = NDArray[np.float64]
 
 ROOT = Path(__file__).parents[1]
 CASES = ROOT / "trials" / "friction_cases.toml"
-PAGE = ROOT / "docs" / "friction_evidence.md"
+PAGE = ROOT / "trials" / "records" / "friction_evidence.md"
 PICTURE = ROOT / "docs" / "pictures" / "friction-evidence.svg"
 WITHIN = 15.0
 """What a computed body temperature may lie off the measured one [K]."""
@@ -395,7 +395,7 @@ def page(
     found: Mapping[str, Sequence[Row]],
     deep: Mapping[str, Sequence[Row]],
 ) -> str:
-    """docs/friction_evidence.md."""
+    """trials/records/friction_evidence.md."""
     law = MeshModel.consistent().friction
     loop = [one for one in every if one.kind == "temperature"]
     at_oil = rows(table, every, law, f"{law}, film at the oil's temperature", inlet="oil")
@@ -413,9 +413,6 @@ def page(
         )
     ]
     lines = [
-        "---",
-        "orphan: true",
-        "---",
         "# Friction laws against measurements",
         "",
         f"Made by `make trial NAME=friction_evidence` from the {len(every)} cases of",
@@ -431,7 +428,7 @@ def page(
         f"| {shown(temperature[0], 1, 'K')} | {shown(temperature[1], 1, 'K')} |",
         f"| the same, half under oil | {shown(half[0], 1, 'K')} | {shown(half[1], 1, 'K')} |",
         "",
-        "![Computed against measured, by law](pictures/friction-evidence.svg)",
+        "![Computed against measured, by law](../../docs/pictures/friction-evidence.svg)",
         "",
         "| law | losses, worst | losses, mean | friction at 0.5 m/s | temperatures, worst "
         "| temperatures, mean | half under oil, worst | half under oil, mean |",

@@ -2,7 +2,7 @@
 
 ``make trial NAME=heat`` asks the ready-made rig at 30 speeds x 30 torques and 60 random pairs at 20
 points each (seed fixed before the first run), for two friction laws, and writes
-docs/trial_heat.md. ``python trials/heat.py 10`` prints one of 10 x 10 points.
+trials/records/heat.md. ``python trials/heat.py 10`` prints one of 10 x 10 points.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from thermogear.mesh.warm_up import Duty, warm_up
 Floats = NDArray[np.float64]
 
 SEED = 15_2026
-PAGE = Path(__file__).parents[1] / "docs" / "trial_heat.md"
+PAGE = Path(__file__).parents[1] / "trials" / "records" / "heat.md"
 LAWS = {"lambda-blend": "body", "benedict-kelley": "oil"}
 """Friction laws, each with what its film forms of."""
 SPEEDS, TORQUES = (500.0, 6000.0), (20.0, 500.0)
@@ -169,9 +169,6 @@ def page(rows: Sequence[tuple[str, Found]], side: int) -> str:
     """The page of the documentation."""
     several = [(name, *one) for name, found in rows for one in found.several]
     lines = [
-        "---",
-        "orphan: true",
-        "---",
         "# Trial of the heat balance",
         "",
         f"Made by `make trial NAME=heat` (seed {SEED}): the ready-made rig at {side} "

@@ -1,6 +1,6 @@
 """Mutated case files and records through the command line: what must never happen, counted.
 
-    python trials/hostile.py            docs/trial_hostile.md anew, an hour of processor
+    python trials/hostile.py            trials/records/hostile.md anew, an hour of processor
     python trials/hostile.py rig.mf4    the row of one kind anew, the others stay
     python trials/hostile.py 200        200 of each kind, printed
 
@@ -51,7 +51,7 @@ from hostile_records import (
 )
 
 ROOT = Path(__file__).parents[1]
-PAGE = ROOT / "docs" / "trial_hostile.md"
+PAGE = ROOT / "trials" / "records" / "hostile.md"
 SEED = 14
 CASES = "case files"
 COUNTS = {CASES: 5000}
@@ -455,11 +455,8 @@ def summed(outcomes: Iterator[Outcome]) -> dict[str, Sum]:
 
 
 def page(found: dict[str, Sum], kept: dict[str, str]) -> str:
-    """The table of docs/trial_hostile.md; ``kept`` rows of kinds that were not tried this time."""
+    """The table of trials/records/hostile.md; ``kept`` rows of kinds not tried this time."""
     lines = [
-        "---",
-        "orphan: true",
-        "---",
         "# Trial of mutated files",
         "",
         f"Made by `make trial NAME=hostile` (seed {SEED}): case files and records in "

@@ -3,7 +3,7 @@
 ``make trial NAME=intervals`` draws 500 records for each scenario (seed fixed before the first
 run), gives
 each to :func:`measure`, and counts how often the interval of the mesh line's amplitude, of its
-frequency and of the shaft speed holds the truth. It writes docs/trial_coverage.md;
+frequency and of the shaft speed holds the truth. It writes trials/records/coverage.md;
 ``python trials/intervals.py 40`` prints a table of 40 records each, with ``--write`` after it
 it writes the page.
 """
@@ -28,7 +28,7 @@ Random = np.random.Generator
 
 SEED = 31_2026
 RUNS = 500
-PAGE = Path(__file__).parents[1] / "docs" / "trial_coverage.md"
+PAGE = Path(__file__).parents[1] / "trials" / "records" / "coverage.md"
 TEETH = 25
 HARMONICS = ((1, 1.0), (2, 0.5))
 SIDES = ((1, 0.12), (2, 0.05))

@@ -5,7 +5,7 @@
 at a random moment of its usual time and given once more, until it was killed five times or ended by
 itself before; 25 kills a command. Everything below the directory it was started in is then
 compared with what the undisturbed run left, file by file, the directory for temporary files
-included; every seal must vouch for its file. Writes docs/trial_kills.md;
+included; every seal must vouch for its file. Writes trials/records/kills.md;
 ``python trials/kills.py 3 run`` kills one command three times and prints.
 """
 
@@ -32,7 +32,7 @@ SEED = 20_2026
 KILLS = 25
 ROW = 5
 """Kills of one folder before the command is left to end."""
-PAGE = Path(__file__).parents[1] / "docs" / "trial_kills.md"
+PAGE = Path(__file__).parents[1] / "trials" / "records" / "kills.md"
 SMALL = "--set grid.path_positions=41 --set grid.mesh_positions=48 --set grid.harmonics=12"
 COMMANDS = {
     "run": f"run rig {SMALL}",
@@ -221,7 +221,7 @@ def main(words: list[str]) -> int:
             print(json.dumps({"command": name, **vars(count)}), file=sys.stderr, flush=True)
     print("\n".join([*rows, "", *wrong]))
     if not words:
-        head = ["---", "orphan: true", "---", "# Trial of kills", ""]
+        head = ["# Trial of kills", ""]
         head += [
             f"Made by `make trial NAME=kills` (seed {SEED}). Each command is killed "
             "(SIGKILL, with its",

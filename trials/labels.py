@@ -3,7 +3,7 @@
 ``make trial NAME=labels`` draws until 2 000 motions lose contact (seed fixed before the first run),
 labels them, closes every labelled orbit anew by multiple shooting on an adaptive integrator, sends
 other starts beside each to see whether they end there too, follows every chaotic motion to 200 000
-periods, and writes docs/trial_labels.md. ``python trials/labels.py 50`` prints a short one.
+periods, and writes trials/records/labels.md. ``python trials/labels.py 50`` prints a short one.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ Floats = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
 SEED = 14_2026
-PAGE = Path(__file__).parents[1] / "docs" / "trial_labels.md"
+PAGE = Path(__file__).parents[1] / "trials" / "records" / "labels.md"
 RANGES = {
     "damping_ratio": (0.01, 0.15),
     "frequency": (0.3, 2.2),
@@ -330,7 +330,7 @@ def why(notes: Sequence[str]) -> Counter[str]:
 
 
 def page(count: int, asked: int, found: Found) -> str:
-    """The table of docs/trial_labels.md."""
+    """The table of trials/records/labels.md."""
     counts = found.counts
     periods = Counter({k: n for k, n in counts.items() if k.startswith("period-")})
     undecided = counts["undecided"]
@@ -342,9 +342,6 @@ def page(count: int, asked: int, found: Found) -> str:
         f"{name.replace('_', ' ')} {low:g} to {high:g}" for name, (low, high) in RANGES.items()
     ]
     lines = [
-        "---",
-        "orphan: true",
-        "---",
         "# Trial of labels",
         "",
         f"Made by `make trial NAME=labels` (seed {SEED}): {count} random motions that "

@@ -6,7 +6,7 @@ mesh frequency, in steps from one settled motion to the next, follows their peri
 :func:`continuation`, and asks of every located fold, period doubling and torus of a stable orbit
 whether the settled label changes between the two neighbouring values of the sweep. It then measures
 processor time of a settled motion, a closed orbit with multipliers and a located event for trains
-of 6, 12, 30 and 60 coordinates. It writes docs/trial_located.md;
+of 6, 12, 30 and 60 coordinates. It writes trials/records/located.md;
 ``python trials/located.py 2`` prints a short one.
 """
 
@@ -34,7 +34,7 @@ Floats = NDArray[np.float64]
 Random = np.random.Generator
 
 SEED = 22_2026
-PAGE = Path(__file__).parents[1] / "docs" / "trial_located.md"
+PAGE = Path(__file__).parents[1] / "trials" / "records" / "located.md"
 VALUES = 81
 """Values of the sweep."""
 SIZES = (6, 12, 30, 60)
@@ -197,10 +197,7 @@ def one_event(model: GearedModel, orbit: Orbit) -> tuple[float, Bifurcation] | N
     return (time.process_time() - begun, found[0]) if found else None
 
 
-HEAD = f"""---
-orphan: true
----
-# Random drive trains: located bifurcations against a fine sweep
+HEAD = f"""# Random drive trains: located bifurcations against a fine sweep
 
 
 Made by `make trial NAME=located`, seed {SEED}: {VALUES} settled values of the mesh frequency a

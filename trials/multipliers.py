@@ -5,7 +5,7 @@ settle on a
 periodic motion in which elements begin and cease to carry, in ten minutes at most, and takes the
 largest multiplier of each again by another integration: DOP853 of the equation with its variational
 equations to 1e-11 a step, its orbit found by Newton's rule with its own Jacobian. Nothing of the
-engine is in it. Writes docs/trial_multipliers.md; ``--count 4`` prints a short one.
+engine is in it. Writes trials/records/multipliers.md; ``--count 4`` prints a short one.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from thermogear.dynamics.geared_map import GearedMap
 
 Floats = NDArray[np.float64]
 
-PAGE = Path(__file__).parents[1] / "docs" / "trial_multipliers.md"
+PAGE = Path(__file__).parents[1] / "trials" / "records" / "multipliers.md"
 SEED = 29_2026
 COUNT = 40
 LONGEST = 600.0
@@ -152,7 +152,6 @@ def page(rows: Sequence[Compared]) -> list[str]:
     worst = max(rows, key=lambda row: row.away)
     drawn_of = rows[-1].number + 1
     lines = [
-        "---\norphan: true\n---",
         "# Trial of Floquet multipliers on rolling bearings",
         "",
         f"Made by `make trial NAME=multipliers` (seed {SEED}): {drawn_of} random drive trains, "

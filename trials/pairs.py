@@ -3,7 +3,7 @@
 ``make trial NAME=pairs`` draws until 2 000 pairs are valid (seed fixed before the first run),
 computes
 each cold and hot with deviations of every kind, designs a relief, moves it, exchanges and scales
-it, and writes docs/trial_pairs.md. ``python trials/pairs.py 50`` prints a short one.
+it, and writes trials/records/pairs.md. ``python trials/pairs.py 50`` prints a short one.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ Floats = NDArray[np.float64]
 Random = np.random.Generator
 
 SEED = 13_2026
-PAGE = Path(__file__).parents[1] / "docs" / "trial_pairs.md"
+PAGE = Path(__file__).parents[1] / "trials" / "records" / "pairs.md"
 POSITIONS = 2000
 STEP = 0.01
 NEAR = 3
@@ -424,7 +424,7 @@ def all_trials(drawn: Sequence[Drawn], workers: int = 2) -> Iterator[Found]:
 
 
 def page(count: int, refused: Counter[str], found: Sequence[Found], seconds: float) -> str:
-    """The table of docs/trial_pairs.md."""
+    """The table of trials/records/pairs.md."""
     counts: Counter[str] = sum((one.counts for one in found), Counter())
     worst: dict[str, float] = {}
     for one in found:
@@ -432,9 +432,6 @@ def page(count: int, refused: Counter[str], found: Sequence[Found], seconds: flo
             worst[what] = max(worst.get(what, 0.0), value)
     asked = count + refused.total()
     lines = [
-        "---",
-        "orphan: true",
-        "---",
         "# Trial of random pairs",
         "",
         f"Made by `make trial NAME=pairs` (seed {SEED}): {count} valid pairs of "

@@ -1,6 +1,6 @@
 """What ``thermogear measure`` says of public records, and what is known of them.
 
-    python trials/public.py [FOLDER]     docs/public_records.md anew
+    python trials/public.py [FOLDER]     trials/records/public_records.md anew
 
 FOLDER (default: ``shared/data`` beside this checkout) holds records, which are read there and never
 copied, with a ``README.md`` of what is known of them. Where it is missing the page stays.
@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).parents[1]
-PAGE = ROOT / "docs" / "public_records.md"
+PAGE = ROOT / "trials" / "records" / "public_records.md"
 FOLDER = ROOT.parent / "shared" / "data"
 SECONDS = 600
 _CLEAR = 0.5
@@ -160,9 +160,6 @@ def _strongest(lines: list[dict[str, Any]]) -> str:
 def page(folder: Path, found: Sequence[Said]) -> str:
     """The whole page."""
     lines = [
-        "---",
-        "orphan: true",
-        "---",
         "# Public records",
         "",
         "Made by `make trial NAME=public`: every record of a folder through "

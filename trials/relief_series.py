@@ -3,8 +3,8 @@
 ``make trial NAME=relief_series`` draws six gear pairs (seed fixed before the first run), designs
 the tip relief of each for two loads, and judges it by 64 parts that neither the design nor its own
 judgement has seen: the printed gain against theirs, the parts made worse, and the regret against
-the best of a grid, which is chosen on these parts themselves. Writes docs/trial_relief_series.md.
-``python trials/relief_series.py 2`` prints two of them.
+the best of a grid, which is chosen on these parts themselves. Writes
+trials/records/relief_series.md. ``python trials/relief_series.py 2`` prints two of them.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from thermogear.study.relief_series import Ground, PartErrors, drawn_periods, ra
 from thermogear.study.series import series_parts
 
 SEED = 56_2026
-PAGE = Path(__file__).parents[1] / "docs" / "trial_relief_series.md"
+PAGE = Path(__file__).parents[1] / "trials" / "records" / "relief_series.md"
 PAIRS, SEEN, PARTS = 6, 80, 64
 ERRORS, WORSE, REGRET = 2.0, 12, 0.01
 """Allowed: standard errors of the difference between two gains, parts made worse, mean regret."""

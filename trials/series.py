@@ -3,7 +3,7 @@
 ``make trial NAME=series`` draws ten gear pairs (seed fixed before the first run), asks `answers`
 for
 their series of 64 pairs, and draws 64 others of the same class: the share of these that the stated
-bands of 90 % hold, with its binomial interval, goes into docs/trial_series.md.
+bands of 90 % hold, with its binomial interval, goes into trials/records/series.md.
 ``python trials/series.py 2`` prints two of them.
 """
 
@@ -22,7 +22,7 @@ from thermogear import answers, load_case
 from thermogear.analysis.order_statistics import Estimate, proportion
 
 SEED = 54_2026
-PAGE = Path(__file__).parents[1] / "docs" / "trial_series.md"
+PAGE = Path(__file__).parents[1] / "trials" / "records" / "series.md"
 PAIRS, PARTS = 10, 64
 LEAST, MOST = 0.80, 0.97
 """Share of fresh pairs that a band of 90 % may hold: its ends and what is counted are of 64."""

@@ -1,7 +1,7 @@
 """Few turns of a shaft, a shaft that is not known: do stated intervals hold?
 
 ``make trial NAME=shafts`` draws records of each of SORTS (seed fixed before the first), gives
-each to :func:`measure` with the teeth of one gear, and writes docs/trial_shafts.md;
+each to :func:`measure` with the teeth of one gear, and writes trials/records/shafts.md;
 ``python trials/shafts.py 20`` prints a table of 20 of each.
 """
 
@@ -35,7 +35,7 @@ SORTS = (
     "known shaft, speed changes",
     "unknown slower mate, steady",
 )
-PAGE = Path(__file__).parents[1] / "docs" / "trial_shafts.md"
+PAGE = Path(__file__).parents[1] / "trials" / "records" / "shafts.md"
 RATE = 4_000.0
 SPANS = (1.5, 3.0, 4.0, 8.0, 24.0, 60.0)
 """Turns of the shaft, between which the table tells apart."""
@@ -215,10 +215,7 @@ def table(rows: list[Row]) -> list[str]:
     return [*lines, "", f"Seed {SEED}; {len(rows)} records; processor time {minutes:.0f} min."]
 
 
-HEAD = """---
-orphan: true
----
-# Few turns of a shaft, a shaft that is not known: do stated intervals hold?
+HEAD = """# Few turns of a shaft, a shaft that is not known: do stated intervals hold?
 
 Made by `make trial NAME=shafts` (`trials/shafts.py`). Each record is a gear's mesh line of 150 to
 700 Hz and its double, with two pairs of sidebands of 1 to 15 %, in noise of 0.3 to 30 %. Nothing

@@ -1,6 +1,6 @@
 """Sampling rates from rounded and jittering time stamps, on trial: do their intervals hold?
 
-    python trials/stamps.py             2 000 time columns, 120 records; docs/trial_stamps.md
+    python trials/stamps.py             2 000 time columns, 120 records; trials/records/stamps.md
     python trials/stamps.py 100 6       100 columns, 6 records, printed
     python trials/stamps.py 100 6 2027  of another seed, printed
 
@@ -28,7 +28,7 @@ Random = np.random.Generator
 SEED = 2026
 COLUMNS, RECORDS = 2000, 120
 MOST = 60_000  # stamps of a column
-PAGE = Path(__file__).parents[1] / "docs" / "trial_stamps.md"
+PAGE = Path(__file__).parents[1] / "trials" / "records" / "stamps.md"
 RATES = (1000.0, 2048.0, 4096.0, 5000.0, 12_800.0, 25_600.0, 44_100.0)
 DECIMALS = (2, 3, 4, 5, 6)
 

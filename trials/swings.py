@@ -2,7 +2,7 @@
 
 ``make trial NAME=swings`` draws 200 records whose speed swings, and 100 each of a small fast
 oscillation of the phase and of a load that oscillates (seed fixed before the first), gives each to
-:func:`measure` with its teeth, and writes docs/trial_swings.md;
+:func:`measure` with its teeth, and writes trials/records/swings.md;
 ``python trials/swings.py 20`` prints a table of 20 of each.
 """
 
@@ -26,7 +26,7 @@ SEED = 41_2026
 RUNS = (200, 100, 100)
 """Records of each of SORTS."""
 SORTS = ("speed", "phase", "load")
-PAGE = Path(__file__).parents[1] / "docs" / "trial_swings.md"
+PAGE = Path(__file__).parents[1] / "trials" / "records" / "swings.md"
 RATE = 5_000.0
 HEIGHTS = {1: 1.0, 2: 0.3}
 """Mesh line and its double."""

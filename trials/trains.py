@@ -7,8 +7,8 @@ Where rounding decides, two starts stand for the sixteen of the rule, for time. 
 changed is put to tests that say why. 40 other trains are labelled on one thread of the linear
 algebra and on two, and from starts beside (``train_rounding.py``). 40 labels are held against a
 long integration by another rule, which shares nothing with the engine. Writes
-docs/trial_trains.md; what is done is kept until the code changes, so that a stopped trial goes on.
-``--count 20`` prints a short one.
+trials/records/trains.md; what is done is kept until the code changes, so that a stopped trial goes
+on. ``--count 20`` prints a short one.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ Floats = NDArray[np.float64]
 Record = dict[str, Any]
 
 ROOT = Path(__file__).parents[1]
-PAGE = ROOT / "docs" / "trial_trains.md"
+PAGE = ROOT / "trials" / "records" / "trains.md"
 KEPT = ROOT / ".trial"
 COUNT, CHECKED = 200, 40
 FINER = Steps(accuracy=1e-11, longest=16, rungs=12)
@@ -462,7 +462,7 @@ def page(
     asked: int,
     rounding: dict[int, list[Record]] | None = None,
 ) -> str:
-    """The table of docs/trial_trains.md."""
+    """The table of trials/records/trains.md."""
     count = len(records)
     names = Counter(one["label"]["name"] for one in records)
     periods = sorted((n for n in names if n.startswith("period-")), key=lambda n: int(n[7:]))
@@ -477,9 +477,6 @@ def page(
     ran = "" if count == asked else f" **Only {count} of {asked} trains have run.**"
     wrong = {number: words for number, words in complaints.items() if words}
     lines = [
-        "---",
-        "orphan: true",
-        "---",
         "# Trial of drive trains",
         "",
         f"Made by `make trial NAME=trains` (seed {SEED}): {count} random drive trains "

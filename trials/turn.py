@@ -5,7 +5,7 @@ run), five of them with more than 500 mesh periods to a turn and three hunting p
 1500. Stiffness and error of the whole turn come from the loaded contact. The motion from rest goes
 to the event-exact maps with their label, and to Runge-Kutta steps of this file, in metres and
 seconds and in the total displacement, whose tables are its own inverse transforms. Dynamic factor
-and share of contact loss are compared, and docs/trial_turn.md is written.
+and share of contact loss are compared, and trials/records/turn.md is written.
 ``python trials/turn.py 3`` prints three short ones.
 """
 
@@ -32,7 +32,7 @@ from thermogear.mesh.excite import disc_inertia
 Floats = NDArray[np.float64]
 
 SEED = 53_2026
-PAGE = Path(__file__).parents[1] / "docs" / "trial_turn.md"
+PAGE = Path(__file__).parents[1] / "trials" / "records" / "turn.md"
 LENGTHS = ((1500, 2000), *[(1500, 2000)] * 2, (500, 1500), (500, 1500), *[(12, 500)] * 35)
 """Mesh periods of a turn, least and most, of each pair; the last are those of a short trial."""
 TEETH = (16, 60)

@@ -1,6 +1,6 @@
 """Runs whose speed changes, on trial: are order amplitudes within their stated intervals?
 
-    python trials/turning.py              20 draws of each kind; docs/trial_turning.md
+    python trials/turning.py              20 draws of each kind; trials/records/turning.md
     python trials/turning.py 3            3 draws of each, printed
     python trials/turning.py 20 2027      20 draws of another seed, printed
 
@@ -29,7 +29,7 @@ Random = np.random.Generator
 
 SEED = 2026
 DRAWS = 20
-PAGE = Path(__file__).parents[1] / "docs" / "trial_turning.md"
+PAGE = Path(__file__).parents[1] / "trials" / "records" / "turning.md"
 RATE = 12_800.0
 TEETH = 25
 MARKS = 12

@@ -1,6 +1,6 @@
 """Five verdicts on the thesis, recomputed in two ways by code that is not the package's.
 
-``make trial NAME=verdicts`` writes docs/trial_verdicts.md. The equation is
+``make trial NAME=verdicts`` writes trials/records/verdicts.md. The equation is
 
     x'' + 2 zeta x' + [1 + eps cos(w t) + eps_T] f(x; b) = F_m + F_h cos(w t)
 
@@ -35,7 +35,7 @@ from thermogear.study.run import run
 from thermogear.thesis import motions
 
 Floats = NDArray[np.float64]
-PAGE = Path(__file__).parents[1] / "docs" / "trial_verdicts.md"
+PAGE = Path(__file__).parents[1] / "trials" / "records" / "verdicts.md"
 REST = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
 """x and x' of the motion, at rest, and of its two variations."""
 PIECES, ORDER = 24, 24
@@ -295,7 +295,7 @@ def main() -> int:
     bad = [words for words, columns in found.items() if not agree(columns)]
     seconds = time.process_time() - began
     PAGE.write_text("\n".join([
-        "---", "orphan: true", "---",
+
         "# Five verdicts by other code", "",
         f"Made by `make trial NAME=verdicts` ({seconds:.0f} s of processor time). The "
         f"second and third",

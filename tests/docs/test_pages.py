@@ -285,7 +285,7 @@ def test_python_shown_runs(
 def test_the_answers_shown_are_those_printed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The first pair of the start page with all its answers; the README shows some of them."""
+    """The first pair of the start page with some of its answers; the README shows some, too."""
     page = (DOCS / "start.md").read_text("utf-8")
     shown = next(m["body"] for m in FENCE.finditer(page) if m["kind"] == "text")
     commands = next(m["body"] for m in FENCE.finditer(page) if "thermogear new" in m["body"])
@@ -293,7 +293,9 @@ def test_the_answers_shown_are_those_printed(
     for line in commands.splitlines():
         capsys.readouterr()
         assert main(shlex.split(line)[1:]) == 0
-    assert capsys.readouterr().out == shown, "copy the answers into the start page again"
+    printed = set(capsys.readouterr().out.splitlines())
     readme = (ROOT / "README.md").read_text("utf-8")
     some = next(m["body"] for m in FENCE.finditer(readme) if m["kind"] == "text")
-    assert set(some.splitlines()) <= set(shown.splitlines())
+    assert len(shown.splitlines()) >= 10
+    assert set(shown.splitlines()) <= printed, "copy the answers into the start page again"
+    assert set(some.splitlines()) <= printed
