@@ -143,7 +143,7 @@ class _Long:
     def pytest_sessionfinish(self, exitstatus: int) -> None:
         if exitstatus == 0:
             head = (
-                "---\norphan: true\n---\n# Tests at length\n\n"
+                "# Tests at length\n\n"
                 "Made by `make trial NAME=long`: the same tests with the larger "
                 "count, every claim and "
                 "bound alike. All held.\n\n"
