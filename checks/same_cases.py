@@ -544,7 +544,7 @@ CASES = (
     Case(
         "warmup",
         (
-            "warmup rig -o out --duty duty.csv --measured warmed.csv --fit housing --json",
+            "warmup rig -o out --duty duty.csv --measured warmed.csv --json",
             "warmup own.toml -o own --at 3000,40 --start 30 --json",
         ),
         {**MINE, "duty.csv": DUTY, "warmed.csv": WARMED},
