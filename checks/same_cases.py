@@ -365,11 +365,6 @@ CASES = (
         ),
     ),
     Case(
-        "records",
-        tuple(f"measure record.csv louder.csv --teeth 25 -o {to}" for to in ("out --json", "out")),
-        {"record.csv": _table(), "louder.csv": _table(gain=1.3)},
-    ),
-    Case(
         "rexs",
         (
             "import own.rexs",
