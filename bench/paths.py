@@ -149,20 +149,6 @@ for other in others:
     carried(fold, other)
 print(json.dumps(1e3 * (time.process_time() - begun) / len(others)))
 """
-THREADS = (
-    NEW
-    + """
-from thermogear.study.run_ups import run_ups
-speeds = np.linspace(3000, 6000, 31) * RPM
-some = {"torque": NINE["torque"][:256], "zeta": NINE["zeta"][:256]}
-def wall(threads):
-    begun = time.perf_counter()
-    run_ups(rig, speeds, some, threads=threads)
-    return time.perf_counter() - begun
-wall(2)
-print(json.dumps(wall(1) / wall(2)))
-"""
-)
 CLI = """
 import subprocess, resource, os, tempfile
 def cpu():
@@ -253,15 +239,6 @@ timed(lambda: settle(lanes, np.tile([1.0, 0.0], (512, 1)), RULE), 512, 1)
     ),
     Row("an orbit by Newton", 0.26, ORBIT, ORBIT),
     Row("one jump speed, from a neighbour", 5.0, JUMP),
-    Row(
-        "run-up, a speed, lanes across samples", 3.0,
-        NEW + """
-from thermogear.study.run_ups import run_ups
-speeds = np.linspace(3000, 6000, 31) * RPM
-some = {"torque": NINE["torque"][:64], "zeta": NINE["zeta"][:64]}
-timed(lambda: run_ups(rig, speeds, some, threads=1), 64 * 62, 1)
-""",
-    ),
     Row(
         "run-up, a speed, one chain", 10.0,
         RUN_UP.format(count=120, per=240), RUN_UP.format(count=120, per=240),
@@ -378,7 +355,7 @@ def told(milliseconds: float | None) -> str:
     return "–" if milliseconds is None else f"{milliseconds:.3g}"
 
 
-def table(rows: list[tuple[Row, float | None, float]], reference: str, *, threads: float) -> str:
+def table(rows: list[tuple[Row, float | None, float]], reference: str) -> str:
     """The page."""
     lines = [
         "# What an answer costs",
@@ -396,12 +373,6 @@ def table(rows: list[tuple[Row, float | None, float]], reference: str, *, thread
         times = "–" if before is None else f"{before / after:.1f}"
         aim = told(row.goal) if row.goal else "–"
         lines.append(f"| {row.name} | {told(before)} | {told(after)} | {times} | {aim} |")
-    lines += [
-        "",
-        f"Run-ups of 256 samples take {threads:.2f} times less wall time on two threads than",
-        f"on one (aim 1.8), at a load average of {os.getloadavg()[0]:.1f}: above 1 or so another's",
-        "work has the second core.",
-    ]
     return "\n".join(lines) + "\n"
 
 
@@ -427,11 +398,10 @@ def main() -> None:
             one = (row, statistics.median(before) if before else None, statistics.median(after))
             rows.append(one)
             print(f"{row.name}: {told(one[1])} -> {told(one[2])} ms, aim {told(row.goal)}")
-        threads = measured(ROOT, THREADS, folder / "new") if given.write else 1.0
     finally:
         shutil.rmtree(folder, ignore_errors=True)
     if given.write:
-        page = table(rows, given.reference, threads=threads)
+        page = table(rows, given.reference)
         PAGE.write_text(page, encoding="utf-8")
 
 

@@ -365,11 +365,6 @@ CASES = (
         ),
     ),
     Case(
-        "records",
-        tuple(f"measure record.csv louder.csv --teeth 25 -o {to}" for to in ("out --json", "out")),
-        {"record.csv": _table(), "louder.csv": _table(gain=1.3)},
-    ),
-    Case(
         "rexs",
         (
             "import own.rexs",
@@ -544,7 +539,7 @@ CASES = (
     Case(
         "warmup",
         (
-            "warmup rig -o out --duty duty.csv --measured warmed.csv --fit housing --json",
+            "warmup rig -o out --duty duty.csv --measured warmed.csv --json",
             "warmup own.toml -o own --at 3000,40 --start 30 --json",
         ),
         {**MINE, "duty.csv": DUTY, "warmed.csv": WARMED},

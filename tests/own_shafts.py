@@ -53,7 +53,6 @@ def train(
     size: Size | None = Size(),
     friction: Friction = Rubbing(),
     seat: float = 10.0,
-    factor: float = 1.0,
 ) -> ShaftHeat:
     """Bearings ``length`` from both faces of each gear, at the ends of the shafts."""
     whole = 2.0 * length + face
@@ -69,7 +68,7 @@ def train(
         for name in SHAFTS
         for place in (0.0, whole)
     )
-    return ShaftHeat(shafts=(shafts[0], shafts[1]), bearings=bearings, factor=factor)
+    return ShaftHeat(shafts=(shafts[0], shafts[1]), bearings=bearings)
 
 
 def random_pair(random: np.random.Generator) -> GearPair:

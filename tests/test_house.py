@@ -170,7 +170,6 @@ LONG_FUNCTIONS = {
     "measured.lines.channel_lines": 77,
     "measured.order_angle.order_angle": 48,
     "measured.reduction.measure": 51,
-    "mesh.warm_up_fit.fit_factors": 43,
     "signals.tacho._likeliest": 44,
     "study.shafts.branches.train_branch_results": 47,
     "study.shafts.motion._table": 43,

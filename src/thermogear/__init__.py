@@ -62,7 +62,6 @@ _HOME = {
     "basins": "thermogear.analysis.basins",
     "slices": "thermogear.base.plan",
     "run_up": "thermogear.study.run_up",
-    "run_ups": "thermogear.study.run_ups",
     "sweep": "thermogear.study.sweep",
     "load_case": "thermogear.case.case",
     "read_rexs": "thermogear.case.rexs.container",

@@ -57,7 +57,7 @@ def test_a_turned_dial_says_what_it_was_turned_to(name: str) -> None:
     case, rng = case_of(name), np.random.default_rng(len(name))
     before = {one.name: one for one in dials(case)}
     for dial in before.values():
-        if dial.held or (case.computed and dial.name in ("torque", "damping", "error", "part")):
+        if dial.held or (case.computed and dial.name in ("torque", "damping", "part")):
             continue  # each would take a heat balance of its own
         for value in rng.uniform(max(dial.low, 0.01), dial.high, 1 if case.computed else 2):
             value = round(value) if dial.name == "part" else value
@@ -70,13 +70,8 @@ def test_a_turned_dial_says_what_it_was_turned_to(name: str) -> None:
             changed = case_of(name, text)
             found = {one.name: one for one in dials(changed)}
             assert found[dial.name].value == pytest.approx(value, rel=2e-9, abs=1e-9), dial.name
-            # gears whose errors are stated are no drawings of a class
-            stated = dial.name == "error" or dial.name.endswith("eccentricity")
-            gone = {"part"} if stated else set()
-            assert before.keys() - found.keys() <= gone
-            for other in before.keys() - {dial.name, "gears", "housing"} - gone:
-                if other == "error" and before[other].value == 0.0:
-                    continue
+            assert before.keys() == found.keys()
+            for other in before.keys() - {dial.name, "gears", "housing"}:
                 assert found[other].value == pytest.approx(before[other].value, rel=1e-9), other
             for other in {"gears", "housing"} - {dial.name}:
                 moved = not math.isclose(found[other].value, before[other].value, rel_tol=1e-9)
@@ -104,31 +99,6 @@ def test_gears_at_a_temperature_keep_their_distances() -> None:
     for body in ("pinion_addendum", "wheel_addendum", "pinion_bore", "wheel_bore", "housing"):
         rise = np.ravel(getattr(other, body)) - np.ravel(getattr(one, body))
         assert rise == pytest.approx(17.0, abs=1e-9), body
-
-
-def test_an_error_keeps_its_proportions() -> None:
-    name = "own, shifted, several harmonics"
-    case = case_of(name)
-    for value in (0.5, 12.0, 123.456):
-        found = case_of(name, turned(case, {"error": value}))
-        ratio = np.array(found.transmission_error.harmonics)
-        own = np.array(case.transmission_error.harmonics)
-        some = np.abs(own) > 0.0
-        assert ratio[some] / own[some] == pytest.approx(value / 6.0, rel=1e-9)
-        assert np.all(ratio[~some] == 0.0)
-    none = case_of(name, turned(case, {"error": 0.0}))
-    assert np.all(np.array(none.transmission_error.harmonics) == 0.0)
-
-
-def test_an_error_without_a_first_harmonic_gets_one() -> None:
-    name = "own, no error, circumferential half backlash"
-    case = case_of(name)
-    assert abs(case_of(name, turned(case, {"error": 3.0})).transmission_error.harmonics[0]) == (
-        pytest.approx(3e-6)
-    )
-    second = ("transmission_error.harmonics", '[{ order = 2, amplitude = "2 um" }]')
-    both = case_of(name, (second, *turned(case_of(name, (second,)), {"error": 3.0})))
-    assert np.abs(both.transmission_error.harmonics[:2]) == pytest.approx([3e-6, 2e-6])
 
 
 @pytest.mark.parametrize("name", [name for name in PAIRS if "computed" in name])
@@ -173,19 +143,6 @@ def test_heat_on_leaves_the_given_temperatures_out(name: str) -> None:
         turned(on, {"gears": 100.0})
 
 
-def test_a_dial_of_eccentricity_keeps_its_angle_and_takes_half_a_run_out() -> None:
-    stated = (("gears.wheel.eccentricity", '{run_out = "12 um", angle = "90 deg"}'),)
-    case = case_of("own", stated)
-    before = {one.name: one.value for one in dials(case)}
-    assert before["wheel_eccentricity"] == pytest.approx(6.0, rel=1e-12)
-    assert before["pinion_eccentricity"] == 0.0
-    changed = case_of("own", turned(case, {"wheel_eccentricity": 9.0}))
-    table = changed.file.gears.wheel.eccentricity
-    assert table is not None
-    assert (table.amount, table.angle) == pytest.approx((9e-6, 0.5 * math.pi), rel=1e-12)
-    assert changed.period.mesh_periods == changed.pair.wheel.teeth
-
-
 CRACKED = '{kind = "crack", gear = "wheel", tooth = 5, depth = "2 mm", angle = "60 deg"}'
 WORN = '{kind = "wear", gear = "pinion", depth = "5 um"}'
 
@@ -213,9 +170,6 @@ REFUSED = {
     "housing": (-1e6, 1e9, math.nan),
     "backlash": (-1.0, 1e3, math.nan),
     "damping": (-0.1, 17.0, math.nan),
-    "error": (-3.0, 1e9, math.nan),
-    "pinion_eccentricity": (-1.0, 1e9, math.nan),
-    "wheel_eccentricity": (-1.0, 1e9, math.nan),
     "crack": (-0.1, 0.7, math.nan),
 }
 
@@ -227,9 +181,9 @@ def test_a_value_that_cannot_be_is_one_line(name: str) -> None:
         for value in REFUSED[dial.name]:
             with pytest.raises(InputError) as caught:
                 case_of(name, turned(case, {dial.name: value}))
-            # one line for each field that it puts, and each harmonic
+            # one line for each field that it puts
             lines = str(caught.value).split("\n")
-            assert len(lines) <= (3 if dial.name == "error" else len(dial.fields))
+            assert len(lines) <= len(dial.fields)
             for words in lines:
                 assert "; " in words
                 assert words.startswith(dial.fields[0].rpartition(".")[0]), words

@@ -158,13 +158,6 @@ def list_for_model(folder: Path) -> Path:
     return put(folder, '{"model": {"version": "1.7", "components": {"id": 1}}}')
 
 
-def long_code(folder: Path) -> Path:
-    parts, links = one_stage()
-    parts = replaced(parts, 3, drop=("center_distance",))
-    text = xml(replaced(parts, 4, ("support_vector", "mm", "CODED")), links)
-    return put(folder, text.replace("CODED", '<array code="float64">AAAA</array>'))
-
-
 HOSTILE: dict[str, tuple[Made, str]] = {
     "entity expansion": (laughs, "line 1: REXS file: got a DOCTYPE; allowed none"),
     "external entity": (external, "line 1: REXS file: got a DOCTYPE; allowed none"),
@@ -192,7 +185,6 @@ HOSTILE: dict[str, tuple[Made, str]] = {
     "an empty file": (nothing, "REXS file: got an empty file"),
     "other XML": (other_xml, "REXS file: got the element 'html'; allowed 'model'"),
     "tables where lists belong": (list_for_model, "components: got"),
-    "bytes that are no numbers": (long_code, "coded array: got 3 bytes"),
 }
 
 

@@ -19,7 +19,6 @@ from thermogear.results.result import Result
 from thermogear.study.branches import branch_results
 from thermogear.study.orbit import orbit_results
 from thermogear.study.run_up import run_up
-from thermogear.study.run_ups import run_ups
 from thermogear.study.sweep import sweep
 from thermogear.views.pages import sweeps as page
 from thermogear.views.plots import one_motion
@@ -49,12 +48,10 @@ def test_nearly_perfect_gears_jump_where_the_mean_tooth_jumps() -> None:
     assert turn.period.mesh_periods == 25
     alike = run_up(rig(), speeds, temperatures=("hot",), branch_period=0).data
     data = run_up(turn, speeds, temperatures=("hot",)).data
-    lanes = run_ups(turn, speeds, {"damping_ratio": [turn.damping_ratio]})
     swing = alike["dte_peak_to_peak"].values[0]
     # up and down differ by nearly a factor of two between the jumps
     assert (swing[1] / swing[0]).max() > 1.8
-    for found in (data["dte_peak_to_peak"].values[0], lanes["dte_peak_to_peak"].values[:, 0]):
-        np.testing.assert_allclose(found, swing, rtol=1e-2)
+    np.testing.assert_allclose(data["dte_peak_to_peak"].values[0], swing, rtol=1e-2)
     assert (data["period"].values == 1).all()
     assert data["used_periods"].max() < alike["used_periods"].max()
 

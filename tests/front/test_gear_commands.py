@@ -129,11 +129,6 @@ def test_json_figures_of_the_map_are_those_of_its_grid(
         (["warmup", "--duty", "none.csv"], "--duty: got none.csv; there is no such file"),
         (["warmup", "--duty", "a", "--at", "1,1"], "--at: got an operating point beside --duty"),
         (["warmup", "--measured", "none.csv"], "--measured: got none.csv; there is no such file"),
-        (
-            ["warmup", "--fit", "housing"],
-            "--fit: got housing; there is no record to fit to; give m",
-        ),
-        (["warmup", "--fit", "houses"], "--fit: got 'houses'; allowed housing | oil_housing | wet"),
         (["relief", "--torque", "0"], "--torque: got 0 N m; allowed > 0 N m"),
         (["relief", "--torque", "nan"], "--torque: got nan N m; allowed 0..1e7 N m"),
         (["relief", "--temperature", "-300"], "--temperature: got -300 degC; allowed -70..600"),

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
 from thermogear.front.measure_commands import measure
-from thermogear.measured.joined import join_records, named, only
+from thermogear.measured.joined import files_of, join_records, named, only
 from thermogear.measured.readers import read_record
 from thermogear.measured.record import Channel, Notice, Record
 
@@ -139,7 +139,6 @@ def test_other_rates_units_channels_and_equal_files_are_refused(tmp_path: Path) 
         assert "there is one file" in refusal(asked(a, "--join", how))
     assert "'acc' is in m/s^2, in a.csv in g" in refusal(asked(a, other, "--join", "time"))
     assert "it has no channel 'acc', a.csv has" in refusal(asked(a, strange, "--join", "time"))
-    assert "--baseline" in refusal(asked(a, slow, "--join", "time", "--baseline", "first"))
     assert asked(a, slow, "--join", "tme").exit_code == 2
 
 
@@ -220,16 +219,14 @@ def test_joined_samples_are_read_slice_by_slice() -> None:
         join_records(parts[:1], "time")
 
 
-def test_of_several_records_channels_are_named_and_files_without_them_told(tmp_path: Path) -> None:
+def test_files_that_are_not_joined_are_refused_with_both_ways_on(tmp_path: Path) -> None:
     write(tmp_path / "r2.csv", signal(1))
+    assert found_in(asked(tmp_path, "--json"))["lines"]
     write(tmp_path / "r10.csv", signal(2))
-    write(tmp_path / "r11.csv", signal(3), head="vib [g]")
-    done = found_in(asked(tmp_path, "--channel", "acc", "--json"))
-    assert done["records"] == ["r2.csv", "r10.csv"]
-    assert [name for name, _ in done["refused"]] == ["r11.csv"]  # type: ignore[attr-defined]
-    words = ["--channel", "r2.csv::acc", "--channel", "r11.csv::vib", "--json"]
-    assert "nothing can be compared with r2.csv" in refusal(asked(tmp_path, *words))
-    done = found_in(asked(tmp_path, *words, "--channel", "r10.csv::acc"))
-    assert done["records"] == ["r2.csv", "r10.csv", "r11.csv"]
-    assert "no file is r3.csv" in refusal(asked(tmp_path, "--channel", "r3.csv::acc"))
-    assert "did you mean 'r2.csv'" in refusal(asked(tmp_path, "--baseline", "r2.cvs"))
+    text = refusal(asked(tmp_path))
+    assert text.startswith("file: got 2 files; allowed one record; ")
+    assert "--join" in text
+    assert "diagnose --baseline" in text
+    words = ["--join", "channels", "--channel", "r3.csv::acc"]
+    assert "no file is r3.csv" in refusal(asked(tmp_path, *words))
+    assert [one.name for one in files_of([tmp_path])] == ["r2.csv", "r10.csv"]

@@ -18,7 +18,7 @@ from thermogear.heat.lubrication import kinematic_viscosity
 from thermogear.heat.shaft_heat import Friction, ShaftHeat
 from thermogear.mesh.balance import Gearbox, HeatBalance, heat_balance
 from thermogear.mesh.balance_table import balance_dataset
-from thermogear.mesh.warm_up import Duty, warm_up, with_factors
+from thermogear.mesh.warm_up import Duty, warm_up
 from thermogear.shafts.bearings.catalogue import catalogue_bearing
 from thermogear.shafts.bearings.friction import PalmgrenFriction, SkfFriction
 
@@ -186,21 +186,6 @@ def test_a_long_warm_up_ends_in_the_balance(
         # cold oil is thick: a bearing turns hardest at the start, and not at all at rest
         assert values[0] > 1.2 * values[last]
         assert np.all(values[course.piece == 1] == 0.0)
-
-
-def test_steady_states_know_the_factor_on_the_shafts(rig: GearPair, chain: ShaftHeat) -> None:
-    around = Surroundings(train=chain)
-    duty = Duty(time=[0.0, 1e6], speed=[150.0], torque=[100.0], ambient=[293.15])
-    for factors in ({"shafts": 0.4},):
-        course = warm_up(
-            rig, duty, OIL, 125e-6, QUICK, gearbox=Gearbox(surroundings=around), factors=factors
-        )
-        box = Gearbox(surroundings=with_factors(around, factors))
-        steady = heat_balance(rig, 150.0, 100.0, OIL, 125e-6, QUICK, gearbox=box)
-        for node in box.nodes:
-            assert course.temperatures[node][-1] == pytest.approx(
-                float(steady.steady[node][0]), abs=0.01
-            )
 
 
 def test_thicker_friction_makes_hotter_bearings_and_a_better_seat_cools(rig: GearPair) -> None:

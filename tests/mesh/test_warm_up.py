@@ -18,7 +18,7 @@ from thermogear.mesh.balance import Gearbox, heat_balance, node_temperatures
 from thermogear.mesh.clearance import Clearance
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.thermal import HotPair
-from thermogear.mesh.warm_up import FACTORS, PHASES, Duty, WarmUp, warm_up, with_factors
+from thermogear.mesh.warm_up import PHASES, Duty, WarmUp, warm_up
 
 sys.path.insert(0, str(Path(__file__).parent))
 import finite_volumes
@@ -228,45 +228,7 @@ def test_a_start_may_be_given_for_all_nodes_or_by_name(rig: GearPair) -> None:
         run(rig, short, start=60.0)
 
 
-HEATED = {
-    "housing": ("housing",),
-    "oil_housing": ("oil",),
-    "wetted": ("pinion_tooth", "pinion_body", "wheel_tooth", "wheel_body"),
-    "shafts": ("pinion_shaft", "wheel_shaft"),
-}
-"""Nodes that are warm at the start, so that heat leaves through one group of conductances."""
-
-
-@pytest.mark.parametrize("name", FACTORS)
-def test_a_factor_acts_on_its_conductances(rig: GearPair, name: str) -> None:
-    """At rest, over the first instant, what arrives is as the factor."""
-    still = duty((0.0, 0.0, 0.0), (1e-3 / 60.0, 0.0, 0.0))
-    start = dict.fromkeys(HEATED[name], 340.0)
-    arrived = []
-    for factor in (1.0, 0.25):
-        found = run(rig, still, start=start, factors={name: factor}, tolerance=1e-7)
-        into = {"wetted": "oil"}.get(name, "housing")
-        rise = found.temperatures[into][-1] - AMBIENT
-        arrived.append(found.course.heat_out[-1] if name == "housing" else rise)
-    assert arrived[1] / arrived[0] == pytest.approx(0.25, rel=1e-3)
-
-
-def test_steady_states_know_the_factors_too(rig: GearPair) -> None:
-    factors = {"housing": 1.4, "oil_housing": 0.6, "wetted": 0.5, "shafts": 2.0}
-    found = run(rig, factors=factors)
-    box = Gearbox(surroundings=with_factors(Surroundings(), factors))
-    steady = heat_balance(rig, 200.0, 100.0, OIL, 125e-6, MODEL, gearbox=box)
-    for name, values in found.course.temperatures.items():
-        assert values[-1] == pytest.approx(float(np.ravel(steady.steady[name])[0]), abs=0.3)
-    with pytest.raises(InputError, match=r"^surroundings\.wetted_share: got .*0 < x <= 1"):
-        with_factors(Surroundings(), {"wetted": 4.0})
-
-
-def test_unknown_factors_and_impossible_duties_are_one_line(rig: GearPair) -> None:
-    with pytest.raises(InputError, match=r"^factors: got 'houzing'; allowed .*; did you mean"):
-        run(rig, factors={"houzing": 1.0})
-    with pytest.raises(InputError, match=r"^factors\.housing: got 0; allowed > 0, finite$"):
-        run(rig, factors={"housing": 0.0})
+def test_impossible_duties_are_one_line(rig: GearPair) -> None:
     for time in ([0.0], [1.0, 2.0], [0.0, 0.0], [0.0, np.nan]):
         with pytest.raises(InputError, match=r"^duty\.time: got \d times; allowed two or more"):
             Duty(time=np.array(time), speed=np.ones(1), torque=np.ones(1), ambient=np.ones(1))

@@ -14,7 +14,6 @@ from thermogear.case.family import GearFamily
 from thermogear.dynamics.models import TorsionalModel
 from thermogear.study.run import run
 from thermogear.study.run_up import run_up_plan
-from thermogear.study.run_ups import run_ups_plan
 from thermogear.study.sweep import sweep_plan
 
 MODEL = TorsionalModel(
@@ -44,14 +43,11 @@ def plans() -> dict[str, Plan]:
         "sweep": sweep_plan(
             rig(), {"rpm": np.linspace(3000, 4000, 4) * RPM, "zeta": [0.05, 0.08, 0.1]}
         ),
-        "run-ups": run_ups_plan(
-            rig(), np.linspace(3000, 4000, 4) * RPM, {"zeta": np.linspace(0.05, 0.1, 5)}
-        ),
         "basins": basin_plan(MODEL, x=np.linspace(-2, 2, 7), v=np.linspace(-1, 1, 5)),
     }
 
 
-@pytest.mark.parametrize("name", ["diagram", "map", "run-up", "run-ups", "sweep", "basins"])
+@pytest.mark.parametrize("name", ["diagram", "map", "run-up", "sweep", "basins"])
 def test_slices_together_are_the_whole(name: str) -> None:
     plan = plans()[name]
     whole = gather(plan, threads=1)
@@ -92,7 +88,7 @@ class Ended(Exception):
     """Somebody asked to stop."""
 
 
-@pytest.mark.parametrize("name", ["diagram", "map", "run-up", "run-ups", "sweep", "basins"])
+@pytest.mark.parametrize("name", ["diagram", "map", "run-up", "sweep", "basins"])
 def test_work_ends_when_asked(name: str) -> None:
     plan, calls = plans()[name], 0
 

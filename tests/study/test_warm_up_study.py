@@ -20,10 +20,9 @@ from thermogear.case.duty import Measured, chosen_point
 from thermogear.case.sensors import flank_area, shaft_share
 from thermogear.heat.measured_temperature import InfraredReading, surface_temperature
 from thermogear.mesh.warm_up import Duty
-from thermogear.mesh.warm_up_fit import Fit, fit_factors, require_factors, until
 from thermogear.study.warm_up import warm_up_survey
 from thermogear.views.page import Table
-from thermogear.views.pages.warm_up import answer, fit_sentence, page
+from thermogear.views.pages.warm_up import answer, page
 
 QUICK = [
     'model.bundle="consistent"', 'model.friction="benedict-kelley"',
@@ -183,114 +182,14 @@ def test_without_a_table_the_strongest_point_is_held_until_steady() -> None:
     assert (speed, torque) == (pytest.approx(1500.0 * np.pi / 30.0), 120.0)
 
 
-# --- factors ---------------------------------------------------------------------------------
-
-FIT_DUTY = Duty(
-    time=60.0 * np.array([0.0, 12.0]),
-    speed=np.array([300.0]),
-    torque=np.array([200.0]),
-    ambient=np.array([AMBIENT]),
-)
-
-
-@pytest.mark.slow
-def test_factors_come_back_out_of_a_record_made_with_them() -> None:
-    truth = {"oil_housing": 0.5}
-    case = rig('gearbox.oil_housing_coefficient="100 W/(m^2 K)"')
-    data = warm_up_survey(case, FIT_DUTY, moments=60)["course"].to_dataset()
-    when = np.linspace(30.0, 720.0, 24)
-    noise = np.random.default_rng(7).normal(0.0, 0.3, (when.size, 3))
-    nodes = ("pinion_tooth", "oil", "housing")
-    clean = [
-        np.interp(when, data["time"].values, data["node_temperature"].sel(node=n).values)
-        for n in nodes
-    ]
-    record = Measured(time=when, names=nodes, values=np.stack(clean, axis=1) + noise)
-    tree = warm_up_survey(rig(), FIT_DUTY, measured=record, fit=tuple(truth), moments=24)
-    found = json.loads(tree.attrs["fit"])
-    for one in found["factors"]:
-        assert one["low"] < truth[one["name"]] < one["high"]
-        assert one["value"] == pytest.approx(truth[one["name"]], rel=0.1)
-    # what is left is the noise that was put in
-    assert found["rms_after_K"] == pytest.approx(np.sqrt(np.mean(noise**2)), rel=0.05)
-    assert found["rms_before_K"] > 1.5 * found["rms_after_K"]
-    assert found["runs"] < 40
-    difference = tree["record"]["difference"].values
-    assert np.sqrt(np.mean(difference**2)) == pytest.approx(found["rms_after_K"], rel=0.02)
-    figures = numbers(page(tree).summary)
-    for one in found["factors"]:
-        assert any(figure == pytest.approx(one["value"], abs=0.006) for figure in figures)
-
-
-def line(x: dict[str, float]) -> np.ndarray:
-    return np.log(x["housing"]) * TIMES[:, None]
-
-
-TIMES = np.linspace(0.1, 1.0, 200)
-
-
-def test_independent_scatter_gives_the_textbook_interval() -> None:
-    """One straight line: variance s^2/sum t^2, by hand."""
-    noise = np.random.default_rng(3).normal(0.0, 0.05, TIMES.size)[:, None]
-    found = fit_factors(lambda x: line(x) - 0.4 * TIMES[:, None] - noise, ["housing"])
-    one = found.factors[0]
-    assert one.low < np.exp(0.4) < one.high
-    assert found.effective == pytest.approx(found.count, rel=0.2)
-    half = 1.96 * 0.05 / np.sqrt(np.sum(TIMES**2))
-    assert np.log(one.high / one.low) / 2.0 == pytest.approx(half, rel=0.25)
-    assert np.isnan(found.correlation)
-
-
-def test_readings_that_follow_each_other_count_for_few() -> None:
-    """With AR(1) scatter the interval covers the truth about as often as it says."""
-    generator, inside, widths = np.random.default_rng(11), 0, []
-    for _ in range(200):
-        shocks = generator.normal(0.0, 0.05 * np.sqrt(1.0 - 0.9**2), TIMES.size)
-        noise = np.empty(TIMES.size)
-        last = generator.normal(0.0, 0.05)
-        for i, shock in enumerate(shocks):
-            noise[i] = last = 0.9 * last + shock
-
-        def off(x: dict[str, float], noise: np.ndarray = noise) -> np.ndarray:
-            return line(x) - (0.4 * TIMES + noise)[:, None]
-
-        found = fit_factors(off, ["housing"])
-        one = found.factors[0]
-        inside += one.low < np.exp(0.4) < one.high
-        widths.append(found.effective)
-    assert np.median(widths) < 30.0
-    assert 0.85 < inside / 200.0 <= 1.0
-
-
-def test_what_a_record_cannot_tell_is_said() -> None:
-    with pytest.raises(InputError, match=r"^fit: got 'shafts'; the record says nothing of it"):
-        fit_factors(lambda x: np.ones((5, 1)), ["shafts"])
-    few: Fit = fit_factors(lambda x: line(x)[:1] - 0.03, ["housing"])
-    assert np.isnan(few.factors[0].low)
-    with pytest.raises(
-        InputError, match=r"^--fit: got 'houzing'; allowed .*; did you mean 'housing'"
-    ):
-        require_factors(["houzing"], "--fit")
-    for names in ([], ["housing", "shafts", "wetted"], ["housing", "housing"]):
-        with pytest.raises(InputError, match=r"^fit: got .*; allowed one or two different factors"):
-            require_factors(names, "fit")
-    message = r"^fit: got housing; there is no record to fit to; give measured too$"
-    with pytest.raises(InputError, match=message):
-        warm_up_survey(rig(), WORK, fit=["housing"])
-
-
-def test_a_duty_is_cut_at_the_end_of_the_record() -> None:
-    part = until(WORK, 900.0)
-    assert part.time.tolist() == [0.0, 720.0, 900.0]
-    assert part.torque.tolist() == [150.0, 0.0]
-    assert until(WORK, 1e9).time.tolist() == WORK.time.tolist()
-
-
 def test_rows_after_the_end_are_left_out_with_a_word() -> None:
     record = Measured(
         time=np.array([30.0, 60.0, 1e4]), names=("oil",), values=np.full((3, 1), 300.0)
     )
-    short = until(WORK, 60.0)
+    short = Duty(
+        time=np.array([0.0, 60.0]), speed=WORK.speed[:1], torque=WORK.torque[:1],
+        ambient=WORK.ambient[:1],
+    )  # fmt: skip
     tree = warm_up_survey(rig(), short, measured=record, moments=12)
     assert tree["record"].sizes["row"] == 2
     assert coded(tree.notices)["rows_after_end"] == [{"rows": 1}]
@@ -379,4 +278,3 @@ def test_answers_in_words() -> None:
     end = answer(known | {"at_the_end": True, "below_steady_m": -1e-6}, 110e-6)
     assert numbers(end)[0] == 17.0
     assert 70.0 in numbers(end)
-    assert fit_sentence({}) == ""

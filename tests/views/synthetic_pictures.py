@@ -15,7 +15,6 @@ from thermogear.views.pages import (
     detect,
     diagnosis,
     measured,
-    records,
     relief,
     rig_trains,
     train_motion,
@@ -317,7 +316,7 @@ def of_diagnosis() -> dict[str, Picture]:
 
 
 def of_records() -> dict[str, Picture]:
-    """Orders of a run-up, and lines from record to record."""
+    """Orders of a run-up."""
     shown = made("row map_column", "map_reading").assign(
         map_order=rising("map_column"), map_speed=rising("row", low=100.0, high=300.0)
     )  # fmt: skip
@@ -325,13 +324,9 @@ def of_records() -> dict[str, Picture]:
         slice_speed=rising("step", low=100.0, high=300.0)
     )
     run = run.assign_coords(name=("slice", [f"order {k}" for k in range(run.sizes["slice"])]))
-    several = made("record line", "record_line_change", "record_line_change_half_width")
-    names = [f"line {k}" for k in range(several.sizes["line"])]
-    several = several.assign_coords(name=("line", names), channel=("line", ["a"] * len(names)))
     return {
         "order-map": measured.order_map(shown, "g", "the first shaft"),
         "order-slices": measured.over_speed(run, 0, "g"),
-        "records": records.course(several),
     }
 
 

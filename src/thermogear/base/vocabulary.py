@@ -262,13 +262,6 @@ QUANTITIES: dict[str, Quantity] = {
     "implied_shaft_speed_half_width": Quantity(
         "rad/s", "half width of the 95 % interval of the first shaft's speed", "U(ω₁)"
     ),
-    "record_line_reading": Quantity("1", "amplitude (peak) in the records' own unit", ""),
-    "record_line_half_width": Quantity("1", "half width of its 95 % interval", ""),
-    "record_line_change": Quantity("1", "change against the baseline's reading", ""),
-    "record_line_change_half_width": Quantity("1", "half width of its 95 % interval", ""),
-    "record_line_beyond": Quantity("1", "1 where a line changed by more than that"),
-    "record_line_trend": Quantity("1", "change from record to record", ""),
-    "record_line_trend_half_width": Quantity("1", "half width of its 95 % interval", ""),
     "slice_order": Quantity("1", "order of the first shaft, or of the mesh line", "o"),
     "slice_time": Quantity("s", "time of a slice", "t"),
     "slice_speed": Quantity("rad/s", "speed of what the orders count", "ω"),

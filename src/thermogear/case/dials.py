@@ -22,7 +22,6 @@ from thermogear.case.case import GearCase
 from thermogear.case.fault_schema import FaultTable
 from thermogear.case.flank_schema import PARTS
 from thermogear.case.thermal_state import HOT
-from thermogear.gears.deviations import GEARS
 from thermogear.gears.tooth_damage import way_across
 
 Changes = tuple[tuple[str, str], ...]
@@ -89,13 +88,6 @@ def _kinds(case: GearCase) -> dict[str, _Kind]:
         _Kind("housing", *housing, (field,), held),
         _Kind("backlash", f"cold backlash ({kind})", "mm", ("backlash.value",)),
         _Kind("damping", "damping ratio", "", ("dynamics.damping_ratio",)),
-        _Kind("error", "transmission error, first harmonic", "um",
-              ("transmission_error.harmonics",)),
-        *(
-            _Kind(f"{gear}_eccentricity", f"{gear}'s eccentricity", "um",
-                  (f"gears.{gear}.eccentricity",))
-            for gear in GEARS
-        ),
     )  # fmt: skip
     kinds = {kind.name: kind for kind in found}
     _, crack = _crack(case)
@@ -139,7 +131,7 @@ def dials(case: GearCase) -> list[Dial]:
     speed, torque = float(case.speeds[0]) / RPM, float(case.torques[0])
     half, table = float(np.ravel(case.stated.half_backlash)[0]), case.file.backlash
     backlash = 2e3 * half if table.value is None else 1e3 * table.value
-    zeta, error = case.damping_ratio, 1e6 * _first(case)
+    zeta = case.damping_ratio
     values = {
         "speed": (speed, _wide(speed)),
         "torque": (torque, _wide(torque)),
@@ -147,11 +139,7 @@ def dials(case: GearCase) -> list[Dial]:
         "housing": (housing, ends),
         "backlash": (backlash, (0.02 * backlash, 5.0 * backlash)),
         "damping": (zeta, (0.0, max(0.3, 2.0 * zeta))),
-        "error": (error, (0.0, max(20.0, 4.0 * error))),
     }
-    for gear in GEARS:
-        amount, _ = _eccentricity(case, gear)
-        values[f"{gear}_eccentricity"] = (amount, (0.0, max(40.0, 2.0 * amount)))
     crack = _crack(case)[1]
     deep = (crack.depth or 0.0) / way_across(case.pair.gear(crack.gear), crack.slope)
     values["crack"] = (deep if crack.share is None else crack.share, (0.0, 0.5))
@@ -171,7 +159,6 @@ def parts_of(case: GearCase) -> int:
 def turned(case: GearCase, values: Mapping[str, float]) -> Changes:
     """What turning dials of ``case`` to ``values`` (in their units) puts into its file.
 
-    The error's other harmonics keep their ratio to the first; a pair without any gets a first one.
     Raises InputError for an unknown dial, for one that is held, and for a number that is none.
     """
     known = _kinds(case)
@@ -194,11 +181,6 @@ def turned(case: GearCase, values: Mapping[str, float]) -> Changes:
             elif case.series == 1:
                 left = [(field, "") for field in dial.fields]
                 found += [*left, ("flanks.parts", f"{parts_of(case)}")]
-        elif name == "error":
-            found.append((dial.fields[0], _harmonics(case, value)))
-        elif name.endswith("eccentricity"):
-            _, angle = _eccentricity(case, name.partition("_")[0])
-            found.append((dial.fields[0], literal({"amount": text, "angle": f"{angle!r} rad"})))
         elif name == "crack":
             found.append((dial.fields[0], _cracked(case, value)))
         elif name == "backlash" and not _given(case, "backlash.value"):
@@ -274,20 +256,6 @@ def _given(case: GearCase, field: str) -> bool:
     return held(case.data, field)[0] == len(field.split("."))
 
 
-def _first(case: GearCase) -> float:
-    """The amplitude [m] of the first harmonic of the kinematic error."""
-    harmonics = case.transmission_error.harmonics
-    return abs(harmonics[0]) if len(harmonics) else 0.0
-
-
-def _eccentricity(case: GearCase, gear: str) -> tuple[float, float]:
-    """Amount [um] and angle [rad] that the file gives a gear; none is 0."""
-    table = getattr(case.file.gears, gear).eccentricity
-    if table is None:
-        return 0.0, 0.0
-    return 1e6 * (0.5 * table.run_out if table.amount is None else table.amount), table.angle
-
-
 def _crack(case: GearCase) -> tuple[int, FaultTable]:
     """The first crack of the file and its place there; else one of no depth, pinion tooth 1."""
     for place, fault in enumerate(case.file.faults):
@@ -303,23 +271,3 @@ def _cracked(case: GearCase, share: float) -> str:
     row = rows[place] if place < len(rows) else {"kind": fault.kind, "gear": fault.gear}
     row = {field: text for field, text in row.items() if field != "depth"} | {"share": share}
     return literal([*rows[:place], row, *rows[place + 1 :]])
-
-
-def _harmonics(case: GearCase, micrometres: float) -> str:
-    """The file's harmonics with the first at another amplitude, the others in proportion."""
-    table = case.file.transmission_error
-    said = [] if table is None else list(table.harmonics)
-    own = next((one.amplitude for one in said if one.order == 1), 0.0)
-    if own == 0.0:
-        said = [one for one in said if one.order != 1]
-        rows = [{"order": 1, "amplitude": f"{_text(micrometres)} um"}]
-        ratio = 1.0
-    else:
-        rows, ratio = [], 1e-6 * micrometres / own
-    for one in said:
-        exact = micrometres if one.order == 1 else 1e6 * one.amplitude * ratio
-        row: dict[str, Any] = {"order": one.order, "amplitude": f"{_text(exact)} um"}
-        if one.phase:
-            row["phase"] = f"{one.phase!r} rad"
-        rows.append(row)
-    return literal(rows)

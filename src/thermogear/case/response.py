@@ -78,19 +78,18 @@ MOST_LINES, LEAST_HIGHEST = 4000, 3
 """Lines of a turn that are kept, and the order of the mesh up to which they are at least."""
 
 
-def response_variables(dims: tuple[str, ...], *, lines: bool) -> dict[str, Variable]:
-    """The stored variables over ``dims``, with spectral lines over ``order`` where wanted."""
+def response_variables(dims: tuple[str, ...]) -> dict[str, Variable]:
+    """The stored variables over ``dims``, with spectral lines over ``order``."""
     found = {
         name: Variable(dims, "float64", float("nan"), {"units": unit, "long_name": words})
         for name, (unit, words) in VALUES.items()
     }
-    if lines:
-        found["dte_line"] = Variable(
-            (*dims, "order"),
-            "float64",
-            float("nan"),
-            {"units": "m", "long_name": "amplitude of a line of the transmission error (peak)"},
-        )
+    found["dte_line"] = Variable(
+        (*dims, "order"),
+        "float64",
+        float("nan"),
+        {"units": "m", "long_name": "amplitude of a line of the transmission error (peak)"},
+    )
     return found
 
 

@@ -90,7 +90,6 @@ def settled_response(
     rule: Rule,
     record: Recording,
     *,
-    lines: bool,
     carried: bool = False,
     alive: Alive = keep_going,
 ) -> tuple[Settled, Arrays]:
@@ -104,11 +103,11 @@ def settled_response(
     if points.mesh_periods == 1:
         settled = settle_with_status(points.flat, points.status, start, rule, alive=alive)
         figures = outcome_arrays(settled, points.status)
-        return settled, figures | respond(points, settled.state, record, lines=lines, alive=alive)
+        return settled, figures | respond(points, settled.state, record, lines=True, alive=alive)
     settled = started(points.status, start)
     moving = np.flatnonzero(~points.still)
     back = np.full(len(start), np.nan)
-    figures = respond(points, np.full_like(start, np.nan), record, lines=lines)
+    figures = respond(points, np.full_like(start, np.nan), record, lines=True)
     for index, tables in turn_tables(points.take(moving)):
         here = moving[index]
         lanes = turn_lanes(points.take(here))
@@ -123,7 +122,7 @@ def settled_response(
                 tables, lanes.take(np.array([place])), motions.state[place],
                 turns=turns, samples=SAMPLES,
             )  # fmt: skip
-            for name, values in _figures(point, x, felt, taken, lines).items():
+            for name, values in _figures(point, x, felt, taken).items():
                 figures[name][lane] = values
             settled.point[lane] = met
             back[lane] = np.mean(x < -point.flat.half_backlash)
@@ -137,9 +136,9 @@ def settled_response(
     return settled, figures | outcome_arrays(settled, points.status) | {"status": points.status}
 
 
-def _figures(point: Points, x: Floats, felt: Floats, record: Recording, lines: bool) -> Arrays:
+def _figures(point: Points, x: Floats, felt: Floats, record: Recording) -> Arrays:
     """Figures of one recorded motion; extremes and shares as they were ``felt`` at every step."""
-    found: Arrays = dict(figures_of_record(point, x[None], record, lines=lines))
+    found: Arrays = dict(figures_of_record(point, x[None], record, lines=True))
     force = point.stiffness * point.length * felt[:2]
     found["mesh_force_max"], found["mesh_force_min"] = force[:1], force[1:]
     if point.force[0] > 0.0:

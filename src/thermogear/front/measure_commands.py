@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -130,20 +129,14 @@ def require_gear(teeth: int | None, *speeds: float | None) -> None:
 @click.argument("files", metavar="FILE|DIR...", nargs=-1, required=True)
 @supplies
 @click.option(
-    "--baseline",
-    metavar="first|last|FILE",
-    help="Of several records the one that the others are compared with [first].",
-)
-@click.option(
     "--join",
     type=click.Choice(["channels", "time"]),
     help="The files are one run: each some of its channels, or pieces of its time in this order.",
 )
 @delivery.as_json
-@delivery.output("Also write measured.nc (of several: records.nc) and its page.", required=False)
+@delivery.output("Also write measured.nc and its page.", required=False)
 def measure(
     files: tuple[str, ...],
-    baseline: str | None,
     join: str | None,
     as_json: bool,
     output: str | None,
@@ -151,28 +144,14 @@ def measure(
 ) -> None:
     """Read a record and print its lines: order, frequency, amplitude, uncertainty.
 
-    Of several files, or of those in a directory, what changed against a baseline beyond its
-    uncertainty, and trends; with --join they are one record.
+    Several files, or those in a directory, are one run: --join says how.
     """
     require_gear(options["teeth"], options["speed"])
-    one = len(files) == 1 and not Path(files[0]).is_dir()
-    if one and baseline is not None:
-        raise InputError("--baseline", baseline, why="there is one record", fix="name several")
-    if join is not None and baseline is not None:
-        raise InputError(
-            "--baseline",
-            baseline,
-            why="files that are joined are one record",
-            fix="leave out --join or --baseline",
-        )
 
     def make(report: Progress) -> Result:
         from thermogear.measured.dataset import result_of
-        from thermogear.measured.several import files_of
 
-        if one and join is None:
-            return result_of(measured_by(files[0], options))
-        return measured_files(files_of(files), join, baseline, options, report)
+        return result_of(measured_files(files, join, options, report))
 
     delivery.deliver(make, output, as_json=as_json)
 
@@ -236,8 +215,8 @@ def compare(
     without the faults of CASE and with them, with the change of both.
     """
     from thermogear.measured.comparison import result_of
+    from thermogear.measured.joined import files_of
     from thermogear.measured.published import PUBLISHED, is_table
-    from thermogear.measured.several import files_of
     from thermogear.study.compare import compare as study
     from thermogear.study.compare import computes, own_teeth, speeds_of
 

@@ -1,4 +1,4 @@
-"""From files and options to measurements: one record, one of several, one run in several files."""
+"""From files and options to measurements: one record, or one run in several files."""
 
 from __future__ import annotations
 
@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from thermogear.measured.diagnosis import InAngle
     from thermogear.measured.record import Record
     from thermogear.measured.reduction import Measurement
-    from thermogear.results.result import Result
     from thermogear.study.diagnosis import Source
 
 SIGN = "::"
@@ -53,7 +52,7 @@ def in_angles(
 ) -> tuple[list[Source], list[Source]]:
     """What reads each record, and each of a baseline, into the angle of a pinion of so many teeth;
     files or folders of them, of which none may be in both."""
-    from thermogear.measured.several import files_of
+    from thermogear.measured.joined import files_of
 
     if not records:
         raise InputError("RECORD", "none", fix="name a record to hold against the baseline")
@@ -185,23 +184,20 @@ def require_channels(files: Sequence[Path], channels: Sequence[str]) -> None:
 
 
 def measured_files(
-    files: Sequence[Path],
-    join: str | None,
-    baseline: str | None,
-    options: dict[str, Any],
-    report: Progress,
-) -> Result:
-    """Several files: one run where they are joined, else records beside a baseline."""
-    from thermogear.measured.at_once import cores_here
-    from thermogear.measured.dataset import result_of
-    from thermogear.measured.several import result_of_several, several
+    named: Sequence[str], join: str | None, options: dict[str, Any], report: Progress
+) -> Measurement:
+    """One record, or the files of one run that are joined; more that are not are refused."""
+    from thermogear.measured.joined import files_of
 
-    require_channels(files, options["channels"])
+    files = files_of(named)
     if join is not None:
-        return result_of(measured_run(files, join, options, report))
-    read = partial(measured_among, options=options)
-    found = several(files, read, baseline or "first", cores=cores_here(), progress=report)
-    return result_of_several(found)
+        require_channels(files, options["channels"])
+        return measured_run(files, join, options, report)
+    if len(files) > 1:
+        why = "each is a record of its own"
+        fix = "give --join for one run in several files; diagnose --baseline compares records"
+        raise InputError("file", f"{len(files)} files", allowed="one record", why=why, fix=fix)
+    return measured_by(str(files[0]), options)
 
 
 def _reduced(record: Record, other: Record | None, options: dict[str, Any]) -> Measurement:

@@ -203,14 +203,12 @@ class BearingLoss:
 class ShaftHeat:
     """Both shafts with their bearings as heat sees them.
 
-    ``shafts`` of pinion and wheel, each with the place of its gear; ``bearings``;
-    ``factor`` [-] on every conductance between the gears' shaft nodes and the housing. A bearing is
-    called by its shaft and its place from the left end: "pinion_bearing_1".
+    ``shafts`` of pinion and wheel, each with the place of its gear; ``bearings``. A
+    bearing is called by its shaft and its place from the left end: "pinion_bearing_1".
     """
 
     shafts: tuple[Shaft, Shaft]
     bearings: tuple[HeatedBearing, ...]
-    factor: float = 1.0
 
     def __post_init__(self) -> None:
         for name, shaft in zip(SHAFTS, self.shafts, strict=True):
@@ -235,8 +233,6 @@ class ShaftHeat:
             if len(set(places)) < len(places):
                 raise InputError(f"{name} shaft", "two bearings in one place", allowed="apart")
         _ = self.shares
-        if not (np.isfinite(self.factor) and self.factor > 0.0):
-            raise InputError("train.factor", self.factor, allowed="> 0, finite")
 
     @property
     def named(self) -> dict[str, HeatedBearing]:
@@ -340,7 +336,7 @@ class ShaftHeat:
             beyond = {n: b for n, b in mine.items() if side * (b.position - middle) > 0.0}
             for name, one in sorted(beyond.items(), key=lambda item: side * item[1].position):
                 piece = _between(drawn, at, one.position)
-                links.append(Link(node, f"{name}_inner", self.factor / piece.resistance))
+                links.append(Link(node, f"{name}_inner", 1.0 / piece.resistance))
                 held[node] += 0.5 * piece.capacity
                 node, at = f"{name}_inner", one.position
                 held[node] = 0.5 * piece.capacity
@@ -348,7 +344,7 @@ class ShaftHeat:
         for name, one in mine.items():
             size, rings = one.size, _rings(one)
             if size is not None:
-                ring = self.factor * ring_conductance(
+                ring = ring_conductance(
                     speed,
                     elements=size.elements,
                     element_diameter=size.element_diameter,
@@ -357,7 +353,7 @@ class ShaftHeat:
                 links.append(Link(f"{name}_inner", f"{name}_outer", ring))
                 inner, held[f"{name}_outer"] = ring_capacities(size, RINGS)
                 held[f"{name}_inner"] += inner
-            links.append(Link(f"{name}_{rings[-1]}", "housing", self.factor * one.seat))
+            links.append(Link(f"{name}_{rings[-1]}", "housing", one.seat))
         return links, held
 
     def along(self, shaft: str, *, face_width: float, distance: float) -> tuple[str, float]:

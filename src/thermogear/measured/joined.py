@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
@@ -19,6 +20,8 @@ JOINS = ("channels", "time")
 SIGN = "::"
 """Between a file and a channel of it: ``left.csv::a1``."""
 
+MOST = 10_000
+"""Files that are named at once."""
 _CUT = 0.01  # of the longest file: a shorter one within it lost its last block
 _LONGEST_GAP = 1.0  # of the samples of all pieces
 
@@ -50,6 +53,35 @@ def join_records(records: Sequence[Record], how: str, *, names: Sequence[str] = 
     found = join(records, files, rate)
     doubt = next((one.rate_doubt for one in records if one.rate_doubt), "")
     return replace(found, notices=(*_merged(records, files), *found.notices), rate_doubt=doubt)
+
+
+def files_of(named: Sequence[str | Path]) -> list[Path]:
+    """The files that are named, and of every directory those in it, by name, numbers counted:
+    r2 before r10.
+
+    Raises InputError for none, for more than 10 000, for one that is named twice.
+    """
+    found: list[Path] = []
+    for one in map(Path, named):
+        if one.is_dir():
+            inside = [p for p in one.iterdir() if p.is_file() and not p.name.startswith(".")]
+            found += sorted(inside, key=_counted)
+        else:
+            found.append(one)
+    if not found:
+        where = ", ".join(map(str, named))
+        raise InputError("file", where, why="no file is in it", fix="name files, or their folder")
+    if len(found) > MOST:
+        raise InputError("file", f"{len(found)} files", allowed=f"1..{MOST}")
+    require_once(found)
+    return found
+
+
+def _counted(path: Path) -> tuple[list[tuple[int, str]], str]:
+    """Sorts names by their numbers."""
+    parts = re.split(r"([0-9]+)", path.name)
+    number = [(int(part[:18]), "") if k % 2 else (0, part) for k, part in enumerate(parts)]
+    return number, path.name
 
 
 def require_once(files: Sequence[Path]) -> None:

@@ -99,12 +99,6 @@ class Measurement:
         return tuple(line for line in self.lines if line.is_reading)
 
     @property
-    def harmonics(self) -> tuple[str, ...]:
-        """Names of the harmonics of the mesh line, or of the clearest, by rank."""
-        ranks = range(1, _MOST + 1) if self.gearing is not None else ()
-        return tuple(self.gearing.kind(rank)[1] for rank in ranks if self.gearing)
-
-    @property
     def settings(self) -> dict[str, str]:
         """What must be told with every amplitude: rate, N, bin width, window, ENBW, filter."""
         rate, window = self.record.rate, Window(self.chain.window)

@@ -15,14 +15,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base import bounds
 from thermogear.base.arrays import Floats
-from thermogear.base.errors import ConvergenceError, InputError, ValidityWarning, require_choice
+from thermogear.base.errors import ConvergenceError, InputError, ValidityWarning
 from thermogear.base.materials import MATERIALS, Lubricant, Material
 from thermogear.base.progress import Progress, silent
 from thermogear.gears.deviations import Deviation
 from thermogear.gears.pair import GearPair
 from thermogear.gears.turn import mean_tooth
 from thermogear.heat.free_convection import with_free_convection
-from thermogear.heat.gearbox import Losses, Surroundings, joined, thermal_network
+from thermogear.heat.gearbox import Losses, joined, thermal_network
 from thermogear.heat.network import ThermalNetwork
 from thermogear.heat.transient import Course, State, Stretch, follow
 from thermogear.mesh.balance import Gearbox, HeatedPair, node_temperatures, pair_losses
@@ -34,13 +34,6 @@ from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair
 
-FACTORS = {
-    "housing": "housing to ambient",
-    "oil_housing": "oil to housing",
-    "wetted": "teeth and faces of both gears to the oil",
-    "shafts": "shafts through their bearings to the housing",
-}
-"""Named groups of conductances that a factor may multiply."""
 PHASES = 240
 """Mesh phases at which the least half backlash is looked for, as many as a mesh cycle has.
 
@@ -235,7 +228,6 @@ def warm_up(
     reference: float = 293.15,
     housing: Material = MATERIALS["steel"],
     deviations: Sequence[Deviation] = (),
-    factors: Mapping[str, float] | None = None,
     times: ArrayLike = (),
     moments: int = 60,
     tolerance: float = 1e-3,
@@ -252,8 +244,8 @@ def warm_up(
     ``lubricant``, ``half_backlash`` [m] cold, ``model``, ``gearbox`` (its measured nodes held from
     the start; its ambient is the duty's), ``reference`` [K], ``housing`` and ``deviations`` as
     :func:`heat_balance`; ``start`` [K] of all nodes or by node, else the first ambient;
-    ``factors`` on conductances [-] by the names of :data:`FACTORS`; ``times`` [s] to be stored
-    with some ``moments`` of each piece; ``tolerance`` [K] of the temperatures' error.
+    ``times`` [s] to be stored with some ``moments`` of each piece;
+    ``tolerance`` [K] of the temperatures' error.
 
     A jam does not end the course; a node of 700 K does. Raises ConvergenceError where the loaded
     contact does not settle.
@@ -274,7 +266,6 @@ def warm_up(
         reference=reference,
         housing=housing,
         deviations=deviations,
-        factors=_known(factors or {}),
     )
     with warnings.catch_warnings(action="ignore", category=ValidityWarning):
         # told once, by the losses
@@ -297,51 +288,6 @@ def warm_up(
     return WarmUp(duty=duty, course=course, _chain=chain)
 
 
-def with_factors(surroundings: Surroundings, factors: Mapping[str, float]) -> Surroundings:
-    """``surroundings`` whose coefficients have the ``factors`` [-] of :data:`FACTORS` in them.
-
-    For steady states: the same conductances as a course with the factors has. Raises InputError
-    where more than the whole of a gear would be wetted.
-    """
-    known = _known(factors)
-    wetted, shafts = known.get("wetted", 1.0), known.get("shafts", 1.0)
-    first, second = surroundings.wetted_share
-    train = surroundings.train
-    return replace(
-        surroundings,
-        housing_coefficient=surroundings.housing_coefficient * known.get("housing", 1.0),
-        oil_housing_coefficient=surroundings.oil_housing_coefficient
-        * known.get("oil_housing", 1.0),
-        wetted_share=(first * wetted, second * wetted),
-        shaft_length=surroundings.shaft_length / shafts,
-        bearing_conductance=surroundings.bearing_conductance * shafts,
-        train=None if train is None else replace(train, factor=train.factor * shafts),
-    )
-
-
-def _known(factors: Mapping[str, float]) -> dict[str, float]:
-    for name, value in factors.items():
-        require_choice("factors", name, FACTORS)
-        if not (np.isfinite(value) and value > 0.0):
-            raise InputError(f"factors.{name}", f"{value:g}", allowed="> 0, finite")
-    return dict(factors)
-
-
-def _group(first: str, second: str) -> str | None:
-    """The factor that a conductance between two nodes belongs to."""
-    ends = {first, second}
-    if ends == {"housing", "ambient"}:
-        return "housing"
-    if ends == {"oil", "housing"}:
-        return "oil_housing"
-    kinds = {end.rpartition("_")[2] for end in ends}
-    if "oil" in ends and kinds & {"tooth", "body"}:
-        return "wetted"
-    if kinds & {"inner", "outer"} or ("housing" in ends and "shaft" in kinds):
-        return "shafts"
-    return None
-
-
 @dataclass(frozen=True, eq=False, kw_only=True)
 class _Chain(HeatedPair):
     """From temperatures to losses, conductances and clearance of one pair in its duty.
@@ -350,7 +296,6 @@ class _Chain(HeatedPair):
     """
 
     duty: Duty
-    factors: Mapping[str, float]
     held: dict[str, float] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -425,20 +370,7 @@ class _Chain(HeatedPair):
         gears = {"pinion": self.pair.pinion, "wheel": self.pair.wheel}
         known = {name: np.asarray(t) for name, t in bare.fixed.items()} | dict(state)
         full = {name: known.get(name, np.asarray(around.ambient)) for name in bare.nodes}
-        return self._scaled(with_free_convection(bare, gears, at.lubricant, around, full))
-
-    def _scaled(self, network: ThermalNetwork) -> ThermalNetwork:
-        if not self.factors:
-            return network
-        links = tuple(
-            replace(
-                link,
-                conductance=np.asarray(link.conductance)
-                * self.factors.get(_group(link.first, link.second) or "", 1.0),
-            )
-            for link in network.links
-        )
-        return replace(network, links=links)
+        return with_free_convection(bare, gears, at.lubricant, around, full)
 
     def clearance(self, state: State) -> Clearance:
         """Over the mesh phase, of a state."""

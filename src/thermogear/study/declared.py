@@ -406,13 +406,6 @@ class WarmUpSurvey(Study, kind="warmup", home="thermogear.study.warm_up:warm_up_
         read=_file,
         metavar="FILE",
     )
-    fit: Sequence[str] = option(
-        (),
-        "--fit",
-        "Fit one or two heat-transfer factors to the record: housing, oil_housing, wetted, shafts.",
-        read=lambda _, text: [name.strip() for name in text.split(",")],
-        metavar="NAME[,NAME]",
-    )
 
     def arguments(self, subject: Any) -> dict[str, Any]:
         """Duty and record, read from their files."""
@@ -425,7 +418,7 @@ class WarmUpSurvey(Study, kind="warmup", home="thermogear.study.warm_up:warm_up_
             speed, torque = self.at
             duty = point_duty(subject, speed * RPM, torque, "at")
         record = None if self.measured is None else read_measured(self.measured)
-        return {"duty": duty, "start": self.start, "measured": record, "fit": self.fit}
+        return {"duty": duty, "start": self.start, "measured": record}
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -162,7 +162,7 @@ class RunUpPlan:
             "end_period": Variable(dims, "int32", 0, {"long_name": words} | NO_COUNT),
         }
         leaps = {name: number(*told, "leap") for name, told in LEAP.items()}
-        felt = outcome_variables(dims) | response_variables(dims, lines=True)
+        felt = outcome_variables(dims) | response_variables(dims)
         return felt | of_axes | ends | leaps
 
     def coordinates(self) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]:
@@ -229,7 +229,7 @@ class RunUpPlan:
         for place in order:
             here = points.take(np.array([place]))
             settled, arrays = settled_response(
-                here, state[None], self.rule, self.record, lines=True, carried=carried, alive=alive
+                here, state[None], self.rule, self.record, carried=carried, alive=alive
             )
             state, carried = settled.state[0], carried or not here.still[0]
             row = {name: values[0] for name, values in arrays.items()}

@@ -88,7 +88,7 @@ class SweepPlan:
 
     def variables(self) -> dict[str, Variable]:
         dims = self.family.names
-        one_pair = outcome_variables(dims) | response_variables(dims, lines=True)
+        one_pair = outcome_variables(dims) | response_variables(dims)
         of_parts = point_variables(dims) if self.parts > 1 else {}
         return one_pair | answer_variables(dims) | of_parts
 
@@ -117,7 +117,7 @@ class SweepPlan:
     def _rows(self, rows: Floats, alive: Alive) -> Arrays:
         points = self.family(rows)
         start = np.broadcast_to(np.array(self.start), (len(rows), 2)).copy()
-        _, found = settled_response(points, start, self.rule, self.record, lines=True, alive=alive)
+        _, found = settled_response(points, start, self.rule, self.record, alive=alive)
         of_parts = at_points(self.family, rows, self.parts, alive) if self.parts > 1 else {}
         return found | answer_numbers(self.family, rows) | of_parts
 

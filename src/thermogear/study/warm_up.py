@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -24,8 +24,7 @@ from thermogear.heat.transient import HOTTEST
 from thermogear.mesh.balance_table import LOSSES, of_bearings
 from thermogear.mesh.clearance import Clearance
 from thermogear.mesh.thermal import HotPair
-from thermogear.mesh.warm_up import PHASES, Duty, WarmUp, meshing, warm_up, with_factors
-from thermogear.mesh.warm_up_fit import Fit, fit_factors, require_factors, until
+from thermogear.mesh.warm_up import PHASES, Duty, WarmUp, meshing, warm_up
 from thermogear.results.result import Notice, Result
 from thermogear.study.declared import WarmUpSurvey, declared
 from thermogear.study.notices import turn_notices
@@ -41,8 +40,6 @@ MOMENTS = 400
 MOST_OF_ONE = 120
 """Moments that one piece has at most."""
 MOST_PIECES = 2000
-FIT_TOLERANCE = 3e-3
-"""Error [K] of temperatures while factors are looked for: far below any thermometer's."""
 
 ALONG = ("moment",)
 
@@ -54,7 +51,6 @@ def warm_up_survey(
     *,
     start: float | None = None,
     measured: Measured | None = None,
-    fit: Sequence[str] = (),
     moments: int = MOMENTS,
     progress: Progress = silent,
 ) -> Result:
@@ -62,13 +58,12 @@ def warm_up_survey(
 
     ``duty`` of :func:`~thermogear.case.duty.read_duty` or made by hand (default: the case's
     operating point of the greatest power until it is steady); ``start`` [K] of all nodes (default:
-    the first ambient); ``measured``: a record to be set beside the curves; ``fit``: one or two
-    factors of :data:`~thermogear.mesh.warm_up.FACTORS` that are fitted to it, the curves then are
-    those with the factors; about so many ``moments`` are stored. The first model of the case, its
+    the first ambient); ``measured``: a record to be set beside the curves; about so many
+    ``moments`` are stored. The first model of the case, its
     gearbox with the nodes it holds; other temperatures of the case are not used.
 
     Groups: ``course`` over (moment, node, loss_kind, sensor); ``steady`` over the pieces of the
-    duty, each held for good; ``record`` over the rows measured; ``fit``. Attribute ``worst`` (JSON)
+    duty, each held for good; ``record`` over the rows measured. Attribute ``worst`` (JSON)
     has the moment of the least half backlash [m], its margin [K] and the steady one beside it.
     """
     began = time.perf_counter()
@@ -78,53 +73,34 @@ def warm_up_survey(
     ):
         if not isinstance(value, kind | None):
             raise InputError(name, repr(value), allowed=f"a {kind.__name__}", fix=f"pass {fix}")
-    names = require_factors(fit, "fit") if fit else ()
-    if names and measured is None:
-        raise InputError(
-            "fit", ", ".join(names), why="there is no record to fit to", fix="give measured too"
-        )
     work = point_duty(case, *chosen_point(case)) if duty is None else duty
     if work.pieces > MOST_PIECES:
         raise InputError("duty", f"{work.pieces} rows", allowed=f"at most {MOST_PIECES}")
     of_each = max(12, min(MOST_OF_ONE, whole("moments", moments, least=1) // work.pieces))
-    found: Fit | None = None
     with warnings.catch_warnings():
         # told in the notices, with how long
         warnings.filterwarnings("ignore", "(oil temperature|viscosity|film):", ValidityWarning)
-        if measured is not None and names:
-            found = _fitted(case, work, start, measured, names, progress)
-        factors = {} if found is None else {one.name: one.value for one in found.factors}
         course = _course(
             case,
             work,
             start,
-            factors,
             times=() if measured is None else measured.time,
             moments=of_each,
             progress=progress,
         )
         shown = shown_by(case.pair, case.gearbox.surroundings, case.sensors, course)
         data = _course_dataset(case, course, shown, progress)
-        steady = _steady(case, work, factors)
+        steady = _steady(case, work)
     groups = {"course": data, "steady": steady}
     if measured is not None:
         groups["record"] = _record(measured, course, shown)
-    if found is not None:
-        groups["fit"] = label(
-            {
-                "value": ("factor", [f.value for f in found.factors], "1", "factor"),
-                "low": ("factor", [f.low for f in found.factors], "1", "lower end, 95 %"),
-                "high": ("factor", [f.high for f in found.factors], "1", "upper end, 95 %"),
-            },
-            {"factor": [f.name for f in found.factors]},
-        )
     seconds = time.perf_counter() - began
     worst = _worst(case, course, steady)
     return Result.of(
         WarmUpSurvey.kind,
         f"Warm-up: {case.title}",
         groups,
-        _notices(case, course, steady, measured, found, seconds),
+        _notices(case, course, steady, measured, seconds),
         **case.provenance,
         bundle=case.models[0].name,
         choices=case.models[0].choices(),
@@ -133,7 +109,6 @@ def warm_up_survey(
         worst=worst,
         jams=jams_of(course),
         sensors={one.name: one.words for one in shown},
-        fit=_fit_words(found),
         evaluations=course.course.evaluations,
         greatest_imbalance=float(course.course.imbalance.max()),
         seconds=seconds,
@@ -144,11 +119,9 @@ def _course(
     case: GearCase,
     duty: Duty,
     start: float | None,
-    factors: Mapping[str, float],
     *,
     times: Floats | Sequence[float],
     moments: int,
-    tolerance: float = 1e-3,
     progress: Progress = silent,
 ) -> WarmUp:
     at = case.stated
@@ -163,10 +136,8 @@ def _course(
         reference=at.temperatures.reference,
         housing=at.housing,
         deviations=case.deviations,
-        factors=factors,
         times=times,
         moments=moments,
-        tolerance=tolerance,
         progress=progress,
     )
 
@@ -240,16 +211,8 @@ def _course_dataset(
 # --- what it is measured against --------------------------------------------------------------
 
 
-def _steady(case: GearCase, duty: Duty, factors: Mapping[str, float]) -> Dataset:
-    """Every piece of the duty held for good: temperatures and least half backlash.
-
-    Nowhere a steady state where a fitted factor would wet more than the whole of a gear.
-    """
-    surroundings, known = case.gearbox.surroundings, True
-    try:
-        surroundings = with_factors(surroundings, factors)
-    except InputError:
-        known = False
+def _steady(case: GearCase, duty: Duty) -> Dataset:
+    """Every piece of the duty held for good: temperatures and least half backlash."""
     model = case.models[0]
     points = np.stack([duty.ambient, duty.speed, duty.torque], axis=1)
     unique, back = np.unique(points, axis=0, return_inverse=True)
@@ -259,14 +222,14 @@ def _steady(case: GearCase, duty: Duty, factors: Mapping[str, float]) -> Dataset
     temperatures: dict[str, Floats] = {}
     for ambient in np.unique(unique[:, 0]):
         here = np.flatnonzero(unique[:, 0] == ambient)
-        around = replace(surroundings, ambient=float(ambient))
+        around = replace(case.gearbox.surroundings, ambient=float(ambient))
         box = replace(case.gearbox, surroundings=around)
         balance = case.balance_of(model, unique[here, 1], unique[here, 2], gearbox=box)
         gap = _least_gap(case, HotPair(case.pair, balance.operating, model))
         # at rest the balance knows no free convection: it matters where anything but the ambient
         # has a temperature of its own
         runs = (unique[here, 1] > 0.0) | (around.oil_flow == 0.0 and not case.gearbox.measured)
-        settled_here = balance.settled & known & runs
+        settled_here = balance.settled & runs
         twice[here] = balance.several & settled_here
         values[here] = np.where(settled_here, gap, np.nan)
         fine[here] = settled_here
@@ -342,28 +305,6 @@ def _computed(names: Sequence[str], when: Floats, course: WarmUp, shown: Sequenc
     return np.stack([by[name][place] for name in names], axis=1)
 
 
-def _fitted(
-    case: GearCase,
-    duty: Duty,
-    start: float | None,
-    measured: Measured,
-    names: tuple[str, ...],
-    progress: Progress,
-) -> Fit:
-    inside = measured.time <= duty.time[-1]
-    when, values = measured.time[inside], measured.values[inside]
-    if not np.any(when > 0.0):
-        raise InputError("measured", "no row after the start", allowed="rows within the duty")
-    part = until(duty, float(when[-1]))
-
-    def residuals(factors: Mapping[str, float]) -> Floats:
-        course = _course(case, part, start, factors, times=when, moments=2, tolerance=FIT_TOLERANCE)
-        shown = shown_by(case.pair, case.gearbox.surroundings, case.sensors, course)
-        return np.asarray(_computed(measured.names, when, course, shown) - values)
-
-    return fit_factors(residuals, names, progress)
-
-
 def _record(measured: Measured, course: WarmUp, shown: Sequence[Shown]) -> Dataset:
     inside = measured.time <= course.time[-1]
     if not np.any(inside):
@@ -382,23 +323,6 @@ def _record(measured: Measured, course: WarmUp, shown: Sequence[Shown]) -> Datas
             "time": (("row",), when, "s", "time from the start"),
         },
     )
-
-
-def _fit_words(found: Fit | None) -> dict[str, Any]:
-    if found is None:
-        return {}
-    return {
-        "factors": [
-            {"name": f.name, "value": f.value, "low": f.low, "high": f.high} for f in found.factors
-        ],
-        "rms_before_K": found.before,
-        "rms_after_K": found.after,
-        "count": found.count,
-        "effective": found.effective,
-        "autocorrelation": found.autocorrelation,
-        "correlation": found.correlation,
-        "runs": found.runs,
-    }
 
 
 # --- in words -----------------------------------------------------------------------------------
@@ -438,7 +362,6 @@ def _notices(
     course: WarmUp,
     steady: Dataset,
     measured: Measured | None,
-    found: Fit | None,
     seconds: float,
 ) -> Iterator[Notice]:
     yield from turn_notices(case, alike="flash, film, friction and stiffness over time")
@@ -466,13 +389,6 @@ def _notices(
         yield Notice.of("no_rest_reached")
     if measured is not None and np.any(measured.time > course.time[-1]):
         yield Notice.of("rows_after_end", rows=(measured.time > course.time[-1]).sum())
-    if found is not None:
-        yield Notice.of(
-            "factors_fitted",
-            readings=found.count,
-            effective=found.effective,
-            autocorrelation=found.autocorrelation,
-        )
     if np.any(course.duty.speed == 0.0):
         yield Notice.of("free_convection_at_rest")
     yield Notice.of(

@@ -1,16 +1,12 @@
 """A model out of the tables of JSON; what would not fit the memory is refused before it is read.
 
-Coded arrays are base64 of little-endian numbers (REXS 1.4 and later); no attribute that is used
-is a matrix.
+Coded arrays (REXS 1.4 and later) and matrices are passed over: no attribute that is used is long.
 """
 
 from __future__ import annotations
 
-import base64
-import binascii
 import json
 import re
-import struct
 from typing import Any, NoReturn
 
 from thermogear.base.errors import InputError, short
@@ -33,7 +29,6 @@ _TYPE = re.compile(
     r"(_(array|matrix)(_coded)?)?"
 )
 """The keys that hold a value, by its type."""
-_CODES = {"int32": "i", "float32": "f", "float64": "d"}
 
 
 def read_json(raw: bytes, container: str) -> Model:
@@ -137,30 +132,10 @@ def _attributes(table: dict[str, Any], model: Model) -> dict[str, Attribute]:
 def _value(entry: dict[str, Any]) -> Value:
     """What an attribute holds, under whichever key its type has; None where nothing."""
     key, value = next((one for one in entry.items() if _TYPE.fullmatch(one[0])), ("", None))
-    if key.endswith("array_coded") and isinstance(value, dict):
-        return list(decoded_array(value.get("code"), value.get("value")))
-    if key.endswith("matrix_coded"):
+    if key.endswith("_coded"):
         return None
     if isinstance(value, str) and len(value) > LONGEST_TEXT:
         raise too_many("characters in one value", LONGEST_TEXT)
     if isinstance(value, dict):
         raise InputError(str(entry.get("id")), "a table", allowed="a value")
     return value
-
-
-def decoded_array(code: object, text: object) -> tuple[Any, ...]:
-    """The numbers of a coded array; InputError for an unknown code or a length that is no whole
-    number of values."""
-    letter = _CODES.get(code) if isinstance(code, str) else None
-    if letter is None:
-        raise InputError("code", short(code), allowed=" | ".join(_CODES))
-    try:
-        raw = base64.b64decode("".join(str(text).split()), validate=True)
-    except (binascii.Error, ValueError) as cause:
-        raise InputError("coded array", short(text), allowed="base64") from cause
-    size = struct.calcsize(f"<{letter}")
-    if len(raw) % size:
-        raise InputError(
-            "coded array", f"{len(raw)} bytes", allowed=f"a whole number of {code} ({size} bytes)"
-        )
-    return struct.unpack(f"<{len(raw) // size}{letter}", raw)

@@ -34,7 +34,7 @@ KINDS = ("warmup",)
 def page(result: Result) -> Page:
     """A pair through its duty."""
     data, steady = result.groups["course"], result.groups["steady"]
-    record, fit = result.group("record"), result.group("fit")
+    record = result.group("record")
     worst = result.table("worst")
     cold = float(worst["undeformed_half_backlash_m"])
     logarithmic = result.text("duty") != "table"
@@ -64,11 +64,9 @@ def page(result: Result) -> Page:
     tables = [_moments(data, worst), _pieces(data, steady), _sensors(data)]
     if record is not None:
         tables.append(_differences(record))
-    if fit is not None:
-        tables.insert(0, _fitted(result.table("fit")))
     return survey(
         result,
-        answer(worst, cold) + fit_sentence(result.table("fit")),
+        answer(worst, cold),
         pictures,
         tables,
         numbers=partial(_numbers, result),
@@ -119,23 +117,6 @@ def answer(worst: Mapping[str, Any], cold: float) -> str:
             "the pair jams."
         )
     return text
-
-
-def fit_sentence(fit: Mapping[str, Any]) -> str:
-    """What the fit found, with intervals; nothing where none was asked for."""
-    if not fit:
-        return ""
-    parts = [f"{one['name']} {_interval(one)}" for one in fit["factors"]]
-    return (
-        f" Fitted to the record: {' and '.join(parts)}; the rms difference goes from "
-        f"{number(fit['rms_before_K'])} to {number(fit['rms_after_K'])} K."
-    )
-
-
-def _interval(one: Mapping[str, Any]) -> str:
-    if one["low"] is None or one["high"] is None:
-        return f"times {number(one['value'])} (no interval: the record says too little of it)"
-    return f"times {number(one['value'])} ({number(one['low'])} to {number(one['high'])})"
 
 
 def _course_words(worst: Mapping[str, Any], logarithmic: bool, measured: bool) -> str:
@@ -265,24 +246,6 @@ def _differences(record: Dataset) -> Table:
     return declared("Computed less measured.", DIFFERENCES, rows)
 
 
-FACTORS = (
-    Column("factor", "name"),
-    Column("value", "value"),
-    Column("from", "low"),
-    Column("to", "high"),
-)
-
-
-def _fitted(fit: Mapping[str, Any]) -> Table:
-    text = (
-        f"Factors on conductances with 95 % intervals from {fit['count']} readings, worth "
-        f"{number(fit['effective'])} independent ones."
-    )
-    if fit["correlation"] is not None:
-        text += f" Errors of both factors correlate with {number(fit['correlation'], 2)}."
-    return declared(text, FACTORS, fit["factors"])
-
-
 # --- figures as JSON wants them ---------------------------------------------------------------
 
 
@@ -297,7 +260,6 @@ def _numbers(result: Result) -> dict[str, Any]:
         "greatest_imbalance": float(result.text("greatest_imbalance")),
         "evaluations": int(result.text("evaluations")),
         "seconds": float(result.text("seconds")),
-        "fit": result.table("fit"),
     }
 
 
