@@ -114,9 +114,12 @@ MEANINGS: dict[str, Meaning] = (
             "root_relief_datum_diameter",
             "root_relief_evaluation_reference",
             "u_coordinate_on_shaft",
+            "u_coordinate_on_shaft_inner_side",
             "length",
             "outer_diameter_begin",
             "outer_diameter_end",
+            "inner_diameter_begin",
+            "inner_diameter_end",
         ),
         _LENGTH,
     )
@@ -126,6 +129,7 @@ MEANINGS: dict[str, Meaning] = (
             "averaged_peak_to_valley_height_flank",
             "upper_center_distance_allowance",
             "lower_center_distance_allowance",
+            "operating_radial_bearing_clearance",
         ),
         _MICRO,
     )
@@ -162,6 +166,7 @@ MEANINGS: dict[str, Meaning] = (
         "torque_around_u_axis": Meaning("torque", "N m"),
         "torque": Meaning("torque", "N m"),
         "power": Meaning("power", "kW"),
+        "radial_stiffness": Meaning("stiffness", "N / m"),
     }
 )
 """Attributes that are numbers with a kind, by the name of REXS 1.x."""
@@ -185,6 +190,7 @@ WORDS = (
     "defines_torque",
     "transmits_torque",
     "defines_speed",
+    "radial_force_absorption",
     "number_of_teeth",
     "tolerance_class_according_to_iso_1328_2013",
     "tooth_thickness_deviation_tolerance_series_din_3967_1978",
@@ -193,6 +199,7 @@ WORDS = (
     "bevel_cone_orientation",
     "is_engaged",
     "gear_shift_index",
+    "catalogue_designation",
     "name",
     "material_designation",
     "reference_component_for_position",

@@ -29,7 +29,8 @@ class Operating:
 class Draft:
     """What is found on the way to a case: lines, loads, and what could not be used.
 
-    ``seats``: the sections of shafts that gave bores.
+    ``train``: the sections of shafts and the bearings that lines came from; ``seats``: the sections
+    that gave bores.
     """
 
     stage: Stage
@@ -38,6 +39,7 @@ class Draft:
     lines: list[Line] = field(default_factory=list)
     loads: list[Operating] = field(default_factory=list)
     unused: list[str] = field(default_factory=list)
+    train: list[Component] = field(default_factory=list)
     seats: list[Component] = field(default_factory=list)
 
     def put(self, path: str, value: object, origin: str, note: str = "") -> None:

@@ -19,6 +19,7 @@ from thermogear.case.rexs.drive import Drive
 from thermogear.case.rexs.gearbox import Stage
 from thermogear.case.rexs.lines import some, toml
 from thermogear.case.rexs.model import Component, Model
+from thermogear.case.rexs.shaft_train import without_train
 from thermogear.case.rexs.stage_case import draft, one_rack, require_spur
 
 
@@ -157,9 +158,14 @@ def imported(
     one = chosen(model, stage)
     made = draft(reader, one, speed, torque)
     one_rack(made)
+    if made.train:
+        try:
+            checked(one, toml(made.lines, (), ()))
+        except InputError as error:
+            without_train(made, error)
     shapes = _modifications(model, made)
     unused = [*made.unused, *shapes]
-    unused += left_out(model, [*_used(model, one), *made.seats], told=shapes.values())
+    unused += left_out(model, [*_used(model, one), *made.train, *made.seats], told=shapes.values())
     text = _fresh(made, _head(model, one, unused))
     return Imported(text, tuple(unused), tuple(reader.said), _duty(made))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
@@ -48,13 +49,21 @@ def toml(lines: Iterable[Line], head: Iterable[str], defaults: Iterable[tuple[st
     found = [f"# {text}" for text in head]
     for name in sorted(tables, key=_rank):
         if tables[name]:
-            found += ["", *([heading(name)] if name else []), *tables[name]]
+            listed = _NTH.fullmatch(name)
+            head_line = heading(f"[{listed[1]}]" if listed else name)
+            found += ["", *([head_line] if name else []), *tables[name]]
     return "\n".join(found) + "\n"
 
 
 _ORDER = ("", "gears", "materials", "housing", "oil", "operating", "temperatures", "backlash")
 
 
-def _rank(table: str) -> tuple[int, str]:
-    first = table.split(".")[0]
-    return (_ORDER.index(first) if first in _ORDER else len(_ORDER), table)
+_NTH = re.compile(r"(\w+)\[(\d+)\]")
+"""The name of a table in a list of tables."""
+
+
+def _rank(table: str) -> tuple[int, str, int]:
+    listed = _NTH.fullmatch(table)
+    name, nth = (listed[1], int(listed[2])) if listed else (table, 0)
+    first = name.split(".")[0]
+    return (_ORDER.index(first) if first in _ORDER else len(_ORDER), name, nth)

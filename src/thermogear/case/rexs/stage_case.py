@@ -10,13 +10,13 @@ from thermogear.base.errors import InputError
 from thermogear.base.units import ROUNDED, RPM
 from thermogear.case.rexs import gearbox
 from thermogear.case.rexs.attributes import Read, Reader, plain
-from thermogear.case.rexs.bores import bore_lines
 from thermogear.case.rexs.draft import Draft, Operating, tightest
 from thermogear.case.rexs.drive import Drive, Load
 from thermogear.case.rexs.flank_relief import relief_lines
 from thermogear.case.rexs.gearbox import Stage
 from thermogear.case.rexs.lines import DERIVED, GIVEN, READ
 from thermogear.case.rexs.model import Component
+from thermogear.case.rexs.shaft_train import bore_lines, train_lines
 from thermogear.case.rexs.substances import material_lines, oil_lines
 from thermogear.case.rexs.tolerances import accuracy_lines, backlash_lines
 from thermogear.gears.geometry import Rack
@@ -84,6 +84,7 @@ def draft(
         relief_lines(reader, made, name, gear, sense[name], (module, angle))
     accuracy_lines(reader, made)
     backlash_lines(reader, made)
+    train_lines(reader, made)
     bore_lines(reader, made, module)
     _operating(made, loads, driver, teeth, speed, torque)
     return made
