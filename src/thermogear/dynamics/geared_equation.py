@@ -27,7 +27,8 @@ class LocalBearing:
     """A bearing with clearance or a power law between two directions of the train.
 
     ``directions`` (n, 2): u = their transpose times q [m]. ``elements`` 0: a ring, F = -k <|u| -
-    c>^n u/|u|; else the sum over so many rolling elements, the first at ``angle`` [rad].
+    c>^n u/|u|; else the sum over so many rolling elements, the first at ``angle`` [rad] at
+    the phase 0. ``order``: turns of the cage about +z in a mesh period, 0 where it stands.
     ``coefficient`` k [N/m^n], ``exponent`` n, ``clearance`` c [m]. ``base`` (2, 2) [N/m]: stiffness
     of the linear system behind, best the tangent at rest; it changes the cost, not the result.
     """
@@ -38,22 +39,44 @@ class LocalBearing:
     clearance: float = 0.0
     elements: int = 0
     angle: float = 0.0
+    order: float = 0.0
     base: Floats = field(default_factory=lambda: np.zeros((2, 2)))
 
     @property
     def rays(self) -> Floats:
-        """Unit vectors from the centre to every rolling element, (elements, 2)."""
+        """Unit vectors from the centre to every rolling element at phase 0, (elements, 2)."""
         psi = self.angle + 2.0 * np.pi * np.arange(self.elements) / max(self.elements, 1)
         return np.stack([np.cos(psi), np.sin(psi)], axis=-1)
 
-    def depth(self, displacement: Floats) -> Floats:
+    def depth(self, displacement: Floats, phase: Floats) -> Floats:
         """How deep the ring, or the deepest element, is pressed in [m] at (..., 2) [m]; < 0: open.
 
-        The bearing bears nothing where it is open.
+        The bearing bears nothing where it is open. ``phase`` (...): mesh periods since the cage was
+        at its angle.
         """
         if self.elements == 0:
             return np.asarray(np.linalg.norm(displacement, axis=-1) - self.clearance)
-        return np.asarray((displacement @ self.rays.T).max(axis=-1) - self.clearance)
+        seen = turned(displacement, -self.order * phase)
+        return np.asarray((seen @ self.rays.T).max(axis=-1) - self.clearance)
+
+    def force(self, displacement: Floats, phase: Floats) -> Floats:
+        """Force (..., 2) [N] on the journal at ``displacement`` (..., 2) [m] and ``phase`` (...)."""
+        if self.elements == 0:
+            r = np.linalg.norm(displacement, axis=-1)[..., None]
+            deep = np.maximum(r - self.clearance, 0.0)
+            towards = np.divide(displacement, r, out=np.zeros_like(displacement), where=r > 0.0)
+            return np.asarray(-self.coefficient * deep**self.exponent * towards)
+        seen = turned(displacement, -self.order * phase)
+        deep = np.maximum(seen @ self.rays.T - self.clearance, 0.0)
+        force = -(self.coefficient * deep**self.exponent) @ self.rays
+        return turned(force, self.order * phase)
+
+
+def turned(vectors: Floats, turns: Floats) -> Floats:
+    """``vectors`` (..., 2) turned on by so many ``turns`` (...) about +z; 0 leaves them as is."""
+    cos, sin = np.cos(2.0 * np.pi * turns), np.sin(2.0 * np.pi * turns)
+    x, y = vectors[..., 0], vectors[..., 1]
+    return np.stack([cos * x - sin * y, sin * x + cos * y], axis=-1)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -228,7 +251,7 @@ class GearedEquation:
         """
         errors = np.stack(self.errors_at(phase), axis=-1)
         pairs = (displacements[..., 2 * n + 2 : 2 * n + 4] for n in range(len(self.bearings)))
-        rings = [b.depth(u)[..., None] for b, u in zip(self.bearings, pairs, strict=True)]
+        rings = [b.depth(u, phase)[..., None] for b, u in zip(self.bearings, pairs, strict=True)]
         flanks = displacements[..., :2] - errors - self.half_backlash
         return np.concatenate([flanks, *rings], axis=-1)
 
@@ -267,7 +290,7 @@ class GearedEquation:
                     pushed = pushed + np.multiply.outer(drive * np.asarray(one(phi)), column)
         rings = np.zeros((phi.size, len(self.bearings), 2))
         for place, bearing in enumerate(self.bearings):
-            rings[:, place] = self.bearing_forces(place, q @ bearing.directions)
+            rings[:, place] = bearing.force(q @ bearing.directions, phi)
             pushed = pushed + rings[:, place] @ bearing.directions.T
         for outer in self.outer:
             turn = 2.0 * np.pi * outer.order
@@ -282,14 +305,3 @@ class GearedEquation:
             "bearings": rings,
             "acceleration": np.asarray(np.linalg.solve(self.mass, pushed.T).T, dtype=float),
         }
-
-    def bearing_forces(self, place: int, displacement: ArrayLike) -> Floats:
-        """Force (..., 2) [N] of a bearing on its journal at ``displacement`` (..., 2) [m]."""
-        own, u = self.bearings[place], np.asarray(displacement, dtype=float)
-        if own.elements == 0:
-            r = np.linalg.norm(u, axis=-1)[..., None]
-            deep = np.maximum(r - own.clearance, 0.0)
-            towards = np.divide(u, r, out=np.zeros_like(u), where=r > 0.0)
-            return np.asarray(-own.coefficient * deep**own.exponent * towards)
-        deep = np.maximum(u @ own.rays.T - own.clearance, 0.0)
-        return np.asarray(-(own.coefficient * deep**own.exponent) @ own.rays)
