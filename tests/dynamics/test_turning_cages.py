@@ -161,8 +161,8 @@ def test_power_and_momentum_close(compared: Compared) -> None:
         psi = psi + one.angle
         pressed = np.maximum(u[:, :1] * np.cos(psi) + u[:, 1:] * np.sin(psi) - one.clearance, 0.0)
         energy += (one.coefficient * pressed**2.5 / 2.5).sum(axis=1)
-        worked -= 2.0 * np.pi * one.order * model.mesh_frequency * (u[:, 1] * f[:, 0]
-                                                                    - u[:, 0] * f[:, 1])  # fmt: skip
+        turning = 2.0 * np.pi * one.order * model.mesh_frequency
+        worked -= turning * (u[:, 1] * f[:, 0] - u[:, 0] * f[:, 1])
         momentum += f @ one.directions.T
     step = model.period / samples
     total = power + worked

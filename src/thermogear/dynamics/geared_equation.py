@@ -8,7 +8,9 @@ phase. C holds the mesh damping c_m g_d g_d^T. Plain arrays in SI: nothing here 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from fractions import Fraction
 from functools import cached_property
+from math import lcm
 from typing import Self
 
 import numpy as np
@@ -20,6 +22,13 @@ from thermogear.base.excitation import Periodic
 from thermogear.dynamics.tables import Pieces
 
 Function = Periodic | Pieces
+
+LOCKED = 256
+"""Mesh periods within which elements that pass at a whole ratio come again: chosen, as long as an
+orbit's multipliers are asked for."""
+WHOLE = 1e-12
+"""Elements that pass in a mesh period may differ by it from a whole ratio: rounding of it; over
+10 000 periods an element is out of place by 1e-8 of a pitch."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -60,7 +69,7 @@ class LocalBearing:
         return np.asarray((seen @ self.rays.T).max(axis=-1) - self.clearance)
 
     def force(self, displacement: Floats, phase: Floats) -> Floats:
-        """Force (..., 2) [N] on the journal at ``displacement`` (..., 2) [m] and ``phase`` (...)."""
+        """Force (..., 2) [N] on the journal at ``displacement`` (..., 2) [m], ``phase`` (...)."""
         if self.elements == 0:
             r = np.linalg.norm(displacement, axis=-1)[..., None]
             deep = np.maximum(r - self.clearance, 0.0)
@@ -159,6 +168,21 @@ class GearedEquation:
             value = getattr(self, name)
             if value.shape != (n, n) or not np.all(np.isfinite(value)):
                 raise InputError(name, f"shape {value.shape}", allowed=f"({n}, {n}) finite numbers")
+
+    @cached_property
+    def cage_cycle(self) -> int:
+        """Mesh periods after which all elements are in the places of others again; 0: never.
+
+        Never: not within :data:`LOCKED`.
+        """
+        found = 1
+        for one in self.bearings:
+            passed = one.elements * one.order
+            ratio = Fraction(passed).limit_denominator(LOCKED)
+            if abs(passed - ratio) > WHOLE:
+                return 0
+            found = lcm(found, ratio.denominator)
+        return found if found <= LOCKED else 0
 
     @property
     def jumps(self) -> tuple[float, ...]:

@@ -48,10 +48,10 @@ class Train(NamedTuple):
 
     Flat: ``out`` (2 modes, felt): Re c and -Im c, ``offset`` y0 (felt), ``table``. ``lam`` (modes)
     [1/s], ``into`` beta (modes, inputs); ``kinds`` (bearings, 3), ``laws`` (bearings, 8), ``rays``
-    cos and sin of every element at the phase 0, ``outer`` (forces, 3), ``wobbles`` (run-outs, 5). ``edges`` of the
-    panels of ``table`` (panel, power of the phase from the panel's middle, 8 functions), ``guide``
-    the panel at k/size of the period; ``borders``: phases in (0, 1], the last 1, where a step must
-    end; ``broken`` (8): 1 for a function that jumps there.
+    cos and sin of every element at the phase 0, ``outer`` (forces, 3), ``wobbles`` (run-outs, 5).
+    ``edges`` of the panels of ``table`` (panel, power of the phase from the panel's middle, 8
+    functions), ``guide`` the panel at k/size of the period; ``borders``: phases in (0, 1], the last
+    1, where a step must end; ``broken`` (8): 1 for a function that jumps there.
     """
 
     sizes: Whole
