@@ -27,8 +27,9 @@ that steps of 1e-9 miss where elements begin to carry, over the time a slow moti
 ROUND = 128
 """Mesh periods between two looks at both starts."""
 BATCHES = 8
-LENGTHS = (64, 256)
-"""Mesh periods of a batch of the exponent; the longer ones where the shorter leave it open."""
+LENGTHS = (32, 256)
+"""Mesh periods of a batch of the exponent; the longer ones where the shorter do not show that it is
+negative."""
 SURE = 4.0
 """Errors that an exponent must be away from zero (chosen, as for other exponents)."""
 
@@ -89,7 +90,7 @@ def settle_forced(
             error = max(scatter, abs(value - float(early.mean())))
             error = max(error, ROUNDED / (BATCHES * length * section.period))
             sure = abs(value) > SURE * error
-            if sure:
+            if sure and value < 0.0:
                 break
     except ConvergenceError as why:
         return Motion(name="diverged", period=0, reason=str(why), state=one, discarded=turn)

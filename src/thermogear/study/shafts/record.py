@@ -145,7 +145,6 @@ def lines(values: ArrayLike, *, orders: ArrayLike) -> Floats:
     window = window / window.sum()
     shape = x.shape[1:]
     flat = (x - x.mean(axis=0)).reshape(count, -1) * window[:, None]
-    turn = np.exp(
-        -2j * np.pi * np.outer(np.asarray(orders, dtype=float), np.arange(count) / SAMPLES)
-    )
-    return np.asarray(2.0 * np.abs(turn @ flat)).reshape(-1, *shape)
+    angle = -2j * np.pi / SAMPLES * np.arange(count)
+    found = [np.exp(order * angle) @ flat for order in np.asarray(orders, dtype=float).ravel()]
+    return 2.0 * np.abs(np.array(found)).reshape(-1, *shape)

@@ -59,8 +59,8 @@ FORCES = (
 ORDERS = (
     "Lines of the force on each bearing, the larger of x and y, peak values. Whole orders come "
     "from every tooth alike, halves from a motion that repeats after two mesh periods, what lies "
-    "beside them from the shafts or from a second base frequency. Dash-dotted, where cages turn: the "
-    "order at which rolling elements pass a point of the outer ring, and its double."
+    "beside them from the shafts or from a second base frequency. Dash-dotted, where cages turn: "
+    "the order at which rolling elements pass a point of the outer ring, and its double."
 )
 TORUS = (
     "The motion never returns: it has two base frequencies, and its sections fill a closed curve, "
