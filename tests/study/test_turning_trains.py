@@ -10,8 +10,8 @@ import pytest
 
 from conftest import Compared
 from study.test_journals import BALLS, PAIR, SHAFTS, SPRING, bearing
-from thermogear.analysis.any_motion import settle
 from thermogear.analysis.forced import settle_forced
+from thermogear.base.arrays import Dataset
 from thermogear.base.errors import InputError
 from thermogear.case.case import GearCase, load_case
 from thermogear.case.thermal_state import UNDEFORMED
@@ -39,8 +39,11 @@ def case(law: str, train: str) -> GearCase:
     return found
 
 
+TURNING = 'cages = "turning"'
+
+
 @cache
-def train(law: str = BALLS, words: str = 'cages = "turning"') -> Moved:
+def train(law: str, words: str) -> Moved:
     own = case(law, words)
     ((state,),) = settled(own, [0], states=[UNDEFORMED])
     return moved(own, state, coordinates=12)
@@ -66,13 +69,13 @@ def test_cages_turn_as_elements_roll(compared: Compared) -> None:
 
 def test_locked_cages_have_their_old_proof(compared: Compared) -> None:
     """2/15 of a pitch in a mesh period: an orbit of 15, whose multiplier is the exponent's."""
-    own = train(WHOLE)
+    own = train(WHOLE, TURNING)
     assert own.train is not None
     assert own.motion is not None
     assert (own.motion.name, own.train.model.cycle) == ("period-1", 15)
     assert len(own.cages) == 3
     section = replace(own.train.model, cycle=1).return_map()
-    orbit = settle(own.train.model.return_map(), own.train.start).state
+    orbit = own.motion.state
     found = settle_forced(section, orbit, own.train.start, cap=4000)
     assert found.name == "settled"
     floquet = np.log(abs(own.motion.multiplier)) / 15.0 / section.period
@@ -87,10 +90,10 @@ def test_locked_cages_have_their_old_proof(compared: Compared) -> None:
 
 def test_the_ball_pass_line_is_that_of_whole_turns(compared: Compared) -> None:
     """Over 15 mesh periods of the locked cages a plain transform has the ball pass in bin 2."""
-    own = train(WHOLE)
+    own = train(WHOLE, TURNING)
     assert own.train is not None
     assert own.motion is not None
-    (table, bearings) = _stored(WHOLE), own.train.model.bearings
+    (table, bearings) = stored(WHOLE), own.train.model.bearings
     run = Engine(own.train.model).run(own.motion.state, 15, samples=SAMPLES)
     q = run.samples[:, : own.train.model.size]
     away = []
@@ -103,13 +106,13 @@ def test_the_ball_pass_line_is_that_of_whole_turns(compared: Compared) -> None:
 
 
 @cache
-def _stored(law: str, words: str = 'cages = "turning"'):  # type: ignore[no-untyped-def]
-    return _table(case(law, words), [[train(law, words)]])
+def stored(law: str) -> Dataset:
+    return _table(case(law, TURNING), [[train(law, TURNING)]])
 
 
 def test_balls_with_clearance_pass_and_springs_do_not() -> None:
     """A line at Z (1 - g)/2 far above what lies beside it; no order where nothing rolls."""
-    own, data = train(), _stored(BALLS)
+    own, data = train(BALLS, TURNING), stored(BALLS)
     assert own.motion is not None
     assert own.record is not None
     assert (own.motion.name, own.cages) == ("settled", ())
@@ -128,8 +131,8 @@ def test_balls_with_clearance_pass_and_springs_do_not() -> None:
     beside = max(line(order + share / 512.0) for share in (-9.0, -6.0, 6.0, 9.0))
     assert line(order) > 100.0 * beside
     assert line(1.0 - order) > 100.0 * max(line(1.0 - order + s / 512.0) for s in (-6.0, 6.0))
-    springs, still = train(SPRING), train(SPRING, "")
-    assert np.isnan(_stored(SPRING)["ball_pass_order"].values).all()
+    springs, still = train(SPRING, TURNING), train(SPRING, "")
+    assert np.isnan(stored(SPRING)["ball_pass_order"].values).all()
     assert springs.motion is not None
     assert still.motion is not None
     assert np.array_equal(springs.motion.state, still.motion.state)
@@ -139,20 +142,20 @@ def test_balls_with_clearance_pass_and_springs_do_not() -> None:
 
 
 def test_what_a_reader_sees_of_turning_cages() -> None:
-    data = _stored(BALLS)
+    data = stored(BALLS)
     assert any("ball pass" in str(head) for head in _tables(data)[1].head)
     panels = [panel for row in bearing_force_order(data, 0).panels for panel in row]
-    assert "ball pass at 0.13216" in (panels[0].title or "")
+    assert "ball pass at 0.1322" in (panels[0].title or "")
     assert "ball pass" not in (panels[2].title or "")
-    notices = {one.code: one.data for one in _told([[train()]])}
+    notices = {one.code: one.data for one in _told([[train(BALLS, TURNING)]])}
     assert notices["train_cages_turn"]["known"] == 1
-    assert notices["train_cages_turn"]["periods"] == train().motion.discarded  # type: ignore[union-attr]
+    assert notices["train_cages_turn"]["periods"] == train(BALLS, TURNING).motion.discarded  # type: ignore[union-attr]
     assert "train_cages" not in notices
 
 
 def test_cages_that_turn_are_refused_where_a_motion_must_come_again() -> None:
     with pytest.raises(InputError, match=r"train.cages.*turning.*standing"):
-        TrainFamily(case(BALLS, 'cages = "turning"'), ("pinion_speed",))
+        TrainFamily(case(BALLS, TURNING), ("pinion_speed",))
     for words in ('cages = "rolling"', "cage_slip = 0.6"):
         with pytest.raises(InputError, match="cage"):
             case(BALLS, words)

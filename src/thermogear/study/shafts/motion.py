@@ -121,19 +121,18 @@ def moved(case: GearCase, state: TrainState, *, coordinates: int | None = None) 
     teeth = max(case.pair.pinion.teeth, case.pair.wheel.teeth)
     # enough to tell the sidebands of both shafts apart
     periods = PERIODS if cycle == 1 else min(cycle, TURNS * teeth)
-    if train.turning:
-        periods = PASSES
     # where forces never come again the record goes on from where the motion was left
     turn = found.discarded if train.forced else 0
     turning = None
     if found.name == "quasi-periodic":
         periods = max(periods, TORUS_PERIODS)
         turning = _on_torus(train, found.state)
+    shown = max(periods, PASSES) if train.turning else periods
     return Moved(
         state=state,
         train=train,
         motion=found,
-        record=recorded(train, found.state, periods, turn=turn),
+        record=recorded(train, found.state, shown, turn=turn),
         torus_sections=turning,
         cages=tuple(_over_cages(train, found, periods)),
     )

@@ -147,4 +147,4 @@ def lines(values: ArrayLike, *, orders: ArrayLike) -> Floats:
     flat = (x - x.mean(axis=0)).reshape(count, -1) * window[:, None]
     angle = -2j * np.pi / SAMPLES * np.arange(count)
     found = [np.exp(order * angle) @ flat for order in np.asarray(orders, dtype=float).ravel()]
-    return 2.0 * np.abs(np.array(found)).reshape(-1, *shape)
+    return np.asarray(2.0 * np.abs(np.array(found)).reshape(-1, *shape))
