@@ -16,7 +16,7 @@ from thermogear.dynamics.return_map import Stretch
 
 Floats = NDArray[np.float64]
 GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
-START, OTHER = np.array([0.3, 0.1]), np.array([-0.8, 0.4])
+STARTS = np.array([[0.3, 0.1], [-0.8, 0.4]])
 
 
 @dataclass(frozen=True)
@@ -31,9 +31,6 @@ class Driven:
     @property
     def unit(self) -> Floats:
         return np.ones(2)
-
-    def distance(self, one: Floats, other: Floats) -> Floats:
-        return np.asarray(np.abs(one - other).max(axis=-1))
 
     def carry(self, start: Floats, periods: int, *, turn: int) -> Floats:
         found, x = [], start
@@ -75,7 +72,7 @@ def test_a_linear_map_has_its_greatest_eigenvalue(compared: Compared) -> None:
         if rng.integers(2):
             spread = np.eye(2) + rng.uniform(-0.4, 0.4, (2, 2))
             matrix = spread @ np.diag([size, 0.8 * size]) @ np.linalg.inv(spread)
-        found = settle_forced(linear(matrix), START, OTHER, cap=4000)
+        found = settle_forced(linear(matrix), STARTS, cap=4000)
         assert found.name == "settled", found.reason
         away.append((found.lyapunov * 0.25 - np.log(size)) / (found.lyapunov_error * 0.25))
     compared("conditional exponent of a linear map, over its stated error",
@@ -83,7 +80,7 @@ def test_a_linear_map_has_its_greatest_eigenvalue(compared: Compared) -> None:
 
 
 def test_what_neither_grows_nor_decays_is_undecided() -> None:
-    found = settle_forced(linear(turning(1.0, 0.7)), START, OTHER, cap=4 * ROUND)
+    found = settle_forced(linear(turning(1.0, 0.7)), STARTS, cap=4 * ROUND)
     assert found.name == "undecided"
     assert abs(found.lyapunov) < 4.0 * found.lyapunov_error
     assert found.discarded == 4 * ROUND + BATCHES * sum(LENGTHS)
@@ -92,7 +89,7 @@ def test_what_neither_grows_nor_decays_is_undecided() -> None:
 def test_the_doubling_map_is_chaotic(compared: Compared) -> None:
     """Whatever drives it, 2 x mod 1 stretches by 2: ln 2 a period."""
     doubling = Driven(lambda x: (2.0 * x + 1e-9) % 1.0, lambda x: 2.0 * np.eye(2))
-    found = settle_forced(doubling, START, OTHER, cap=2 * ROUND)
+    found = settle_forced(doubling, STARTS, cap=2 * ROUND)
     assert found.name == "chaotic"
     compared("conditional exponent of the doubling map", "ln 2 a period",
              found.lyapunov * 0.25 / np.log(2.0) - 1.0, 1e-12)  # fmt: skip
@@ -102,15 +99,15 @@ def test_two_motions_are_told_apart() -> None:
     """Two wells: each start stays in its own, and both decay."""
     wells = Driven(lambda x: np.sign(x) * 40.0 + 0.5 * (x - np.sign(x) * 40.0),
                    lambda x: 0.5 * np.eye(2))  # fmt: skip
-    found = settle_forced(wells, START + 40.0, OTHER - 40.0, cap=2 * ROUND)
+    found = settle_forced(wells, STARTS + np.array([[40.0], [-40.0]]), cap=2 * ROUND)
     assert found.name == "undecided"
     assert found.lyapunov < 0.0
     assert "apart" in found.reason
-    same = settle_forced(wells, START + 40.0, OTHER + 40.0, cap=2 * ROUND)
+    same = settle_forced(wells, STARTS + 40.0, cap=2 * ROUND)
     assert same.name == "settled"
 
 
 @pytest.mark.parametrize("when", [5, ROUND + 40])
 def test_a_motion_that_runs_away_has_diverged(when: int) -> None:
     away = Driven(lambda x: 0.5 * x, lambda x: 0.5 * np.eye(2), runs_away=when)
-    assert settle_forced(away, START, OTHER, cap=2 * ROUND).name == "diverged"
+    assert settle_forced(away, STARTS, cap=2 * ROUND).name == "diverged"

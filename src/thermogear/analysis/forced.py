@@ -45,9 +45,6 @@ class ForcedMap(Protocol):
     def unit(self) -> Floats:
         """Scales of a state (d,)."""
 
-    def distance(self, one: Floats, other: Floats) -> Floats:
-        """Largest component of the difference in units of ``unit``."""
-
     def carry(self, start: Floats, periods: int, *, turn: int) -> Floats:
         """The states (periods, d) after 1, 2, ... periods from ``start``."""
 
@@ -56,9 +53,9 @@ class ForcedMap(Protocol):
 
 
 def settle_forced(
-    section: ForcedMap, start: Floats, other: Floats, *, cap: int, alive: Alive = keep_going
+    section: ForcedMap, starts: Floats, *, cap: int, alive: Alive = keep_going
 ) -> Motion:
-    """Follow two starts (d,) for ``cap`` mesh periods at most, and the exponent of the first.
+    """Follow two ``starts`` (2, d) for ``cap`` mesh periods at most, and the exponent of the first.
 
     "settled": both come together, and the largest conditional exponent is negative beyond four of
     its errors. "chaotic": it is positive beyond them. Else "undecided", or "diverged" where one
@@ -67,14 +64,14 @@ def settle_forced(
     periods up to the state. A settled motion need not be the only one: other starts may settle on
     another. ``alive`` raises to end the work.
     """
-    one, two = (np.asarray(each, dtype=float) for each in (start, other))
+    one, two = np.asarray(starts, dtype=float)
     turn, away = 0, np.inf
     try:
         while turn < cap and away > TOGETHER:
             alive()
             one, two = (section.carry(each, ROUND, turn=turn)[-1] for each in (one, two))
             turn += ROUND
-            away = float(section.distance(one, two))
+            away = float(np.max(np.abs(one - two) / section.unit))
         # what is left of their distance decays most slowly
         tangent = two - one if away > 0.0 else section.unit
         for length in LENGTHS:

@@ -115,7 +115,7 @@ class TrainPlan(TrainParts):
     def cage_orders(self, teeth: tuple[int, int]) -> list[float]:
         """Turns of every cage about +z in a mesh period of gears with so many ``teeth``.
 
-        (1 - s) (1 - g)/2 of its shaft's; the wheel turns the other way. 0 where it stands, and of
+        (1 - s) (1 - g)/2 of its shaft's; the wheel turns the other way. 0 where it is held, and of
         bearings without rolling elements.
         """
         shafts = {SHAFTS[0]: self.sense / teeth[0], SHAFTS[1]: -self.sense / teeth[1]}

@@ -37,7 +37,7 @@ class LocalBearing:
 
     ``directions`` (n, 2): u = their transpose times q [m]. ``elements`` 0: a ring, F = -k <|u| -
     c>^n u/|u|; else the sum over so many rolling elements, the first at ``angle`` [rad] at
-    the phase 0. ``order``: turns of the cage about +z in a mesh period, 0 where it stands.
+    the phase 0. ``order``: turns of the cage about +z in a mesh period, 0: held.
     ``coefficient`` k [N/m^n], ``exponent`` n, ``clearance`` c [m]. ``base`` (2, 2) [N/m]: stiffness
     of the linear system behind, best the tangent at rest; it changes the cost, not the result.
     """
@@ -57,7 +57,7 @@ class LocalBearing:
         psi = self.angle + 2.0 * np.pi * np.arange(self.elements) / max(self.elements, 1)
         return np.stack([np.cos(psi), np.sin(psi)], axis=-1)
 
-    def depth(self, displacement: Floats, phase: Floats) -> Floats:
+    def depth(self, displacement: Floats, *, phase: Floats) -> Floats:
         """How deep the ring, or the deepest element, is pressed in [m] at (..., 2) [m]; < 0: open.
 
         The bearing bears nothing where it is open. ``phase`` (...): mesh periods since the cage was
@@ -65,23 +65,23 @@ class LocalBearing:
         """
         if self.elements == 0:
             return np.asarray(np.linalg.norm(displacement, axis=-1) - self.clearance)
-        seen = turned(displacement, -self.order * phase)
+        seen = turned(displacement, turns=-self.order * phase)
         return np.asarray((seen @ self.rays.T).max(axis=-1) - self.clearance)
 
-    def force(self, displacement: Floats, phase: Floats) -> Floats:
+    def force(self, displacement: Floats, *, phase: Floats) -> Floats:
         """Force (..., 2) [N] on the journal at ``displacement`` (..., 2) [m], ``phase`` (...)."""
         if self.elements == 0:
             r = np.linalg.norm(displacement, axis=-1)[..., None]
             deep = np.maximum(r - self.clearance, 0.0)
             towards = np.divide(displacement, r, out=np.zeros_like(displacement), where=r > 0.0)
             return np.asarray(-self.coefficient * deep**self.exponent * towards)
-        seen = turned(displacement, -self.order * phase)
+        seen = turned(displacement, turns=-self.order * phase)
         deep = np.maximum(seen @ self.rays.T - self.clearance, 0.0)
         force = -(self.coefficient * deep**self.exponent) @ self.rays
-        return turned(force, self.order * phase)
+        return turned(force, turns=self.order * phase)
 
 
-def turned(vectors: Floats, turns: Floats) -> Floats:
+def turned(vectors: Floats, *, turns: Floats) -> Floats:
     """``vectors`` (..., 2) turned on by so many ``turns`` (...) about +z; 0 leaves them as is."""
     cos, sin = np.cos(2.0 * np.pi * turns), np.sin(2.0 * np.pi * turns)
     x, y = vectors[..., 0], vectors[..., 1]
@@ -275,7 +275,9 @@ class GearedEquation:
         """
         errors = np.stack(self.errors_at(phase), axis=-1)
         pairs = (displacements[..., 2 * n + 2 : 2 * n + 4] for n in range(len(self.bearings)))
-        rings = [b.depth(u, phase)[..., None] for b, u in zip(self.bearings, pairs, strict=True)]
+        rings = [
+            b.depth(u, phase=phase)[..., None] for b, u in zip(self.bearings, pairs, strict=True)
+        ]
         flanks = displacements[..., :2] - errors - self.half_backlash
         return np.concatenate([flanks, *rings], axis=-1)
 
@@ -314,7 +316,7 @@ class GearedEquation:
                     pushed = pushed + np.multiply.outer(drive * np.asarray(one(phi)), column)
         rings = np.zeros((phi.size, len(self.bearings), 2))
         for place, bearing in enumerate(self.bearings):
-            rings[:, place] = bearing.force(q @ bearing.directions, phi)
+            rings[:, place] = bearing.force(q @ bearing.directions, phase=phi)
             pushed = pushed + rings[:, place] @ bearing.directions.T
         for outer in self.outer:
             turn = 2.0 * np.pi * outer.order

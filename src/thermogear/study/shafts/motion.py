@@ -143,8 +143,8 @@ def _settled_on(train: MovingTrain, search: Search) -> Motion:
     if not train.forced:
         return settle(train.model.return_map(), train.start, search)
     section = replace(train.model, cycle=1).return_map()
-    blown = train.start + section.plane.lift @ BLOW
-    return settle_forced(section, train.start, blown, cap=LONGEST)
+    starts = train.start + np.stack([np.zeros_like(train.start), section.plane.lift @ BLOW])
+    return settle_forced(section, starts, cap=LONGEST)
 
 
 def _over_cages(train: MovingTrain, motion: Motion, periods: int) -> Iterator[AtCages]:

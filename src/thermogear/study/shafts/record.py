@@ -74,7 +74,7 @@ def shown(train: MovingTrain, run: Run, turn: float) -> Record:
             rings[:, number] = -place.bearing.law.force(u[:-1])
         else:
             rings[:, number] = -found["bearings"][:, local]
-            held[:, number] = model.bearings[local].depth(u, after) > 0.0
+            held[:, number] = model.bearings[local].depth(u, phase=after) > 0.0
             local += 1
     housing = np.full((phase.size, 2), np.nan)
     for axis, name in enumerate(("casing.x", "casing.y")):
