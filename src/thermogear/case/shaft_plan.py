@@ -102,6 +102,7 @@ class TrainPlan(TrainParts):
     """Shafts, bearings and what hangs on them, as the tables of a case draw them (SI).
 
     ``nominal_force`` [N] of the mesh at the greatest torque: damping that is left out follows it.
+    ``cage_slip``: by how much of their kinematic speed cages turn slower in motion; 1: they stand.
     """
 
     bearings: tuple[BearingPlan, ...]
@@ -109,6 +110,30 @@ class TrainPlan(TrainParts):
     sense: int
     nominal_force: float
     reference: float
+    cage_slip: float = 1.0
+
+    def cage_orders(self, teeth: tuple[int, int]) -> list[float]:
+        """Turns of every cage about +z in a mesh period of gears with so many ``teeth``.
+
+        (1 - s) (1 - g)/2 of its shaft's; the wheel turns the other way. 0 where it is held, and of
+        bearings without rolling elements.
+        """
+        shafts = {SHAFTS[0]: self.sense / teeth[0], SHAFTS[1]: -self.sense / teeth[1]}
+        return [
+            (1.0 - self.cage_slip) * one.rolling.cage_order * shafts[one.shaft]
+            if one.rolling is not None
+            else 0.0
+            for one in self.bearings
+        ]
+
+    def ball_pass_orders(self, teeth: tuple[int, int]) -> Floats:
+        """Elements that pass a point of the outer ring in a mesh period (bearing,); nan: none."""
+        return np.array(
+            [
+                one.rolling.elements * abs(order) if order and one.rolling is not None else math.nan
+                for one, order in zip(self.bearings, self.cage_orders(teeth), strict=True)
+            ]
+        )
 
     @property
     def bearing_names(self) -> tuple[str, ...]:

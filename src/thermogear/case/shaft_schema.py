@@ -358,6 +358,14 @@ class TrainTable(Table):
     modal_ratio: Annotated[float, Number(low=0.0, high=1.0, example="0.01")] = Field(
         default=0.01, description="1 % of every mode; of damping = modal"
     )
+    cages: Annotated[str, Choice("standing", "turning")] = Field(
+        default="standing",
+        description="where they were drawn, so that motions come again after whole mesh periods; "
+        "`run` compares three places. Turning: at (1 - D_w cos a/d_m)/2 of their shaft's speed",
+    )
+    cage_slip: Annotated[float, Number(low=0.0, high=0.5, example="0.01")] = Field(
+        default=0.0, description="elements roll. By how much of it turning cages are slower"
+    )
     elements: Annotated[int, Count(low=2, high=100, example="12")] = Field(
         default=12, description="beam elements of a shaft at least; frequencies err by h^2"
     )

@@ -112,6 +112,7 @@ def train_plan(
         sense=1 if table.sense == "counter-clockwise" else -1,
         gravity=GRAVITY if table.gravity else 0.0,
         least_elements=table.elements,
+        cage_slip=table.cage_slip if table.cages == "turning" else 1.0,
         nominal_force=force,
         reference=file.temperatures.reference,
     )

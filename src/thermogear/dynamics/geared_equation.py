@@ -8,7 +8,9 @@ phase. C holds the mesh damping c_m g_d g_d^T. Plain arrays in SI: nothing here 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from fractions import Fraction
 from functools import cached_property
+from math import lcm
 from typing import Self
 
 import numpy as np
@@ -21,13 +23,21 @@ from thermogear.dynamics.tables import Pieces
 
 Function = Periodic | Pieces
 
+LOCKED = 256
+"""Mesh periods within which elements that pass at a whole ratio come again: chosen, as long as an
+orbit's multipliers are asked for."""
+WHOLE = 1e-12
+"""Elements that pass in a mesh period may differ by it from a whole ratio: rounding of it; over
+10 000 periods an element is out of place by 1e-8 of a pitch."""
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class LocalBearing:
     """A bearing with clearance or a power law between two directions of the train.
 
     ``directions`` (n, 2): u = their transpose times q [m]. ``elements`` 0: a ring, F = -k <|u| -
-    c>^n u/|u|; else the sum over so many rolling elements, the first at ``angle`` [rad].
+    c>^n u/|u|; else the sum over so many rolling elements, the first at ``angle`` [rad] at
+    the phase 0. ``order``: turns of the cage about +z in a mesh period, 0: held.
     ``coefficient`` k [N/m^n], ``exponent`` n, ``clearance`` c [m]. ``base`` (2, 2) [N/m]: stiffness
     of the linear system behind, best the tangent at rest; it changes the cost, not the result.
     """
@@ -38,22 +48,44 @@ class LocalBearing:
     clearance: float = 0.0
     elements: int = 0
     angle: float = 0.0
+    order: float = 0.0
     base: Floats = field(default_factory=lambda: np.zeros((2, 2)))
 
     @property
     def rays(self) -> Floats:
-        """Unit vectors from the centre to every rolling element, (elements, 2)."""
+        """Unit vectors from the centre to every rolling element at phase 0, (elements, 2)."""
         psi = self.angle + 2.0 * np.pi * np.arange(self.elements) / max(self.elements, 1)
         return np.stack([np.cos(psi), np.sin(psi)], axis=-1)
 
-    def depth(self, displacement: Floats) -> Floats:
+    def depth(self, displacement: Floats, *, phase: Floats) -> Floats:
         """How deep the ring, or the deepest element, is pressed in [m] at (..., 2) [m]; < 0: open.
 
-        The bearing bears nothing where it is open.
+        The bearing bears nothing where it is open. ``phase`` (...): mesh periods since the cage was
+        at its angle.
         """
         if self.elements == 0:
             return np.asarray(np.linalg.norm(displacement, axis=-1) - self.clearance)
-        return np.asarray((displacement @ self.rays.T).max(axis=-1) - self.clearance)
+        seen = turned(displacement, turns=-self.order * phase)
+        return np.asarray((seen @ self.rays.T).max(axis=-1) - self.clearance)
+
+    def force(self, displacement: Floats, *, phase: Floats) -> Floats:
+        """Force (..., 2) [N] on the journal at ``displacement`` (..., 2) [m], ``phase`` (...)."""
+        if self.elements == 0:
+            r = np.linalg.norm(displacement, axis=-1)[..., None]
+            deep = np.maximum(r - self.clearance, 0.0)
+            towards = np.divide(displacement, r, out=np.zeros_like(displacement), where=r > 0.0)
+            return np.asarray(-self.coefficient * deep**self.exponent * towards)
+        seen = turned(displacement, turns=-self.order * phase)
+        deep = np.maximum(seen @ self.rays.T - self.clearance, 0.0)
+        force = -(self.coefficient * deep**self.exponent) @ self.rays
+        return turned(force, turns=self.order * phase)
+
+
+def turned(vectors: Floats, *, turns: Floats) -> Floats:
+    """``vectors`` (..., 2) turned on by so many ``turns`` (...) about +z; 0 leaves them as is."""
+    cos, sin = np.cos(2.0 * np.pi * turns), np.sin(2.0 * np.pi * turns)
+    x, y = vectors[..., 0], vectors[..., 1]
+    return np.stack([cos * x - sin * y, sin * x + cos * y], axis=-1)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -136,6 +168,21 @@ class GearedEquation:
             value = getattr(self, name)
             if value.shape != (n, n) or not np.all(np.isfinite(value)):
                 raise InputError(name, f"shape {value.shape}", allowed=f"({n}, {n}) finite numbers")
+
+    @cached_property
+    def cage_cycle(self) -> int:
+        """Mesh periods after which all elements are in the places of others again; 0: never.
+
+        Never: not within :data:`LOCKED`.
+        """
+        found = 1
+        for one in self.bearings:
+            passed = one.elements * one.order
+            ratio = Fraction(passed).limit_denominator(LOCKED)
+            if abs(passed - ratio) > WHOLE:
+                return 0
+            found = lcm(found, ratio.denominator)
+        return found if found <= LOCKED else 0
 
     @property
     def jumps(self) -> tuple[float, ...]:
@@ -228,7 +275,9 @@ class GearedEquation:
         """
         errors = np.stack(self.errors_at(phase), axis=-1)
         pairs = (displacements[..., 2 * n + 2 : 2 * n + 4] for n in range(len(self.bearings)))
-        rings = [b.depth(u)[..., None] for b, u in zip(self.bearings, pairs, strict=True)]
+        rings = [
+            b.depth(u, phase=phase)[..., None] for b, u in zip(self.bearings, pairs, strict=True)
+        ]
         flanks = displacements[..., :2] - errors - self.half_backlash
         return np.concatenate([flanks, *rings], axis=-1)
 
@@ -267,7 +316,7 @@ class GearedEquation:
                     pushed = pushed + np.multiply.outer(drive * np.asarray(one(phi)), column)
         rings = np.zeros((phi.size, len(self.bearings), 2))
         for place, bearing in enumerate(self.bearings):
-            rings[:, place] = self.bearing_forces(place, q @ bearing.directions)
+            rings[:, place] = bearing.force(q @ bearing.directions, phase=phi)
             pushed = pushed + rings[:, place] @ bearing.directions.T
         for outer in self.outer:
             turn = 2.0 * np.pi * outer.order
@@ -282,14 +331,3 @@ class GearedEquation:
             "bearings": rings,
             "acceleration": np.asarray(np.linalg.solve(self.mass, pushed.T).T, dtype=float),
         }
-
-    def bearing_forces(self, place: int, displacement: ArrayLike) -> Floats:
-        """Force (..., 2) [N] of a bearing on its journal at ``displacement`` (..., 2) [m]."""
-        own, u = self.bearings[place], np.asarray(displacement, dtype=float)
-        if own.elements == 0:
-            r = np.linalg.norm(u, axis=-1)[..., None]
-            deep = np.maximum(r - own.clearance, 0.0)
-            towards = np.divide(u, r, out=np.zeros_like(u), where=r > 0.0)
-            return np.asarray(-own.coefficient * deep**own.exponent * towards)
-        deep = np.maximum(u @ own.rays.T - own.clearance, 0.0)
-        return np.asarray(-(own.coefficient * deep**own.exponent) @ own.rays)

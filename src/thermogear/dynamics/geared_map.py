@@ -108,19 +108,26 @@ class GearedMap:
         """Largest component of the difference in units of :attr:`unit`, over leading axes."""
         return np.asarray(np.max(np.abs(one - other) / self.unit, axis=-1))
 
-    def carry(self, start: Floats, periods: int) -> Floats:
-        """The states (periods, d) after 1, 2, ... cycles from ``start``."""
-        cycle = self.model.cycle
-        return self.engine.run(start, periods * cycle).sections[cycle - 1 :: cycle]
+    def carry(self, start: Floats, periods: int, *, turn: int = 0) -> Floats:
+        """The states (periods, d) after 1, 2, ... cycles from ``start``.
 
-    def stretch(self, start: Floats, *, direction: Floats, periods: int) -> Stretch:
+        ``turn``: mesh periods gone before, which what never comes again has to know.
+        """
+        cycle = self.model.cycle
+        run = self.engine.run(start, periods * cycle, turn=turn)
+        return run.sections[cycle - 1 :: cycle]
+
+    def stretch(self, start: Floats, *, direction: Floats, periods: int, turn: int = 0) -> Stretch:
         """Carry ``start`` and a tangent vector ``direction``, made unit after every cycle."""
         state = np.asarray(start, dtype=float)
         along = np.asarray(direction, dtype=float) / self.unit
         along = along / np.linalg.norm(along)
         growth = np.zeros(periods)
         for number in range(periods):
-            run = self.engine.run(state, self.model.cycle, directions=along[None] * self.unit)
+            gone = turn + number * self.model.cycle
+            run = self.engine.run(
+                state, self.model.cycle, directions=along[None] * self.unit, turn=gone
+            )
             along = run.directions[0] / self.unit
             size = float(np.linalg.norm(along))
             growth[number], along, state = np.log(size), along / size, run.state

@@ -156,12 +156,13 @@ class Engine:
                 int(any(one.elements or one.exponent != 1.0 for one in model.bearings)),
             ]
         )
-        kinds, laws = np.zeros((max(count, 1), 3), np.int64), np.zeros((max(count, 1), 7))
+        kinds, laws = np.zeros((max(count, 1), 3), np.int64), np.zeros((max(count, 1), 8))
         rays = [np.zeros((1, 2))]
         for row, one in enumerate(model.bearings):
             first = sum(len(some) for some in rays)
             kinds[row] = (k.ELEMENTS if one.elements else k.RING, one.elements, first)
-            laws[row] = (one.coefficient, one.exponent, one.clearance, *np.ravel(one.base))
+            turn = 2.0 * np.pi * one.order
+            laws[row] = (one.coefficient, one.exponent, one.clearance, *np.ravel(one.base), turn)
             rays.append(one.rays)
         outer = np.array(
             [[one.order, one.shift, float(one.rotating)] for one in model.outer] or [[0.0] * 3]

@@ -255,7 +255,8 @@ def _simulated(
             )
         )
         periods = one.record.phase.size // SAMPLES
-        felt = sensed(one.train, one.motion.state, vectors=vectors, periods=periods)
+        turn = float(one.record.phase[0])
+        felt = sensed(one.train, one.motion.state, vectors=vectors, periods=periods, turn=turn)
         found[state] = lines(felt, orders=np.array(ORDERS, dtype=float))
     if not found:
         raise InputError(

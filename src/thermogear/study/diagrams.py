@@ -34,7 +34,7 @@ from thermogear.case.thermal_state import HOT, StateLike, ThermalState
 from thermogear.results.work import Estimate, estimate
 from thermogear.study.shafts.branches import TrainGrid
 from thermogear.study.shafts.family import TabulatedTrains, TrainFamily
-from thermogear.study.shafts.motion import LONGEST
+from thermogear.study.shafts.moving import LONGEST
 from thermogear.study.shafts.state import STATES
 
 AnyMap: TypeAlias = MapPlan | StackedPlan

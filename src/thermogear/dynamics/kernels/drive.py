@@ -36,8 +36,9 @@ frequency [Hz] and its rate [Hz/s], allowed error of a step [m], whole periods s
 forces began, share of the tolerance at which sweeps end."""
 RING, ELEMENTS = 1, 2
 KIND, COUNT, FIRST = range(3)
-COEFFICIENT, EXPONENT, CLEARANCE, XX, XY, YX, YY = range(7)
-"""Places in a row of ``Train.laws``; XX to YY are the base's stiffness [N/m]."""
+COEFFICIENT, EXPONENT, CLEARANCE, XX, XY, YX, YY, CAGE = range(8)
+"""Places in a row of ``Train.laws``; XX to YY are the base's stiffness [N/m], CAGE the turn of the
+cage [rad] in a mesh period."""
 ORDER, SHIFT, POWER = range(3)
 TWO_PI = 2.0 * math.pi
 
@@ -46,11 +47,11 @@ class Train(NamedTuple):
     """The equations, read only but for ``numbers`` [FREQUENCY] and [TURN].
 
     Flat: ``out`` (2 modes, felt): Re c and -Im c, ``offset`` y0 (felt), ``table``. ``lam`` (modes)
-    [1/s], ``into`` beta (modes, inputs); ``kinds`` (bearings, 3), ``laws`` (bearings, 7), ``rays``
-    cos and sin of every element, ``outer`` (forces, 3), ``wobbles`` (run-outs, 5). ``edges`` of the
-    panels of ``table`` (panel, power of the phase from the panel's middle, 8 functions), ``guide``
-    the panel at k/size of the period; ``borders``: phases in (0, 1], the last 1, where a step must
-    end; ``broken`` (8): 1 for a function that jumps there.
+    [1/s], ``into`` beta (modes, inputs); ``kinds`` (bearings, 3), ``laws`` (bearings, 8), ``rays``
+    cos and sin of every element at the phase 0, ``outer`` (forces, 3), ``wobbles`` (run-outs, 5).
+    ``edges`` of the panels of ``table`` (panel, power of the phase from the panel's middle, 8
+    functions), ``guide`` the panel at k/size of the period; ``borders``: phases in (0, 1], the last
+    1, where a step must end; ``broken`` (8): 1 for a function that jumps there.
     """
 
     sizes: Whole
@@ -101,10 +102,26 @@ def excite(train: Train, phase: float, turned: float, values: Real, place: int) 
 
 
 @small
+def phase_at(train: Train, t: float) -> float:
+    """Mesh periods since the outer forces began, ``t`` [s] into this one."""
+    numbers = train.numbers
+    return float(numbers[TURN] + (numbers[FREQUENCY] + 0.5 * numbers[RAMP] * t) * t)
+
+
+@small
+def cage_axis(train: Train, row: int, turned: float) -> tuple[float, float]:
+    """Cosine and sine of how far a bearing's cage has turned after ``turned`` mesh periods."""
+    if train.laws[row, CAGE] == 0.0:
+        return 1.0, 0.0
+    angle = train.laws[row, CAGE] * turned
+    return math.cos(angle), math.sin(angle)
+
+
+@small
 def bearing_force(
-    train: Train, x: float, y: float, closed: int, row: int, out: Real, at: int
+    train: Train, x: float, y: float, closed: int, row: int, turned: float, out: Real, at: int
 ) -> None:
-    """Pseudo-force K_base u + F(u) at ``out[at]``, ``out[at + 1]``."""
+    """Pseudo-force K_base u + F(u) at ``out[at]``, ``out[at + 1]``, after ``turned`` periods."""
     kinds, laws = train.kinds, train.laws
     fx = 0.0
     fy = 0.0
@@ -119,20 +136,26 @@ def bearing_force(
             size = k * (r - c) ** n / r
             fx, fy = -size * x, -size * y
     else:
+        cos, sin = cage_axis(train, row, turned)
+        # as the cage sees it, and back
+        along, across = x * cos + y * sin, y * cos - x * sin
+        u = 0.0
+        v = 0.0
         for i in range(kinds[row, FIRST], kinds[row, FIRST] + kinds[row, COUNT]):
             cx, cy = train.rays[2 * i], train.rays[2 * i + 1]
-            deep = x * cx + y * cy - c
+            deep = along * cx + across * cy - c
             if deep > 0.0:
                 load = k * deep * math.sqrt(deep) if n == 1.5 else k * deep**n
-                fx -= load * cx
-                fy -= load * cy
+                u -= load * cx
+                v -= load * cy
+        fx, fy = u * cos - v * sin, u * sin + v * cos
     out[at] = fx + laws[row, XX] * x + laws[row, XY] * y
     out[at + 1] = fy + laws[row, YX] * x + laws[row, YY] * y
 
 
 @part
 def bearing_slope(
-    train: Train, x: float, y: float, closed: int, row: int, out: Real, at: int
+    train: Train, x: float, y: float, closed: int, row: int, turned: float, out: Real, at: int
 ) -> None:
     """Derivatives (xx, xy, yx, yy) of :func:`bearing_force` to ``out[at:]``."""
     kinds, laws = train.kinds, train.laws
@@ -154,8 +177,10 @@ def bearing_slope(
             xy = -slope * ex * ey
             yy = -size - slope * ey * ey
     else:
+        cos, sin = cage_axis(train, row, turned)
         for i in range(kinds[row, FIRST], kinds[row, FIRST] + kinds[row, COUNT]):
-            cx, cy = train.rays[2 * i], train.rays[2 * i + 1]
+            cx = train.rays[2 * i] * cos - train.rays[2 * i + 1] * sin
+            cy = train.rays[2 * i] * sin + train.rays[2 * i + 1] * cos
             deep = x * cx + y * cy - c
             if deep > 0.0:
                 slope = n * k * deep ** (n - 1.0)
@@ -173,8 +198,7 @@ def outer_force(train: Train, t: float, row: int) -> float:
     """(Omega^2 cos + Omega' sin)(order phase) or cos(order phase), of one outer force."""
     numbers, outer = train.numbers, train.outer
     n = numbers[FREQUENCY] + numbers[RAMP] * t
-    phase = numbers[TURN] + (numbers[FREQUENCY] + 0.5 * numbers[RAMP] * t) * t
-    angle = TWO_PI * outer[row, ORDER] * phase + outer[row, SHIFT]
+    angle = TWO_PI * outer[row, ORDER] * phase_at(train, t) + outer[row, SHIFT]
     if outer[row, POWER] == 0.0:
         return math.cos(angle)
     turn = TWO_PI * outer[row, ORDER]

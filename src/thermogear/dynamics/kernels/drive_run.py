@@ -365,7 +365,7 @@ def advance(
                         fill(train, ladder, work, whole, share * h)
                         periodic_values(train, ladder, work, t, share * h, begin, border)
                         attempt(train, ladder, work, state, whole, t, 0.0, share)
-                    carry_tangent(train, ladder, work, tangent, columns, whole)
+                    carry_tangent(train, ladder, work, tangent, columns, whole, t)
                     if cut:
                         work.pace[0] = pace
                         for k in range(2 * modes):

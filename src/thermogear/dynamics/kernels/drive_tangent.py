@@ -26,7 +26,9 @@ from thermogear.dynamics.kernels.drive import (
     Real,
     Train,
     bearing_slope,
+    cage_axis,
     located,
+    phase_at,
 )
 from thermogear.dynamics.kernels.ladder import Ladder, Work
 from thermogear.dynamics.kernels.vector import EIGHT
@@ -37,7 +39,7 @@ over."""
 
 
 @part
-def slopes_at(train: Train, work: Work, node: int, slope: Real) -> None:
+def slopes_at(train: Train, work: Work, node: int, turned: float, slope: Real) -> None:
     """Derivatives of the forces at a node: drive, back, friction, four of every bearing."""
     count, y = train.sizes[BEARINGS], work.y
     o = node * train.sizes[OUTPUTS]
@@ -50,11 +52,13 @@ def slopes_at(train: Train, work: Work, node: int, slope: Real) -> None:
     slope[at + 3] = pressed * work.values[EIGHT * node + METRE]
     for b in range(count):
         x, z = y[o + 2 + 2 * b], y[o + 3 + 2 * b]
-        bearing_slope(train, x, z, work.closed[2 + b], b, slope, at + 4 + 4 * b)
+        bearing_slope(train, x, z, work.closed[2 + b], b, turned, slope, at + 4 + 4 * b)
 
 
 @part
-def borders_within(train: Train, ladder: Ladder, work: Work, bearing: int) -> int:
+def borders_within(
+    train: Train, ladder: Ladder, work: Work, bearing: int, t: float, h: float
+) -> int:
     """Shares of the step at which an element begins or ceases to carry; how many pieces they make.
 
     In ``work.pieces``, from 0 to 1 in order. ``work.journal_x`` and ``journal_y`` are the bearing's
@@ -70,7 +74,9 @@ def borders_within(train: Train, ladder: Ladder, work: Work, bearing: int) -> in
             x, z = work.journal_x[m], work.journal_y[m]
             if elements > 0:
                 at = 2 * (first + i)
-                gaps[m] = x * train.rays[at] + z * train.rays[at + 1] - c
+                cos, sin = cage_axis(train, bearing, phase_at(train, t + ladder.places[m] * h))
+                gaps[m] = (x * cos + z * sin) * train.rays[at] - c
+                gaps[m] += (z * cos - x * sin) * train.rays[at + 1]
             else:
                 gaps[m] = math.sqrt(x * x + z * z) - c
         for m in range(count - 1):
@@ -89,7 +95,9 @@ def borders_within(train: Train, ladder: Ladder, work: Work, bearing: int) -> in
 
 
 @part
-def projected_slopes(train: Train, ladder: Ladder, work: Work, bearing: int, slope: Real) -> None:
+def projected_slopes(
+    train: Train, ladder: Ladder, work: Work, bearing: int, t: float, h: float, slope: Real
+) -> None:
     """Derivatives of a power law at the nodes, of the polynomial that is nearest over the step.
 
     An element that begins to carry has a derivative like the (n - 1)th power of time, which no
@@ -106,7 +114,7 @@ def projected_slopes(train: Train, ladder: Ladder, work: Work, bearing: int, slo
     path_x[nodes + 1], path_y[nodes + 1] = work.ends[felt + o], work.ends[felt + o + 1]
     for j in range(nodes):
         path_x[1 + j], path_y[1 + j] = work.y[j * outputs + o], work.y[j * outputs + o + 1]
-    number = borders_within(train, ladder, work, bearing)
+    number = borders_within(train, ladder, work, bearing, t, h)
     moments, local = work.moments, work.local
     for q in range(4 * nodes):
         moments[q] = 0.0
@@ -119,7 +127,7 @@ def projected_slopes(train: Train, ladder: Ladder, work: Work, bearing: int, slo
             share = border + width * ladder.graded[0, i]
             x = along(share, order, places, weights, path_x)
             y = along(share, order, places, weights, path_y)
-            bearing_slope(train, x, y, 1, bearing, local, 0)
+            bearing_slope(train, x, y, 1, bearing, phase_at(train, t + share * h), local, 0)
             weight = abs(width) * ladder.graded[1, i]
             for q in range(nodes):
                 for part_of in range(4):
@@ -165,18 +173,22 @@ def node_equations(train: Train, ladder: Ladder, work: Work, rung: int) -> int:
 
 @part
 def carry_tangent(
-    train: Train, ladder: Ladder, work: Work, tangent: Real, columns: int, rung: int
+    train: Train, ladder: Ladder, work: Work, tangent: Real, columns: int, rung: int, t: float
 ) -> None:
-    """Carry the columns of ``tangent`` (columns, span) through the whole step just solved."""
+    """Carry the columns of ``tangent`` (columns, span) through the whole step just solved.
+
+    It began ``t`` [s] into the mesh period.
+    """
+    h = ladder.lengths[rung]
     sizes, right, pushed, slope = train.sizes, work.right, work.pushed, work.slope
     modes, nodes, outputs, inputs = sizes[MODES], sizes[NODES], sizes[OUTPUTS], sizes[INPUTS]
     wide, span = sizes[WIDE], sizes[SPAN]
     first = 4 if sizes[FRICTION] == 1 else 2
     for j in range(nodes):
-        slopes_at(train, work, j, slope)
+        slopes_at(train, work, j, phase_at(train, t + ladder.nodes[j] * h), slope)
     for b in range(sizes[BEARINGS]):
         if not located(train, 2 + b):
-            projected_slopes(train, ladder, work, b, slope)
+            projected_slopes(train, ladder, work, b, t, h, slope)
     size = node_equations(train, ladder, work, rung)
     for column in range(columns):
         for i in range(wide):

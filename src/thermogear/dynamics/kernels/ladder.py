@@ -48,6 +48,7 @@ from thermogear.dynamics.kernels.drive import (
     flank_forces,
     outer_force,
     outputs_of,
+    phase_at,
 )
 from thermogear.dynamics.kernels.vector import EIGHT
 
@@ -329,10 +330,11 @@ def forces_at(train: Train, work: Work, row: int, at: int, t: float, found: Real
     outside = first + 2 * sizes[BEARINGS]
     rate = train.numbers[FREQUENCY] + train.numbers[RAMP] * t
     flank_forces(train, work.values, row, rate, work.ends, at, work.closed, found, 0, 1)
+    turned = phase_at(train, t)
     for b in range(sizes[BEARINGS]):
         o = at + 2 + 2 * b
         x, z = work.ends[o], work.ends[o + 1]
-        bearing_force(train, x, z, work.closed[2 + b], b, found, first + 2 * b)
+        bearing_force(train, x, z, work.closed[2 + b], b, turned, found, first + 2 * b)
     for x in range(outside, sizes[INPUTS]):
         found[x] = outer_force(train, t, x - outside)
 
@@ -428,6 +430,7 @@ def attempt(
             break
         change = 0.0
         for i in range(nodes):
+            turned = phase_at(train, t + ladder.nodes[i] * h)
             for b in range(sizes[BEARINGS]):
                 at = i * outputs + 2 + 2 * b
                 moved = abs(y[at] - before[at]) + abs(y[at + 1] - before[at + 1])
@@ -436,7 +439,7 @@ def attempt(
                 before[at + 1] = y[at + 1]
                 row = (first + 2 * b) * nodes + i
                 shut = work.closed[2 + b]
-                bearing_force(train, y[at], y[at + 1], shut, b, work.end_force, 0)
+                bearing_force(train, y[at], y[at + 1], shut, b, turned, work.end_force, 0)
                 force[row] = work.end_force[0]
                 force[row + nodes] = work.end_force[1]
         if sweep == 0:

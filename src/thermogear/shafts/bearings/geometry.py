@@ -134,9 +134,14 @@ class RollingBearing:
         return roller_coefficient(float(self.element_length or 0.0))
 
     @property
+    def cage_order(self) -> float:
+        """Turns of the cage in one of the inner ring, (1 - g)/2: elements that roll (Harris)."""
+        return 0.5 * (1.0 - self.ratio)
+
+    @property
     def outer_order(self) -> float:
         """Elements passing a point of the outer ring, Z (1 - g)/2: varying compliance, BPFO."""
-        return 0.5 * self.elements * (1.0 - self.ratio)
+        return self.elements * self.cage_order
 
     @property
     def outer_ring_mass(self) -> float:

@@ -30,7 +30,7 @@ from thermogear.shafts.assembly import Assembly
 from thermogear.shafts.reduction import Reduction, reduced, usual
 from thermogear.study.shafts.moving import HELD_MODES, MovingTrain, moving, rubbing, shaft_orders
 from thermogear.study.shafts.record import SAMPLES, shown
-from thermogear.study.shafts.state import TrainState, plan_of, settled
+from thermogear.study.shafts.state import TrainState, plan_of, require_standing, settled
 
 KEPT = 80
 """Cases, trains at rest and trains in motion that a family remembers, of each, for every thread:
@@ -65,6 +65,7 @@ class TrainFamily:
 
     def __post_init__(self) -> None:
         plan = plan_of(self.case)
+        require_standing(self.case, "over parameters")
         gears = GearFamily(self.case, self.names, self.bundle, self.state)
         object.__setattr__(self, "names", gears.names)
         object.__setattr__(self, "bundle", gears.bundle)

@@ -11,22 +11,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.analysis.any_motion import settle
+from thermogear.analysis.forced import settle_forced
 from thermogear.analysis.torus import Torus
 from thermogear.analysis.walk import Motion, Search
 from thermogear.base.arrays import Dataset, Floats
-from thermogear.base.errors import ConvergenceError
 from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import STATUS, STILL, label, moves
 from thermogear.case.case import GearCase
-from thermogear.dynamics.ladder import Engine
 from thermogear.results.result import Notice
 from thermogear.study.declared import fault_notices, mean_tooth_notices
-from thermogear.study.shafts.moving import MovingTrain, moving, rubbing
+from thermogear.study.shafts.moving import LONGEST, MovingTrain, moving, rubbing
 from thermogear.study.shafts.record import (
     PERIODS,
     SAMPLES,
     SHOWN,
     Record,
+    ball_pass_lines,
     lines,
     orders_of_lines,
     recorded,
@@ -39,10 +39,14 @@ SECTIONS = 64
 TORUS_SECTIONS = 512
 TORUS_PERIODS = 64
 """Mesh periods of a record on a torus: its lines are closer together."""
+BLOW = (-1.0, 1.0)
+"""How a second start differs from rest where forces never come again: teeth apart by a half
+backlash, at the speed of one in 1/2 pi of a mesh period (chosen: both flanks are struck)."""
 TORUS_ANGLES = 256
 """Steps of the closed curve once around."""
-LONGEST = 4000
-"""Mesh periods that a motion is followed for at most where shafts turn forces with them."""
+PASSES = 512
+"""Mesh periods of a record with turning cages: some twenty turns of a shaft, so that lines a tenth
+of a shaft order apart are told from each other (chosen)."""
 POLISHED = 256
 """Mesh periods of the longest cycle whose Jacobian is asked for."""
 TURNS = 4
@@ -117,15 +121,18 @@ def moved(case: GearCase, state: TrainState, *, coordinates: int | None = None) 
     teeth = max(case.pair.pinion.teeth, case.pair.wheel.teeth)
     # enough to tell the sidebands of both shafts apart
     periods = PERIODS if cycle == 1 else min(cycle, TURNS * teeth)
+    # where forces never come again the record goes on from where the motion was left
+    turn = found.discarded if train.forced else 0
     turning = None
     if found.name == "quasi-periodic":
         periods = max(periods, TORUS_PERIODS)
         turning = _on_torus(train, found.state)
+    shown = max(periods, PASSES) if train.turning else periods
     return Moved(
         state=state,
         train=train,
         motion=found,
-        record=recorded(train, found.state, periods),
+        record=recorded(train, found.state, shown, turn=turn),
         torus_sections=turning,
         cages=tuple(_over_cages(train, found, periods)),
     )
@@ -133,18 +140,20 @@ def moved(case: GearCase, state: TrainState, *, coordinates: int | None = None) 
 
 def _settled_on(train: MovingTrain, search: Search) -> Motion:
     """What the train settles on from its start."""
-    if train.model.cycle > LONGEST:
-        return _followed(train)
-    return settle(train.model.return_map(), train.start, search)
+    if not train.forced:
+        return settle(train.model.return_map(), train.start, search)
+    section = replace(train.model, cycle=1).return_map()
+    starts = train.start + np.stack([np.zeros_like(train.start), section.plane.lift @ BLOW])
+    return settle_forced(section, starts, cap=LONGEST)
 
 
 def _over_cages(train: MovingTrain, motion: Motion, periods: int) -> Iterator[AtCages]:
     """The ``motion``, and those with every cage further on, of a train with rolling elements.
 
     From the same start, of which no others apart by rounding are followed. Mesh and centres stay
-    those of the drawn position.
+    those of the drawn position. Cages that turn freely pass through all positions by themselves.
     """
-    if not any(bearing.elements for bearing in train.model.bearings):
+    if not train.model.cage_cycle or not any(one.elements for one in train.model.bearings):
         return
     yield AtCages.of(train, motion, periods)
     search = replace(search_of(train.model.cycle), starts=1)
@@ -177,16 +186,6 @@ def _on_torus(train: MovingTrain, state: Floats) -> Floats:
     path = train.model.return_map().carry(state, TORUS_SECTIONS - 1)
     path = np.vstack([state, path])
     return np.stack([path[:, :n] @ drive, path[:, n : 2 * n] @ drive], axis=1)
-
-
-def _followed(train: MovingTrain) -> Motion:
-    """The motion of a train whose shafts come back in place too late to wait for it."""
-    try:
-        state = Engine(train.model).run(train.start, LONGEST).state
-    except ConvergenceError as told:
-        return Motion(name="diverged", period=0, reason=str(told), state=train.start, discarded=0)
-    reason = f"all shafts come back only after {train.model.cycle} mesh periods"
-    return Motion(name="undecided", period=0, reason=reason, state=state, discarded=LONGEST)
 
 
 def train_motion(
@@ -222,7 +221,8 @@ def _table(case: GearCase, found: Sequence[Sequence[Moved]]) -> Dataset:
     shape = (len(found), len(found[0]))
     teeth = (case.pair.pinion.teeth, case.pair.wheel.teeth)
     cycle = max((one.train.model.cycle for one in flat if one.train is not None), default=1)
-    own = orders_of_lines(teeth, shafts=cycle > 1)
+    passing = plan_of(case).ball_pass_orders(teeth)
+    own = np.union1d(orders_of_lines(teeth, shafts=cycle > 1), ball_pass_lines(passing))
     tori = [None if one.torus_sections is None else _torus(one) for one in flat]
     turned = [torus_orders(one.frequency, curves=one.curves) for one in tori if one is not None]
     orders = np.unique(np.round(np.concatenate([own, *turned]), 9))
@@ -331,6 +331,11 @@ def _table(case: GearCase, found: Sequence[Sequence[Moved]]) -> Dataset:
             [0 if m.motion is None else m.motion.followed * cycle for m in row] for row in found]),
         "followed_starts": (POINT, [
             [0 if m.motion is None else m.motion.starts for m in row] for row in found]),
+        "ball_pass_order": (("bearing",), passing),
+        "ball_pass_line": ((*POINT, "bearing"), over(
+            lambda one, r: _at_own_order(r.bearing_force, passing), count)),
+        "conditional_exponent": (POINT, _conditional(flat, "lyapunov").reshape(shape)),
+        "conditional_exponent_error": (POINT, _conditional(flat, "lyapunov_error").reshape(shape)),
         "multiplier_modulus": (POINT, _of(flat, lambda m: abs(m.multiplier)).reshape(shape)),
         "multiplier_error": (POINT, _of(flat, lambda m: m.multiplier_error).reshape(shape)),
         "used_periods": (POINT, _of(flat, lambda m: m.discarded).reshape(shape), "1",
@@ -395,6 +400,28 @@ def _of(flat: Sequence[Moved], of: Any) -> Floats:
     return np.array([np.nan if one.motion is None else float(of(one.motion)) for one in flat])
 
 
+def _conditional(flat: Sequence[Moved], name: str) -> Floats:
+    """The conditional exponent of every point, or its error, in a mesh period; nan: none asked."""
+    return np.array(
+        [
+            getattr(one.motion, name) * one.train.model.period
+            if one.train is not None and one.train.forced and one.motion is not None
+            else np.nan
+            for one in flat
+        ]
+    )
+
+
+def _at_own_order(force: Floats, passing: Floats) -> Floats:
+    """Line of every ``force`` (sample, bearing, 2) at its own order, the larger of x and y."""
+    return np.array(
+        [
+            lines(force[:, place], orders=[order]).max() if np.isfinite(order) else np.nan
+            for place, order in enumerate(passing)
+        ]
+    )
+
+
 def _torus(one: Moved) -> Torus:
     assert one.motion is not None
     assert one.motion.torus is not None
@@ -433,9 +460,10 @@ def _name(one: Moved) -> str:
 def _reason(one: Moved) -> str:
     if one.motion is None:
         return STILL[STATUS[one.state.status]]
-    if one.train is not None and 1 < one.train.model.cycle <= LONGEST:
+    if one.train is not None and not one.train.forced and one.train.model.cycle > 1:
         cycle = one.train.model.cycle
-        return f"{one.motion.reason}, one period being {cycle} mesh periods: all shafts in place"
+        all_of = "shafts and cages" if one.train.turning else "shafts"
+        return f"{one.motion.reason}, one period being {cycle} mesh periods: all {all_of} in place"
     return one.motion.reason
 
 
@@ -443,6 +471,7 @@ def _told(found: Sequence[Sequence[Moved]]) -> list[Notice]:
     """What a reader has to know of this motion."""
     return [
         Notice.of("train_motion_model"),
+        *_told_of_turning([one for one in chain.from_iterable(found) if _turns(one)]),
         *(
             Notice.of(
                 "train_motion_open",
@@ -456,6 +485,20 @@ def _told(found: Sequence[Sequence[Moved]]) -> list[Notice]:
         ),
         *_told_of_cages([one for one in chain.from_iterable(found) if one.cages]),
     ]
+
+
+def _turns(one: Moved) -> bool:
+    return one.train is not None and one.train.turning and one.motion is not None
+
+
+def _told_of_turning(moves: Sequence[Moved]) -> list[Notice]:
+    """How far motions with turning cages are known, and what that took."""
+    if not moves:
+        return []
+    motions = [one.motion for one in moves if one.motion is not None]
+    known = sum(motion.name not in ("undecided", "diverged") for motion in motions)
+    periods = sum(motion.discarded for motion in motions)
+    return [Notice.of("train_cages_turn", known=known, of=len(motions), periods=periods)]
 
 
 def _told_of_cages(trains: Sequence[Moved]) -> list[Notice]:

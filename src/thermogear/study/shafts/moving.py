@@ -21,6 +21,8 @@ from thermogear.shafts.response import run_out_errors, unbalance_pull
 from thermogear.shafts.train import SHAFTS
 from thermogear.study.shafts.state import TrainState, plan_of
 
+LONGEST = 4000
+"""Mesh periods that a motion is followed for at most where shafts turn forces with them."""
 HELD_MODES = 16
 """Modes kept with the interface held, where the number of coordinates is left out."""
 FRICTION = 1e-3
@@ -42,6 +44,16 @@ class MovingTrain:
     reduction: Reduction
     start: Floats
     friction: FrictionSplit | None
+
+    @property
+    def turning(self) -> bool:
+        """Whether cages turn."""
+        return any(one.order != 0.0 for one in self.model.bearings)
+
+    @property
+    def forced(self) -> bool:
+        """Whether cages, or shafts, do not come back in place while a motion is followed."""
+        return self.model.cage_cycle == 0 or self.model.cycle > LONGEST
 
     def at_speed(self, case: GearCase, speed: float) -> MovingTrain:
         """The same mesh and bearings at another ``speed`` [rad/s] of the pinion."""
@@ -87,7 +99,8 @@ def moving(
         kept = reduced(assembly, most if coordinates is None else coordinates)
     linear = rest.linear()
     omega = assembly.frame.sense * state.speed
-    stiffness, bearings = _bearings(state, kept)
+    plan, teeth = plan_of(case), (case.pair.pinion.teeth, case.pair.wheel.teeth)
+    stiffness, bearings = _bearings(state, kept, plan.cage_orders(teeth))
     damping = linear.damping + omega * assembly.gyroscopic
     fall, lag = assembly.slip
     slip = None
@@ -101,7 +114,7 @@ def moving(
     if friction is not None:
         six = np.concatenate([assembly.at_gear(s)[:, [0, 1, 4]] for s in SHAFTS], axis=-1)
         columns = np.stack([kept.vector(six @ one) for one in assembly.frame.friction_columns])
-    outer, wobbles, cycle = shaft_orders(plan_of(case), assembly, kept)
+    outer, wobbles, cycle = shaft_orders(plan, assembly, kept)
     mesh = state.mesh
     model = GearedModel(
         mass=kept.matrix(assembly.mass),
@@ -125,16 +138,24 @@ def moving(
         slip=slip,
         cycle=cycle,
     )
+    model = replace(model, cycle=lcm(cycle, model.cage_cycle or 1))
     start = np.zeros(model.dimension)
     start[: model.size] = kept.coordinates(rest.displacement)
     return MovingTrain(state=state, model=model, reduction=kept, start=start, friction=friction)
 
 
-def _bearings(state: TrainState, kept: Reduction) -> tuple[Floats, tuple[LocalBearing, ...]]:
-    """Stiffness (n, n) of the train with its linear bearings; the others as contacts."""
+def _bearings(
+    state: TrainState, kept: Reduction, cages: list[float]
+) -> tuple[Floats, tuple[LocalBearing, ...]]:
+    """Stiffness (n, n) of the train with its linear bearings; the others as contacts.
+
+    ``cages``: turns of every bearing's cage in a mesh period.
+    """
     stiffness = state.assembly.stiffness.copy()
     found = []
-    for place, tangent in zip(state.assembly.bearings, state.rest.bearing_stiffness, strict=True):
+    for place, tangent, order in zip(
+        state.assembly.bearings, state.rest.bearing_stiffness, cages, strict=True
+    ):
         law = place.bearing.law
         if law.linear:
             stiffness += place.directions @ law.stiffness(np.zeros(2)) @ place.directions.T
@@ -151,6 +172,7 @@ def _bearings(state: TrainState, kept: Reduction) -> tuple[Floats, tuple[LocalBe
                 clearance=law.clearance,
                 elements=0 if rolling is None else rolling.elements,
                 angle=0.0 if rolling is None else rolling.cage_angle,
+                order=order,
                 base=axes @ np.diag(held) @ axes.T,
             )
         )

@@ -64,15 +64,17 @@ def shown(train: MovingTrain, run: Run, turn: float) -> Record:
     rings = np.zeros((phase.size, len(own.bearings), 2))
     path = np.zeros((phase.size + 1, len(own.bearings), 2))
     held = np.ones((phase.size + 1, len(own.bearings)), dtype=bool)
+    after = np.append(phase, phase[-1:] + 1.0 / SAMPLES)
     closed = np.vstack([run.samples, run.state])[:, :n]
     local = 0
     for number, place in enumerate(own.bearings):
         u = closed @ train.reduction.vector(place.directions)
-        path[:, number], held[:, number] = u, place.bearing.law.touching(u)
+        path[:, number] = u
         if place.bearing.law.linear:
             rings[:, number] = -place.bearing.law.force(u[:-1])
         else:
             rings[:, number] = -found["bearings"][:, local]
+            held[:, number] = model.bearings[local].depth(u, phase=after) > 0.0
             local += 1
     housing = np.full((phase.size, 2), np.nan)
     for axis, name in enumerate(("casing.x", "casing.y")):
@@ -111,6 +113,17 @@ def orders_of_lines(teeth: tuple[int, int], *, shafts: bool) -> Floats:
     return np.array(sorted(one for one in {round(o, 9) for o in found} if one > 0.0))
 
 
+def ball_pass_lines(passing: ArrayLike) -> Floats:
+    """Orders of the mesh frequency of lines where elements pass at the orders ``passing``.
+
+    m p and h -+ m p for m = 1, 2 and mesh harmonics h up to the 12th; nan: no element passes.
+    """
+    own = np.unique(np.asarray(passing, dtype=float))
+    own = own[np.isfinite(own)]
+    every = np.add.outer(np.arange(HARMONICS + 1.0), np.outer([-2.0, -1.0, 1.0, 2.0], own))
+    return np.unique(np.round(every[(every > 0.0) & (every <= HARMONICS)], 9))
+
+
 def torus_orders(second: float, *, curves: int = 1) -> Floats:
     """Orders k/n + m nu of a motion with the second frequency nu, in mesh frequencies.
 
@@ -132,7 +145,6 @@ def lines(values: ArrayLike, *, orders: ArrayLike) -> Floats:
     window = window / window.sum()
     shape = x.shape[1:]
     flat = (x - x.mean(axis=0)).reshape(count, -1) * window[:, None]
-    turn = np.exp(
-        -2j * np.pi * np.outer(np.asarray(orders, dtype=float), np.arange(count) / SAMPLES)
-    )
-    return np.asarray(2.0 * np.abs(turn @ flat)).reshape(-1, *shape)
+    angle = -2j * np.pi / SAMPLES * np.arange(count)
+    found = [np.exp(order * angle) @ flat for order in np.asarray(orders, dtype=float).ravel()]
+    return np.asarray(2.0 * np.abs(np.array(found)).reshape(-1, *shape))

@@ -145,11 +145,13 @@ def sensed(
     vectors: Floats,
     periods: int = PERIODS,
     how: Steps | None = None,
+    turn: float = 0.0,
 ) -> Floats:
     """Acceleration (sample, count) [m/s^2] along ``vectors`` (n, count) from ``state`` (d,) on.
 
-    ``periods`` mesh periods at uniform phases, 64 samples each; ``how`` finely the engine goes.
+    ``periods`` mesh periods at uniform phases, 64 samples each, ``turn`` of them
+    after the start; ``how`` finely the engine goes.
     """
-    run = Engine(train.model, how).run(state, periods, samples=SAMPLES)
-    found = train.model.forces(run.sample_phase, states=run.samples)
+    run = Engine(train.model, how).run(state, periods, samples=SAMPLES, turn=turn)
+    found = train.model.forces(turn + run.sample_phase, states=run.samples)
     return np.asarray(found["acceleration"] @ train.reduction.vector(vectors))

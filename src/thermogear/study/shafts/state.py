@@ -121,6 +121,18 @@ def plan_of(case: GearCase) -> TrainPlan:
     return train
 
 
+def require_standing(case: GearCase, motion: str) -> None:
+    """Refuse cages that turn for a ``motion`` that has to come again."""
+    if plan_of(case).cage_slip < 1.0:
+        raise InputError(
+            "train.cages",
+            "turning",
+            allowed=f"standing for a train {motion}",
+            why="its motions come again after whole mesh periods, and cages never do",
+            fix='write cages = "standing", or take `run` or `waterfall`',
+        )
+
+
 def places_of(case: GearCase, *, most: int = MOST_POINTS) -> list[int]:
     """The operating points of a study: all, of many an even spread with the hardest."""
     at = case.stated

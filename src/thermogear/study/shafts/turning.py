@@ -24,10 +24,15 @@ from thermogear.dynamics.ladder import Engine
 from thermogear.dynamics.turns import CLOSE, LEAST_TURNS, LONGEST_CYCLE
 from thermogear.mesh.excite import over_turn as spread
 from thermogear.study.faults import FaultMotion, TurnMotion, sound_pair
-from thermogear.study.shafts.motion import LONGEST
-from thermogear.study.shafts.moving import MovingTrain, moving
+from thermogear.study.shafts.moving import LONGEST, MovingTrain, moving
 from thermogear.study.shafts.record import SAMPLES, shown
-from thermogear.study.shafts.state import Meshing, TrainState, meshing, settled
+from thermogear.study.shafts.state import (
+    Meshing,
+    TrainState,
+    meshing,
+    require_standing,
+    settled,
+)
 
 
 def train_fault_motion(
@@ -52,6 +57,7 @@ def train_fault_motion(
         raise InputError("faults", "none", fix="state [[faults]] in the case")
     if case.models[0].stiffness != "loaded":
         raise InputError("model.stiffness", case.models[0].stiffness, allowed="loaded")
+    require_standing(case, "over a turn with faults")
     thermal = ThermalState.of(state)
     ((rest,),) = settled(case, [place], states=[thermal])
     at = thermal.operating(case, case.models[0])

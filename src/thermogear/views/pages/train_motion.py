@@ -59,7 +59,8 @@ FORCES = (
 ORDERS = (
     "Lines of the force on each bearing, the larger of x and y, peak values. Whole orders come "
     "from every tooth alike, halves from a motion that repeats after two mesh periods, what lies "
-    "beside them from the shafts or from a second base frequency."
+    "beside them from the shafts or from a second base frequency. Dash-dotted, where cages turn: "
+    "the order at which rolling elements pass a point of the outer ring, and its double."
 )
 TORUS = (
     "The motion never returns: it has two base frequencies, and its sections fill a closed curve, "
@@ -186,6 +187,10 @@ PATHS = (
     Column("carries load [% of time]", lambda row: PERCENT(row["bearing_contact_share"]), ".1f"),
     Column("contact losses per mesh period", "bearing_contact_losses", ".2f"),
 )
+PASSED = (
+    Column("ball pass [order of the mesh]", "ball_pass_order", ".5f"),
+    Column("its line", "ball_pass_line", ".3g", NEWTON),
+)
 
 
 OF_CAGES = (
@@ -207,6 +212,8 @@ def _tables(data: Dataset) -> list[Table]:
     if "journal_path" in data:
         columns += PATHS
         data = data.assign(clearance=data["radial_internal_clearance"])
+    if np.isfinite(data.get("ball_pass_order", np.nan)).any():
+        columns += PASSED
     caption = "The bearings in motion; a clearance below zero is a preload, a spring has none."
     flanks = rows_along(labelled(data), "state", "operating")
     rings = rows_along(data, "state", "operating", "bearing")
@@ -496,6 +503,11 @@ def bearing_force_order(data: Dataset, operating: int) -> Picture:
     for b, name in enumerate(names_of(here, "bearing")):
         panel = _lines(here, order, lines[:, b], "line of the force [N]", ends)
         panel.title = name
+        own = float(here["ball_pass_order"].values[b]) if "ball_pass_order" in here else np.nan
+        if np.isfinite(own):
+            panel.title = f"{name}, ball pass at {own:.4f}"
+            for m in (1, 2):
+                panel.line(x=m * own, colour=INK, width=0.8, dash=(5, 2, 1, 2), order=0.5)
         panels.append(panel)
     rows = in_rows(panels, BESIDE)
     return Picture(rows, size=(WIDE, 2.6 * len(rows) + 0.3), legend=4)

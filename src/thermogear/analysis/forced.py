@@ -1,0 +1,111 @@
+"""What a start settles on under forces that never come again: by its conditional exponent.
+
+Mesh and cages turn as they are driven, whatever the train does: states over their phases are a skew
+product, and the driven motion (phases) carries the states by x_(n+1) = P(x_n, theta + n omega). A
+motion is settled where two starts under the same driven motion come together and the largest
+exponent of a tangent to the states alone, the conditional one, is negative (Pecora and Carroll,
+Physical Review A 44, 1991, 2374).
+"""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+
+from thermogear.analysis.any_motion import ROUNDED
+from thermogear.analysis.torus import smooth_window
+from thermogear.analysis.walk import Motion
+from thermogear.base.arrays import Floats
+from thermogear.base.errors import ConvergenceError
+from thermogear.base.plan import Alive, keep_going
+from thermogear.dynamics.return_map import Stretch
+
+TOGETHER = 1e-4
+"""Distance in units of the map below which two starts have come together: chosen, above the 1e-5
+that steps of 1e-9 miss where elements begin to carry, over the time a slow motion takes to die."""
+ROUND = 128
+"""Mesh periods between two looks at both starts."""
+BATCHES = 8
+LENGTHS = (32, 256)
+"""Mesh periods of a batch of the exponent; the longer ones where the shorter do not show that it is
+negative."""
+SURE = 4.0
+"""Errors that an exponent must be away from zero (chosen, as for other exponents)."""
+
+
+class ForcedMap(Protocol):
+    """A map of states (d,) whose forces know how many mesh periods went by: ``turn``."""
+
+    @property
+    def period(self) -> float:
+        """Time of a mesh period [s]."""
+
+    @property
+    def unit(self) -> Floats:
+        """Scales of a state (d,)."""
+
+    def carry(self, start: Floats, periods: int, *, turn: int) -> Floats:
+        """The states (periods, d) after 1, 2, ... periods from ``start``."""
+
+    def stretch(self, start: Floats, *, direction: Floats, periods: int, turn: int) -> Stretch:
+        """Carry ``start`` and a tangent vector ``direction``, made unit after every period."""
+
+
+def settle_forced(
+    section: ForcedMap, starts: Floats, *, cap: int, alive: Alive = keep_going
+) -> Motion:
+    """Follow two ``starts`` (2, d) for ``cap`` mesh periods at most, and the exponent of the first.
+
+    "settled": both come together, and the largest conditional exponent is negative beyond four of
+    its errors. "chaotic": it is positive beyond them. Else "undecided", or "diverged" where one
+    runs away. ``lyapunov`` [1/s] is that exponent in the second half of its record; its error is
+    the greater of its scatter there and what it differs by from the first half. ``discarded``: mesh
+    periods up to the state. A settled motion need not be the only one: other starts may settle on
+    another. ``alive`` raises to end the work.
+    """
+    one, two = np.asarray(starts, dtype=float)
+    turn, away = 0, np.inf
+    try:
+        while turn < cap and away > TOGETHER:
+            alive()
+            one, two = (section.carry(each, ROUND, turn=turn)[-1] for each in (one, two))
+            turn += ROUND
+            away = float(np.max(np.abs(one - two) / section.unit))
+        # what is left of their distance decays most slowly
+        tangent = two - one if away > 0.0 else section.unit
+        for length in LENGTHS:
+            alive()
+            path = section.stretch(one, direction=tangent, periods=BATCHES * length, turn=turn)
+            one, tangent, turn = path.state, path.direction, turn + BATCHES * length
+            # a slow pair turns in its plane: under a smooth window that falls out of the mean
+            batches = path.growth.reshape(BATCHES, length) @ smooth_window(length)
+            means = batches / section.period
+            early, late = means.reshape(2, -1)
+            value, scatter = float(late.mean()), float(late.std(ddof=1) / np.sqrt(late.size))
+            # directions that decay nearly as slowly die out meanwhile
+            error = max(scatter, abs(value - float(early.mean())))
+            error = max(error, ROUNDED / (BATCHES * length * section.period))
+            sure = abs(value) > SURE * error
+            if sure and value < 0.0:
+                break
+    except ConvergenceError as why:
+        return Motion(name="diverged", period=0, reason=str(why), state=one, discarded=turn)
+    name = "undecided"
+    if sure and value > 0.0:
+        name = "chaotic"
+    elif sure and away <= TOGETHER:
+        name = "settled"
+    told = f"largest conditional exponent {value * section.period:.3g} +- "
+    told += f"{error * section.period:.1g} per mesh period, two starts {away:.1g} apart"
+    return Motion(
+        name=name,
+        period=0,
+        reason=f"{told} after {turn} mesh periods driven alike",
+        state=one,
+        discarded=turn,
+        lyapunov=value,
+        lyapunov_error=error,
+        batches=means,
+        exponents=np.array([value]),
+    )
