@@ -96,8 +96,8 @@ def page() -> str:
         "# Gallery",
         "",
         "Made by `make trial NAME=gallery` from ready-made cases.",
-        "`thermogear report DIR --pictures P` writes the pictures of any command; in Python `pictures(result)` gives",
-        "them by name. On a page they move.",
+        "`thermogear report DIR --pictures P` writes the pictures of any command; in Python",
+        "`pictures(result)` gives them by name. On a page they move.",
     ]
     for command, shown in GALLERY.items():
         lines += ["", "```sh", f"thermogear {command} -o {command.split()[0]}", "```"]
