@@ -35,7 +35,7 @@ WITHOUT = {
     "case.rexs.container.read_rexs": "reads a file; docs/howto/rexs.md shows one",
     "measured.readers.read_record": "reads a file; docs/tutorials/own_record.md shows one",
     "measured.reduction.measure": "needs a record; docs/tutorials/own_record.md shows one",
-    "base.plan.slices": "needs a plan of minutes; docs/howto/long_runs.md shows one",
+    "base.plan.slices": "needs a plan of minutes; docs/howto/many_samples.md shows one",
     "base.errors.ConvergenceError": "no round input makes an iteration fail",
     "base.excitation.Excitation": "made by excitation(), which has an example",
     "dynamics.models.from_excitation": "needs the excitation that excitation() makes",
