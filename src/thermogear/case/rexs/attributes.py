@@ -35,8 +35,6 @@ _SPELLED: dict[str, tuple[float, str]] = {
     "N m": (1.0, "N m"),
     "N mm": (1e-3, "N m"),
     "kN m": (1e3, "N m"),
-    "N / m": (1.0, "N/m"),
-    "N / mm": (1e3, "N/m"),
     "N / mm^2": (1.0, "MPa"),
     "MPa": (1.0, "MPa"),
     "GPa": (1.0, "GPa"),
