@@ -117,17 +117,14 @@ class GearedMap:
         run = self.engine.run(start, periods * cycle, turn=turn)
         return run.sections[cycle - 1 :: cycle]
 
-    def stretch(self, start: Floats, *, direction: Floats, periods: int, turn: int = 0) -> Stretch:
+    def stretch(self, start: Floats, *, direction: Floats, periods: int) -> Stretch:
         """Carry ``start`` and a tangent vector ``direction``, made unit after every cycle."""
         state = np.asarray(start, dtype=float)
         along = np.asarray(direction, dtype=float) / self.unit
         along = along / np.linalg.norm(along)
         growth = np.zeros(periods)
         for number in range(periods):
-            gone = turn + number * self.model.cycle
-            run = self.engine.run(
-                state, self.model.cycle, directions=along[None] * self.unit, turn=gone
-            )
+            run = self.engine.run(state, self.model.cycle, directions=along[None] * self.unit)
             along = run.directions[0] / self.unit
             size = float(np.linalg.norm(along))
             growth[number], along, state = np.log(size), along / size, run.state

@@ -12,12 +12,10 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
-
-Bools = NDArray[np.bool_]
 
 
 class BearingLaw(Protocol):
@@ -32,9 +30,6 @@ class BearingLaw(Protocol):
 
     def stiffness(self, displacement: ArrayLike) -> Floats:
         """Tangent stiffness -dF/du [N/m], (..., 2, 2)."""
-
-    def touching(self, displacement: ArrayLike) -> Bools:
-        """Whether journal and ring touch, (...): false where the journal is free to move."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,9 +66,6 @@ class LinearLaw:
     def stiffness(self, displacement: ArrayLike) -> Floats:
         u = np.asarray(displacement, dtype=float)
         return np.broadcast_to(np.asarray(self.stiffness_matrix, float), (*u.shape[:-1], 2, 2))
-
-    def touching(self, displacement: ArrayLike) -> Bools:
-        return np.ones(np.shape(displacement)[:-1], dtype=bool)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -131,10 +123,6 @@ class RingLaw:
         secant = np.divide(force, r, out=np.zeros_like(r), where=r > 0.0)
         return np.asarray(slope * along + secant * (np.eye(2) - along))
 
-    def touching(self, displacement: ArrayLike) -> Bools:
-        r = np.linalg.norm(np.asarray(displacement, dtype=float), axis=-1)
-        return np.asarray((r > self.clearance) | self.linear, dtype=bool)
-
 
 @dataclass(frozen=True, kw_only=True)
 class ElementLaw:
@@ -188,9 +176,6 @@ class ElementLaw:
         loaded = deep > 0.0
         slope[loaded] = self.exponent * self.coefficient * deep[loaded] ** (self.exponent - 1.0)
         return np.asarray(np.einsum("...i,ia,ib->...ab", slope, self.directions, self.directions))
-
-    def touching(self, displacement: ArrayLike) -> Bools:
-        return np.asarray((self.loads(displacement) > 0.0).any(axis=-1), dtype=bool)
 
 
 def _positive(name: str, value: float) -> None:
