@@ -413,6 +413,8 @@ def _compute(plan: Plan, directory: Path, title: str, options: dict[str, Any]) -
     begun = time.monotonic()
     try:
         with progress() as watch:
+            # what is left to do behind the chunks has its own stages
+            plan = getattr(plan, "telling", lambda _: plan)(watch)
 
             def report(step: Step) -> None:
                 last[:] = [step]
