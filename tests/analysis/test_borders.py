@@ -15,6 +15,7 @@ from tests.dynamics.geared_trains import moving_six
 from tests.dynamics.test_geared_truth import TRUTH
 
 from thermogear.analysis.bifurcations import GRAZING, Bifurcation
+from thermogear.analysis.borders import STEPS
 from thermogear.analysis.continuation import continuation
 from thermogear.analysis.event_curve import LEFT, LOST, OPENED, REACHED, EventCurve, event_curve
 from thermogear.analysis.maps import map_plan
@@ -89,8 +90,14 @@ def test_a_map_has_its_border_once_by_name(compared: Compared) -> None:
         {"frequency": np.linspace(0.4, 1.6, 7), "force_amplitude": np.linspace(0.008, 0.09, 4)},
         initial_state=(1.1, 0.0),
     )
-    data = gather(replace(plan, sheet=sheet))
+    seen: list[tuple[int, int]] = []
+    made = replace(plan, sheet=sheet).telling(lambda _, done, total: seen.append((done, total)))
+    data = gather(made)
     assert data["border_contact"].values.tolist() == [0]
+    # it ends at the whole, and a border has parts
+    assert seen == sorted(seen)
+    assert seen[-1][0] == seen[-1][1]
+    assert len({done % STEPS for done, _ in seen}) > 3
     first, second = (data[f"border_{name}"].values[0] for name in ("first", "second"))
     known = np.isfinite(first)
     away = np.abs(second[known] / onset(first[known]) - 1.0)
@@ -98,6 +105,15 @@ def test_a_map_has_its_border_once_by_name(compared: Compared) -> None:
     (about,) = json.loads(data.attrs["borders"])
     assert all(end[2].startswith(LEFT) for end in about["ends"])
     assert "sheet" not in json.dumps(plan.inputs())
+    assert "for each border" in made.behind()
+    assert plan.behind() == ""
+
+    def stop(_: str, done: int, total: int) -> None:
+        raise KeyboardInterrupt
+
+    cut = made.telling(stop)
+    rest = cut.bordered(data.drop_vars([n for n in data if str(n).startswith("border_")]), (cut,))
+    assert (rest.attrs["borders_cut"], rest["border_contact"].size) == (1, 0)
 
 
 def test_a_border_ends_where_another_opening_comes_first(compared: Compared) -> None:
@@ -200,7 +216,6 @@ class Gauged:
         )  # fmt: skip
 
     def extremes(self, start: Any, periods: int) -> Extremes:
-        phase = np.arange(256) / 256
         turn = 2.0 * np.pi / 256
         motion = np.stack([np.cos(turn * np.arange(256))] * 3)[..., None]
         return extremes_of(

@@ -304,7 +304,7 @@ class Bordered:
             rounded = stalled > often and best[0] < 0.1 * ROUNDING
             if size <= self.closed or (rounded and fresh) or stalled > 2:
                 break
-            late = not fresh and (rounded or number == MOST_STEPS // 2)
+            late = not fresh and (rounded or number == MOST_STEPS - 3)
             if kept_matrix is None or size > most * last or late:
                 kept_matrix, fresh = self.matrix(scaled, jacobian=jacobian), True
             elif step.any():
