@@ -98,6 +98,7 @@ def page(
         f"{len(records)} random drive trains,",
         "drawn as those of [the trial of drive trains](trial_trains.md), each labelled from rest. "
         "Shares with their exact interval of 95 %.",
+        *[f"**Only {len(records)} of {COUNT} have run.**"] * (len(records) < COUNT),
         "",
         f"- **Undecided: {share(names['undecided'], len(records))}** from one start.",
         f"- Undecided by the rule of the studies, {STARTS} starts for its 16: "
@@ -126,6 +127,7 @@ def main(words: Sequence[str]) -> int:
     reader = argparse.ArgumentParser(description=__doc__)
     for name, value in (("seed", SEED), ("count", COUNT), ("ruled", RULED), ("checked", CHECKED)):
         reader.add_argument(f"--{name}", type=int, default=value, help="default: %(default)s")
+    reader.add_argument("--write", action="store_true", help="the page, of however many trains")
     asked = reader.parse_args(words)
     seed = asked.seed
     path, more = (KEPT / f"{name}-{seed}-{code()}.jsonl" for name in ("fresh", "ruled"))
@@ -157,7 +159,7 @@ def main(words: Sequence[str]) -> int:
         print(f"\nstopped; what is done is kept in {path.relative_to(ROOT)}", file=sys.stderr)
         return 130
     text = page(records, ruled, complaints, seed)
-    if (seed, asked.count) == (SEED, COUNT):
+    if seed == SEED and (asked.count == COUNT or asked.write):
         PAGE.write_text(text, "utf-8")
     print(text)
     return int(any(complaints.values()))

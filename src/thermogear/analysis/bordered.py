@@ -48,8 +48,12 @@ ROUNDING = 1e-8
 """A residual that no longer falls is rounding below this."""
 MOST_STEPS = 10
 SLOW, PATIENT = 0.5, 2.0
-"""A residual that falls less in a step asks for fresh derivatives; of a grazing, whose derivatives
-cost ten models, one that grows by so much, chosen: a fifth of the models for the same points."""
+"""A residual that falls less in a step asks for fresh derivatives; of a train's grazing, whose
+derivatives cost ten models, one that grows by so much, chosen: a fifth of the models a point."""
+MOST_STEPS = 10
+SLOW, PATIENT = 0.5, 2.0
+"""A residual that falls less in a step asks for fresh derivatives; of a train's grazing, whose
+derivatives cost ten models, one that grows by so much, chosen: a fifth of the models for the same points."""
 PHASE = 0.05
 """A mesh period, to see which extreme of x touches; the same one from point to point [orbits]."""
 LEAP = 1e-3
@@ -110,6 +114,8 @@ class Bordered:
         one_mass = is_moved(bifurcation.orbit.section)
         self.apart = (TOUCHING if self.kind == GRAZING else APART)[one_mass]
         self.closed = (GRAZED if self.kind == GRAZING else CLOSED)[one_mass]
+        # a train's grazing: a model costs more than its orbit
+        self.dear = self.kind == GRAZING and not one_mass
         self.root = -1.0 if self.kind in (FLIP, PITCHFORK) else 1.0
         self.mu = complex(self.root)
         if self.kind == TORUS:
@@ -268,28 +274,29 @@ class Bordered:
         """Newton onto the curve in the plane through ``guess`` normal to ``normal``.
 
         It begins with a ``matrix`` from nearby, and takes a fresh one where that converges slowly.
-        Of a grazing what the steps made of it serves the point, too: a fresh one costs ten models.
+        Of a train's grazing what the steps made of it serves the point, too: a fresh one costs ten
+        models.
         """
         found = self._newton(guess, normal=normal, matrix=matrix, reach=reach)
-        grazing = self.kind == GRAZING
-        if found is None and matrix is not None and grazing:
+        if found is None and matrix is not None and self.dear:
             found = self._newton(guess, normal=normal, matrix=None, reach=reach)
         if found is None:
             return None
         scaled, jacobian, left = found
         return self._located(
-            scaled, jacobian, direction=direction, matrix=left if grazing else None
+            scaled, jacobian, direction=direction, matrix=left if self.dear else None
         )
 
     def _newton(
         self, guess: Floats, *, normal: Floats, matrix: Floats | None, reach: float
     ) -> tuple[Floats, Floats, Floats | None] | None:
         """Point, J and the equations' matrix as the last step left it; None where it fails."""
-        kept_matrix = None if matrix is None else matrix.copy()
+        bare = self.kind == GRAZING and not self.dear
+        kept_matrix = None if matrix is None or bare else matrix.copy()
         scaled = guess.copy()
         best: tuple[float, Floats, Floats] | None = None
-        last, stalled, fresh = np.inf, 0, self.kind != GRAZING
-        # of a grazing the first step behind fresh derivatives closes the orbit alone
+        last, stalled, fresh = np.inf, 0, not self.dear
+        # of such a grazing the first step behind fresh derivatives closes the orbit alone
         most, often = (SLOW, 0) if fresh else (PATIENT, 1)
         step, before = np.zeros(guess.size), np.zeros(guess.size - 1)
         for number in range(MOST_STEPS):

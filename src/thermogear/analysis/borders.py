@@ -37,6 +37,8 @@ SAME, RESAMPLED = 5e-3, 4000
 """Share of a map's range [1] within which an event lies on a curve, drawn in so many points."""
 STEPS = 100
 """Parts of a pair of neighbours that progress is told in."""
+LEG = 20
+"""Points of a leg that count as half of it [1], chosen."""
 ORBITS = 400
 """Orbits, each of its own model, that a border takes [1]: what borders of trains took, see
 :func:`expected`; a short one takes a tenth."""
@@ -219,8 +221,9 @@ def _followed(
         if end == level or (legs and legs[0].closed):
             continue
 
-        def told(_points: int, value: float, number: int = number, end: float = end) -> None:
-            tell(0.5 * (number + min(abs(value - level) / abs(end - level), 1.0)))
+        def told(points: int, _value: float, number: int = number) -> None:
+            # a leg may turn back in the parameter, and how long it is shows at its end
+            tell(0.5 * (number + points / (points + LEG)))
 
         curve = event_curve(
             grazing, turned, (names[axis], names[1 - axis]), start=level, asked=[end],

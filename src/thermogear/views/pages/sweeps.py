@@ -278,10 +278,10 @@ def _borders(data: Dataset) -> list[Block]:
         for place, name in enumerate(dims)
     ]
     columns = (*BORDER, *places, Column("why", "why"))
-    told = [declared("Ends of borders.", columns, rows)] if rows else []
+    ends: list[Block] = [declared("Ends of borders.", columns, rows)] if rows else []
     if data.attrs.get("borders_cut"):
-        return [*told, Text(CUT_BORDERS)]
-    return told or [Text(NO_BORDER)]
+        return [*ends, Text(CUT_BORDERS)]
+    return ends or [Text(NO_BORDER)]
 
 
 def _shown_end(data: Dataset, name: str, place: int, row: Row) -> str:
