@@ -50,10 +50,6 @@ MOST_STEPS = 10
 SLOW, PATIENT = 0.5, 2.0
 """A residual that falls less in a step asks for fresh derivatives; of a train's grazing, whose
 derivatives cost ten models, one that grows by so much, chosen: a fifth of the models a point."""
-MOST_STEPS = 10
-SLOW, PATIENT = 0.5, 2.0
-"""A residual that falls less in a step asks for fresh derivatives; of a train's grazing, whose
-derivatives cost ten models, one that grows by so much, chosen: a fifth of the models for the same points."""
 PHASE = 0.05
 """A mesh period, to see which extreme of x touches; the same one from point to point [orbits]."""
 LEAP = 1e-3
