@@ -225,14 +225,14 @@ def chosen(records: Sequence[Record], count: int) -> list[Record]:
     return sorted(found[:count], key=lambda one: int(one["number"]))
 
 
-def checked(record: Record) -> str:
+def checked(record: Record, seed: int = SEED) -> str:
     """What a long independent integration has against the label of ``record``; "" for nothing."""
-    one = drawn(record["number"])
+    one = drawn(record["number"], seed)
     model = one.train(MODES).model
     section, other = GearedMap(model=model), Independent(model)
     label = record["label"]
     state = np.array(label["state"])
-    rng = np.random.default_rng([SEED, record["number"], 1])
+    rng = np.random.default_rng([seed, record["number"], 1])
     aside = rng.uniform(-1.0, 1.0, state.size) * section.unit
     if label["name"].startswith("period-"):
         return _closes(section, other, state, aside, label)

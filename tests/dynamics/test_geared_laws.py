@@ -8,13 +8,16 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.linalg import expm
 from tests.conftest import Compared
 from tests.dynamics.geared_trains import moving_six
 from tests.dynamics.test_geared_truth import TRUTH
 
+from thermogear.analysis.any_motion import settle
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.base.pieces import Pieces
 from thermogear.dynamics.geared import GearedModel
+from thermogear.dynamics.geared_map import GearedMap
 from thermogear.dynamics.ladder import Engine, Steps
 
 FINE = Steps(accuracy=1e-11)
@@ -239,9 +242,6 @@ def test_jumps_of_friction_and_staircases(compared: Compared) -> None:
         for how in (Steps(accuracy=1e-9), Steps(accuracy=1e-12, longest=50, nodes=5, rungs=12))
     ]
     compared("steps in friction and stiffness", "finer steps", ends[0] / ends[1] - 1.0, 1e-8)
-    marked = replace(broken, friction_jumps=(0.31, 0.72))
-    again = Engine(marked, Steps(accuracy=1e-9)).run(start, 8).state[: model.size] @ model.drive
-    compared("jumps named", "jumps of the pieces", again / ends[1] - 1.0, 1e-8)
 
 
 def test_what_cannot_move_is_refused() -> None:
@@ -255,3 +255,15 @@ def test_what_cannot_move_is_refused() -> None:
     wild = replace(model, damping=-50.0 * np.abs(model.damping).max() * np.eye(model.size))
     with pytest.raises(ConvergenceError, match="runs away"):
         Engine(wild).run(start, 400)
+
+
+def test_a_train_that_decays_slowly_has_a_label(compared: Compared) -> None:
+    """Contact kept: an orbit decays as the train does at rest, which is no bifurcation."""
+    params = copy.deepcopy(BASE) | {"rpm": 7200.0, "cb": 10.0, "T1": 80.0}
+    model, start, _ = moving_six(params | {"e_re": [2e-7], "e_im": [0.0]})
+    section = GearedMap(model=model)
+    at_rest = np.abs(np.linalg.eigvals(expm(model.state_matrix * section.period))).max()
+    compared("slowest decay of a train", "matrix exponential", section.slowest - at_rest, 1e-12)
+    found = settle(section, start)
+    assert found.name == "period-1"
+    assert abs(found.multiplier) > 0.998

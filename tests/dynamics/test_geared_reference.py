@@ -15,9 +15,12 @@ from tests.dynamics.drive_reference import Plain, Reference, Ring
 from tests.dynamics.geared_trains import moving_six
 from tests.dynamics.test_geared_laws import BASE, rattling
 
+from thermogear import Gear, GearPair, Operating, Temperatures
+from thermogear.base.materials import lubricant
 from thermogear.base.pieces import Pieces
 from thermogear.dynamics.geared import GearedModel, LocalBearing
 from thermogear.dynamics.ladder import Engine, Steps
+from thermogear.mesh.tooth_friction import friction_split
 
 FINE = Steps(accuracy=1e-10)
 PERIODS = 3
@@ -115,3 +118,24 @@ def test_a_jump_of_friction_is_where_it_is_said(compared: Compared) -> None:
     n = model.size
     away = (run.state - true)[:n] @ model.outputs.T / np.abs(true[:n] @ model.outputs.T).max()
     compared("friction that jumps", "DOP853 restarted there", away, 1e-7)
+
+
+def test_friction_as_it_is_fitted_costs_no_accuracy(compared: Compared) -> None:
+    """Pieces meet within 1e-3 only: a step over a place where they meet is wrong by 8e-6."""
+    pair = GearPair(Gear(25, 3e-3), Gear(38, 3e-3))
+    point = Operating(
+        speed=[377.0], torque=[40.0], lubricant=lubricant("FVA3"), oil_temperature=353.15,
+        temperatures=Temperatures.uniform(353.15, reference=293.15), half_backlash=40e-6,
+    )  # fmt: skip
+    (split,) = friction_split(pair, point, accuracy=1e-3)
+    assert split is not None
+    model, start, _ = moving_six(copy.deepcopy(BASE) | {"rpm": 7000.0})
+    rubbed = replace(
+        model, friction=np.stack([0.5 * model.back, model.drive]),
+        friction_at_pitch=split.at_pitch, friction_per_metre=split.per_metre,
+    )  # fmt: skip
+    run = Engine(rubbed, Steps(accuracy=1e-9)).run(start, 1)
+    true = follow(rubbed, start, 1, split.at_pitch.starts)
+    away = (run.state - true)[: model.size] @ model.outputs.T / model.half_backlash
+    assert len(split.at_pitch.starts) > 8
+    compared("friction in pieces, half backlashes", "DOP853 restarted at each", away, 1e-8)

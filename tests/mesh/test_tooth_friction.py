@@ -170,7 +170,7 @@ def test_it_jumps_where_a_pair_passes_the_pitch_point(
     at, phase = hot_rig.point(0), pitch_phase(rig)
     (one,) = friction_split(rig, at, model)
     assert one is not None
-    assert phase in one.jumps
+    assert phase in one.at_pitch.starts
     beside = FrictionPath(
         elastic_pair(HotPair(rig, at, model)), rig.path.c + np.array([-1e-9, 1e-9])
     )
@@ -188,7 +188,7 @@ def test_dry_equal_shares_have_their_closed_form(rig: GearPair, hot_rig: Operati
     assert one is not None
     pitch, mu = pitch_phase(rig), model.dry_coefficient
     leaving = rig.contact_ratio - 1.0
-    assert one.jumps == pytest.approx((0.0, *sorted((pitch, leaving))))
+    assert one.at_pitch.starts == pytest.approx((0.0, *sorted((pitch, leaving))))
     ends = (rig.path.a - rig.path.c, rig.path.e - rig.path.c)
     assert one.at_pitch(0.5 * leaving) == pytest.approx(0.0, abs=1e-15)
     assert one.at_pitch(np.array([0.5 * (leaving + pitch), 0.5 * (1.0 + pitch)])) == pytest.approx(
@@ -244,5 +244,3 @@ def test_what_cannot_be_split_is_refused(rig: GearPair, hot_rig: Operating) -> N
     one, two = (Pieces.constant(starts=[0.0, s], values=[0.1, 0.2]) for s in (0.3, 0.4))
     with pytest.raises(InputError):
         FrictionSplit(at_pitch=one, per_metre=two)
-    with pytest.raises(InputError):
-        FrictionSplit(at_pitch=one, per_metre=one, jumps=(0.2,))

@@ -47,8 +47,9 @@ GRAZED = {True: 1e-11, False: 1e-10}
 ROUNDING = 1e-8
 """A residual that no longer falls is rounding below this."""
 MOST_STEPS = 10
-SLOW = 0.5
-"""A residual that falls less in a step asks for fresh derivatives."""
+SLOW, PATIENT = 0.5, 2.0
+"""A residual that falls less in a step asks for fresh derivatives; of a train's grazing, whose
+derivatives cost ten models, one that grows by so much, chosen: a fifth of the models a point."""
 PHASE = 0.05
 """A mesh period, to see which extreme of x touches; the same one from point to point [orbits]."""
 LEAP = 1e-3
@@ -109,6 +110,8 @@ class Bordered:
         one_mass = is_moved(bifurcation.orbit.section)
         self.apart = (TOUCHING if self.kind == GRAZING else APART)[one_mass]
         self.closed = (GRAZED if self.kind == GRAZING else CLOSED)[one_mass]
+        # a train's grazing: a model costs more than its orbit
+        self.dear = self.kind == GRAZING and not one_mass
         self.root = -1.0 if self.kind in (FLIP, PITCHFORK) else 1.0
         self.mu = complex(self.root)
         if self.kind == TORUS:
@@ -267,13 +270,32 @@ class Bordered:
         """Newton onto the curve in the plane through ``guess`` normal to ``normal``.
 
         It begins with a ``matrix`` from nearby, and takes a fresh one where that converges slowly.
+        Of a train's grazing what the steps made of it serves the point, too: a fresh one costs ten
+        models.
         """
-        kept_matrix = None if matrix is None or self.kind == GRAZING else matrix.copy()
+        found = self._newton(guess, normal=normal, matrix=matrix, reach=reach)
+        if found is None and matrix is not None and self.dear:
+            found = self._newton(guess, normal=normal, matrix=None, reach=reach)
+        if found is None:
+            return None
+        scaled, jacobian, left = found
+        return self._located(
+            scaled, jacobian, direction=direction, matrix=left if self.dear else None
+        )
+
+    def _newton(
+        self, guess: Floats, *, normal: Floats, matrix: Floats | None, reach: float
+    ) -> tuple[Floats, Floats, Floats | None] | None:
+        """Point, J and the equations' matrix as the last step left it; None where it fails."""
+        bare = self.kind == GRAZING and not self.dear
+        kept_matrix = None if matrix is None or bare else matrix.copy()
         scaled = guess.copy()
         best: tuple[float, Floats, Floats] | None = None
-        last, stalled = np.inf, 0
+        last, stalled, fresh = np.inf, 0, not self.dear
+        # of such a grazing the first step behind fresh derivatives closes the orbit alone
+        most, often = (SLOW, 0) if fresh else (PATIENT, 1)
         step, before = np.zeros(guess.size), np.zeros(guess.size - 1)
-        for _ in range(MOST_STEPS):
+        for number in range(MOST_STEPS):
             rest, jacobian = self.residual(scaled)
             size = float(np.max(np.abs(rest)))
             if not np.isfinite(size):
@@ -282,14 +304,17 @@ class Bordered:
                 best, stalled = (size, scaled, jacobian), 0
             else:
                 stalled += 1
-            if size <= self.closed or (stalled and best[0] < 0.1 * ROUNDING) or stalled > 2:
+            rounded = stalled > often and best[0] < 0.1 * ROUNDING
+            if size <= self.closed or (rounded and fresh) or stalled > 2:
                 break
-            if kept_matrix is None or size > SLOW * last:
-                kept_matrix = self.matrix(scaled, jacobian=jacobian)
+            late = not fresh and (rounded or number == MOST_STEPS - 3)
+            if kept_matrix is None or size > most * last or late:
+                kept_matrix, fresh = self.matrix(scaled, jacobian=jacobian), True
             elif step.any():
                 kept_matrix = kept_matrix + np.outer(rest - before - kept_matrix @ step, step) / (
                     step @ step
                 )
+                fresh = often == 0
             kept_matrix[:-1, :-2] = jacobian - np.eye(len(jacobian))
             last, before = size, rest
             whole = np.vstack([kept_matrix, normal])
@@ -302,13 +327,16 @@ class Bordered:
                 return None
         if best is None or not best[0] < ROUNDING:
             return None
-        return self._located(*best[1:], direction=direction)
+        if kept_matrix is not None:
+            kept_matrix[:-1, :-2] = best[2] - np.eye(len(best[2]))
+        return best[1], best[2], kept_matrix
 
     def _located(
-        self, scaled: Floats, jacobian: Floats, *, direction: Floats | None
-    ) -> Located | None:
-        """The point with its derivatives; None where they are no numbers."""
-        own = self.matrix(scaled, jacobian=jacobian)
+        self, scaled: Floats, jacobian: Floats, *, direction: Floats | None,
+        matrix: Floats | None = None,
+    ) -> Located | None:  # fmt: skip
+        """The point with its derivatives, fresh or ``matrix``; None where they are no numbers."""
+        own = self.matrix(scaled, jacobian=jacobian) if matrix is None else matrix
         if not np.all(np.isfinite(own)):
             return None
         tangent = np.linalg.svd(own)[2][-1]

@@ -10,7 +10,8 @@ Checked by ``tests/analysis/test_borders.py``.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
+import time
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -26,6 +27,7 @@ from thermogear.analysis.settle import PERIODIC
 from thermogear.analysis.walk import Search
 from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.errors import ConvergenceError, InputError
+from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import ASSUMED
 from thermogear.dynamics.return_map import return_map
 
@@ -33,6 +35,13 @@ MOST_CURVES, MOST_TRIES = 16, 24
 """Borders that are followed, and pairs of neighbours at which they are looked for; chosen."""
 SAME, RESAMPLED = 5e-3, 4000
 """Share of a map's range [1] within which an event lies on a curve, drawn in so many points."""
+STEPS = 100
+"""Parts of a pair of neighbours that progress is told in."""
+LEG = 20
+"""Points of a leg that count as half of it [1], chosen."""
+ORBITS = 400
+"""Orbits, each of its own model, that a border takes [1]: what borders of trains took, see
+:func:`expected`; a short one takes a tenth."""
 PARTED = 1e-9
 """Share of the time [1] that is no more than rounding."""
 Edge = tuple[int, tuple[int, int], tuple[int, int]]
@@ -40,19 +49,29 @@ Edge = tuple[int, tuple[int, int], tuple[int, int]]
 
 
 def with_borders(
-    data: Dataset, sheets: Sequence[Sheet], *, axes: Sequence[Floats], start: Floats
-) -> Dataset:
+    data: Dataset, sheets: Sequence[Sheet], *, axes: Sequence[Floats], start: Floats,
+    progress: Progress = silent,
+) -> Dataset:  # fmt: skip
     """Add the borders of contact loss to a map over ``axes``, begun from ``start``.
 
     ``sheets`` (p, q) -> model, one for each state of heat. ``border_first`` and ``border_second``
     (border, border_point), ``border_contact`` (the flag's number), ``border_state`` (border); the
-    attribute ``borders`` says where and why each ends.
+    attribute ``borders`` says where and why each ends, ``borders_cut`` that Ctrl+C left others out.
     """
     rows: list[tuple[int, list[EventCurve]]] = []
     names = tuple(map(str, data["label"].dims[-2:]))
-    for state, sheet in enumerate(sheets):
-        here = data.isel(state=state) if "state" in data["label"].dims else data
-        rows += [(state, legs) for legs in _curves(here, sheet, axes, start, names)]
+    data.attrs["borders_cut"] = 0
+    try:
+        for state, sheet in enumerate(sheets):
+            here = data.isel(state=state) if "state" in data["label"].dims else data
+
+            def tell(stage: str, done: int, total: int, state: int = state) -> None:
+                progress(stage, done + state * total, total * len(sheets))
+
+            for legs in _curves(here, sheet, axes, start, names, tell):
+                rows.append((state, legs))
+    except KeyboardInterrupt:
+        data.attrs["borders_cut"] = 1
     longest = max([1, *(sum(len(leg.values) for leg in legs) for _, legs in rows)])
     values = np.full((2, len(rows), longest), np.nan)
     about = []
@@ -72,27 +91,53 @@ def with_borders(
     return data
 
 
+def expected(sheet: Sheet, *, axes: Sequence[Floats], start: Floats) -> float:
+    """Seconds that a border takes, within a factor of three, from one orbit in the map's middle.
+
+    0 where nothing moves there.
+    """
+    middle = [float(axis[:2].mean()) for axis in axes]
+    try:
+        sheet(*middle)
+        begun_at = time.perf_counter()
+        section: Any = return_map(sheet(*middle))
+        state = section.visit(begun(start[None], (section,), section.dimension)[0]).points[-1]
+        section.extremes(state, 1)
+    except (ConvergenceError, InputError):
+        return 0.0
+    return ORBITS * (time.perf_counter() - begun_at)
+
+
 def _curves(
-    data: Dataset, sheet: Sheet, axes: Sequence[Floats], start: Floats, names: tuple[str, ...]
-) -> list[list[EventCurve]]:
+    data: Dataset, sheet: Sheet, axes: Sequence[Floats], start: Floats, names: tuple[str, ...],
+    progress: Progress,
+) -> Iterator[list[EventCurve]]:  # fmt: skip
     """Every border of one state, each in one leg or in two from where it was located."""
-    borders: list[list[EventCurve]] = []
-    tries = 0
-    for contact, flags in enumerate(_opened(data)):
-        for edge in _edges(data, flags):
-            lines = [leg for legs in borders for leg in legs if leg.contact == contact]
-            if any(_passes(leg, axes, edge) for leg in lines):
-                continue
-            tries += 1
-            if tries > MOST_TRIES or len(borders) >= MOST_CURVES:
-                return borders
-            try:
-                event = _between(sheet, axes, edge, start, names, contact)
-                if event is not None:
-                    borders.append(_followed(event, sheet, axes, edge, names))
-            except (ConvergenceError, InputError):
-                continue
-    return borders
+    lines: list[EventCurve] = []
+    tries = count = 0
+    pairs = [(n, edge) for n, flags in enumerate(_opened(data)) for edge in _edges(data, flags)]
+    whole = max(STEPS * len(pairs), 1)
+    for number, (contact, edge) in enumerate(pairs):
+        progress("borders", STEPS * number, whole)
+        if any(_passes(leg, axes, edge) for leg in lines if leg.contact == contact):
+            continue
+        tries += 1
+        if tries > MOST_TRIES or count >= MOST_CURVES:
+            break
+
+        def tell(share: float, done: int = STEPS * number) -> None:
+            progress("borders", done + round(STEPS * share), whole)
+
+        try:
+            event = _between(sheet, axes, edge, start, names, contact)
+            legs = [] if event is None else _followed(event, sheet, axes, edge, names, tell)
+        except (ConvergenceError, InputError):
+            continue
+        if legs:
+            count += 1
+            lines += legs
+            yield legs
+    progress("borders", whole, whole)
 
 
 def _opened(data: Dataset) -> list[NDArray[np.bool_]]:
@@ -164,7 +209,7 @@ def _between(
 
 def _followed(
     event: tuple[Bifurcation, float], sheet: Sheet, axes: Sequence[Floats], edge: Edge,
-    names: tuple[str, ...],
+    names: tuple[str, ...], tell: Callable[[float], None],
 ) -> list[EventCurve]:  # fmt: skip
     """Both legs of a border from where it was located; one where it closes on itself."""
     axis, (grazing, level) = edge[0], event
@@ -172,12 +217,17 @@ def _followed(
     order = (axis, 1 - axis)
     (low, high), within = ((float(min(axes[k])), float(max(axes[k]))) for k in order)
     legs: list[EventCurve] = []
-    for end in within:
+    for number, end in enumerate(within):
         if end == level or (legs and legs[0].closed):
             continue
+
+        def told(points: int, _value: float, number: int = number) -> None:
+            # a leg may turn back in the parameter, and how long it is shows at its end
+            tell(0.5 * (number + points / (points + LEG)))
+
         curve = event_curve(
             grazing, turned, (names[axis], names[1 - axis]), start=level, asked=[end],
-            limits=(low, high), within=within, alone=True,
+            limits=(low, high), within=within, alone=True, progress=told,
         )  # fmt: skip
         legs.append(curve.exchanged() if axis else curve)
     return legs

@@ -34,6 +34,8 @@ OPENED = "beyond, another opening of the same contact comes first"
 MEETING = 1e-3
 """Scaled step within which a curve ends at such a point; chosen, a tenth of a line's width."""
 LOST = "no further point"
+VANISHED = "the extreme that touches meets the next one, and both vanish"
+FOLDED = "the orbit folds there"
 FOLDING = 0.02
 """A multiplier this near to +1 where no further orbit is found says why [1]; chosen."""
 MERGING = 1e-3
@@ -262,9 +264,9 @@ def _lost(walk: Bordered, here: Located) -> str:
     """Why a curve ends where no further point is found, as far as its last point shows it."""
     why = walk.refused
     if not why and walk.depths_beside(here) < MERGING:
-        why = "the extreme that touches meets the next one, and both vanish"
+        why = VANISHED
     if not why and walk.kind != FOLD and np.abs(here.multipliers - 1.0).min() < FOLDING:
-        why = "the orbit folds there"
+        why = FOLDED
     return f"{LOST}: {why}" if why else LOST
 
 

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import binary_dilation
 
 from thermogear.analysis.bordered import Sheet
-from thermogear.analysis.borders import with_borders
+from thermogear.analysis.borders import MOST_CURVES, expected, with_borders
 from thermogear.analysis.family import (
     Family,
     Watching,
@@ -49,6 +49,8 @@ from thermogear.base.plan import (
     ranges_of,
     spread,
 )
+from thermogear.base.progress import Progress as Stages
+from thermogear.base.progress import duration, silent
 from thermogear.base.vocabulary import ASSUMED
 
 MAP_RULE = Rule(chaos_periods=1000)
@@ -69,6 +71,8 @@ class MapPlan:
     stride: int = STRIDE
     sheet: Sheet | None = None
     """(p, q) -> model, where borders of contact loss are followed."""
+    stages: Stages = silent
+    """Told of the borders, which follow behind all chunks."""
     kind: str = "map"
 
     def __post_init__(self) -> None:
@@ -207,7 +211,20 @@ class MapPlan:
         if not sheets:
             return data
         axes = [np.array(values) for values in self.axes]
-        return with_borders(data, sheets, axes=axes, start=np.array(self.start))
+        start = np.array(self.start)
+        return with_borders(data, sheets, axes=axes, start=start, progress=self.stages)
+
+    def telling(self, stages: Stages) -> MapPlan:
+        """The same that tells ``stages`` what it does behind its chunks."""
+        return replace(self, stages=stages)
+
+    def behind(self) -> str:
+        """How long each border takes, in words; the map alone tells how many there are."""
+        if self.sheet is None:
+            return ""
+        axes = [np.array(values) for values in self.axes]
+        each = duration(expected(self.sheet, axes=axes, start=np.array(self.start)))
+        return f"; then about {each} for each border, up to {MOST_CURVES} of a state"
 
 
 def _lattice(size: int, stride: int) -> NDArray[np.int64]:

@@ -12,6 +12,7 @@ from thermogear.analysis.maps import MapPlan
 from thermogear.base.arrays import Dataset
 from thermogear.base.errors import InputError
 from thermogear.base.plan import Alive, Arrays, Coordinate, Key, Variable
+from thermogear.base.progress import Progress
 
 AXIS = "state"
 
@@ -70,6 +71,14 @@ class StackedPlan:
     def sparing(self) -> StackedPlan:
         """The same with points spared where neighbours are alike."""
         return replace(self, plans=tuple(one.sparing() for one in self.plans))
+
+    def telling(self, stages: Progress) -> StackedPlan:
+        """The same that tells ``stages`` what it does behind its chunks."""
+        return replace(self, plans=tuple(one.telling(stages) for one in self.plans))
+
+    def behind(self) -> str:
+        """How long each border takes, in words, as of one map."""
+        return self.plans[0].behind()
 
     def compute(self, key: Key, before: Arrays | None, alive: Alive) -> Arrays:
         inner = None if before is None else {name: v[0] for name, v in before.items()}

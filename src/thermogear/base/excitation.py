@@ -116,24 +116,20 @@ class FrictionSplit:
     sign s, ``per_metre`` [m], with s [m] from the pitch point, + in recess, and sign +1 there. The
     generalised friction force of a mesh under F_d is F_d (chi_0 p_0 + chi_1 p_1), p_0 and p_1
     the columns of :attr:`~thermogear.shafts.mesh_lines.MeshFrame.friction_columns`. Both functions
-    have the same starts of pieces. chi_0 jumps at each of ``jumps``, the phase at which a pair
-    passes the pitch point, and where one enters or leaves under load; each piece holds on both
-    of its sides.
+    have the same starts of pieces. chi_0 jumps where a pair passes the pitch point, and where one
+    enters or leaves under load; elsewhere two pieces meet within the accuracy of their fit.
 
     >>> none = Pieces.constant(starts=[0.0], values=[0.0])
-    >>> FrictionSplit(at_pitch=none, per_metre=none).jumps
-    ()
+    >>> FrictionSplit(at_pitch=none, per_metre=none).at_pitch.mean
+    0.0
     """
 
     at_pitch: Pieces
     per_metre: Pieces
-    jumps: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         if self.at_pitch.starts != self.per_metre.starts:
             raise InputError("friction.starts", "two lists", allowed="the same for both functions")
-        if not set(self.jumps) <= set(self.at_pitch.starts):
-            raise InputError("friction.jumps", self.jumps, allowed="starts of pieces")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -16,8 +16,8 @@ from thermogear.dynamics.geared import GearedModel
 def between(one: GearedModel, other: GearedModel, weight: float) -> GearedModel:
     """``one`` + ``weight`` (``other`` - ``one``) in every number, functions of the phase included.
 
-    Both are trains of one layout in the same coordinates. Pieces of both functions are kept, and
-    so are the jumps of both. ``weight`` 0 is ``one`` itself.
+    Both are trains of one layout in the same coordinates. Pieces of both functions are kept.
+    ``weight`` 0 is ``one`` itself.
     """
     found: GearedModel = one if weight == 0.0 else _mixed(one, other, weight)
     return found
@@ -26,14 +26,6 @@ def between(one: GearedModel, other: GearedModel, weight: float) -> GearedModel:
 def _mixed(a: Any, b: Any, weight: float) -> Any:
     if isinstance(a, Pieces):
         return _pieces(a, b, weight)
-    if isinstance(a, GearedModel):
-        own = {f.name: getattr(a, f.name) for f in fields(a)}
-        made = {
-            name: _mixed(value, getattr(b, name), weight)
-            for name, value in own.items()
-            if name != "friction_jumps"
-        }
-        return GearedModel(**made, friction_jumps=_jumps(a, b))
     if is_dataclass(a):
         made = {f.name: _mixed(getattr(a, f.name), getattr(b, f.name), weight) for f in fields(a)}
         return type(a)(**made)  # type: ignore[misc]
@@ -74,9 +66,3 @@ def _from(function: Pieces, starts: NDArray[np.float64]) -> NDArray[np.float64]:
         for higher in range(power, size):
             found[:, power] += comb(higher, power) * own[:, higher] * step ** (higher - power)
     return found
-
-
-def _jumps(a: GearedModel, b: GearedModel) -> tuple[float, ...] | None:
-    if a.friction_jumps is None or b.friction_jumps is None:
-        return None
-    return tuple(sorted({*a.friction_jumps, *b.friction_jumps}))

@@ -127,12 +127,12 @@ class GearedEquation:
     ``mass``, ``damping`` (gyroscopics and the mesh's c_m included), ``stiffness`` (n, n) without
     the mesh and without ``bearings``; ``force`` f0 (n,). ``drive`` and ``back`` g_d, g_b (n,);
     ``friction`` p_0, p_1 (2, n) with ``friction_at_pitch`` chi_0 and ``friction_per_metre`` chi_1
-    [m], which jump at ``friction_jumps``, left out: at every start of a piece. ``mesh_stiffness`` k
-    [N/m] and ``error`` e [m] over the mesh phase, ``half_backlash`` b' [m], ``mesh_damping`` c_m
-    [N s/m], ``mesh_frequency`` [Hz]. ``outer`` forces and ``wobbles`` turn with a shaft. ``slip``
-    (vector (n,), d [N m s], lag [s]): a motor whose torque falls with its speed. ``cycle``: mesh
-    periods after which all forces come again. ``seen`` (n, 2): directions of the journal that is
-    drawn in its plane; left out, the teeth are.
+    [m]. ``mesh_stiffness`` k [N/m] and ``error`` e [m] over the mesh phase, ``half_backlash`` b'
+    [m], ``mesh_damping`` c_m [N s/m], ``mesh_frequency`` [Hz]. No step reaches over a start of a
+    piece of a function. ``outer`` forces and ``wobbles`` turn with a shaft. ``slip`` (vector (n,),
+    d [N m s], lag [s]): a motor whose torque falls with its speed. ``cycle``: mesh periods after
+    which all forces come again. ``seen`` (n, 2): directions of the journal that is drawn in its
+    plane; left out, the teeth are.
     """
 
     mass: Floats
@@ -150,7 +150,6 @@ class GearedEquation:
     friction: Floats | None = None
     friction_at_pitch: Function | None = None
     friction_per_metre: Function | None = None
-    friction_jumps: tuple[float, ...] | None = None
     outer: tuple[OuterForce, ...] = ()
     wobbles: tuple[Wobble, ...] = ()
     slip: tuple[Floats, float, float] | None = None
@@ -186,12 +185,10 @@ class GearedEquation:
 
     @property
     def jumps(self) -> tuple[float, ...]:
-        """Phases in [0, 1) at which a function jumps: no step reaches over them."""
-        own = {0.0} if self.friction_jumps is None else {0.0, *self.friction_jumps}
-        told: list[Function | None] = [self.mesh_stiffness, self.error]
-        if self.friction_jumps is None:
-            told += [self.friction_at_pitch, self.friction_per_metre]
-        return tuple(sorted(own.union(*(one.starts for one in told if isinstance(one, Pieces)))))
+        """Phases in [0, 1) at which pieces of a function meet: no step reaches over them."""
+        own = self.mesh_stiffness, self.error, self.friction_at_pitch, self.friction_per_metre
+        starts = [one.starts for one in own if isinstance(one, Pieces)]
+        return tuple(sorted({0.0}.union(*starts)))
 
     @property
     def size(self) -> int:

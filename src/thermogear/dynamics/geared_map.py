@@ -57,6 +57,15 @@ class GearedMap:
         return GearedMap(model=self.model, how=steps, samples=self.samples)
 
     @cached_property
+    def slowest(self) -> float:
+        """Largest multiplier of one application with the drive flank and the bearings closed.
+
+        What the rule of labels asks any map for, by this name
+        (:func:`~thermogear.analysis.any_motion.settle`).
+        """
+        return float(np.exp(self.engine.lam.real.max() * self.period))
+
+    @cached_property
     def unit(self) -> Floats:
         """Scales of a state: what moves the mesh by a half backlash, 2 pi/T times that for q'.
 

@@ -413,6 +413,8 @@ def _compute(plan: Plan, directory: Path, title: str, options: dict[str, Any]) -
     begun = time.monotonic()
     try:
         with progress() as watch:
+            # what is left to do behind the chunks has its own stages
+            plan = getattr(plan, "telling", lambda _: plan)(watch)
 
             def report(step: Step) -> None:
                 last[:] = [step]
@@ -427,6 +429,7 @@ def _compute(plan: Plan, directory: Path, title: str, options: dict[str, Any]) -
         from thermogear.views.write import page_of, write
 
         about = {name: value for name, value in about_store(directory).items() if name != "title"}
+        about |= {"interrupted": 1} if data.attrs.get("borders_cut") else {}
         result = finished(data, title).with_(**about, seconds=round(time.monotonic() - begun, 3))
         notices = (*options.get("notices", ()), *result.notices)
         result = replace(result, notices=tuple(dict.fromkeys(notices)))
@@ -450,3 +453,8 @@ def _carry(plan: Plan, directory: Path, title: str, as_json: bool, options: dict
     if result is not None:
         delivery.put_csv(result)
         delivery.tell(page_of(result), directory / "report.html", as_json=as_json)
+        if result.interrupted:
+            raise Stopped(
+                f"the borders followed so far are in {directory}, the same command "
+                "follows all of them"
+            )

@@ -24,15 +24,17 @@ from thermogear.mesh.thermal import HotPair
 
 DEGREE = 8
 """Degree of the polynomial of every piece."""
-DEEPEST = 8
-"""How often a piece between two borders is halved at most."""
+LEAST_SHARE, CUT = 2.0**-8, 0.25
+"""Width of a piece that is not cut again, as a share of its interval between two borders, and where
+a piece is cut, from the end near which it misses [1], chosen: on a piece from d to 4 d what rises
+like a power of the distance from a border is met within 3^-9 (its ellipse of Bernstein has 3)."""
 GRID = 96
 """Phases between which changes of the carrying pairs are looked for."""
 PARTS, ROUNDS = 32, 6
 """Each of so many rounds cuts the place of a change into so many parts: what a phase costs is
 mostly the call."""
-LEAST_PIECE, BESIDE = 1e-7, 1e-12
-"""Borders that are one, and where a border's other side is asked, in periods."""
+LEAST_PIECE = 1e-7
+"""Distance of borders that are one, in periods."""
 
 
 class Rubbing(NamedTuple):
@@ -59,10 +61,11 @@ def friction_split(
     The sums over all tooth pairs of share, |mu| and position that the mesh cycle has along its
     path, tip corners beyond A and E included where the model's load sharing knows them. Borders of
     pieces: where a pair enters, leaves, or passes the pitch point, and where a corner begins or
-    ceases to carry; between them polynomials, halved until they are within ``accuracy`` of the
+    ceases to carry; between them polynomials, cut until they are within ``accuracy`` of the
     greatest value, or the piece is 1/256 of its interval (laws that rise without bound towards the
-    pitch point). ``model`` defaults to :meth:`MeshModel.consistent`. Friction of the back flank is
-    not in them. Where teeth differ or a gear is eccentric they are those of the mean tooth
+    pitch point). Where two pieces meet, both are within ``accuracy`` of the value, not the same.
+    ``model`` defaults to :meth:`MeshModel.consistent`. Friction of the back flank is not in them.
+    Where teeth differ or a gear is eccentric they are those of the mean tooth
     (:func:`~thermogear.gears.turn.mean_tooth`) over one mesh period. None where the loaded contact
     does not settle. Raises InputError at a speed of 0, where the sense of sliding is not known.
 
@@ -146,14 +149,11 @@ def _split(elastic: ElasticPair, accuracy: float) -> FrictionSplit | None:
     made = _fitted(lambda phase: rubbing(elastic, phase), [*kept, 1.0], accuracy)
     if made is None:
         return None
-    starts, tables, greatest = made
+    starts, tables = made
     first, second = (
         Pieces(starts=starts, coefficients=tuple(tuple(row) for row in table)) for table in tables
     )
-    steps = first(np.asarray(starts)) - first(np.asarray(starts) - BESIDE)
-    jumped = np.abs(steps) > 10.0 * accuracy * greatest
-    jumps = tuple(at for at, there in zip(starts, jumped, strict=True) if there)
-    return FrictionSplit(at_pitch=first, per_metre=second, jumps=jumps)
+    return FrictionSplit(at_pitch=first, per_metre=second)
 
 
 Asked = Callable[[Floats], Rubbing | None]
@@ -183,15 +183,13 @@ def _changes(ask: Asked) -> list[float] | None:
 
 def _fitted(
     ask: Asked, borders: list[float], accuracy: float
-) -> tuple[tuple[float, ...], Floats, float] | None:
-    """Starts of pieces, both functions' coefficients (2, piece, power) from each start on, and
-    the greatest |chi_0|.
-    """
+) -> tuple[tuple[float, ...], Floats] | None:
+    """Starts of pieces, and both functions' coefficients (2, piece, power) from each start on."""
     nodes = np.polynomial.chebyshev.chebpts1(DEGREE + 1)
     checks = np.cos(np.pi * np.arange(DEGREE + 2) / (DEGREE + 1)) * (1.0 - 1e-6)
     inverse = np.linalg.inv(np.polynomial.chebyshev.chebvander(nodes, DEGREE))
     between = np.polynomial.chebyshev.chebvander(checks, DEGREE)
-    open_ = [(a, b, 0) for a, b in pairwise(borders)]
+    open_ = [(a, b, (b - a) * LEAST_SHARE) for a, b in pairwise(borders)]
     done: list[tuple[float, Floats]] = []
     scale = np.zeros(2)
     while open_:
@@ -203,19 +201,20 @@ def _fitted(
         values = found.values.reshape(2, low.size, -1)
         scale = np.maximum(scale, np.abs(values).max(axis=(1, 2)))
         fit = values[..., : nodes.size] @ inverse.T
-        away = np.abs(fit @ between.T - values[..., nodes.size :]).max(axis=-1)
-        good = np.all(away <= accuracy * scale[:, None], axis=0)
-        halved = []
-        for i, (a, b, depth) in enumerate(open_):
-            if good[i] or depth == DEEPEST:
+        missed = np.abs(fit @ between.T - values[..., nodes.size :])
+        bad = np.any(missed > accuracy * scale[:, None, None], axis=0)
+        share = np.where(bad @ checks < 0.0, CUT, 1.0 - CUT)
+        cut = []
+        for i, (a, b, least) in enumerate(open_):
+            if b - a <= least or not np.any(bad[i]):
                 done.append((a, np.stack([_powers(row, b - a) for row in fit[:, i]])))
             else:
-                centre = 0.5 * (a + b)
-                halved += [(a, centre, depth + 1), (centre, b, depth + 1)]
-        open_ = halved
+                at = a + (b - a) * float(share[i])
+                cut += [(a, at, least), (at, b, least)]
+        open_ = cut
     done.sort(key=lambda one: one[0])
     tables = np.stack([table for _, table in done], axis=1)
-    return tuple(a for a, _ in done), tables, float(scale[0])
+    return tuple(a for a, _ in done), tables
 
 
 def _powers(chebyshev: Floats, width: float) -> Floats:

@@ -55,18 +55,23 @@ Report = Callable[[Step], None]
 
 @dataclass(frozen=True, kw_only=True)
 class Estimate:
-    """What a plan will take: ``points``, ``chunks``, bytes of memory and disk, seconds."""
+    """What a plan will take: ``points``, ``chunks``, bytes of memory and disk, seconds.
+
+    ``behind``: in words what follows behind the chunks, whose number they tell.
+    """
 
     points: int
     chunks: int
     memory: int
     disk: int
     seconds: float
+    behind: str = ""
 
     def __str__(self) -> str:
         return (
             f"{self.points} points in {self.chunks} chunks, about {duration(self.seconds)}, "
             f"{self.memory / 2**20:.3g} MiB of memory, {self.disk / 2**20:.3g} MiB of disk"
+            + self.behind
         )
 
 
@@ -82,7 +87,9 @@ def estimate(plan: Plan, *, threads: int | None = None) -> Estimate:
     will have; compiling kernels does not count. Points near borders cost more than others: the
     time is a guess within a factor of about 2.
     """
-    return replace(_sizes(plan, threads), seconds=_seconds(plan, threads or os.cpu_count() or 1))
+    behind = getattr(plan, "behind", str)
+    seconds = _seconds(plan, threads or os.cpu_count() or 1)
+    return replace(_sizes(plan, threads), seconds=seconds, behind=behind())
 
 
 def _sizes(plan: Plan, threads: int | None) -> Estimate:

@@ -132,7 +132,6 @@ def moving(
         friction=columns,
         friction_at_pitch=None if friction is None else friction.at_pitch,
         friction_per_metre=None if friction is None else friction.per_metre,
-        friction_jumps=None if friction is None else friction.jumps,
         outer=outer,
         wobbles=wobbles,
         slip=slip,

@@ -278,7 +278,10 @@ def _borders(data: Dataset) -> list[Block]:
         for place, name in enumerate(dims)
     ]
     columns = (*BORDER, *places, Column("why", "why"))
-    return [declared("Ends of borders.", columns, rows) if rows else Text(NO_BORDER)]
+    ends: list[Block] = [declared("Ends of borders.", columns, rows)] if rows else []
+    if data.attrs.get("borders_cut"):
+        return [*ends, Text(CUT_BORDERS)]
+    return ends or [Text(NO_BORDER)]
 
 
 def _shown_end(data: Dataset, name: str, place: int, row: Row) -> str:
@@ -287,6 +290,7 @@ def _shown_end(data: Dataset, name: str, place: int, row: Row) -> str:
 
 
 NO_BORDER = "No border of contact loss passes between closed orbits of one period."
+CUT_BORDERS = "Stopped on request: other borders were not followed."
 BORDER = (Column("border", "border"), Column("state", "state"), Column("period", "period"))
 LOST_AT = (
     Column("state", "state"),
