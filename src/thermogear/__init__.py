@@ -64,6 +64,7 @@ _HOME = {
     "orbit_diagram": "thermogear.analysis.diagram",
     "parameter_map": "thermogear.analysis.maps",
     "basins": "thermogear.analysis.basins",
+    "basin_shares": "thermogear.analysis.basin_shares",
     "slices": "thermogear.base.plan",
     "run_up": "thermogear.study.run_up",
     "run_ups": "thermogear.study.run_ups",

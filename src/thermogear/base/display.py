@@ -64,6 +64,7 @@ SPEED = Display("rpm", per=RPM)
 GRAVITY = Display("g", per=STANDARD_GRAVITY)
 LINE_LOAD = Display("N/mm", 1e-3)
 MILLIMETRE_PER_SECOND = Display("mm/s", 1e3)
+MICROMETRE_PER_SECOND = Display("µm/s", 1e6)
 STIFFNESS_PER_WIDTH = Display("N/(mm µm)", per=1e9)
 NANOMETRE = Display("nm", 1e9)
 MILLISECOND = Display("ms", 1e3)
@@ -93,6 +94,7 @@ _BY_NAME = {
     "line_load": LINE_LOAD,
     "velocity": MILLIMETRE_PER_SECOND,
     "section_velocity": MILLIMETRE_PER_SECOND,
+    "least_velocity": MICROMETRE_PER_SECOND,
 }
 
 

@@ -98,7 +98,7 @@ class GearedMap:
         shape = shape / float(model.drive @ shape)
         lift = np.zeros((model.dimension, 2))
         lift[:n, 0], lift[n : 2 * n, 1] = b * shape, rate * shape
-        return Plane(onto=onto, lift=lift, rest=rest, unit=np.ones(2))
+        return Plane(onto=onto, lift=lift, rest=rest, unit=np.ones(2), scale=(b, rate))
 
     def determinant(self, periods: int) -> float:
         """det D P^n = exp(T tr A), whatever the contacts do."""

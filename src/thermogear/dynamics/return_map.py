@@ -160,7 +160,8 @@ class IteratedMap:
     A subclass has ``unit`` (d,), the scales of a state, and ``iterate``; ``period`` [model's unit
     of time] where a step does not take 1, and ``determinant`` where det D P is the same everywhere.
     A subclass that is a frozen dataclass may be varied in each of its fields that is a float.
-    Where a state has no image, ``iterate`` raises ConvergenceError: the motion counts as diverged.
+    Where a state has no image, ``iterate`` returns nan or raises ConvergenceError: the motion has
+    diverged.
 
     >>> class Halving(IteratedMap):
     ...     unit = np.ones(1)
@@ -193,8 +194,9 @@ class IteratedMap:
     def carry(self, start: Floats, periods: int) -> Floats:
         """The states (periods, d) after 1, 2, ... periods from ``start``."""
         states = np.empty((periods, self.dimension))
-        for number in range(periods):
-            start = states[number] = self.iterate(start)[0]
+        with np.errstate(over="ignore", invalid="ignore"):  # it may leave every bound
+            for number in range(periods):
+                start = states[number] = self.iterate(start)[0]
         return states
 
     def stretch(self, start: Floats, *, direction: Floats, periods: int) -> Stretch:
@@ -204,9 +206,9 @@ class IteratedMap:
     def visit(self, start: Floats, periods: int = 1, *, sampled: bool = False) -> Visit:
         """Run ``periods`` periods from ``start`` with the variational equations."""
         points, jacobian = [np.asarray(start, dtype=float)], np.eye(self.dimension)
-        for _ in range(periods):
-            state, step = self.iterate(points[-1])
-            points.append(state)
-            with np.errstate(over="ignore", invalid="ignore"):  # of long chaos it has no bound
+        with np.errstate(over="ignore", invalid="ignore"):  # long chaos has no bound
+            for _ in range(periods):
+                state, step = self.iterate(points[-1])
+                points.append(state)
                 jacobian = step @ jacobian
         return Visit(points=np.array(points), jacobian=jacobian)
