@@ -56,9 +56,9 @@ MOST_ATTRACTORS = 24
 """Attractors kept at a value, those with most starts; further ones count as undecided (chosen)."""
 SECTION_POINTS = 32
 """Section points kept of an attractor: all of an orbit that is found, some of chaos."""
-SAME_MOTION = 1.0
+SAME_MOTION = 0.5
 """Mean distance of two sections, in units of the plane (of one mass half backlashes), below which
-two motions of neighbouring values may be one: less than a crossing of the backlash (chosen)."""
+two motions of neighbouring values may be one: a quarter of the way across the backlash (chosen)."""
 RAY_STEPS = 64
 """Starts along each ray from an orbit, evenly to the width of the box (chosen)."""
 BISECTIONS = 12

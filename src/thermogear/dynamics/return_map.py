@@ -140,7 +140,7 @@ def return_map(model: object, samples: int = 0) -> ReturnMap:
     return found
 
 
-def stretched(section: ReturnMap, start: Floats, *, direction: Floats, periods: int) -> Stretch:
+def stretched(section: Any, start: Floats, *, direction: Floats, periods: int) -> Stretch:
     """:meth:`ReturnMap.stretch` by the whole Jacobian of every period."""
     state = np.asarray(start, dtype=float)
     along = np.asarray(direction, dtype=float) / section.unit
@@ -154,7 +154,26 @@ def stretched(section: ReturnMap, start: Floats, *, direction: Floats, periods: 
     return Stretch(state=state, direction=along * section.unit, growth=growth)
 
 
-class IteratedMap:
+class StateMap:
+    """What return maps have in common: distances of their states in ``unit`` (d,), tangents."""
+
+    unit: Floats
+
+    @property
+    def dimension(self) -> int:
+        """Length d of a state."""
+        return len(self.unit)
+
+    def distance(self, one: Floats, other: Floats) -> Floats:
+        """Largest component of the difference in units of ``unit``, over leading axes."""
+        return np.asarray(np.max(np.abs(one - other) / self.unit, axis=-1))
+
+    def stretch(self, start: Floats, *, direction: Floats, periods: int) -> Stretch:
+        """Carry ``start`` and a tangent vector ``direction``, made unit after every period."""
+        return stretched(self, start, direction=direction, periods=periods)
+
+
+class IteratedMap(StateMap):
     """A return map that is known by one step: what a model of one's own has to say.
 
     A subclass has ``unit`` (d,), the scales of a state, and ``iterate``; ``period`` [model's unit
@@ -171,25 +190,15 @@ class IteratedMap:
     array([1.  , 0.5 , 0.25])
     """
 
-    unit: Floats
     period: float = 1.0
 
     def iterate(self, state: Floats) -> tuple[Floats, Floats]:
         """P(state) (d,) and its Jacobian (d, d)."""
         raise NotImplementedError
 
-    @property
-    def dimension(self) -> int:
-        """Length d of a state."""
-        return len(self.unit)
-
     def determinant(self, periods: int) -> float:
         """det D P^n: not known to be the same everywhere."""
         return float("nan")
-
-    def distance(self, one: Floats, other: Floats) -> Floats:
-        """Largest component of the difference in units of ``unit``, over leading axes."""
-        return np.asarray(np.max(np.abs(one - other) / self.unit, axis=-1))
 
     def carry(self, start: Floats, periods: int) -> Floats:
         """The states (periods, d) after 1, 2, ... periods from ``start``."""
@@ -198,10 +207,6 @@ class IteratedMap:
             for number in range(periods):
                 start = states[number] = self.iterate(start)[0]
         return states
-
-    def stretch(self, start: Floats, *, direction: Floats, periods: int) -> Stretch:
-        """Carry ``start`` and a tangent vector ``direction``, made unit after every period."""
-        return stretched(self, start, direction=direction, periods=periods)
 
     def visit(self, start: Floats, periods: int = 1, *, sampled: bool = False) -> Visit:
         """Run ``periods`` periods from ``start`` with the variational equations."""
