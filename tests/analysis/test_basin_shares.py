@@ -95,12 +95,12 @@ def test_intervals_hold_as_often_as_they_say(compared: Compared) -> None:
 
 def test_motions_keep_their_number_in_any_order() -> None:
     one, two, far = (np.array([[x, 0.0]]) for x in (0.0, 0.4, 5.0))
-    assert matched([], [one, two]).tolist() == [0, 1]
-    assert matched([one, two], [two + 0.02, one + 0.02]).tolist() == [1, 0]
-    assert matched([one], [far, one]).tolist() == [1, 0]
+    assert matched([one, two], last=[]).tolist() == [0, 1]
+    assert matched([two + 0.02, one + 0.02], last=[one, two]).tolist() == [1, 0]
+    assert matched([far, one], last=[one]).tolist() == [1, 0]
     # a doubled orbit is the motion it was born from
-    assert matched([one], [np.array([[0.1, 0.0], [-0.1, 0.0]])]).tolist() == [0]
-    assert matched([one], []).tolist() == []
+    assert matched([np.array([[0.1, 0.0], [-0.1, 0.0]])], last=[one]).tolist() == [0]
+    assert matched([], last=[one]).tolist() == []
 
 
 def test_threads_change_no_bit() -> None:

@@ -79,14 +79,14 @@ def test_the_jacobian_of_the_ball_is_its_derivative(names: dict[str, Any]) -> No
 
 def test_duffings_equation(names: dict[str, Any], compared: Compared) -> None:
     """The product of the multipliers is exp(-0.3 T); small forces give the linear response."""
-    swing = names["swing"]
+    driven = names["driven"]
     area = np.exp(-0.3 * 2.0 * np.pi / 1.2)
-    product = np.prod(swing.multipliers) / area - 1.0
+    product = np.prod(driven.multipliers) / area - 1.0
     compared("product of the multipliers", "Liouville", abs(product), 1e-10)
     force, w = 1e-4, 1.2
     orbit = names["periodic_orbit"](names["Duffing"](force), guess=(1.0, 0.0))
     linear = force / complex(2.0 - w * w, 0.3 * w)  # about x = 1, x'' + 0.3 x' + 2 x
     away = (orbit.state - [1.0 + linear.real, -w * linear.imag]) / force
-    compared("small swing of Duffing's equation", "linear response", away, 1e-3)
+    compared("small motion of Duffing's equation", "linear response", away, 1e-3)
     assert names["calm"].name == "period-1"
     assert return_map(names["Duffing"]()).determinant(1) == pytest.approx(area, rel=1e-12)

@@ -181,7 +181,7 @@ class SharePlan:
         last: list[Floats] = []
         for value, here in enumerate(present):
             each = [one[np.isfinite(one[:, 0])] for one in sections[value, here]]
-            motion[value, here] = matched(last, each)
+            motion[value, here] = matched(each, last=last)
             for number, section in zip(motion[value, here], each, strict=True):
                 last[number : number + 1] = [section]
         total = np.bincount(motion[present], data["attractor_count"].values[present], len(last))
@@ -304,7 +304,7 @@ def least_disturbances(
     return np.where(np.isfinite(least), least, np.nan)
 
 
-def matched(last: Sequence[Floats], here: Sequence[Floats]) -> Whole:
+def matched(here: Sequence[Floats], *, last: Sequence[Floats]) -> Whole:
     """The number of each section ``here`` (point, 2) among those seen ``last``; new ones go on.
 
     Pairs have the least sum of mean distances (Kuhn, Naval Research Logistics 2 (1955) 83), each
