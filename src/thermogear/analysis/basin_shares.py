@@ -12,7 +12,7 @@ Checked by ``tests/analysis/test_basin_shares.py`` (basins with a border in clos
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
@@ -131,14 +131,9 @@ class SharePlan:
         return None
 
     def pilot(self, share: float, *, turn: int) -> float:
-        """Follow about a ``share`` of all starts, at one value; what share it was.
-
-        The rays are as many as there are motions, and go with the starts.
-        """
-        some = int(np.clip(share * len(self.values), 1.0 / self.starts, 1.0) * self.starts)
-        small = replace(self, starts=some)
-        small.compute((turn % len(self.values),), None, keep_going)
-        return some / (self.starts * len(self.values))
+        """Do one value, however small a ``share`` is asked for: rays cost as much as starts."""
+        self.compute((turn % len(self.values),), None, keep_going)
+        return 1.0 / len(self.values)
 
     def compute(self, key: Key, before: Arrays | None, alive: Alive) -> Arrays:
         found = empty_arrays(self, key)
@@ -150,12 +145,11 @@ class SharePlan:
         plane = plane_of(one if isinstance(one, Lanes) else one[0])
         low, high = np.transpose(self.box)
         drawn = np.random.default_rng(self.seed).uniform(low, high, (self.starts, 2))
-        starts = plane.starts(drawn)
-        known, where = ends_of(one, starts, self.rule, alive=alive)
+        known, where = ends_of(one, plane.starts(drawn), self.rule, alive=alive)
         counts = np.bincount(where[where >= 0], minlength=len(known))
         order = np.argsort(-counts, kind="stable")[:MOST_ATTRACTORS]
         found["diverged"][:] = np.count_nonzero(where == -2)
-        found["undecided"][:] = len(starts) - found["diverged"] - counts[order].sum()
+        found["undecided"][:] = self.starts - found["diverged"] - counts[order].sum()
         found["plane_unit"][:] = plane.unit
         found["plane_scale"][:] = getattr(made, "plane_scale", plane.scale)
         widths = np.ptp(self.box, axis=1)

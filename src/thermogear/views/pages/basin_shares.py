@@ -22,7 +22,7 @@ from thermogear.views.columns import Column, Row, declared, in_full, key, rows_a
 from thermogear.views.page import LEAD, Page, Pictures, Section, Text
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.parameters import axis_words, page_words, parameter_of, shown
-from thermogear.views.style import INK, QUIET, WIDE, scale
+from thermogear.views.style import INK, OKABE_ITO, QUIET, WIDE, scale
 
 KINDS = ("basin-shares",)
 CAPTION = (
@@ -125,7 +125,7 @@ def finding(data: Dataset) -> str:
 def picture(data: Dataset) -> Picture:
     """Shares one above the other with their intervals; below what leaves each motion."""
     name = str(data.attrs["parameter"])
-    p, colours = shown(name, data[name]), scale("tab20")
+    p, colours = shown(name, data[name]), [*OKABE_ITO, *scale("tab20")]
     top = Panel(Axis(), Axis("share of the starts [%]", low=0.0, high=100.0))
     low = [
         Panel(Axis(), Axis(f"{words} [{unit.unit}]", low=0.0))
