@@ -44,7 +44,13 @@ def page(result: Result) -> Page:
     data = result.data
     pictures = Pictures()
     pictures.add(
-        "shares", "Basins along the parameter", CAPTION, data, (), partial(picture, data), wide=True
+        "shares",
+        "Basins along the parameter",
+        CAPTION,
+        data,
+        (),
+        partial(shares_picture, data),
+        wide=True,
     )
     rows = [
         row for row in rows_along(data, data.attrs["parameter"], "motion") if row["motion_count"]
@@ -122,7 +128,7 @@ def finding(data: Dataset) -> str:
     return f"{words.capitalize()}.{least}"
 
 
-def picture(data: Dataset) -> Picture:
+def shares_picture(data: Dataset) -> Picture:
     """Shares one above the other with their intervals; below what leaves each motion."""
     name = str(data.attrs["parameter"])
     p, colours = shown(name, data[name]), [*OKABE_ITO, *scale("tab20")]
