@@ -169,7 +169,7 @@ def test_basins_along_a_parameter(cases, tmp_path):
     assert found["starts"] == 80
     assert sum(row["motion_count"] for row in rows.values()) == 160
     assert (tmp_path / "along" / "report.html").read_text("utf-8").count("<figure") == 1
-    assert call("basins", *words).startswith("Motion 1 takes")
+    assert len(call("basins", *words).splitlines()) > 6
 
 
 def test_a_push_of_gears_has_units(cases, tmp_path):
