@@ -50,9 +50,8 @@ def swapped_points(exchanged: bool) -> object:
 
 
 SYMMETRIC: dict[str, Callable[[bool], object]] = {
-    "dynamics.exact_map.ExactMap.distance": swapped_distance,
-    "dynamics.geared_map.GearedMap.distance": swapped_distance,
     "dynamics.return_map.ReturnMap.distance": swapped_distance,
+    "dynamics.return_map.StateMap.distance": swapped_distance,
     "base.materials.Lubricant.from_two_points": swapped_points,
     "heat.losses.mesh_loss": lambda exchanged: float(
         mesh_loss(2e4, *((0.2, 0.06) if exchanged else (0.06, 0.2)))

@@ -7,7 +7,6 @@ import math
 import numpy as np
 import pytest
 
-from smooth_model import SmoothModel
 from thermogear.analysis.attractors import attractors_from
 from thermogear.analysis.bifurcations import FLIP, FOLD, SUPERCRITICAL, TORUS
 from thermogear.analysis.continuation import continuation, switch_branch
@@ -17,6 +16,7 @@ from thermogear.analysis.orbits import periodic_orbit
 from thermogear.analysis.settle import PERIODIC, Rule, settle
 from thermogear.analysis.torus import torus
 from thermogear.dynamics.return_map import return_map
+from thermogear.dynamics.smooth_map import SmoothModel
 
 OMEGA = 2.0 * np.pi
 

@@ -19,6 +19,7 @@ from thermogear.dynamics.exact_map import ExactMap
 from thermogear.dynamics.models import TorsionalModel
 from thermogear.dynamics.plane import plane_of
 from thermogear.dynamics.return_map import Stretch, Visit, stretched
+from thermogear.dynamics.smooth_map import SmoothModel
 
 BASE = TorsionalModel(
     damping_ratio=0.05, frequency=0.7, stiffness_amplitude=0.2, mean_force=0.1,
@@ -154,8 +155,6 @@ def test_starts_of_a_length_that_no_state_has_are_refused() -> None:
 
 
 def test_a_parameter_that_the_result_has_already_is_refused() -> None:
-    from smooth_model import SmoothModel
-
     model = SmoothModel(
         derivative=lambda t, y: -y, jacobian=lambda t, y: -np.eye(2), period=1.0, unit=np.ones(2)
     )

@@ -13,7 +13,6 @@ from tests.conftest import Compared
 from tests.dynamics.geared_trains import moving_six
 from tests.dynamics.test_geared_truth import TRUTH
 
-from smooth_model import SmoothModel
 from thermogear.analysis.bifurcations import BIRTH, FLIP, FOLD, GRAZING, PITCHFORK, TORUS
 from thermogear.analysis.continuation import SHRUNK, Branch, continuation, family_of
 from thermogear.analysis.event_curve import REACHED, event_curve
@@ -21,6 +20,7 @@ from thermogear.analysis.orbits import periodic_orbit, shoot
 from thermogear.base.errors import InputError
 from thermogear.dynamics.models import TorsionalModel
 from thermogear.dynamics.return_map import return_map
+from thermogear.dynamics.smooth_map import SmoothModel
 
 FORCED = TorsionalModel(
     damping_ratio=0.05,

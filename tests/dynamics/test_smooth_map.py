@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from smooth_model import SmoothModel
 from thermogear.analysis.any_motion import settle
 from thermogear.analysis.orbits import periodic_orbit
 from thermogear.analysis.walk import Search
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.dynamics.return_map import ReturnMap, return_map
+from thermogear.dynamics.smooth_map import SmoothModel
 
 
 def linear(matrix, force, omega):
@@ -108,17 +108,15 @@ def test_the_jacobian_of_a_visit_is_its_derivative_by_the_start():
 
 
 def test_carry_stretch_and_visit_are_one_motion():
-    section = return_map(duffing(), 8)
+    section = return_map(duffing())
     assert isinstance(section, ReturnMap)
     start = np.array([0.3, -0.2])
-    visit = section.visit(start, 3, sampled=True)
+    visit = section.visit(start, 3)
     np.testing.assert_allclose(section.carry(start, 3), visit.points[1:], atol=1e-6)
     path = section.stretch(start, direction=np.array([1.0, 0.0]), periods=3)
     assert path.growth.sum() == pytest.approx(
         np.log(np.linalg.norm(visit.jacobian[:, 0])), abs=1e-5
     )
-    assert visit.samples.shape == (24, 2)
-    np.testing.assert_allclose(visit.samples[::8], visit.points[:-1], atol=1e-12)
 
 
 def test_a_forced_duffing_oscillator_settles_where_it_is_known_to():

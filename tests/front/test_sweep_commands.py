@@ -3,16 +3,19 @@
 import json
 import re
 
+import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
 from click.testing import CliRunner
 
 from own_trains import TRAIN
+from thermogear import basin_shares, family, load_case
 from thermogear.base.display import number
 from thermogear.base.errors import InputError
 from thermogear.base.vocabulary import contact_name
 from thermogear.case.examples import example_text
+from thermogear.dynamics.models import TorsionalModel
 from thermogear.front.sweep_commands import COMMANDS
 from thermogear.results.result import open_results
 from thermogear.results.store import RESULT
@@ -145,6 +148,47 @@ def test_basins_and_page(cases, tmp_path):
     assert "http" not in page.replace("http-equiv", "").replace("http://www.w3.org/2000/svg", "")
 
 
+def test_basins_along_a_parameter(cases, tmp_path):
+    """As the function of Python says; the page is drawn from what is stored."""
+    words = [cases / "table-4.2.toml", "--but", "zeta=0.05", "--but", "eps=0.1", "--but", "F_m=0.1",
+             "--but", "F_h=0.05", "--along", "omega=0.65:0.75:2", "--x=-2:2:10", "--v=-2:2:8",
+             "-o", tmp_path / "along"]  # fmt: skip
+    found = call("basins", *words, "--json")
+    model = TorsionalModel(
+        damping_ratio=0.05, frequency=0.7, stiffness_amplitude=0.1, mean_force=0.1,
+        force_amplitude=0.05,
+    )  # fmt: skip
+    same = basin_shares(model, "frequency", [0.65, 0.75], x=(-2, 2), v=(-2, 2), starts=80)
+    rows = {(row["value"], row["motion"]): row for row in found["motions"]}
+    for value, motion in rows:
+        here = same.sel(frequency=value, motion=motion)
+        row = rows[value, motion]
+        assert row["motion_count"] == int(here["motion_count"])
+        assert row["least_x"] == pytest.approx(float(here["least_x"]), rel=1e-12)
+        assert row["motion_share_low"] < row["motion_share"] < row["motion_share_high"]
+    assert found["starts"] == 80
+    assert sum(row["motion_count"] for row in rows.values()) == 160
+    assert (tmp_path / "along" / "report.html").read_text("utf-8").count("<figure") == 1
+    assert len(call("basins", *words).splitlines()) > 6
+
+
+def test_a_push_of_gears_has_units(cases, tmp_path):
+    """In metres by the half backlash of the point, in m/s by its natural frequency, too."""
+    words = [cases / "rig.toml", "--set", "operating.torque=20 N m", "--along", "rpm=6000:6000:1"]
+    call("basins", *words, "--x=-2:2:8", "--v=-2:2:8", "-o", tmp_path / "g")
+    data = open_results(tmp_path / "g").data
+    points = family(load_case(str(cases / "rig.toml"), {"operating.torque": "20 N m"}), ["rpm"])
+    made = points(data["pinion_speed"].values[:, None])
+    assert np.isfinite(data["least_x"]).any()
+    for axis, name, scale in (
+        ("x", "displacement", made.length),
+        ("v", "velocity", made.length * made.rate),
+    ):
+        assert data[f"least_{name}"].values == pytest.approx(
+            data[f"least_{axis}"].values * scale[0], nan_ok=True, rel=1e-12
+        )
+
+
 def test_run_up_and_sweep_of_the_rig(cases, tmp_path):
     run = call(
         "runup", cases / "rig.toml", "--rpm", "4200:5200:6", "--branch-period", 0,
@@ -224,6 +268,8 @@ def test_estimate_alone_writes_nothing(cases, tmp_path):
         ("sweep", ["--over", "zeta=0.1:0.2:3"], "allowed kind = 'gear'"),
         ("runup", [], "allowed kind = 'gear'"),
         ("basins", ["--x", "1:2"], "x: got '1:2'; allowed FROM:TO:COUNT"),
+        ("basins", ["--along", "zetta=0.1:0.2:2"], "did you mean 'zeta'"),
+        ("basins", ["--along", "zeta=0.1:0.2:2", "--x=2:-2:5"], "x: got .* the lower first"),
         (
             "map",
             [*GRID, "--bundle", "thesis", "--estimate"],

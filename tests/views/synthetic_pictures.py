@@ -24,6 +24,7 @@ from thermogear.views.pages import (
 )
 from thermogear.views.pages import temperature as thermal_map
 from thermogear.views.pages.answers import series_picture, speeds_picture
+from thermogear.views.pages.basin_shares import shares_picture
 from thermogear.views.picture import Picture
 from thermogear.views.plots import (
     claims,
@@ -101,6 +102,19 @@ def of_sweeps() -> dict[str, Picture]:
         status=(("x", "v"), np.resize([3, 2, 0, 0], (4, 5))),
         attractor_period=("attractor_number", np.array([1, 0])),
     )  # fmt: skip
+    each = ("damping_ratio", "motion")
+    part = np.array([[0.7, 0.2], [0.5, 0.3]])
+    shares = xr.Dataset(
+        {
+            **{f"motion_share{end}": (each, part + more)
+               for end, more in (("", 0.0), ("_low", -0.05), ("_high", 0.05))},
+            "least_displacement": (each, 1e-6 * part), "least_velocity": (each, 1e-3 * part),
+            "plane_scale": ("damping_ratio", [1e-6, 1e-6]),
+            "undecided_share": ("damping_ratio", [0.1, 0.0]),
+            "diverged_share": ("damping_ratio", [0.0, 0.2]),
+        },
+        {"damping_ratio": [0.1, 0.2]}, {"parameter": "damping_ratio"},
+    )  # fmt: skip
     run = "state direction pinion_speed"
     run_up = made(run, "dte_peak_to_peak", "mesh_force_max", "dynamic_factor").assign(
         pinion_speed=rising("pinion_speed"), order=rising("order"),
@@ -139,6 +153,7 @@ def of_sweeps() -> dict[str, Picture]:
         "lost-contact": lost_contact.lost_contact_picture(lost),
         "train-forces": lost_contact.forces_picture(forces.assign_attrs(parameter="damping_ratio")),
         "basins": sweeps.basins_picture(basins),
+        "basin-shares": shares_picture(shares),
         "runup": sweeps.run_up_picture(run_up.merge(events)),
         "waterfall": sweeps.waterfall_picture(run_up),
         "sweep-1": sweeps.sweep_picture(line),

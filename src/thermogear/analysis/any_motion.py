@@ -199,7 +199,7 @@ def _exponent(section: ReturnMap, state: Floats, used: int, batches: int, batch:
 
 def _turning(section: ReturnMap, motion: Motion, path: Floats, alive: Alive) -> Motion:
     """The torus of a motion whose exponent is zero within its error, where one is proven."""
-    if section.dimension == 2 and section.determinant(1) < 1.0:
+    if section.dimension == 2 and abs(section.determinant(1)) < 1.0:
         return motion  # areas shrink at one rate: no closed curve maps onto itself
     state, used = motion.state, motion.discarded
     for number in range(ROUNDS):

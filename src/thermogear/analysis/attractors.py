@@ -12,6 +12,7 @@ from thermogear.analysis.settle import (
     CHAOTIC,
     DIVERGED,
     Rule,
+    Settled,
     settle,
 )
 from thermogear.base.arrays import Floats, Whole
@@ -66,20 +67,34 @@ class Field:
 
 
 def attractors_from(
-    lanes: Lanes | Sequence[object], starts: Floats, rule: Rule, alive: Alive = keep_going
+    lanes: Lanes | Sequence[object],
+    starts: Floats,
+    rule: Rule,
+    *,
+    known: Sequence[Attractor] = (),
+    alive: Alive = keep_going,
 ) -> tuple[list[Attractor], Whole]:
-    """The attractors reached from ``starts`` (start, 2) of one lane, and which start goes where.
+    """The attractors reached from ``starts`` (start, d) of one lane, and which start goes where.
 
     The starts are settled side by side; -1 where a start stays undecided, -2 where it
-    diverges. Attractors come in the order of the starts that reach them first.
+    diverges. Behind those that are ``known`` attractors come in the order of the starts that reach
+    them first.
     """
     none = np.zeros(len(starts), int)
     many = lanes.take(none) if isinstance(lanes, Lanes) else [lanes[0]] * len(starts)
-    settled = settle(many, starts, rule, alive=alive)
-    field = Field(lanes)
-    found: list[Attractor] = []
-    where = np.full(len(starts), -1, np.int64)
-    for i in range(len(starts)):
+    return told_apart(settle(many, starts, rule, alive=alive), Field(lanes), known)
+
+
+def told_apart(
+    settled: Settled, field: Field, known: Sequence[Attractor]
+) -> tuple[list[Attractor], Whole]:
+    """The ``known`` attractors and those that motions have ``settled`` on beside them.
+
+    With the place of each motion's among them, -1 and -2 as of :func:`attractors_from`.
+    """
+    found = list(known)
+    where = np.full(len(settled.label), -1, np.int64)
+    for i in range(len(where)):
         code, period = int(settled.label[i]), int(settled.period[i])
         if code == DIVERGED:
             where[i] = -2

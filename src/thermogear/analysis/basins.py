@@ -17,8 +17,7 @@ from thermogear.analysis.attractors import (
     Attractor,
     Field,
     attractors_from,
-    chaotic_index,
-    periodic_index,
+    told_apart,
     trapped,
 )
 from thermogear.analysis.family import ModelFamily, axis_values, taken
@@ -81,7 +80,9 @@ class BasinPlan:
     def _starts(self) -> Floats:
         """The starts of the survey: seeds and a coarse grid."""
         extra = np.array(self.seeds, dtype=float).reshape(-1, self.dimension)
-        return np.concatenate([extra, _states(self.model, _spread(self.x, self.v, self.survey))])
+        return np.concatenate(
+            [extra, plane_of(self.model).starts(_spread(self.x, self.v, self.survey))]
+        )
 
     @property
     def attractors(self) -> tuple[Attractor, ...]:
@@ -163,7 +164,7 @@ class BasinPlan:
         """Where ``starts`` (start, 2) in the plane lead, as flat arrays."""
         lanes = single(self.model)
         field = Field(lanes)
-        starts = _states(self.model, starts)
+        starts = plane_of(self.model).starts(starts)
         where, used, _ = trapped(field, starts, attractors, alive=alive)
         periods = np.array([a.period for a in attractors] or [0])
         period = np.where(where >= 0, periods[np.maximum(where, 0)], 0)
@@ -175,21 +176,16 @@ class BasinPlan:
             slow = settle(many, starts[rest], self.rule, alive=alive)
             label[rest], period[rest] = slow.label, slow.period
             used[rest] += slow.used
-            for row, place in enumerate(rest):
-                if slow.label[row] == DIVERGED:
-                    where[place] = -2
-                elif slow.label[row] == CHAOTIC:
-                    where[place] = chaotic_index(attractors, field, slow.state[row])
-                    point[place] = slow.state[row]
-                elif slow.period[row] > 0:
-                    n = int(slow.period[row])
-                    where[place] = periodic_index(attractors, slow.point[row], n, field.unit)
-                    point[place] = slow.point[row]
+            _, place = told_apart(slow, field, attractors)
+            # what the survey missed is named when all starts are known
+            where[rest] = np.where(place < len(attractors), place, -1)
+            chaotic = slow.label[:, None] == CHAOTIC
+            point[rest] = np.where(chaotic, slow.state, slow.point)
         point[where != -1] = np.nan
         status = np.zeros(len(starts), np.int8)
         status[label == DIVERGED] = STATUS.index("diverged")
         status[(label == UNDECIDED) & (where == -1)] = STATUS.index("not_converged")
-        shown = _shown(self.model, point)
+        shown = plane_of(self.model).of(point)
         return {
             **({"point": point} if self.dimension != 2 else {}),
             "reached": np.where(where < 0, np.nan, where),
@@ -253,28 +249,16 @@ def _late(
     plan: BasinPlan, data: xr.Dataset, known: list[Attractor], where: NDArray[np.int64]
 ) -> tuple[list[Attractor], NDArray[np.int64]]:
     """Attractors that only single starts of the grid found, in the grid's order."""
-    lanes = single(plan.model)
-    field = Field(lanes)
     points = (
         data["point"].values
         if "point" in data
         else np.stack([data["point_x"].values, data["point_v"].values], axis=-1)
     )
-    period, label = data["period"].values, data["label"].values
-    for i, j in np.argwhere((where == -1) & np.isfinite(points[..., 0])):
-        point, n = points[i, j], int(period[i, j])
-        number = (
-            chaotic_index(known, field, point)
-            if label[i, j] == CHAOTIC
-            else periodic_index(known, point, n, field.unit)
+    late = (where == -1) & np.isfinite(points[..., 0])
+    if late.any():
+        known, where[late] = attractors_from(
+            single(plan.model), points[late], plan.rule, known=known
         )
-        if number < 0:
-            fresh, landed = attractors_from(lanes, point[None], plan.rule)
-            if landed[0] < 0:
-                continue
-            number = len(known)
-            known.append(fresh[0])
-        where[i, j] = number
     return known, where
 
 
@@ -283,37 +267,26 @@ def single(model: object) -> Lanes | tuple[object, ...]:
     return lanes_of(model) if isinstance(model, Lanes | ClearanceModel) else (model,)
 
 
-def _states(model: object, pairs: Floats) -> Floats:
-    """The states (start, d) that ``pairs`` (start, 2) of the plane stand for."""
-    return pairs if isinstance(single(model), Lanes) else plane_of(model).starts(pairs)
-
-
-def _shown(model: object, states: Floats) -> Floats:
-    """(x, v) (..., 2) of ``states`` (..., d)."""
-    return states if isinstance(single(model), Lanes) else plane_of(model).of(states)
-
-
 def _described(
     data: xr.Dataset, known: Sequence[Attractor], where: NDArray[np.int64], model: object
 ) -> xr.Dataset:
     """The attractors, their fractions and how robust they are, with the grid."""
     count = len(known)
-    d = return_map(model).dimension
-    unit = Field(single(model)).unit if d == 2 else plane_of(model).unit
+    d, plane = return_map(model).dimension, plane_of(model)
     counts = np.array([np.count_nonzero(where == n) for n in range(count)], np.int64)
     longest = max([1, *(a.period if not a.chaotic else 256 for a in known)])
     points = np.full((count, longest, d), np.nan)
     for n, one in enumerate(known):
         kept = one.points[:longest]
         points[n, : len(kept)] = kept
-    shown = _shown(model, points)
+    shown = plane.of(points)
     mixed, all_boxes, rough = basin_entropy(where)
     safe = border_distances(
         x=data["x"].values,
         v=data["v"].values,
         where=where,
-        known=[replace(one, points=_shown(model, one.points)) for one in known],
-        unit=unit,
+        known=[replace(one, points=plane.of(one.points)) for one in known],
+        unit=plane.unit,
     )
     words = {
         "fraction": ("share of the starts", counts / max(where.size, 1)),

@@ -19,12 +19,12 @@ from thermogear.analysis.bifurcations import (
     Bifurcation,
 )
 from thermogear.analysis.continuation import GAP, Branch, continuation
-from thermogear.analysis.family import Family, dimension_of, model_at
+from thermogear.analysis.family import Family, dimension_of, lanes_and_status, model_at
 from thermogear.analysis.orbits import Orbit, shoot
-from thermogear.analysis.section import lanes_of
 from thermogear.analysis.settle import PERIODIC
 from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.errors import ConvergenceError
+from thermogear.dynamics.lanes import Lanes
 from thermogear.dynamics.plane import plane_of
 from thermogear.dynamics.return_map import return_map
 
@@ -107,7 +107,14 @@ def _seeds(
     """One orbit out of every stretch of a sweep on which period and place run on."""
     values = data[parameter].values
     longer = dimension_of(family) != 2
-    unit = lanes_of(family(values[:, None])).unit if not longer else np.ones((values.size, 2))
+    unit = np.ones((values.size, 2))
+    if not longer:
+        lanes, _ = lanes_and_status(family, values[:, None])
+        unit = (
+            lanes.unit
+            if isinstance(lanes, Lanes)
+            else np.array([m.unit for m in map(return_map, lanes)])
+        )
     for n in range(1, most_period + 1):
         for direction in range(data.sizes["direction"]):
             for start in range(data.sizes["start"]):

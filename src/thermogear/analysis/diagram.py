@@ -147,7 +147,11 @@ class DiagramPlan:
                 {"long_name": "direction of the sweep: 1 up, -1 down"},
             ),
             "start_x": (("start",), np.array([s[0] for s in self.starts]), {"units": "1"}),
-            "start_v": (("start",), np.array([s[1] for s in self.starts]), {"units": "1"}),
+            "start_v": (
+                ("start",),
+                np.array([(*s, np.nan)[1] for s in self.starts]),
+                {"units": "1"},
+            ),
             name: ((name,), np.array(self.values), {"units": unit}),
             **watched_axes(self.family),
         }

@@ -191,14 +191,17 @@ def lanes_and_status(
     family: Family, points: Floats
 ) -> tuple[Lanes | tuple[object, ...], NDArray[np.int8]]:
     """The lanes (or models) of ``points``, and which have no motion (status other than 0)."""
-    made = family(points)
+    return unpacked(family(points), len(points))
+
+
+def unpacked(made: Any, count: int) -> tuple[Lanes | tuple[object, ...], NDArray[np.int8]]:
+    """:func:`lanes_and_status` of what a family ``made`` for so many points."""
     if isinstance(made, Models):
         return made.models, made.status
     lanes = lanes_of(made)
-    if len(lanes) == 1 and len(points) > 1:
-        lanes = lanes.take(np.zeros(len(points), int))
-    status = np.asarray(getattr(made, "status", np.zeros(len(points))), dtype=np.int8)
-    return lanes, status
+    if len(lanes) == 1 and count > 1:
+        lanes = lanes.take(np.zeros(count, int))
+    return lanes, np.asarray(getattr(made, "status", np.zeros(count)), dtype=np.int8)
 
 
 def taken(lanes: Lanes | Sequence[object], index: NDArray[np.int64]) -> Lanes | tuple[object, ...]:

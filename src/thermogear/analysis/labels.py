@@ -131,7 +131,7 @@ def _any(model: object, initial_state: ArrayLike, search: Search) -> Label:
         exponent = Lyapunov(
             value=motion.lyapunov,
             error=motion.lyapunov_error,
-            sum=float(np.log(section.determinant(1)) / section.period),
+            sum=float(np.log(abs(section.determinant(1))) / section.period),
             batches=motion.batches,
             state=motion.state,
         )

@@ -35,7 +35,7 @@ from thermogear.dynamics.return_map import ReturnMap, return_map
 class Lyapunov:
     """Largest exponent ``value`` per unit time with the standard ``error`` of its batch means.
 
-    ``sum`` is that of all exponents: -c exactly of one mass, ln det D P/T of another model, nan
+    ``sum`` is that of all exponents: -c exactly of one mass, ln |det D P|/T of another model, nan
     where that is not known; ``batches`` the batch means,
     ``state`` the last state on the section.
 
@@ -125,7 +125,7 @@ def lyapunov_exponents(
     else:
         sections = [return_map(one) for one in lanes]
         start = starts_of(initial_state, len(lanes), dimension=sections[0].dimension)
-        sums = np.array([np.log(one.determinant(1)) / one.period for one in sections])
+        sums = np.array([np.log(abs(one.determinant(1))) / one.period for one in sections])
     # where a period is a turn, the counts of mesh periods are rounded up to turns
     of = lanes.mesh_periods if isinstance(lanes, Lanes) else 1
     discard, batch_periods, align = (turns(n, of=of) for n in (discard, batch_periods, ALIGN))

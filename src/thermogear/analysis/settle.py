@@ -438,10 +438,12 @@ def _accept(
     size = np.maximum(size, np.finfo(float).smallest_subnormal)
     result.lyapunov[chosen] = (np.log(size) / (n * block.period[lanes]))[ok]
     result.lyapunov_error[chosen] = 0.0
-    result.losses[chosen] = run.losses[ok]
-    result.impacts[chosen] = run.impacts[ok]
     total = n * block.period[chosen]
     result.shares[chosen] = run.spent[ok] / total[:, None]
+    # a model without teeth has no time in contact, and no losses of it to count
+    toothed = np.where(np.isnan(result.shares[chosen, 2]), np.nan, 1.0)
+    result.losses[chosen] = toothed * run.losses[ok]
+    result.impacts[chosen] = toothed * run.impacts[ok]
     if block.keep:
         places = (np.arange(block.keep) - (block.keep - 1)) % n
         result.sections[chosen] = run.points[ok][:, places]

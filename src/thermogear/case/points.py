@@ -79,6 +79,12 @@ class Points:
         return bool(np.any(self.mesh_frequency != 0.0))
 
     @property
+    def plane_scale(self) -> Floats:
+        """[m] and [m/s] of one in (x, x'), (point, 2); nan without gears."""
+        both = np.stack([self.length, self.length * self.rate], axis=1)
+        return both if self.gears else np.full_like(both, np.nan)
+
+    @property
     def still(self) -> NDArray[np.bool_]:
         """Where nothing moves: jammed, or no state is known to move in."""
         return ~moves(self.status)

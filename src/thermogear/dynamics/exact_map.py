@@ -14,7 +14,7 @@ from thermogear.dynamics import exact
 from thermogear.dynamics.blocks import Pace, run_blocks
 from thermogear.dynamics.bundle import Prepared, Visits
 from thermogear.dynamics.extremes import WATCHED, Extremes, extremes_of
-from thermogear.dynamics.return_map import Stretch, Visit, stretched
+from thermogear.dynamics.return_map import StateMap, Visit
 from thermogear.dynamics.tables import LaneTables
 
 
@@ -153,7 +153,7 @@ def _lanes(model: object) -> LaneTables:
     return found
 
 
-class ExactMap:
+class ExactMap(StateMap):
     """P: (x, x') at phase 0 to (x, x') one period later, of one lane, by event-exact maps."""
 
     def __init__(self, lanes: LaneTables, samples: int = 0) -> None:
@@ -162,27 +162,13 @@ class ExactMap:
         self.lanes, self._samples = lanes, samples
         self.period = float(lanes.period[0])
         self.backlash = float(lanes.half_backlash[0])
-        self._unit: Floats = lanes.unit[0]
+        self.unit = lanes.unit[0]
 
     @cached_property
     def maps(self) -> exact.ExactMaps:
         """Made when first asked for: those of a turn are large."""
         ((_, borders, marks),) = exact.layouts(self.lanes, samples=self._samples)
         return exact.prepare_maps(self.lanes, borders, marks)
-
-    @property
-    def dimension(self) -> int:
-        """Length 2 of a state (x, x')."""
-        return 2
-
-    @property
-    def unit(self) -> Floats:
-        """Scales of (x, x') for distances: b and 2 pi b over the mesh period."""
-        return self._unit
-
-    def distance(self, one: Floats, other: Floats) -> Floats:
-        """Largest component of the difference in units of :attr:`unit`, over leading axes."""
-        return np.asarray(np.max(np.abs(one - other) / self.unit, axis=-1))
 
     def determinant(self, periods: int) -> float:
         """det D P^n = exp(-c n T) of every trajectory."""
@@ -247,10 +233,6 @@ class ExactMap:
         )
         sections, _, _ = exact.advance(self.maps, state, periods)
         return np.asarray(sections[:, :, 0])
-
-    def stretch(self, start: Floats, *, direction: Floats, periods: int) -> Stretch:
-        """Carry ``start`` and a tangent vector ``direction``, made unit after every period."""
-        return stretched(self, start, direction=direction, periods=periods)
 
     def visit(self, start: Floats, periods: int = 1, *, sampled: bool = False) -> Visit:
         """Run ``periods`` periods from ``start`` with the variational equations."""

@@ -13,9 +13,9 @@ from thermogear.dynamics.geared_map import GearedMap
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class GearedModel(GearedEquation):
-    """The equation of motion of a drive train, with its return map; fields and units are its own.
+    """The equation of motion of a drive train in SI [kg, m, s, rad], with its return map.
 
-    See :class:`~thermogear.dynamics.geared_equation.GearedEquation`.
+    Fields and units are its own: see :class:`~thermogear.dynamics.geared_equation.GearedEquation`.
     """
 
     def return_map(self, samples: int = 0) -> GearedMap:

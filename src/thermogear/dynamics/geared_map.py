@@ -13,13 +13,13 @@ from thermogear.dynamics.extremes import WATCHED, Extremes, extremes_of
 from thermogear.dynamics.geared_equation import GearedEquation
 from thermogear.dynamics.ladder import Engine, Steps
 from thermogear.dynamics.plane import Plane
-from thermogear.dynamics.return_map import Stretch, Visit
+from thermogear.dynamics.return_map import StateMap, Stretch, Visit
 
 MICROMETRE = 1e-6
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class GearedMap:
+class GearedMap(StateMap):
     """P of a :class:`~thermogear.dynamics.geared_equation.GearedEquation`, by its engine.
 
     The state (q, q') is that of the model; a period is its ``cycle`` of mesh periods, one without
@@ -36,11 +36,6 @@ class GearedMap:
     def engine(self) -> Engine:
         """The tables of the steps."""
         return Engine(self.model, self.how)
-
-    @property
-    def dimension(self) -> int:
-        """Length of a state."""
-        return self.model.dimension
 
     @property
     def period(self) -> float:
@@ -66,7 +61,7 @@ class GearedMap:
         return float(np.exp(self.engine.lam.real.max() * self.period))
 
     @cached_property
-    def unit(self) -> Floats:
+    def unit(self) -> Floats:  # type: ignore[override]  # made when first asked for
         """Scales of a state: what moves the mesh by a half backlash, 2 pi/T times that for q'.
 
         A coordinate's scale is b' times its share in the shape that the mesh force pulls the train
@@ -107,15 +102,11 @@ class GearedMap:
         shape = shape / float(model.drive @ shape)
         lift = np.zeros((model.dimension, 2))
         lift[:n, 0], lift[n : 2 * n, 1] = b * shape, rate * shape
-        return Plane(onto=onto, lift=lift, rest=rest, unit=np.ones(2))
+        return Plane(onto=onto, lift=lift, rest=rest, unit=np.ones(2), scale=(b, rate))
 
     def determinant(self, periods: int) -> float:
         """det D P^n = exp(T tr A), whatever the contacts do."""
         return self.model.determinant(periods * self.model.cycle)
-
-    def distance(self, one: Floats, other: Floats) -> Floats:
-        """Largest component of the difference in units of :attr:`unit`, over leading axes."""
-        return np.asarray(np.max(np.abs(one - other) / self.unit, axis=-1))
 
     def carry(self, start: Floats, periods: int, *, turn: int = 0) -> Floats:
         """The states (periods, d) after 1, 2, ... cycles from ``start``.

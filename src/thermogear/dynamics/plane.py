@@ -16,7 +16,8 @@ class Plane:
     """(x, v) = ``onto`` z of a state z (d,), and z = ``rest`` + ``lift`` ((x, v) - onto rest).
 
     ``onto`` (2, d), ``lift`` (d, 2) with onto lift = 1, ``rest`` (d,); ``unit`` (2,) the scales of
-    (x, v); ``words`` their names and units.
+    (x, v); ``words`` their names and units; ``scale`` [m], [m/s] of one in (x, v) where they are a
+    displacement and its rate, else nan.
     """
 
     onto: Floats
@@ -24,6 +25,7 @@ class Plane:
     rest: Floats
     unit: Floats
     words: tuple[tuple[str, str], tuple[str, str]] = (("displacement", "1"), ("velocity", "1"))
+    scale: tuple[float, float] = (float("nan"), float("nan"))
 
     def of(self, states: ArrayLike) -> Floats:
         """(x, v) (..., 2) of ``states`` (..., d)."""

@@ -2,13 +2,14 @@
 
 What analysis knows of a model. One mass with clearance has its event-exact map
 (:mod:`~thermogear.dynamics.exact_map`), a drive train its own
-(:mod:`~thermogear.dynamics.geared_map`); any other model brings one with these methods.
+(:mod:`~thermogear.dynamics.geared_map`); any other model brings one with these methods, most
+shortly as an :class:`IteratedMap`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Protocol, TypeGuard, runtime_checkable
 
 import numpy as np
@@ -22,16 +23,16 @@ class Visit:
     """Where ``n`` periods of one state lead.
 
     ``points`` (n + 1, d) on the section, ``jacobian`` D P^n (d, d), ``contact_losses`` and
-    ``back_impacts`` counted, ``shares`` of time in back contact, free flight, drive contact,
-    ``samples`` (n * samples a period, d) when asked for.
+    ``back_impacts`` counted, ``shares`` of time in back contact, free flight, drive contact (nan of
+    a model without teeth), ``samples`` (n * samples a period, d) when asked for.
     """
 
     points: Floats
     jacobian: Floats
-    contact_losses: int
-    back_impacts: int
-    shares: Floats
-    samples: Floats
+    contact_losses: int = 0
+    back_impacts: int = 0
+    shares: Floats = field(default_factory=lambda: np.full(3, np.nan))
+    samples: Floats = field(default_factory=lambda: np.empty((0, 0)))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -133,13 +134,13 @@ def return_map(model: object, samples: int = 0) -> ReturnMap:
             "model",
             type(model).__name__,
             why="it has no return map",
-            allowed="a clearance oscillator, a GearedModel or a SmoothModel",
+            allowed="a clearance oscillator, a GearedModel, a SmoothModel or an IteratedMap",
         )
     found: ReturnMap = made(samples)
     return found
 
 
-def stretched(section: ReturnMap, start: Floats, *, direction: Floats, periods: int) -> Stretch:
+def stretched(section: Any, start: Floats, *, direction: Floats, periods: int) -> Stretch:
     """:meth:`ReturnMap.stretch` by the whole Jacobian of every period."""
     state = np.asarray(start, dtype=float)
     along = np.asarray(direction, dtype=float) / section.unit
@@ -151,3 +152,68 @@ def stretched(section: ReturnMap, start: Floats, *, direction: Floats, periods: 
         size = float(np.linalg.norm(along))
         growth[number], along, state = np.log(size), along / size, visit.points[-1]
     return Stretch(state=state, direction=along * section.unit, growth=growth)
+
+
+class StateMap:
+    """What return maps have in common: distances of their states in ``unit`` (d,), tangents."""
+
+    unit: Floats
+
+    @property
+    def dimension(self) -> int:
+        """Length d of a state."""
+        return len(self.unit)
+
+    def distance(self, one: Floats, other: Floats) -> Floats:
+        """Largest component of the difference in units of ``unit``, over leading axes."""
+        return np.asarray(np.max(np.abs(one - other) / self.unit, axis=-1))
+
+    def stretch(self, start: Floats, *, direction: Floats, periods: int) -> Stretch:
+        """Carry ``start`` and a tangent vector ``direction``, made unit after every period."""
+        return stretched(self, start, direction=direction, periods=periods)
+
+
+class IteratedMap(StateMap):
+    """A return map that is known by one step: what a model of one's own has to say.
+
+    A subclass has ``unit`` (d,), the scales of a state, and ``iterate``; ``period`` [model's unit
+    of time] where a step does not take 1, and ``determinant`` where det D P is the same everywhere.
+    A subclass that is a frozen dataclass may be varied in each of its fields that is a float.
+    Where a state has no image, ``iterate`` returns nan or raises ConvergenceError: the motion has
+    diverged.
+
+    >>> class Halving(IteratedMap):
+    ...     unit = np.ones(1)
+    ...     def iterate(self, state):
+    ...         return 0.5 * state, np.array([[0.5]])
+    >>> Halving().visit(np.ones(1), 2).points.ravel()
+    array([1.  , 0.5 , 0.25])
+    """
+
+    period: float = 1.0
+
+    def iterate(self, state: Floats) -> tuple[Floats, Floats]:
+        """P(state) (d,) and its Jacobian (d, d)."""
+        raise NotImplementedError
+
+    def determinant(self, periods: int) -> float:
+        """det D P^n: not known to be the same everywhere."""
+        return float("nan")
+
+    def carry(self, start: Floats, periods: int) -> Floats:
+        """The states (periods, d) after 1, 2, ... periods from ``start``."""
+        states = np.empty((periods, self.dimension))
+        with np.errstate(over="ignore", invalid="ignore"):  # it may leave every bound
+            for number in range(periods):
+                start = states[number] = self.iterate(start)[0]
+        return states
+
+    def visit(self, start: Floats, periods: int = 1, *, sampled: bool = False) -> Visit:
+        """Run ``periods`` periods from ``start`` with the variational equations."""
+        points, jacobian = [np.asarray(start, dtype=float)], np.eye(self.dimension)
+        with np.errstate(over="ignore", invalid="ignore"):  # long chaos has no bound
+            for _ in range(periods):
+                state, step = self.iterate(points[-1])
+                points.append(state)
+                jacobian = step @ jacobian
+        return Visit(points=np.array(points), jacobian=jacobian)

@@ -9,6 +9,7 @@ import sys
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -187,8 +188,14 @@ def map_(
 @click.command()
 @delivery.case
 @_but
+@click.option(
+    "--along",
+    metavar="NAME=FROM:TO:COUNT",
+    help="Shares of random starts over this parameter, and what leaves each motion.",
+)
 @click.option("--x", "x", metavar="FROM:TO:COUNT",
-              help="Starts; -2:2:401, of a drive train -2:2:25.")  # fmt: skip
+              help="Starts; -2:2:401, of a drive train -2:2:25. With --along the box of the random "
+              "starts, as many as a grid has: -2:2:20, of a drive train -2:2:8.")  # fmt: skip
 @click.option("--v", "v", metavar="FROM:TO:COUNT", help="As --x.")
 @click.option("--plane", metavar="NAME",
               help="Of a drive train: a bearing, whose journal starts at (x, v) in um, or "
@@ -196,18 +203,28 @@ def map_(
 @_train
 @_common
 def basins(
-    case: str, but: tuple[str, ...], x: str | None, v: str | None, plane: str | None, output: str,
-    as_json: bool, **options: Any,
+    case: str, but: tuple[str, ...], along: str | None, x: str | None, v: str | None,
+    plane: str | None, output: str, as_json: bool, **options: Any,
 ) -> None:  # fmt: skip
-    """Basins of attraction of CASE at its base set (a gear case: first speed and torque)."""
-    from thermogear.case.axes import parse_numbers
-    from thermogear.study.diagrams import case_basins
+    """Basins of attraction of CASE at its base set (a gear case: first speed and torque).
+
+    With --along the share of random starts that ends on each motion, with its 95 % interval, and
+    the least displacement and change of velocity that leave it.
+    """
+    from thermogear.case.axes import parse_axis, parse_numbers
+    from thermogear.study.diagrams import case_basin_shares, case_basins
 
     read = _of_mean_tooth(delivery.load(case, options["overrides"]), options)
     bundle, state = _choice(read, options)
     train = _train_of(read, options, plane)
-    usual = "-2:2:401" if train is None else "-2:2:25"
-    plan = case_basins(
+    counts = ("401", "25") if along is None else ("20", "8")
+    usual = f"-2:2:{counts[train is not None]}"
+    make: Callable[..., Plan] = case_basins
+    if along is not None:
+        name, values = parse_axis(read, along, "along")
+        delivery.heat_once([name], options["state"])
+        make = partial(case_basin_shares, name=name, values=values)
+    plan = make(
         read, x=grid("x", x or usual), v=grid("v", v or usual), bundle=bundle, state=state,
         changes=parse_numbers(but), train=train,
     )  # fmt: skip

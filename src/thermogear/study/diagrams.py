@@ -10,6 +10,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from thermogear.analysis.basin_shares import SharePlan, share_plan
 from thermogear.analysis.basins import BASIN_RULE, BasinPlan, basin_plan
 from thermogear.analysis.branches import with_branches_of_states
 from thermogear.analysis.diagram import BRANCH_PERIOD, DIAGRAM_RULE, DiagramPlan, diagram_plan
@@ -241,6 +242,29 @@ def case_basins(
         return basin_plan(whole.model, x=x, v=v, rule=rule_of(whole, BASIN_RULE))
     points = moving(whole(np.empty((1, 0))), whole)
     return basin_plan(points.model() if points.gears else whole.model, x=x, v=v)
+
+
+def case_basin_shares(
+    case: Case,
+    name: str,
+    values: Floats,
+    *,
+    x: Floats,
+    v: Floats,
+    bundle: str = "",
+    state: StateLike = HOT,
+    changes: Mapping[str, float] | None = None,
+    train: Train | None = None,
+) -> SharePlan:
+    """Shares of the basins of a case, or of its drive ``train``, over one parameter.
+
+    As many random starts as a grid of ``x`` and ``v`` has places, between the ends of these axes.
+    """
+    whole = case_family(case, (name,), bundle=bundle, state=state, changes=changes, train=train)
+    whole.require({name: values})
+    rule = rule_of(whole, BASIN_RULE) if isinstance(whole, TrainFamily) else BASIN_RULE
+    width, height = ((float(axis[0]), float(axis[-1])) for axis in (x, v))
+    return share_plan(whole, name, values, x=width, v=height, starts=x.size * v.size, rule=rule)
 
 
 def overlaid(words: Sequence[str], found: Sequence[Dataset]) -> Dataset:

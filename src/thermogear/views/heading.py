@@ -16,7 +16,8 @@ from thermogear.results.result import Result
 
 STUDIES = {
     "gear": "Run", "dimensionless": "Run", "answers": "Answers", "diagram": "Orbit diagram",
-    "map": "Map of regimes", "basins": "Basins of attraction", "sweep": "Sweep",
+    "map": "Map of regimes", "basins": "Basins of attraction",
+    "basin-shares": "Basins along a parameter", "sweep": "Sweep",
     "run-up": "Run-up and run-down", "waterfall": "Run-up of the drive train",
     "warmup": "Warm-up", "temperature": "Heat balance",
     "relief": "Tip relief", "contact": "Loaded contact", "friction": "Friction laws",
