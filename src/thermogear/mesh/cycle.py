@@ -28,7 +28,6 @@ from thermogear.heat.losses import efficiency
 from thermogear.heat.temperature import conduction_power, contact_temperature
 from thermogear.mesh.clearance import PARTS, Clearance
 from thermogear.mesh.elastic import (
-    TURN_POSITIONS,
     ElasticPair,
     LoadedPair,
     MeshCurves,
@@ -89,11 +88,12 @@ def mesh_cycle(
     (:func:`~thermogear.mesh.clearance.Clearance`); the cold half backlash is that of the flanks
     without them. Where teeth differ or a gear is eccentric
     (:func:`~thermogear.gears.turn.turn_period`) the cycle is the whole turn: ``mesh_phase`` runs
-    over its L mesh periods, the attribute ``mesh_periods``, with :data:`TURN_POSITIONS` positions
-    each; the half backlash and the jams are those of the tightest tooth pairs of the turn; losses
-    and what is along the path are of the mean over all tooth pairs, the latter at the mean of their
-    load shares; and :data:`OF_TURN` say how flash temperature, Hertz pressure and film differ
-    between the tooth pairs, each by its worst place along the path. ``model`` defaults to
+    over its L mesh periods, the attribute ``mesh_periods``, with ``mesh_positions`` in each, so
+    that a sound pair beside it is computed at the same ones; the half backlash and the jams are
+    those of the tightest tooth pairs of the turn; losses and what is along the path are of the mean
+    over all tooth pairs, the latter at the mean of their load shares; and :data:`OF_TURN` say how
+    flash temperature, Hertz pressure and film differ between the tooth pairs, each by its worst
+    place along the path. ``model`` defaults to
     :meth:`MeshModel.consistent`. Zero torque gives zero contact and flash; zero speed gives
     zero flash; the pitch point has its limit values. Warns outside the ranges of the sources;
     raises InputError for fewer than 2 positions.
@@ -155,8 +155,7 @@ def _asked(want: Collection[str]) -> Collection[str]:
 class Cycle:
     """What the quantities of one cycle are made of, each computed when first asked for.
 
-    At path positions ``s`` [m] and ``positions`` of the mesh period, :data:`TURN_POSITIONS` of each
-    where it is not the only one.
+    At path positions ``s`` [m] and ``positions`` of each mesh period.
     """
 
     hot: HotPair
@@ -175,8 +174,7 @@ class Cycle:
     @property
     def phase(self) -> Floats:
         """Of one mesh period."""
-        count = self.positions if self.mesh_periods == 1 else TURN_POSITIONS
-        return np.asarray(np.arange(count) / count)
+        return np.asarray(np.arange(self.positions) / self.positions)
 
     def quantities(self, want: Collection[str] = ()) -> dict[str, ArrayLike]:
         """The bare arrays of :func:`mesh_cycle`, SI, in the order of :data:`TABLE`, then status.
