@@ -40,7 +40,7 @@ def _case(pinion: int = 0, wheel: int = 0) -> GearCase:
         name: str([f"{error} um" for error in np.roll(errors, first)])
         for name, errors, first in (("pinion", PINION, pinion), ("wheel", WHEEL, wheel))
     }
-    small = ("grid.path_positions=41", "grid.mesh_positions=48", "grid.harmonics=12")
+    small = ("grid.path_positions=41", "grid.mesh_positions=96", "grid.harmonics=12")
     return gear_case(load_case(CASE.format(**lists), small))
 
 

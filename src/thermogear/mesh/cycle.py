@@ -25,7 +25,7 @@ from thermogear.gears.pair import GearPair
 from thermogear.heat.expansion import base_circle_growth
 from thermogear.heat.gearbox import body_radius
 from thermogear.heat.losses import efficiency
-from thermogear.heat.temperature import conduction_power, contact_temperature
+from thermogear.heat.temperature import conduction_power
 from thermogear.mesh.clearance import PARTS, Clearance
 from thermogear.mesh.elastic import (
     ElasticPair,
@@ -44,7 +44,7 @@ from thermogear.mesh.mesh_heat import MeshHeat, mesh_heat
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair, thesis_thermal_stiffness
-from thermogear.mesh.turn_spread import OF_TURN, spread_of_turn
+from thermogear.mesh.turn_spread import OF_TURN, OF_WORST_PAIR, WORST, spread_of_turn
 
 PATH = ("operating", "path_position")
 PHASE = ("operating", "mesh_phase")
@@ -285,7 +285,8 @@ class Cycle:
         for name, mean in (("rim_stiffness", "rim"), ("bore_clamped_stiffness", "clamped")):
             if name in names:
                 known &= np.isfinite(getattr(self, mean))
-        if any(name in CONTACT or name == "edge_contact" or name in OF_TURN for name in names):
+        of_contact = {"edge_contact", *CONTACT, *OF_WORST_PAIR, *OF_TURN}
+        if not of_contact.isdisjoint(names):
             known &= self.path.settled
         return np.where(known, found, STATUS.index("not_converged"))
 
@@ -324,6 +325,14 @@ def _of_contact(of: Made, c: Cycle) -> Floats:
     return np.where(c.path.settled[:, None], values, np.nan)
 
 
+def _worst(name: str, c: Cycle) -> Floats:
+    """The worst along the path, of all tooth pairs of a turn where these differ."""
+    sign = WORST[name][1]
+    if c.teeth_differ:
+        return c.of_turn[f"{name}_{'greatest' if sign > 0.0 else 'least'}_of_turn"]
+    return np.asarray(sign * np.fmax.reduce(sign * _of_contact(CONTACT[name], c), axis=-1))
+
+
 def _of_heat(name: str, c: Cycle) -> Floats:
     """A time mean over the mesh; nan where the loaded contact is not known."""
     return np.where(c.heat.settled, getattr(c.heat, name), np.nan)
@@ -353,12 +362,7 @@ CONTACT: dict[str, Made] = {
     "flash_temperature_mixed": lambda c: c.path.flash(c.path.mixed),
     "flash_temperature_dry": lambda c: c.path.flash(c.path.dry),
     "pinion_heat_share": lambda c: c.path.heat_share,
-    "contact_temperature": lambda c: contact_temperature(
-        c.flash,
-        c.path.heat_share,
-        bulk_1=c.path.body_temperatures[0],
-        bulk_2=c.path.body_temperatures[1],
-    ),
+    "contact_temperature": lambda c: c.path.contact(c.flash),
     "pinion_body_temperature": lambda c: c.path.body_temperatures[0],
     "wheel_body_temperature": lambda c: c.path.body_temperatures[1],
 }
@@ -444,6 +448,7 @@ TABLE: dict[str, tuple[tuple[str, ...], Made]] = {
     "jam_temperature": (POINT, lambda c: c.gap.jam_temperature),
     "proportional_jam_temperature": (POINT, lambda c: c.gap.proportional_jam_temperature),
     "edge_contact_share": (POINT, lambda c: c.curves.edge_share),
+    **{name: (POINT, partial(_worst, of)) for name, of in OF_WORST_PAIR.items()},
     **{name: (POINT, partial(_one_of, lambda c: c.of_turn, name)) for name in OF_TURN},
 }
 """Every stored quantity, in the order of storage: its dimensions and what it is made of."""

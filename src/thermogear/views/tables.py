@@ -159,7 +159,8 @@ def key_results(
         moved = labelled(motion)
         mesh = mesh.assign({n: moved[n] for n in ("motion", "dte_peak_to_peak") if n in moved})
     if path is not None and "flash_temperature" in path:
-        mesh = mesh.assign(greatest_flash=path["flash_temperature"].max("path_position"))
+        along = path["flash_temperature"].max("path_position")
+        mesh = mesh.assign(greatest_flash=mesh.get("greatest_flash_temperature", along))
     cold, hot = (rows_along(mesh.isel(state=end), "bundle", "operating") for end in (0, -1))
     beside = {} if series is None else _of_series(series)
     for row in hot[: mesh.sizes["operating"]]:

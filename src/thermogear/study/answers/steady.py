@@ -128,9 +128,8 @@ def heat(asked: Asked) -> Iterator[Answer]:
         how, figures = _how(asked, point, 1)
         flash = "the pair is jammed"
         if not asked.still(point):
-            added = float(np.fmax.reduce(asked.hot["flash_temperature"][point]))
-            figures = {**figures, "flash": added}
-            flash = "the flash adds up to {flash:.0f K}"
+            figures = {**figures, "flash": float(asked.hot["greatest_flash_temperature"][point])}
+            flash = f"the flash adds up to {{flash:.0f K}}{asked.worst_pair}"
         yield answer(
             HEAT,
             "tooth_temperature",
@@ -318,8 +317,7 @@ def film(asked: Asked) -> Iterator[Answer]:
     whose = ", assumed" * assumed
     for point in asked.points:
         at = asked.at(point)
-        film = asked.hot["film_parameter"][point]
-        least = float(np.nanmin(film)) if np.isfinite(film).any() else float("nan")
+        least = float(asked.hot["least_film_parameter"][point])
         unsettled, still = asked.unsettled(point), asked.still(point)
         if still:
             yield undecided(FILM, "film", still, at=at)
@@ -328,8 +326,10 @@ def film(asked: Asked) -> Iterator[Answer]:
         else:
             acting = "boundary" if least < 1.0 else "mixed" if least < 3.0 else "full film"
             yield answer(
-                FILM, "film", f"The least film parameter is {least:.2f} ({acting}).", least, at=at
-            )
+                FILM, "film",
+                f"The least film parameter{asked.worst_pair} is {least:.2f} ({acting}).",
+                least, at=at,
+            )  # fmt: skip
         torque, speed = (float(asked.hot[f"pinion_{n}"][point]) for n in ("torque", "speed"))
         known = not unsettled or ("oil" in case.gearbox.measured and not asked.no_bath(point))
         why = unrated(case, torque, float(oil[point])) if known else unsettled

@@ -108,8 +108,9 @@ OF_POINT = (
 def _operating(groups: Mapping[str, Dataset]) -> Dataset:
     """The figures of the mesh with the extremes along the path and those of the motion."""
     path, motion = groups["path"], groups.get("motion")
-    data = groups["mesh"].assign(
-        flash=path["flash_temperature"].max("path_position"),
+    mesh, along = groups["mesh"], path["flash_temperature"].max("path_position")
+    data = mesh.assign(
+        flash=mesh.get("greatest_flash_temperature", along),
         friction=path["friction_coefficient"].max("path_position"),
     )
     if motion is None or "label" not in motion:
