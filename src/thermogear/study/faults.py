@@ -26,16 +26,15 @@ from thermogear.mesh.excite import over_turn as spread
 from thermogear.signals.spectra import Spectrum, amplitude_spectrum
 from thermogear.study.series import series_parts
 
-HIGHEST = 2.0
+HIGHEST, MOST_DOUBLINGS = 2.0, 4
 """Lines are kept up to so many natural frequencies at least (chosen): up to 4 and 16 of them add 10
-and 40 % to the rms of a slow pair's acceleration, as flanks that meet on a corner excite all."""
+and 40 % to the rms of a slow pair's acceleration, as flanks that meet on a corner excite all.
+Down to a mesh frequency of 1/192 of the natural one (chosen: a second for a turn of 22 mesh
+periods); slower, the natural vibration is left out."""
 HARMONICS, POSITIONS = 24, 10
 """Harmonics of a mesh period that its steps resolve, doubled with these; positions of the contact
 in a period of the highest, as by default: 20 move the acceleration of a pair at a fourteenth of its
 resonance speed by 3 %."""
-MOST_DOUBLINGS = 4
-"""Down to a mesh frequency of 1/192 of the natural one (chosen: a second for a turn of 22 mesh
-periods); slower, the natural vibration is left out."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -136,7 +135,7 @@ def fault_motions(
     alike = family(sound.mean_tooth(), axes, state=state)(rows)
     with np.errstate(invalid="ignore"):
         finer = doublings(alike.rate / alike.mesh_frequency)
-    found: list[FaultMotion] = [None] * len(rows)  # type: ignore[list-item]  # all are filled
+    found: dict[int, FaultMotion] = {}
     for power in np.unique(finer).tolist():
         index, both = np.flatnonzero(finer == power), []
         for pair in (case, sound):
@@ -148,9 +147,8 @@ def fault_motions(
             turn_motions(case, over_turns(points, turn), rows[index], samples, doubled=power)
             for points in both
         ]
-        for place, *motions in zip(index, *several, strict=True):
-            found[place] = FaultMotion(*motions)
-    return tuple(found)
+        found |= zip(index.tolist(), map(FaultMotion, *several), strict=True)
+    return tuple(found[place] for place in range(len(rows)))
 
 
 def doublings(ratio: Floats) -> NDArray[np.int64]:
