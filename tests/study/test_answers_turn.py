@@ -6,10 +6,14 @@ import numpy as np
 import pytest
 
 from thermogear.analysis.settle import UNDECIDED
+from thermogear.base.limits import LOOK
+from thermogear.base.progress import silent
 from thermogear.case.case import GearCase, gear_case, load_case
 from thermogear.case.family import family
 from thermogear.case.thermal_state import HOT
 from thermogear.results.answer import Answer
+from thermogear.study.answers.asked import Asked
+from thermogear.study.answers.moving import of_faults
 from thermogear.study.answers.survey import answers
 from thermogear.study.speeds import look
 
@@ -146,7 +150,6 @@ housing_below_addendum = "0 K"
 path_positions = 41
 [[faults]]
 gear = "pinion"
-tooth = 3
 """
 
 
@@ -193,7 +196,30 @@ def test_the_film_is_that_of_the_worst_tooth_pair() -> None:
     assert told["film"].value == found["least_film_parameter"] == least
     assert least < 0.99 * found["film_parameter"].min()
     assert "in the worst tooth pair of the turn" in told["film"].sentence
+    # what one tooth does is no part of the mean over the mesh periods, and is judged
+    error = told["transmission_error"]
+    assert error.figures["mesh"] < 10.0 < error.value == error.figures["faulty"]
+    assert error.verdict == LOOK
+    for name in ("scuffing_margin", "scuffing_safety"):
+        assert told[name].sentence.endswith("; faults are left out of it.")
+    assert "of sound teeth under the loads with the faults" in told["root_stress"].sentence
     flash = found["flash_temperature_greatest_of_turn"]
     assert told["tooth_temperature"].figures["flash"] == flash
     # teeth at 70 and 60 degC: the contact is that much hotter than between both
     assert 333.15 + flash < found["contact_temperature_greatest_of_turn"] <= 343.15 + flash
+
+
+def test_what_faults_move_the_error_by() -> None:
+    """Without load a tooth that is 15 um forward leads by that; e sin(theta) by 2 e sin(pi/z)."""
+
+    def moved(fault: str) -> float:
+        case = _faulty(fault)
+        case = gear_case(load_case(case.text, {"operating.torque": "0.05 N m"}))
+        found = of_faults(Asked(case, case.models[0], {}, {}, silent), 0)
+        return found.get("faulty", 0.0)
+
+    assert moved('kind = "pitch"\namount = "15 um"\n') == pytest.approx(15.0, rel=0.03)
+    assert moved('kind = "crack"\ndepth = "0 mm"\n') == 0.0
+    assert moved('kind = "crack"\ndepth = "1e-9 mm"\n') < 1e-6
+    turned = moved('kind = "eccentricity"\namount = "15 um"\n')
+    assert turned == pytest.approx(2 * 15.0 * np.sin(np.pi / 20), rel=0.03)

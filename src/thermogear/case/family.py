@@ -231,8 +231,12 @@ class GearFamily:
         fault = self.case.file.faults[int(name.split(".")[1])]
         alone = self.case.file.gears.period == "mesh" and whole_turn(fault)
         if alone or (fault.kind == "crack" and self.model.stiffness != "loaded"):
-            fix = 'state gears.period = "turn", and a bundle with model.stiffness = loaded'
-            raise InputError(name, fault_words(fault), why="nothing here feels it", fix=fix)
+            raise InputError(
+                name,
+                fault_words(fault),
+                why="nothing here feels it",
+                fix='state gears.period = "turn", and a bundle with model.stiffness = loaded',
+            )
 
     def __call__(self, points: Floats) -> Points:
         rows = np.asarray(points, dtype=float)

@@ -54,7 +54,7 @@ def fault_deviations(file: GearFile, pair: GearPair) -> Iterator[Deviation]:
         if other := next((one.kind for one in here if _clash(fault, one, pair)), ""):
             got = f"{fault.kind} of tooth {fault.place + 1} of the {fault.gear}"
             why = f"it has another, {other}, and the two together are not solved"
-            raise InputError(f"{field}.kind", got, allowed=_BESIDE, why=why, fix="leave one out")
+            raise InputError(field, got, allowed=_BESIDE, why=why, fix="leave one out")
         try:
             deviation = _deviation(fault, file, pair)
             if isinstance(deviation, Crack):
@@ -103,9 +103,8 @@ def _deviation(fault: FaultTable, file: GearFile, pair: GearPair) -> Deviation |
         errors[tooth] = fault.amount or 0.0
         return PitchError(gear, tuple(errors))
     if fault.kind == "crack":
-        depth = fault.depth
-        if fault.share is not None:
-            depth = fault.share * way_across(pair.gear(gear), fault.slope)
+        across = way_across(pair.gear(gear), fault.slope)
+        depth = fault.depth if fault.share is None else fault.share * across
         return Crack(gear, tooth=tooth, depth=depth or 0.0, angle=fault.slope, width_share=width)
     if fault.kind == "chip":
         chip = Chip(gear, tooth=tooth, height=fault.height or 0.0)
@@ -196,7 +195,7 @@ def fault_words(fault: FaultTable) -> str:
     }
     size = sizes[fault.kind]
     name = {"missing": "missing tooth", "pitch": "pitch error"}.get(fault.kind, fault.kind)
-    every = fault.kind == "eccentricity" or (fault.kind == "wear" and fault.tooth is None)
+    every = fault.kind == "eccentricity" or not whole_turn(fault)
     where = fault.gear if every else f"{fault.gear} tooth {fault.place + 1}"
     return f"{name}{f' of {size}' if size else ''}, {where}"
 

@@ -285,8 +285,7 @@ class Cycle:
         for name, mean in (("rim_stiffness", "rim"), ("bore_clamped_stiffness", "clamped")):
             if name in names:
                 known &= np.isfinite(getattr(self, mean))
-        of_contact = {"edge_contact", *CONTACT, *OF_WORST_PAIR, *OF_TURN}
-        if not of_contact.isdisjoint(names):
+        if not {"edge_contact", *CONTACT, *OF_WORST_PAIR, *OF_TURN}.isdisjoint(names):
             known &= self.path.settled
         return np.where(known, found, STATUS.index("not_converged"))
 

@@ -122,10 +122,9 @@ def fault_notices(
     acting = [] if sound else case.faults()
     if acting:
         deaf = [model.name for model in case.models if model.stiffness != "loaded"]
-        others = sorted(name for name in varied if name.startswith("faults."))
         yield Notice.of(
             "fault_taken", about=about, faults="; ".join(acting), deaf=deaf or None,
-            varied=others or None,
+            varied=sorted(name for name in varied if name.startswith("faults.")) or None,
         )  # fmt: skip
     left = [words for words in case.all_faults if words not in acting]
     if left:

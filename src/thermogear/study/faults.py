@@ -143,10 +143,10 @@ def fault_motions(
             drawn = replace(resolving(pair, power), deviations=flanks)
             both.append(family(drawn, axes, state=state)(rows[index]))
         turn = max(points.mesh_periods for points in both)
-        several = [
+        several = (
             turn_motions(case, over_turns(points, turn), rows[index], samples, doubled=power)
             for points in both
-        ]
+        )
         found |= zip(index.tolist(), map(FaultMotion, *several), strict=True)
     return tuple(found[place] for place in range(len(rows)))
 

@@ -121,9 +121,6 @@ def _gathered(case: GearCase, settled: HeatBalance, cycle: xr.Dataset) -> xr.Dat
     operating: Operating = settled.operating
     worst = ", worst tooth pair of the turn" * ("film_parameter_least_of_turn" in cycle)
 
-    def greatest(name: str) -> Floats:
-        return np.asarray(cycle[name].max("path_position").values)
-
     weight = cycle["line_load"] * np.abs(cycle["sliding_velocity"])
     friction = (cycle["friction_coefficient"] * weight).sum("path_position").values
     weighed = weight.sum("path_position").values
@@ -142,7 +139,7 @@ def _gathered(case: GearCase, settled: HeatBalance, cycle: xr.Dataset) -> xr.Dat
             "friction coefficient, mean by sliding power",
         ),
         "greatest_friction": (
-            greatest("friction_coefficient"),
+            cycle["friction_coefficient"].max("path_position").values,
             "1",
             "greatest friction coefficient along the path",
         ),
@@ -160,7 +157,7 @@ def _gathered(case: GearCase, settled: HeatBalance, cycle: xr.Dataset) -> xr.Dat
         ),
         "least_half_backlash": (least, "m", "least half backlash over the mesh phase"),
         "thermal_growth": (
-            greatest("deformation_sum"),
+            cycle["deformation_sum"].max("path_position").values,
             "m",
             "greatest normal growth of both flanks together",
         ),

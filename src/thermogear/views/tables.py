@@ -148,9 +148,7 @@ def _of_series(series: Dataset) -> dict[tuple[float, float], Row]:
     return found
 
 
-def key_results(
-    mesh: Dataset, motion: Dataset | None, series: Dataset | None = None
-) -> Table:
+def key_results(mesh: Dataset, motion: Dataset | None, series: Dataset | None = None) -> Table:
     """Undeformed and hot side by side, a row for every bundle and operating point.
 
     Beside the first bundle, of one part, what the ``series`` has at each point that it answers.

@@ -248,8 +248,8 @@ def of_faults(asked: Asked, point: int) -> dict[str, float]:
         asked.elastic(HOT, point, case.deviations).over(phase).transmission_error[0]
         for case in (asked.case, asked.case.sound())
     )
-    moved = np.ptp((faulty - np.resize(sound, faulty.size)).reshape(-1, POSITIONS), axis=1)
-    return {"faulty": 1e6 * float(moved.max())}
+    moved = (faulty - np.resize(sound, faulty.size)).reshape(-1, POSITIONS)
+    return {"faulty": 1e6 * float(np.ptp(moved, axis=1).max())}
 
 
 def errors(asked: Asked) -> Iterator[Answer]:
