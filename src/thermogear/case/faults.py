@@ -52,9 +52,13 @@ def fault_deviations(file: GearFile, pair: GearPair) -> Iterator[Deviation]:
             continue
         here = seen.setdefault((fault.gear, fault.place), [])
         if other := next((one.kind for one in here if _clash(fault, one, pair)), ""):
-            got = f"{fault.kind} of tooth {fault.place + 1} of the {fault.gear}"
-            why = f"it has another, {other}, and the two together are not solved"
-            raise InputError(field, got, allowed=_BESIDE, why=why, fix="leave one out")
+            raise InputError(
+                field,
+                f"{fault.kind} of tooth {fault.place + 1} of the {fault.gear}",
+                allowed=_BESIDE,
+                why=f"it has another, {other}, and the two together are not solved",
+                fix="leave one out",
+            )
         try:
             deviation = _deviation(fault, file, pair)
             if isinstance(deviation, Crack):

@@ -76,11 +76,6 @@ class Measure(Reader):
         object.__setattr__(self, "example", f'"{self.example or KINDS[self.kind].example}"')
 
     @property
-    def unit(self) -> str:
-        """That of the example."""
-        return self.example.strip('"').split(" ", 1)[1]
-
-    @property
     def allowed(self) -> str | None:
         """The range in words: MIN..MAX UNIT."""
         if self.low is None or self.high is None:
@@ -96,7 +91,9 @@ class Measure(Reader):
         except InputError as error:
             allowed = self.allowed or f"a text: number and unit of {self.kind}"
             # in the unit of this field's own range
-            fix = (error.fix or "").replace(f' {KINDS[self.kind].shown}"', f' {self.unit}"')
+            fix = (error.fix or "").replace(
+                f' {KINDS[self.kind].shown}"', f" {self.example.split(' ', 1)[1]}"
+            )
             raise InputError("", error.got, allowed=allowed, why=error.why, fix=fix) from error
         if self.kind == "temperature" and value <= 0.0:
             raise InputError(
@@ -125,7 +122,7 @@ class Measure(Reader):
 
     def shown(self, value: float) -> str:
         """The SI ``value`` in the unit of the example."""
-        return shown(value, self.kind, unit=self.unit)
+        return shown(value, self.kind, unit=self.example.strip('"').split(" ", 1)[1])
 
     def within(self, value: float) -> float:
         if not math.isfinite(value):

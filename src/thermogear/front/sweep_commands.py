@@ -392,8 +392,10 @@ def _of_mean_tooth(
     if case.kind != "gear":
         return case
     taken = case.over_speeds() if over_speeds else case.unless_stated("period", "mesh")
-    varied = [text.partition("=")[0].strip() for text in over]
-    options["notices"] = (*fault_notices(taken, varied=varied), *mean_tooth_notices(case, taken))
+    options["notices"] = (
+        *fault_notices(taken, varied=[text.partition("=")[0].strip() for text in over]),
+        *mean_tooth_notices(case, taken),
+    )
     return taken
 
 

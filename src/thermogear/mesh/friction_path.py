@@ -350,8 +350,12 @@ class FrictionPath:
 
     def contact(self, flash: Floats) -> Floats:
         """Greatest contact temperature [K] of both flanks under a ``flash`` [K]."""
-        bulk = self.body_temperatures
-        return contact_temperature(flash, self.heat_share, bulk_1=bulk[0], bulk_2=bulk[1])
+        return contact_temperature(
+            flash,
+            self.heat_share,
+            bulk_1=self.body_temperatures[0],
+            bulk_2=self.body_temperatures[1],
+        )
 
     @cached_property
     def heat_share(self) -> Floats:

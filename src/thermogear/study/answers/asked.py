@@ -178,8 +178,9 @@ class Asked:
     @property
     def worst_pair(self) -> str:
         """Of which tooth pair flash and film are, in words; none where all are alike."""
-        words = " in the worst tooth pair of the turn"
-        return words * (self.mesh_periods > 1 and self.model.sharing == "loaded")
+        return " in the worst tooth pair of the turn" * (
+            self.mesh_periods > 1 and self.model.sharing == "loaded"
+        )
 
     @cached_property
     def mean_tooth(self) -> tuple[Deviation, ...]:

@@ -67,16 +67,15 @@ def answer_numbers(family: GearFamily, rows: ArrayLike) -> dict[str, Floats]:
     borne = borne_by(case.pair)[0]
     # a jammed pair has no running contact
     running = found["status"] != STATUS.index("jammed")
-    flash, film = found["greatest_flash_temperature"], found["least_film_parameter"]
-    film = np.where(np.isfinite(film), film, np.nan)
+    of_path = (found[name] for name in ("greatest_flash_temperature", "least_film_parameter"))
     flash, film, margin, safety = (
-        np.where(running, values, np.nan) for values in (flash, film, margin, safety)
+        np.where(running, values, np.nan) for values in (*of_path, margin, safety)
     )
     return {
         "oil_temperature": found["oil_temperature"],
         "tooth_temperature": found["tooth_temperature"],
         "greatest_flash": flash,
-        "least_film_parameter": film,
+        "least_film_parameter": np.where(np.isfinite(film), film, np.nan),
         "scuffing_margin": margin,
         "scuffing_safety": safety,
         "backlash": 2.0 * found["least_half_backlash"],
