@@ -27,10 +27,10 @@ from thermogear.signals.spectra import Spectrum, amplitude_spectrum
 from thermogear.study.series import series_parts
 
 HIGHEST, MOST_DOUBLINGS = 2.0, 4
-"""Lines are kept up to so many natural frequencies at least (chosen): up to 4 and 16 of them add 10
-and 40 % to the rms of a slow pair's acceleration, as flanks that meet on a corner excite all.
-Down to a mesh frequency of 1/192 of the natural one (chosen: a second for a turn of 22 mesh
-periods); slower, the natural vibration is left out."""
+"""Lines are kept up to so many natural frequencies at least (chosen): up to 4 and 12 of them add
+about 10 and 35 % to the rms of a slow pair's acceleration, as flanks that meet on a corner excite
+all. So often is doubled at most: down to a mesh frequency of 1/192 of the natural one (chosen:
+seconds for a turn of 22 mesh periods); slower, the natural vibration is left out."""
 HARMONICS, POSITIONS = 24, 10
 """Harmonics of a mesh period that its steps resolve, doubled with these; positions of the contact
 in a period of the highest, as by default: 20 move the acceleration of a pair at a fourteenth of its
