@@ -204,8 +204,7 @@ def test_the_film_is_that_of_the_worst_tooth_pair() -> None:
     assert error.figures["mesh"] < 10.0 < error.value == error.figures["faulty"]
     assert error.verdict == LOOK
     for name in ("scuffing_margin", "scuffing_safety"):
-        assert told[name].figures["sound"]
-        assert str(told[name].figures["sound"]) in told[name].sentence
+        assert "faults" in told[name].sentence
     assert "sound" in told["root_stress"].sentence
     flash = found["flash_temperature_greatest_of_turn"]
     assert told["tooth_temperature"].figures["flash"] == flash
