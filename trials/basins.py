@@ -115,7 +115,7 @@ def page(rows: Sequence[Held]) -> list[str]:
     outside = sum(not row.strictly for row in rows)
     chance = float(binom.sf(outside - 1, len(rows), 1.0 - CONFIDENCE)) if outside else 1.0
     lines = [
-        "---", "orphan: true", "---", "# Shares of basins against other starts", "",
+        "# Shares of basins against other starts", "",
         f"{len(rows)} shares of {STARTS} random starts at five frequencies of {len(SETS)} base "
         f"sets, each with its 95 % interval, against {rows[0].count} other starts followed one by "
         f"one. **{outside} of {len(rows)} lie outside their interval**; as many or more come by "

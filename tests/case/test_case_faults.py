@@ -7,6 +7,7 @@ import pytest
 
 from thermogear.base.errors import InputError
 from thermogear.case.case import GearCase, gear_case, load_case
+from thermogear.case.family import family
 from thermogear.case.points import excitations
 from thermogear.case.thermal_state import UNDEFORMED
 from thermogear.gears.candidates import mesh_points
@@ -189,6 +190,14 @@ def test_several_depths_are_an_override() -> None:
         ('kind = "wear"\ngear = "wheel"\nrevolutions = 1e6', r"coefficient: got nothing; needed"),
         ('kind = "eccentricity"\ngear = "wheel"\namount = "-3 um"', r"amount: .*allowed 0\.\."),
         ('kind = "eccentricity"\ngear = "wheel"\namount = "400 um"', r"the cold pair would jam"),
+        (
+            'kind = "eccentricity"\ngear = "wheel"\namount = "5 mm"',
+            r"of an eccentricity 0 um at least",
+        ),
+        (
+            'kind = "pitch"\ngear = "wheel"\namount = 5',
+            r'allowed -1000\.\.1000 um; .* for instance "5 um"',
+        ),
     ],
 )
 def test_refusals_are_one_line_under_the_field(fault: str, refused: str) -> None:
@@ -208,6 +217,63 @@ def test_one_crack_and_one_break_of_a_tooth() -> None:
     with pytest.raises(InputError, match=r"faults\[1\]: got chip of tooth 3 .* another, crack"):
         faulty(of("crack"), chip)
     assert len(faulty(of("chip"), of("missing"), of("crack")).faults()) == 3
+
+
+def test_two_faults_of_one_place_are_refused_and_those_beside_each_other_are_not() -> None:
+    """Middles on the flank lie (r_1^2 - r_2^2)/(2 r_b) apart, both half lengths or more."""
+    spall = of("spall")
+    for other in (spall, of("spall of a share") + "\ntooth = 4"):
+        with pytest.raises(InputError, match=r"faults\[1\]: got spall of tooth 4 .* side by side"):
+            faulty(spall, other)
+    gone = 'kind = "missing"\ngear = "pinion"\ntooth = 4'
+    for pair in ((gone, spall), (spall, gone)):
+        with pytest.raises(InputError, match=r"faults\[1\]: .* of tooth 4 .* nothing on a missing"):
+            faulty(*pair)
+    low, base = 33.5, 69.0 * np.cos(np.radians(20.0)) / 2.0
+    for beyond in (0.99, 1.01):
+        high = np.sqrt(low**2 + 2.0 * base * beyond * 1.0)
+        two = [
+            f'kind = "spall"\ngear = "pinion"\nlength = "1 mm"\ndepth = "0.1 mm"\n'
+            f'diameter = "{2.0 * radius:.6f} mm"'
+            for radius in (low, high)
+        ]
+        if beyond > 1.0:
+            assert len(faulty(*two).faults()) == 2
+        else:
+            with pytest.raises(InputError, match="spalls side by side"):
+                faulty(*two)
+    assert len(faulty(gone, of("spall of a share"), of("eccentricity"), of("wear")).faults()) == 4
+
+
+def test_too_many_faults_are_to_be_left_out() -> None:
+    with pytest.raises(InputError, match=r"faults: got 65 entries; .* leave some out"):
+        faulty(*[of("missing")] * 65)
+
+
+def test_what_nothing_feels_is_no_parameter() -> None:
+    """Fewer words than a map that is all one colour."""
+    case = faulty(of("crack"), of("wear of one"), of("wear"))
+    mean, depths = case.unless_stated("period", "mesh"), np.array([1e-3, 2e-3])
+    for n in (0, 1):
+        with pytest.raises(InputError, match=rf"faults\.{n}\.depth: .*here feels it") as got:
+            family(mean, ["pinion_speed"]).require({f"faults.{n}.depth": depths / 10**n})
+        assert "\n" not in str(got.value)
+        family(case, ["pinion_speed"]).require({f"faults.{n}.depth": depths / 10 ** (2 * n)})
+    family(mean, ["pinion_speed"]).require({"faults.2.revolutions": np.array([1e6, 2e6])})
+    textbook = gear_case(load_case(case.text, {"model.stiffness": "textbook-30-degree"}))
+    with pytest.raises(InputError, match="nothing here feels it"):
+        family(textbook, ["pinion_speed"]).require({"faults.0.depth": depths})
+
+
+def test_a_notice_names_what_varies_in_place_of_the_file() -> None:
+    case = faulty(of("crack"))
+    (notice,) = fault_notices(case, varied=["pinion_speed", "faults.0.depth"])
+    assert notice.data["varied"] == ["faults.0.depth"]
+    assert "faults.0.depth" in notice.text
+    (plain,) = fault_notices(case, varied=["pinion_speed"])
+    assert plain.text == next(fault_notices(case)).text
+    # only answers and runs have that stress
+    assert "root" not in plain.text
 
 
 def test_some_tooth_must_touch() -> None:

@@ -197,7 +197,7 @@ def test_a_high_tooth_is_the_one_that_is_pressed_most() -> None:
     high = PitchError("pinion", tuple(8e-6 * (np.arange(12) == 4)))
     cycle = mesh_cycle(SMALL, at(), MODEL, deviations=[high], path_positions=41)
     assert cycle.attrs["mesh_periods"] == 12
-    assert cycle.sizes["mesh_phase"] == 12 * TURN_POSITIONS
+    assert cycle.sizes["mesh_phase"] == 12 * 240
     for name in ("hertz_pressure", "flash_temperature"):
         assert cycle[f"{name}_pinion_tooth"].item() == 5.0
         low, middle, most = (
@@ -287,7 +287,9 @@ def test_a_cycle_solves_its_shares_once(monkeypatch: pytest.MonkeyPatch, teeth: 
 
 def test_stretches_of_a_turn_change_no_number(monkeypatch: pytest.MonkeyPatch) -> None:
     def figures_of() -> dict[str, np.ndarray]:
-        cycle = mesh_cycle(SMALL, at(), MODEL, deviations=errors(SMALL), path_positions=7)
+        cycle = mesh_cycle(
+            SMALL, at(), MODEL, deviations=errors(SMALL), path_positions=7, mesh_positions=96
+        )
         return {str(name): values.values for name, values in cycle.data_vars.items()}
 
     whole = figures_of()
@@ -300,7 +302,7 @@ def test_stretches_of_a_turn_change_no_number(monkeypatch: pytest.MonkeyPatch) -
     for name, values in figures_of().items():
         np.testing.assert_allclose(values, whole[name], rtol=1e-12, atol=1e-18, err_msg=name)
     # 900 positions and the first mesh period, but eight periods and it at least
-    assert max(sizes) <= 900 + TURN_POSITIONS
+    assert max(sizes) <= 900 + 96
 
 
 def test_the_tables_of_a_turn_are_held_once_along_a_row_of_speeds() -> None:

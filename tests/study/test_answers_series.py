@@ -15,6 +15,7 @@ from thermogear.base.limits import LOOK, OPEN
 from thermogear.base.units import RPM
 from thermogear.case.case import gear_case, load_case
 from thermogear.case.family import GearFamily
+from thermogear.mesh.elastic import TURN_POSITIONS
 from thermogear.results.answer import Answer
 from thermogear.results.result import Result
 from thermogear.study.answers.series import Spread, _by_damping, _unsure
@@ -156,8 +157,9 @@ def test_a_part_of_the_series_is_the_case_with_its_drawing() -> None:
     for place in (0, 5):
         drawn = f"flanks.drawing={place}"
         alone = result_of(
-            "flanks.parts=1", "flanks.teeth=drawn", drawn, "gears.marks=[1, 1]", *HELD
-        )
+            "flanks.parts=1", "flanks.teeth=drawn", drawn, "gears.marks=[1, 1]", *HELD,
+            f"grid.mesh_positions={TURN_POSITIONS}",  # those of a series
+        )  # fmt: skip
         figures = {one.name: one.figures for one in alone.answers}
         error = 1e-6 * figures["transmission_error"]["hot"]
         assert data["turn_error"].values[place] == pytest.approx(error, rel=1e-9)

@@ -12,12 +12,13 @@ from thermogear.base.errors import InputError
 from thermogear.case.case import GearCase, gear_case, load_case
 from thermogear.case.family import family
 from thermogear.case.points import points_of
-from thermogear.mesh.elastic import LoadedPair, turn_phases
-from thermogear.mesh.series import TURN_POSITIONS, series_mesh
+from thermogear.mesh.elastic import TURN_POSITIONS, LoadedPair, turn_phases
+from thermogear.mesh.series import series_mesh
 from thermogear.mesh.thermal import HotPair
 from thermogear.results.result import Result
+from thermogear.study import faults
 from thermogear.study.declared import ReliefSurvey, Sensitivity, declared
-from thermogear.study.faults import FaultMotion, fault_motions, sound_pair
+from thermogear.study.faults import FaultMotion, fault_motions, resolving
 from thermogear.study.friction import friction_survey
 from thermogear.study.series import Series, series_parts
 
@@ -78,11 +79,14 @@ def test_a_vanishing_fault_adds_nothing(kind: str, size: str) -> None:
 
 def test_both_motions_are_orbits_of_the_exact_engine(motions: tuple[FaultMotion, ...]) -> None:
     """Events to rounding, one shooting over the turn, the sound pair over one mesh period."""
-    for case, name in ((faulty(), "faulty"), (sound_pair(faulty()), "sound")):
-        rows = np.column_stack([SPEEDS, [80.0, 80.0]])
-        points = family(case, ("pinion_speed", "pinion_torque"))(rows)
+    for case, name in ((faulty(), "faulty"), (faulty().sound(), "sound")):
         for place, motion in enumerate(getattr(one, name) for one in motions):
-            point = points.take(np.array([place]))
+            # the first is at 1/14 of the speed at which the mesh meets the natural frequency
+            fine = resolving(case, 1 - place)
+            point = family(fine, ("pinion_speed", "pinion_torque"))(
+                np.array([[SPEEDS[place], 80.0]])
+            )
+            assert motion.samples == (192, 96)[place]
             own, k = motion.samples, point.mesh_periods
             assert motion.mesh_periods == 14
             assert motion.repeats
@@ -99,6 +103,32 @@ def test_both_motions_are_orbits_of_the_exact_engine(motions: tuple[FaultMotion,
             assert motion.mesh_force == pytest.approx(
                 np.tile(force, 14 // k), abs=1e-3 * point.force[0]
             )
+
+
+def test_a_slow_pair_is_followed_up_to_its_natural_frequency(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Twice as many positions change nothing; 24 harmonics hold no line of the natural vibration.
+
+    96 positions with 24 harmonics were 50 to 90 % off such an acceleration.
+    """
+    case = faulty()
+    alike = family(case.sound().mean_tooth(), ("pinion_speed",), state="undeformed")
+    natural = float(alike(np.array([[120.0]])).rate[0]) / 14 / 120.0
+    found = []
+    for positions in (10, 20):
+        monkeypatch.setattr(faults, "POSITIONS", positions)
+        found += fault_motions(case, 120.0, 80.0, state="undeformed")
+    for name in ("faulty", "sound"):
+        one, two = (getattr(motion, name) for motion in found)
+        off = np.std(one.acceleration - two.acceleration) / np.std(two.acceleration)
+        print(f"{name}: twice the positions change {off:.1e}")
+        assert off < 0.05
+        spectrum = one.lines()
+        ringing = abs(spectrum.frequencies / natural - 1.0) < 0.1
+        assert 0.9 * natural > 24.0
+        assert spectrum.frequencies[-1] > 2.0 * natural
+        assert spectrum.amplitudes[ringing].max() > 0.5 * spectrum.amplitudes.max()
 
 
 def test_acceleration_is_the_second_derivative(motions: tuple[FaultMotion, ...]) -> None:

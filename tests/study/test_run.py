@@ -260,11 +260,11 @@ def test_the_figures_of_a_series_stand_beside_the_part_that_is_run(small: Result
             "pinion_speed": ("speed", speed[1] * np.array([0.2, 0.7, 1.0, 1.2])),
         }
     )  # fmt: skip
-    table = key_results(mesh, None, None, series)
+    table = key_results(mesh, None, series)
     cells = [list(row[-2:]) for row in table.rows]
     counted = f"{np.count_nonzero(factor > 1.8)} of 16"
     assert cells == [["–", "–"], ["6.0 (2.0 to 10)", counted], ["–", "–"], ["–", "–"]]
-    assert len(table.head) == len(key_results(mesh, None, None).head) + 2
+    assert len(table.head) == len(key_results(mesh, None).head) + 2
 
 
 def test_a_run_says_which_part_of_a_series_it_is_of() -> None:

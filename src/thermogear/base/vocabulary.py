@@ -133,6 +133,7 @@ QUANTITIES: dict[str, Quantity] = {
             ("flash_temperature", "K", "flash temperature rise", "greatest", "most", "ΔT_f"),
             ("hertz_pressure", "Pa", "Hertzian pressure", "greatest", "most", "p_H"),
             ("film_parameter", "1", "film parameter", "least", "least", "Λ"),
+            ("contact_temperature", "K", "contact temperature", "greatest", "most", "T_c"),
         )
         for key, meaning in {
             "median_of_turn": (unit, f"{worst} {words} of a tooth pair, median of the turn", sign),
@@ -142,6 +143,10 @@ QUANTITIES: dict[str, Quantity] = {
             "wheel_tooth": ("1", f"wheel tooth of the {worst} {words}, 1 at mesh phase 0"),
         }.items()
     },
+    # of the worst tooth pair of the turn, where they differ
+    "greatest_flash_temperature": Quantity("K", "greatest flash temperature rise", "ΔT_f"),
+    "greatest_contact_temperature": Quantity("K", "greatest contact temperature", "T_c"),
+    "least_film_parameter": Quantity("1", "least film parameter", "Λ"),
     "pinion_heat_share": Quantity("1", "share of the frictional heat into the pinion", "β₁"),
     "contact_temperature": Quantity("K", "greatest contact temperature of both flanks", "T_c"),
     "pinion_body_temperature": Quantity(

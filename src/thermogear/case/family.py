@@ -34,6 +34,7 @@ from thermogear.case.allowed import (
 from thermogear.case.backlash import require_room
 from thermogear.case.base import Case
 from thermogear.case.case import DimensionlessCase, GearCase, gear_case
+from thermogear.case.faults import fault_words, whole_turn
 from thermogear.case.points import Points, excitations, on_numbers, points_of
 from thermogear.case.ranges import warn_of_torque
 from thermogear.case.samples import (
@@ -212,6 +213,8 @@ class GearFamily:
         """
         for name, values in axes.items():
             within(name, gear_reader(name), values)
+            if name.startswith("faults."):
+                self._require_felt(name)
         if "cold_half_backlash" in axes:
             half = axes["cold_half_backlash"]
             require_room("cold_half_backlash", half, self.case.pair, of_half=1.0)
@@ -222,6 +225,18 @@ class GearFamily:
         for corner in product(*ends):
             if corner:
                 self.case.with_values(dict(zip(read, corner, strict=True)), told=False)
+
+    def _require_felt(self, name: str) -> None:
+        """Refuse a fault that nothing feels: of one tooth in the mean one, a crack elsewhere."""
+        fault = self.case.file.faults[int(name.split(".")[1])]
+        alone = self.case.file.gears.period == "mesh" and whole_turn(fault)
+        if alone or (fault.kind == "crack" and self.model.stiffness != "loaded"):
+            raise InputError(
+                name,
+                fault_words(fault),
+                why="nothing here feels it",
+                fix='state gears.period = "turn", and a bundle with model.stiffness = loaded',
+            )
 
     def __call__(self, points: Floats) -> Points:
         rows = np.asarray(points, dtype=float)

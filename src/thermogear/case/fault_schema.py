@@ -62,7 +62,10 @@ class FaultTable(Table):
     diameter: Annotated[float | None, Measure("length", "0.1 mm", "20000 mm", example="70 mm")] = (
         Field(default=None, title="at the middle of a spall; the operating pitch circle")
     )
-    amount: Annotated[float | None, measure("length", bounds.PITCH_ERROR, example="15 um")] = Field(
+    amount: Annotated[
+        float | None,
+        measure("length", bounds.PITCH_ERROR, "of an eccentricity 0 um at least", example="15 um"),
+    ] = Field(
         default=None,
         title="of pitch: along the line of action, > 0 towards the drive flank; of eccentricity: "
         "of the centre, half the run-out",

@@ -26,8 +26,9 @@ from thermogear.gears.tooth_damage import Chip, Crack, Damage, MissingTooth, way
 from thermogear.gears.touch import first_touch
 from thermogear.gears.turn import Eccentricity, turn_period
 
-_ROOT_OR_TIP = ("crack", "chip", "missing")
+_ROOT_OR_TIP = {"crack", "chip", "missing"}
 """Kinds of which a tooth has one: each is solved on a tooth that is whole else."""
+_BESIDE = "one of crack, chip and missing on a tooth, nothing on a missing one, spalls side by side"
 EVERY = 8
 """Positions of a mesh period at which some tooth must touch."""
 _NAMES = {"radius": "diameter", "error": "amount", "meshes": "revolutions", "added": "depth"}
@@ -40,7 +41,7 @@ def fault_deviations(file: GearFile, pair: GearPair) -> Iterator[Deviation]:
     A fault of no size is none. InputError under the field of the file for a tooth that there is
     not, a crack or break of a tooth that has one, and what the teeth cannot have.
     """
-    seen: dict[tuple[str, int], str] = {}
+    seen: dict[tuple[str, int], list[FaultTable]] = {}
     damaged: list[Deviation] = []
     for number, fault in enumerate(file.faults):
         field, teeth = f"faults[{number}]", pair.gear(fault.gear).teeth
@@ -49,14 +50,15 @@ def fault_deviations(file: GearFile, pair: GearPair) -> Iterator[Deviation]:
             raise InputError(f"{field}.tooth", fault.tooth, allowed=f"1..{teeth}", why=why)
         if not fault.acts:
             continue
-        if fault.kind in _ROOT_OR_TIP:
-            here = fault.gear, fault.place
-            if here in seen:
-                got = f"{fault.kind} of tooth {fault.place + 1} of the {fault.gear}"
-                why = f"it has another, {seen[here]}, and the two together are not solved"
-                allowed = "one of crack, chip and missing on a tooth"
-                raise InputError(field, got, allowed=allowed, why=why, fix="leave one out")
-            seen[here] = fault.kind
+        here = seen.setdefault((fault.gear, fault.place), [])
+        if other := next((one.kind for one in here if _clash(fault, one, pair)), ""):
+            raise InputError(
+                field,
+                f"{fault.kind} of tooth {fault.place + 1} of the {fault.gear}",
+                allowed=_BESIDE,
+                why=f"it has another, {other}, and the two together are not solved",
+                fix="leave one out",
+            )
         try:
             deviation = _deviation(fault, file, pair)
             if isinstance(deviation, Crack):
@@ -68,6 +70,7 @@ def fault_deviations(file: GearFile, pair: GearPair) -> Iterator[Deviation]:
             inner = "share" if inner == "depth" and fault.share is not None else inner
             error.got = f"a radius of {error.got}" if inner == "radius" else error.got
             raise error.named(f"{field}.{_NAMES.get(inner, inner)}") from error
+        here += [fault] * (whole_turn(fault) and fault.kind != "eccentricity")
         if isinstance(deviation, Damage):
             damaged.append(deviation)
         if deviation is not None:
@@ -83,6 +86,15 @@ def fault_deviations(file: GearFile, pair: GearPair) -> Iterator[Deviation]:
         )
 
 
+def _clash(fault: FaultTable, other: FaultTable, pair: GearPair) -> bool:
+    """Whether two faults of one tooth are not solved together, or one of them is nowhere."""
+    kinds, base = {fault.kind, other.kind}, 2.0 * pair.gear(fault.gear).base_radius
+    # along the flank, whose arc from the base circle is rho^2/(2 r_b)
+    apart = abs(_middle(fault, pair) ** 2 - _middle(other, pair) ** 2) / base
+    over = apart < 0.5 * ((fault.length or 0.0) + (other.length or 0.0))
+    return (kinds == {"spall"} and over) or "missing" in kinds or kinds <= _ROOT_OR_TIP
+
+
 def _deviation(fault: FaultTable, file: GearFile, pair: GearPair) -> Deviation | None:
     gear, tooth = fault.gear, fault.place
     width = 1.0 if fault.width_share is None else fault.width_share
@@ -95,9 +107,8 @@ def _deviation(fault: FaultTable, file: GearFile, pair: GearPair) -> Deviation |
         errors[tooth] = fault.amount or 0.0
         return PitchError(gear, tuple(errors))
     if fault.kind == "crack":
-        depth = fault.depth
-        if fault.share is not None:
-            depth = fault.share * way_across(pair.gear(gear), fault.slope)
+        across = way_across(pair.gear(gear), fault.slope)
+        depth = fault.depth if fault.share is None else fault.share * across
         return Crack(gear, tooth=tooth, depth=depth or 0.0, angle=fault.slope, width_share=width)
     if fault.kind == "chip":
         chip = Chip(gear, tooth=tooth, height=fault.height or 0.0)
@@ -107,15 +118,18 @@ def _deviation(fault: FaultTable, file: GearFile, pair: GearPair) -> Deviation |
     return (_spall if fault.kind == "spall" else _wear)(fault, pair, force)
 
 
+def _middle(fault: FaultTable, pair: GearPair) -> float:
+    """Radius [m] of the middle of a spall, by default that of the operating pitch circle."""
+    string = pair.path.c if fault.gear == "pinion" else pair.line_of_action - pair.path.c
+    pitch = math.hypot(pair.gear(fault.gear).base_radius, string)
+    return pitch if fault.diameter is None else 0.5 * fault.diameter
+
+
 def _spall(fault: FaultTable, pair: GearPair, force: float) -> Deviation:
     """A pocket as wide as the face, or one beside which the rest of the face carries ``force``."""
     gear, depth, length = fault.gear, fault.depth or 0.0, fault.length or 0.0
     width = 1.0 if fault.width_share is None else fault.width_share
-    if fault.diameter is not None:
-        radius = 0.5 * fault.diameter
-    else:
-        string = pair.path.c if gear == "pinion" else pair.line_of_action - pair.path.c
-        radius = math.hypot(pair.gear(gear).base_radius, string)
+    radius = _middle(fault, pair)
     spalled(pair, gear, radius=radius, length=length)
     if width == 1.0:
         whole, pocket = (Pocket(gear, radius=radius, length=length, depth=d) for d in (0.0, depth))
@@ -185,7 +199,7 @@ def fault_words(fault: FaultTable) -> str:
     }
     size = sizes[fault.kind]
     name = {"missing": "missing tooth", "pitch": "pitch error"}.get(fault.kind, fault.kind)
-    every = fault.kind == "eccentricity" or (fault.kind == "wear" and fault.tooth is None)
+    every = fault.kind == "eccentricity" or not whole_turn(fault)
     where = fault.gear if every else f"{fault.gear} tooth {fault.place + 1}"
     return f"{name}{f' of {size}' if size else ''}, {where}"
 

@@ -90,9 +90,11 @@ class Measure(Reader):
             value = read_quantity(raw, self.kind)
         except InputError as error:
             allowed = self.allowed or f"a text: number and unit of {self.kind}"
-            raise InputError(
-                "", error.got, allowed=allowed, why=error.why, fix=error.fix
-            ) from error
+            # in the unit of this field's own range
+            fix = (error.fix or "").replace(
+                f' {KINDS[self.kind].shown}"', f" {self.example.split(' ', 1)[1]}"
+            )
+            raise InputError("", error.got, allowed=allowed, why=error.why, fix=fix) from error
         if self.kind == "temperature" and value <= 0.0:
             raise InputError(
                 "",

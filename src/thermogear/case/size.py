@@ -7,7 +7,6 @@ from thermogear.base.memory import SHARE, free_bytes
 from thermogear.base.vocabulary import STATES
 from thermogear.case.base import Case
 from thermogear.case.case import DimensionlessCase, GearCase
-from thermogear.mesh.elastic import TURN_POSITIONS
 
 _NUMBER = 8  # bytes of a float
 _PATH_CURVES = 30  # curves over the path of contact, working copies included
@@ -19,8 +18,7 @@ def estimated_bytes(case: Case) -> int:
     sim = case.simulation
     motion = 2 * sim.samples * (sim.periods + sim.sample_periods) + 10 * sim.periods
     if isinstance(case, GearCase):
-        turn = case.period.mesh_periods
-        over_mesh = case.mesh_positions if turn == 1 else TURN_POSITIONS * turn
+        over_mesh = case.mesh_positions * case.period.mesh_periods
         curves = _PATH_CURVES * case.path_positions + _MESH_CURVES * over_mesh
         states = len(case.models) * (len(STATES) + len(case.gear_temperatures))
         return _NUMBER * states * len(case.speeds) * len(case.torques) * (curves + motion)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -117,7 +117,7 @@ def bifurcation(
     from thermogear.case.axes import parse_axis, parse_numbers
     from thermogear.study.diagrams import case_diagram
 
-    read = _of_mean_tooth(delivery.load(case, options["overrides"]), options)
+    read = _of_mean_tooth(delivery.load(case, options["overrides"]), options, over)
     if len(over) != 1:
         raise InputError("over", f"{len(over)} parameters", allowed="one for a diagram")
     name, values = parse_axis(read, over[0])
@@ -165,7 +165,7 @@ def map_(
     from thermogear.results.work import require_space
     from thermogear.study.diagrams import case_map, train_maps, whole_or_spared
 
-    read = _of_mean_tooth(delivery.load(case, options["overrides"]), options)
+    read = _of_mean_tooth(delivery.load(case, options["overrides"]), options, over)
     if len(over) != 2:
         raise InputError("over", f"{len(over)} parameters", allowed="two for a map")
     axes = parse_axes(read, over)
@@ -289,7 +289,7 @@ def sweep(
     from thermogear.study.sweep import sweep_plan
 
     read = delivery.load_gears(case, options["overrides"])
-    _of_mean_tooth(read, options, over_speeds=True)
+    _of_mean_tooth(read, options, over, over_speeds=True)
     axes = parse_axes(read, over)
     delivery.heat_once(axes, options["state"])
     bundle, state = _choice(read, options)
@@ -400,14 +400,19 @@ def _choice(
 # --- running ------------------------------------------------------------------------------
 
 
-def _of_mean_tooth(case: Any, options: dict[str, Any], *, over_speeds: bool = False) -> Any:
+def _of_mean_tooth(
+    case: Any, options: dict[str, Any], over: Sequence[str] = (), *, over_speeds: bool = False
+) -> Any:
     """The case with the mean tooth of its gears, unless it states its period; notices say so."""
     from thermogear.study.declared import fault_notices, mean_tooth_notices
 
     if case.kind != "gear":
         return case
     taken = case.over_speeds() if over_speeds else case.unless_stated("period", "mesh")
-    options["notices"] = (*fault_notices(taken), *mean_tooth_notices(case, taken))
+    options["notices"] = (
+        *fault_notices(taken, varied=[text.partition("=")[0].strip() for text in over]),
+        *mean_tooth_notices(case, taken),
+    )
     return taken
 
 

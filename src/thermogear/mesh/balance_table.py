@@ -13,6 +13,7 @@ from thermogear.base.arrays import Dataset
 from thermogear.base.vocabulary import HEAT_NOT_SETTLED, STATUS, label
 from thermogear.heat.gearbox import Losses
 from thermogear.mesh.balance import HeatBalance
+from thermogear.mesh.turn_spread import OF_TURN, OF_WORST_PAIR
 
 LOSSES = ("mesh", "churning", "bearing_1", "bearing_2")
 
@@ -111,6 +112,8 @@ OF_OIL = (
     "pinion_share_of_heat",
     "power_off_the_path",
     "mesh_efficiency",
+    *OF_WORST_PAIR,
+    *(name for name, of in OF_TURN.items() if of != "hertz_pressure"),
 )
 """What of an undeformed pair depends on the oil's temperature."""
 

@@ -25,10 +25,9 @@ from thermogear.gears.pair import GearPair
 from thermogear.heat.expansion import base_circle_growth
 from thermogear.heat.gearbox import body_radius
 from thermogear.heat.losses import efficiency
-from thermogear.heat.temperature import conduction_power, contact_temperature
+from thermogear.heat.temperature import conduction_power
 from thermogear.mesh.clearance import PARTS, Clearance
 from thermogear.mesh.elastic import (
-    TURN_POSITIONS,
     ElasticPair,
     LoadedPair,
     MeshCurves,
@@ -45,7 +44,7 @@ from thermogear.mesh.mesh_heat import MeshHeat, mesh_heat
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair, thesis_thermal_stiffness
-from thermogear.mesh.turn_spread import OF_TURN, spread_of_turn
+from thermogear.mesh.turn_spread import OF_TURN, OF_WORST_PAIR, WORST, spread_of_turn
 
 PATH = ("operating", "path_position")
 PHASE = ("operating", "mesh_phase")
@@ -89,11 +88,12 @@ def mesh_cycle(
     (:func:`~thermogear.mesh.clearance.Clearance`); the cold half backlash is that of the flanks
     without them. Where teeth differ or a gear is eccentric
     (:func:`~thermogear.gears.turn.turn_period`) the cycle is the whole turn: ``mesh_phase`` runs
-    over its L mesh periods, the attribute ``mesh_periods``, with :data:`TURN_POSITIONS` positions
-    each; the half backlash and the jams are those of the tightest tooth pairs of the turn; losses
-    and what is along the path are of the mean over all tooth pairs, the latter at the mean of their
-    load shares; and :data:`OF_TURN` say how flash temperature, Hertz pressure and film differ
-    between the tooth pairs, each by its worst place along the path. ``model`` defaults to
+    over its L mesh periods, the attribute ``mesh_periods``, with ``mesh_positions`` in each, so
+    that a sound pair beside it is computed at the same ones; the half backlash and the jams are
+    those of the tightest tooth pairs of the turn; losses and what is along the path are of the mean
+    over all tooth pairs, the latter at the mean of their load shares; and :data:`OF_TURN` say how
+    flash temperature, Hertz pressure and film differ between the tooth pairs, each by its worst
+    place along the path. ``model`` defaults to
     :meth:`MeshModel.consistent`. Zero torque gives zero contact and flash; zero speed gives
     zero flash; the pitch point has its limit values. Warns outside the ranges of the sources;
     raises InputError for fewer than 2 positions.
@@ -155,8 +155,7 @@ def _asked(want: Collection[str]) -> Collection[str]:
 class Cycle:
     """What the quantities of one cycle are made of, each computed when first asked for.
 
-    At path positions ``s`` [m] and ``positions`` of the mesh period, :data:`TURN_POSITIONS` of each
-    where it is not the only one.
+    At path positions ``s`` [m] and ``positions`` of each mesh period.
     """
 
     hot: HotPair
@@ -175,8 +174,7 @@ class Cycle:
     @property
     def phase(self) -> Floats:
         """Of one mesh period."""
-        count = self.positions if self.mesh_periods == 1 else TURN_POSITIONS
-        return np.asarray(np.arange(count) / count)
+        return np.asarray(np.arange(self.positions) / self.positions)
 
     def quantities(self, want: Collection[str] = ()) -> dict[str, ArrayLike]:
         """The bare arrays of :func:`mesh_cycle`, SI, in the order of :data:`TABLE`, then status.
@@ -287,7 +285,7 @@ class Cycle:
         for name, mean in (("rim_stiffness", "rim"), ("bore_clamped_stiffness", "clamped")):
             if name in names:
                 known &= np.isfinite(getattr(self, mean))
-        if any(name in CONTACT or name == "edge_contact" or name in OF_TURN for name in names):
+        if not {"edge_contact", *CONTACT, *OF_WORST_PAIR, *OF_TURN}.isdisjoint(names):
             known &= self.path.settled
         return np.where(known, found, STATUS.index("not_converged"))
 
@@ -326,6 +324,14 @@ def _of_contact(of: Made, c: Cycle) -> Floats:
     return np.where(c.path.settled[:, None], values, np.nan)
 
 
+def _worst(name: str, c: Cycle) -> Floats:
+    """The worst along the path, of all tooth pairs of a turn where these differ."""
+    sign = WORST[name][1]
+    if c.teeth_differ:
+        return c.of_turn[f"{name}_{'greatest' if sign > 0.0 else 'least'}_of_turn"]
+    return np.asarray(sign * np.fmax.reduce(sign * _of_contact(CONTACT[name], c), axis=-1))
+
+
 def _of_heat(name: str, c: Cycle) -> Floats:
     """A time mean over the mesh; nan where the loaded contact is not known."""
     return np.where(c.heat.settled, getattr(c.heat, name), np.nan)
@@ -355,12 +361,7 @@ CONTACT: dict[str, Made] = {
     "flash_temperature_mixed": lambda c: c.path.flash(c.path.mixed),
     "flash_temperature_dry": lambda c: c.path.flash(c.path.dry),
     "pinion_heat_share": lambda c: c.path.heat_share,
-    "contact_temperature": lambda c: contact_temperature(
-        c.flash,
-        c.path.heat_share,
-        bulk_1=c.path.body_temperatures[0],
-        bulk_2=c.path.body_temperatures[1],
-    ),
+    "contact_temperature": lambda c: c.path.contact(c.flash),
     "pinion_body_temperature": lambda c: c.path.body_temperatures[0],
     "wheel_body_temperature": lambda c: c.path.body_temperatures[1],
 }
@@ -446,6 +447,7 @@ TABLE: dict[str, tuple[tuple[str, ...], Made]] = {
     "jam_temperature": (POINT, lambda c: c.gap.jam_temperature),
     "proportional_jam_temperature": (POINT, lambda c: c.gap.proportional_jam_temperature),
     "edge_contact_share": (POINT, lambda c: c.curves.edge_share),
+    **{name: (POINT, partial(_worst, of)) for name, of in OF_WORST_PAIR.items()},
     **{name: (POINT, partial(_one_of, lambda c: c.of_turn, name)) for name in OF_TURN},
 }
 """Every stored quantity, in the order of storage: its dimensions and what it is made of."""

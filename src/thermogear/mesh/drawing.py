@@ -32,7 +32,8 @@ from thermogear.gears.deviations import Deviation, FlankShape
 from thermogear.gears.geometry import Gear
 from thermogear.gears.outline import LAND, outline, span_over_teeth
 from thermogear.gears.pair import GearPair
-from thermogear.gears.turn import mean_tooth
+from thermogear.gears.tooth_damage import Damage
+from thermogear.gears.turn import Eccentricity, mean_tooth
 from thermogear.mesh.clearance import Clearance
 from thermogear.mesh.elastic import LoadedPair, elastic_pair
 from thermogear.mesh.model import MeshModel
@@ -121,7 +122,7 @@ def drawn_gears(
     skipped = sorted({
         kind_in_words(whole)
         for whole, mean in zip(given, deviations, strict=True)
-        if not isinstance(mean, FlankShape)
+        if not isinstance(mean, FlankShape | Damage | Eccentricity)
     })  # fmt: skip
     return label(
         {

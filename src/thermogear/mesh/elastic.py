@@ -36,9 +36,10 @@ STARTS = {
 }
 """Where the beam integrals begin, by the model's choice of stiffness."""
 TURN_POSITIONS = 96
-"""Positions of every mesh period of a turn. The greatest dynamic force over a turn at a natural
-over a mesh frequency of .15 moves by .3 % (median of 64 drawings of four pairs, at most 4 %) from
-there to 192, by 1 % at most above; 64 positions move it by 3 %."""
+"""Positions of every mesh period of a turn of a series, and of its loaded contact's page. The
+greatest dynamic force over a turn at a natural over a mesh frequency of .15 moves by .3 % (median
+of 64 drawings of four pairs, at most 4 %) from there to 192, by 1 % at most above; 64 positions
+move it by 3 %."""
 BLOCK = 40_000
 """Positions of all operating points over a turn that are solved at once: about 30 MB."""
 KEPT = 200_000

@@ -48,7 +48,12 @@ from thermogear.heat.lubrication import (
     walther_slope,
 )
 from thermogear.heat.moving_source import flash_temperature
-from thermogear.heat.temperature import flank_exchange, frictional_heat, heat_partition
+from thermogear.heat.temperature import (
+    contact_temperature,
+    flank_exchange,
+    frictional_heat,
+    heat_partition,
+)
 from thermogear.mesh.elastic import ElasticPair, PathShare
 from thermogear.mesh.thermal import HotPair
 
@@ -342,6 +347,15 @@ class FrictionPath:
     def flash(self, friction: Floats) -> Floats:
         """Flash temperature rise [K] under ``friction``; nan where that is unknown."""
         return np.asarray(friction * self.flash_of_unit_friction)
+
+    def contact(self, flash: Floats) -> Floats:
+        """Greatest contact temperature [K] of both flanks under a ``flash`` [K]."""
+        return contact_temperature(
+            flash,
+            self.heat_share,
+            bulk_1=self.body_temperatures[0],
+            bulk_2=self.body_temperatures[1],
+        )
 
     @cached_property
     def heat_share(self) -> Floats:

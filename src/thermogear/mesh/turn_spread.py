@@ -15,8 +15,9 @@ WORST: dict[str, tuple[Callable[[FrictionPath], Floats], float]] = {
     # Hertz's formula says nothing about a corner
     "hertz_pressure": (lambda path: np.where(path.edge > 0, 0.0, path.pressure), 1.0),
     "film_parameter": (lambda path: path.film_parameter, -1.0),
+    "contact_temperature": (lambda path: path.contact(path.flash(path.friction)), 1.0),
 }
-"""What is worst where, and its sign: the greatest flash and pressure, the least film."""
+"""What is worst where, and its sign: the least film, the greatest of all else."""
 DECILE = 0.9
 """Part of the tooth pairs that are no worse than the decile."""
 
@@ -29,6 +30,13 @@ def _names(name: str, sign: float) -> tuple[str, ...]:
 
 OF_TURN = {made: name for name, (_, sign) in WORST.items() for made in _names(name, sign)}
 """Every quantity of :func:`spread_of_turn` and what it is of."""
+
+OF_WORST_PAIR = {
+    "greatest_flash_temperature": "flash_temperature",
+    "greatest_contact_temperature": "contact_temperature",
+    "least_film_parameter": "film_parameter",
+}
+"""Of the tooth pair that is worst, each by its worst place: what is judged, and of what it is."""
 
 
 def spread_of_turn(elastic: ElasticPair, s: Floats, every: PathShare) -> dict[str, Floats]:

@@ -429,15 +429,12 @@ def meshing(
         )
         loaded = part.torque > 0.0
         turning = loaded & (part.speed > 0.0)
-        film = cycle["film_parameter"].min("path_position").values
         friction = cycle["friction_coefficient"] * cycle["line_load"]
         carried = cycle["line_load"].sum("path_position").values
         for name, values in {
-            "greatest_flash": cycle["flash_temperature"].max("path_position").values,
-            "greatest_contact_temperature": cycle["contact_temperature"]
-            .max("path_position")
-            .values,
-            "least_film_parameter": np.where(turning, film, np.nan),
+            "greatest_flash": cycle["greatest_flash_temperature"].values,
+            "greatest_contact_temperature": cycle["greatest_contact_temperature"].values,
+            "least_film_parameter": np.where(turning, cycle["least_film_parameter"].values, np.nan),
             "mean_friction": np.where(
                 turning,
                 friction.sum("path_position").values / np.where(carried > 0.0, carried, 1.0),

@@ -109,17 +109,23 @@ class Study:
         return {name: value for name, value in plain if value is not None}
 
 
-def fault_notices(case: GearCase, *, sound: bool = False, about: str = "") -> Iterator[Notice]:
+def fault_notices(
+    case: GearCase, *, sound: bool = False, about: str = "", varied: Sequence[str] = ()
+) -> Iterator[Notice]:
     """The faults that a study of ``case`` takes, and those of its file that it leaves out.
 
-    ``sound``: it takes none of them; ``about``: which of its parts that is said of.
+    ``sound``: it takes none of them; ``about``: which of its parts that is said of; ``varied``:
+    the names of parameters that are put to other values.
     """
     from thermogear.base.notice import Notice
 
     acting = [] if sound else case.faults()
     if acting:
         deaf = [model.name for model in case.models if model.stiffness != "loaded"]
-        yield Notice.of("fault_taken", about=about, faults="; ".join(acting), deaf=deaf or None)
+        yield Notice.of(
+            "fault_taken", about=about, faults="; ".join(acting), deaf=deaf or None,
+            varied=sorted(name for name in varied if name.startswith("faults.")) or None,
+        )  # fmt: skip
     left = [words for words in case.all_faults if words not in acting]
     if left:
         yield Notice.of("fault_left_out", about=about, faults="; ".join(left))

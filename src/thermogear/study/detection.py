@@ -70,7 +70,9 @@ LOADS = (0.5, 1.0, 1.5)
 """Loads over that of a case that states one."""
 SAMPLES = 64
 """Of a mesh period, a divisor of 192. Of its contact 96 positions are solved: 64 move the rms of an
-acceleration by 10 to 15 %, and what an indicator sees with it."""
+acceleration by 10 to 15 %, and what an indicator sees with it. Harmonics are the case's at every
+speed: of slow pairs they do not reach the natural vibration, as those of
+:func:`~thermogear.study.faults.fault_motions` do."""
 STATES = (HOT, UNDEFORMED)
 SIGNALS = ("acceleration", "mesh_force")
 QUESTIONS = ("same machine", "another machine")

@@ -102,7 +102,7 @@ def _flank_notices(case: GearCase) -> Iterator[Notice]:
     yield from fault_notices(case.mean_tooth())
     yield from mean_tooth_notices(case, case.mean_tooth())
     if case.file.gears.part == "nominal":
-        others = {kind_in_words(d) for d in case.all_deviations if d not in case.deviations}
+        others = {kind_in_words(d) for d in case.sound().all_deviations if d not in case.deviations}
         if others:
             yield Notice.of("nominal_flanks_drawn", deviations=sorted(others))
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base import fourier
 from thermogear.base.arrays import Floats
@@ -22,10 +22,19 @@ from thermogear.case.points import Points
 from thermogear.case.thermal_state import HOT, StateLike
 from thermogear.case.turn_response import SAMPLES, turn_lanes, turn_tables
 from thermogear.dynamics.turns import STEPS, follow_turns, record_turns
-from thermogear.mesh.elastic import TURN_POSITIONS
 from thermogear.mesh.excite import over_turn as spread
 from thermogear.signals.spectra import Spectrum, amplitude_spectrum
 from thermogear.study.series import series_parts
+
+HIGHEST, MOST_DOUBLINGS = 2.0, 4
+"""Lines are kept up to so many natural frequencies at least (chosen): up to 4 and 12 of them add
+about 10 and 35 % to the rms of a slow pair's acceleration, as flanks that meet on a corner excite
+all. So often is doubled at most: down to a mesh frequency of 1/192 of the natural one (chosen:
+seconds for a turn of 22 mesh periods); slower, the natural vibration is left out."""
+HARMONICS, POSITIONS = 24, 10
+"""Harmonics of a mesh period that its steps resolve, doubled with these; positions of the contact
+in a period of the highest, as by default: 20 move the acceleration of a pair at a fourteenth of its
+resonance speed by 3 %."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -89,16 +98,19 @@ def fault_motions(
     *,
     part: int | None = None,
     state: StateLike = HOT,
-    samples: int = SAMPLES,
+    samples: int | None = None,
 ) -> tuple[FaultMotion, ...]:
     """Settled motions over the turn at each ``speed`` [rad/s] and ``torque`` [N m] of the pinion.
 
     Numbers or arrays that broadcast; the case's points if left out. ``part``: of the series of the
     case's class, from 0, else the part of the case; ``state``: "hot", "undeformed" or the gears'
-    temperature [K]. ``samples`` of a mesh period, a divisor of 192. With faults and without all
-    else is the same, the drawing too; a sound pair of a shorter period is followed over the whole
-    turn. Motions start from rest at the greatest error; where a second motion is possible that one
-    alone is seen. InputError without faults, and for textbook springs, which feel none.
+    temperature [K]. ``samples`` of a mesh period, a divisor of 192; by default 96, four in a
+    period of the highest harmonic. Harmonics are those of the case, 24 by default; of slow pairs
+    48 to 384, on as many more positions and samples, so that they reach :data:`HIGHEST` natural
+    frequencies (:func:`resolving`). With faults and without all else is the same, the drawing too;
+    a sound pair of a shorter period is followed over the whole turn. Motions start from rest at the
+    greatest error; where a second motion is possible that one alone is seen. InputError without
+    faults, and for textbook springs, which feel none.
 
     >>> from thermogear.case.case import load_case
     >>> faults = {"faults": '[{kind = "crack", gear = "pinion", tooth = 3, depth = "2 mm"}]'}
@@ -107,7 +119,7 @@ def fault_motions(
     >>> motion.faulty.mesh_periods, motion.faulty.acceleration.shape == motion.sound.phase.shape
     (25, True)
     """
-    if STEPS % samples:
+    if samples is not None and (samples < 1 or STEPS % samples):
         raise InputError("samples", samples, allowed=f"a divisor of {STEPS}")
     if not case.file.faults or (case.all_faults and not case.faults()):
         raise InputError("faults", "none", fix="state [[faults]] in the case")
@@ -118,25 +130,45 @@ def fault_motions(
         at.speed if speed is None else speed, at.torque if torque is None else torque
     )
     rows = np.stack([np.ravel(values).astype(float) for values in operating], axis=1)
-    both = []
-    for pair in (case, sound_pair(case)):
-        flanks = pair.deviations if part is None else series_parts(pair, part + 1)[part]
-        drawn = replace(pair, deviations=flanks)
-        both.append(family(drawn, ("pinion_speed", "pinion_torque"), state=state)(rows))
-    turn = max(points.mesh_periods for points in both)
-    faulty, sound = (turn_motions(case, over_turns(points, turn), rows, samples) for points in both)
-    return tuple(map(FaultMotion, faulty, sound))
-
-
-def sound_pair(case: GearCase) -> GearCase:
-    """The case without its faults, its mesh at the positions of a turn where the faults make one.
-
-    So what differs is the faults': a mesh period alone has other positions.
-    """
+    axes = ("pinion_speed", "pinion_torque")
     sound = case.sound()
-    if case.period.mesh_periods == sound.period.mesh_periods:
-        return sound
-    return replace(sound, mesh_positions=TURN_POSITIONS)
+    alike = family(sound.mean_tooth(), axes, state=state)(rows)
+    with np.errstate(invalid="ignore"):
+        finer = doublings(alike.rate / alike.mesh_frequency)
+    found: dict[int, FaultMotion] = {}
+    for power in np.unique(finer).tolist():
+        index, both = np.flatnonzero(finer == power), []
+        for pair in (case, sound):
+            flanks = pair.deviations if part is None else series_parts(pair, part + 1)[part]
+            drawn = replace(resolving(pair, power), deviations=flanks)
+            both.append(family(drawn, axes, state=state)(rows[index]))
+        turn = max(points.mesh_periods for points in both)
+        several = (
+            turn_motions(case, over_turns(points, turn), rows[index], samples, doubled=power)
+            for points in both
+        )
+        found |= zip(index.tolist(), map(FaultMotion, *several), strict=True)
+    return tuple(found[place] for place in range(len(rows)))
+
+
+def doublings(ratio: Floats) -> NDArray[np.int64]:
+    """How often :data:`HARMONICS` are doubled to reach :data:`HIGHEST` natural frequencies.
+
+    ``ratio`` of the natural to the mesh frequency; nan, of a point that does not move, asks none.
+
+    >>> doublings(np.array([np.nan, 12.0, 13.0, 1e3]))
+    array([0, 0, 1, 4])
+    """
+    needed = np.nan_to_num(HIGHEST * ratio / HARMONICS, nan=1.0)
+    return np.asarray(np.ceil(np.log2(np.clip(needed, 1.0, 2.0**MOST_DOUBLINGS))).astype(int))
+
+
+def resolving(case: GearCase, power: int) -> GearCase:
+    """The case with :data:`HARMONICS` doubled so often, where it has fewer, and its mesh at
+    positions that resolve them; as it is where there is nothing to double."""
+    harmonics = max(case.harmonics, HARMONICS * 2**power)
+    positions = max(case.mesh_positions, POSITIONS * harmonics)
+    return replace(case, harmonics=harmonics, mesh_positions=positions) if power else case
 
 
 def over_turns(points: Points, mesh_periods: int) -> Points:
@@ -153,9 +185,14 @@ def over_turns(points: Points, mesh_periods: int) -> Points:
     return replace(points, flat=of_turn, error=spread(points.error, times))
 
 
-def turn_motions(case: GearCase, points: Points, rows: Floats, samples: int) -> list[TurnMotion]:
+def turn_motions(
+    case: GearCase, points: Points, rows: Floats, samples: int | None, *, doubled: int = 0
+) -> list[TurnMotion]:
     """The motion at each of ``points``, which have the speeds [rad/s] and torques [N m] of
-    ``rows`` (point, 2); ``samples`` of a mesh period. What :func:`fault_motions` is made of."""
+    ``rows`` (point, 2); ``samples`` of a mesh period, by default :data:`SAMPLES`, ``doubled`` so
+    often as their harmonics are. What :func:`fault_motions` is made of."""
+    every = STEPS * 2**doubled
+    samples = samples or SAMPLES * 2**doubled
     turn, teeth = points.mesh_periods, (case.pair.pinion.teeth, case.pair.wheel.teeth)
     whole = np.full(turn * samples, np.nan)
     recorded = [
@@ -175,9 +212,12 @@ def turn_motions(case: GearCase, points: Points, rows: Floats, samples: int) -> 
             lane, point = lanes.take(np.array([number])), points.take(np.array([place]))
             repeats = int(motions.period[number])
             _, x, _ = record_turns(
-                tables, lane, motions.state[number], turns=max(repeats, 1), samples=samples
+                tables, lane, motions.state[number], turns=max(repeats, 1), samples=every
             )
-            curves = _curves(point, x, max(repeats, 1))
+            curves = {
+                name: curve[:: every // samples]
+                for name, curve in _curves(point, x, max(repeats, 1)).items()
+            }
             recorded[place] = replace(
                 recorded[place], turns=max(repeats, 1), repeats=repeats > 0, **curves
             )

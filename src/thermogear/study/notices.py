@@ -99,7 +99,7 @@ def difference_notices(data: Dataset) -> Iterator[Notice]:
 
 def range_notices(case: GearCase, data: Dataset) -> Iterator[Notice]:
     """Faults, contact, the back side, and where the case's speeds lie."""
-    yield from fault_notices(case)
+    yield from fault_notices(case, varied=[str(name) for name in data.coords])
     yield from contact_notices(data)
     yield from from_data(data)
     ratio = data["frequency_ratio"].values if "frequency_ratio" in data else np.empty(0)

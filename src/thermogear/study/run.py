@@ -42,7 +42,6 @@ from thermogear.dynamics.models import TorsionalModel
 from thermogear.heat.film import regime
 from thermogear.mesh.balance_table import balance_dataset
 from thermogear.mesh.clearance import Clearance
-from thermogear.mesh.elastic import TURN_POSITIONS
 from thermogear.mesh.model import CHOICES
 from thermogear.mesh.profile import profiles
 from thermogear.mesh.thermal import HotPair
@@ -252,7 +251,8 @@ def _bounded(mesh: Dataset) -> Dataset:
     if "mesh_periods" not in mesh.attrs:
         return mesh
     least = mesh["mesh_stiffness"].size / MOST_KEPT
-    step = next((n for n in range(1, TURN_POSITIONS) if n >= least and TURN_POSITIONS % n == 0), 24)
+    each = mesh.sizes["mesh_phase"] // mesh.attrs["mesh_periods"]
+    step = next((n for n in range(1, each) if n >= least and each % n == 0), each)
     return mesh.isel(mesh_phase=slice(None, None, step))
 
 

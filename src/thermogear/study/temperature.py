@@ -119,15 +119,12 @@ def _points(case: GearCase, model: MeshModel, speed: Floats, torque: Floats) -> 
 def _gathered(case: GearCase, settled: HeatBalance, cycle: xr.Dataset) -> xr.Dataset:
     data = balance_dataset(settled).drop_vars("heat_to_ambient")
     operating: Operating = settled.operating
-    share = cycle["film_parameter"]
-
-    def greatest(name: str) -> Floats:
-        return np.asarray(cycle[name].max("path_position").values)
+    worst = ", worst tooth pair of the turn" * ("film_parameter_least_of_turn" in cycle)
 
     weight = cycle["line_load"] * np.abs(cycle["sliding_velocity"])
     friction = (cycle["friction_coefficient"] * weight).sum("path_position").values
     weighed = weight.sum("path_position").values
-    contact = greatest("contact_temperature")
+    contact = cycle["greatest_contact_temperature"].values
     stage, assumed = load_stage(case)
     margin = (
         np.full(contact.shape, np.nan)
@@ -142,21 +139,25 @@ def _gathered(case: GearCase, settled: HeatBalance, cycle: xr.Dataset) -> xr.Dat
             "friction coefficient, mean by sliding power",
         ),
         "greatest_friction": (
-            greatest("friction_coefficient"),
+            cycle["friction_coefficient"].max("path_position").values,
             "1",
             "greatest friction coefficient along the path",
         ),
-        "greatest_flash": (greatest("flash_temperature"), "K", "greatest flash temperature"),
-        "greatest_contact_temperature": (contact, "K", "greatest contact temperature"),
+        "greatest_flash": (
+            cycle["greatest_flash_temperature"].values,
+            "K",
+            f"greatest flash temperature{worst}",
+        ),
+        "greatest_contact_temperature": (contact, "K", f"greatest contact temperature{worst}"),
         "scuffing_margin": (margin, "K", "scuffing temperature less contact temperature"),
         "least_film_parameter": (
-            share.min("path_position").values,
+            cycle["least_film_parameter"].values,
             "1",
-            "least film parameter along the path",
+            f"least film parameter{worst or ' along the path'}",
         ),
         "least_half_backlash": (least, "m", "least half backlash over the mesh phase"),
         "thermal_growth": (
-            greatest("deformation_sum"),
+            cycle["deformation_sum"].max("path_position").values,
             "m",
             "greatest normal growth of both flanks together",
         ),
@@ -170,8 +171,9 @@ def _gathered(case: GearCase, settled: HeatBalance, cycle: xr.Dataset) -> xr.Dat
         "mean_stiffness",
     ):
         variables[name] = cycle[name].variable
+    shares = regime_shares(cycle["film_parameter"].values)
     variables["regime_share"] = dressed(
-        ("operating", "regime_name"), regime_shares(share.values), "1", "share of the path"
+        ("operating", "regime_name"), shares, "1", "share of the path"
     )
     merged = data.assign(variables)
     status = np.where(settled.settled, cycle["status"].values, HEAT_NOT_SETTLED)

@@ -36,7 +36,7 @@ OWN = "own bundle"
 FIGURES = (
     "half_backlash", "jam_temperature", "proportional_jam_temperature", "mean_stiffness",
     "thermal_stiffness_ratio", "natural_frequency", "frequency_ratio", "dte_peak_to_peak",
-    "peak_to_peak_displacement",
+    "peak_to_peak_displacement", "greatest_flash_temperature",
 )  # fmt: skip
 CURVES = {
     "path_position": ("friction_coefficient", "flash_temperature", "deformation_sum"),
@@ -380,12 +380,6 @@ def _joined(
     # x is what a model does not take for the error: of gears the sum of both is compared
     own = "peak_to_peak_displacement" if "dte_peak_to_peak" in found else ""
     variables = {name: found[name] for name in order if name in found and name != own}
-    if "flash_temperature" in found:
-        flash = found["flash_temperature"]
-        variables["greatest_flash_temperature"] = xr.Variable(
-            flash.dims[:-1], np.fmax.reduce(flash.values, axis=-1),
-            {**flash.attrs, "long_name": "greatest flash temperature rise along the path"},
-        )  # fmt: skip
     variables |= {name: found[name] for name in ("status", "label", "present")}
     variables["status"].attrs |= {
         "flag_values": np.arange(len(STATUS) + 1, dtype=np.int8),

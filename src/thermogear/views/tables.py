@@ -110,7 +110,7 @@ KEY_RESULTS = (
         4,
     ),
     Column(Markup("ω<sub>h</sub> undeformed"), lambda row: row["cold"].get("frequency_ratio")),
-    Column("flash", "greatest_flash", 3, KELVIN),
+    Column("flash", "greatest_flash_temperature", 3, KELVIN),
     Column(
         "motion undeformed → hot",
         lambda row: Markup("{} → {}").format(motion_word(row["cold"]), motion_word(row)),
@@ -148,9 +148,7 @@ def _of_series(series: Dataset) -> dict[tuple[float, float], Row]:
     return found
 
 
-def key_results(
-    mesh: Dataset, path: Dataset | None, motion: Dataset | None, series: Dataset | None = None
-) -> Table:
+def key_results(mesh: Dataset, motion: Dataset | None, series: Dataset | None = None) -> Table:
     """Undeformed and hot side by side, a row for every bundle and operating point.
 
     Beside the first bundle, of one part, what the ``series`` has at each point that it answers.
@@ -158,8 +156,6 @@ def key_results(
     if motion is not None:
         moved = labelled(motion)
         mesh = mesh.assign({n: moved[n] for n in ("motion", "dte_peak_to_peak") if n in moved})
-    if path is not None and "flash_temperature" in path:
-        mesh = mesh.assign(greatest_flash=path["flash_temperature"].max("path_position"))
     cold, hot = (rows_along(mesh.isel(state=end), "bundle", "operating") for end in (0, -1))
     beside = {} if series is None else _of_series(series)
     for row in hot[: mesh.sizes["operating"]]:

@@ -46,8 +46,8 @@ MOVES = (*EXCITES, "status", "pinion_speed", "pinion_torque")
 OF_COLD = ("transmission_error",)
 OF_HOT = (
     *EXCITES,
-    "flash_temperature",
-    "film_parameter",
+    "greatest_flash_temperature",
+    "least_film_parameter",
     "normal_force",
     "transmission_error",
     "mean_stiffness",
@@ -174,6 +174,13 @@ class Asked:
     def mesh_periods(self) -> int:
         """After how many of them the pair repeats itself: over so many it is answered."""
         return self.case.period.mesh_periods
+
+    @property
+    def worst_pair(self) -> str:
+        """Of which tooth pair flash and film are, in words; none where all are alike."""
+        return " in the worst tooth pair of the turn" * (
+            self.mesh_periods > 1 and self.model.sharing == "loaded"
+        )
 
     @cached_property
     def mean_tooth(self) -> tuple[Deviation, ...]:

@@ -20,7 +20,7 @@ from thermogear.gears.deviations import GEARS, Deviation, PressureAngleError, Re
 from thermogear.gears.dynamic_factor import dynamic_factor
 from thermogear.gears.iso6336 import iso6336_stiffness
 from thermogear.results.answer import Answer
-from thermogear.study.answers.asked import Asked, answer, undecided
+from thermogear.study.answers.asked import POSITIONS, Asked, answer, undecided
 from thermogear.study.speeds import LOST, Speeds, told
 
 SPEEDS = "At which speeds does it resonate?"
@@ -233,6 +233,25 @@ def rated_factor(asked: Asked, point: int) -> tuple[str, dict[str, Any]]:
     return f"method B {{factor:.2f}} ({known})", figures
 
 
+BY_FAULTS = "; the faults move it by up to {faulty:.2f µm} within a mesh period, judged if more"
+
+
+def of_faults(asked: Asked, point: int) -> dict[str, float]:
+    """What faults move the error by within a mesh period, hot [um]; nothing without faults.
+
+    The greatest of the turn, of the case's own part; what a shaft turns once is little of it.
+    """
+    if not asked.case.faults():
+        return {}
+    phase = np.arange(POSITIONS) / POSITIONS
+    faulty, sound = (
+        asked.elastic(HOT, point, case.deviations).over(phase).transmission_error[0]
+        for case in (asked.case, asked.case.sound())
+    )
+    moved = (faulty - np.resize(sound, faulty.size)).reshape(-1, POSITIONS)
+    return {"faulty": 1e6 * float(np.ptp(moved, axis=1).max())}
+
+
 def errors(asked: Asked) -> Iterator[Answer]:
     swing = {
         name: 1e6 * np.ptp(cycle["transmission_error"], axis=-1)
@@ -252,9 +271,11 @@ def errors(asked: Asked) -> Iterator[Answer]:
         over = ", over the turn of {turn} mesh periods," * (turn > 1)
         of_mesh = ", of which the {mesh:.2f µm} that repeat with the mesh are judged" * (turn > 1)
         figures |= {"turn": turn, "mesh": float(with_mesh[point])} if turn > 1 else {}
+        faulty = of_faults(asked, point)
+        figures |= faulty
         sentence = (
             f"Static and loaded{over} it is {{cold:.2f µm}} peak to peak undeformed, "
-            f"{{hot:.2f µm}} hot{of_mesh}; {words}"
+            f"{{hot:.2f µm}} hot{of_mesh}{BY_FAULTS * len(faulty)}; {words}"
         )
         if point == asked.hardest and asked.assemblies[0].size:
             sentence += (
@@ -262,7 +283,8 @@ def errors(asked: Asked) -> Iterator[Answer]:
                 "{largest:.2f µm}: state gears.marks"
             )
             figures |= _spread(asked, 1e6 * asked.assemblies[0], figures["hot"])
-        value = float(with_mesh[point]) if np.isfinite(most) else float("nan")
+        judged = max(float(with_mesh[point]), *faulty.values(), 0.0)
+        value = judged if np.isfinite(most) else float("nan")
         yield answer(
             ERROR, "transmission_error", f"{sentence}.", value, most=most, at=at, figures=figures
         )

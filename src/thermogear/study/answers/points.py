@@ -18,8 +18,8 @@ from thermogear.study.scuffing import borne_by, load_stage, not_steel
 NUMBERS: dict[str, tuple[str, str]] = {
     "oil_temperature": ("K", "oil temperature"),
     "tooth_temperature": ("K", "temperature of the hotter teeth, without the flash"),
-    "greatest_flash": ("K", "greatest flash temperature along the path"),
-    "least_film_parameter": ("1", "least film parameter along the path"),
+    "greatest_flash": ("K", "greatest flash temperature, of the worst tooth pair"),
+    "least_film_parameter": ("1", "least film parameter, of the worst tooth pair"),
     "scuffing_margin": ("K", "scuffing temperature less contact temperature, ISO/TR 13989-1"),
     "scuffing_safety": ("1", "safety by integral temperature, ISO/TR 13989-2"),
     "backlash": ("m", "least backlash, whole gap, along the line of action"),
@@ -36,8 +36,8 @@ NUMBERS: dict[str, tuple[str, str]] = {
 }
 """Every number with its unit and words; those of the motion are sweeps' own."""
 WANT = (
-    "oil_temperature", "tooth_temperature", "pinion_temperature", "flash_temperature",
-    "film_parameter", "least_half_backlash", "jam_temperature", "transmission_error",
+    "oil_temperature", "tooth_temperature", "pinion_temperature", "greatest_flash_temperature",
+    "least_film_parameter", "least_half_backlash", "jam_temperature", "transmission_error",
 )  # fmt: skip
 UNRATED = ("pinion_speed", "pinion_torque", "gear_temperature", "cold_half_backlash",
            "damping_ratio", "operating.torque", *BESIDE, *LANE)  # fmt: skip
@@ -67,16 +67,15 @@ def answer_numbers(family: GearFamily, rows: ArrayLike) -> dict[str, Floats]:
     borne = borne_by(case.pair)[0]
     # a jammed pair has no running contact
     running = found["status"] != STATUS.index("jammed")
-    flash, film = (
-        np.where(running[:, None], found[name], np.nan)
-        for name in ("flash_temperature", "film_parameter")
+    of_path = (found[name] for name in ("greatest_flash_temperature", "least_film_parameter"))
+    flash, film, margin, safety = (
+        np.where(running, values, np.nan) for values in (*of_path, margin, safety)
     )
-    margin, safety = (np.where(running, values, np.nan) for values in (margin, safety))
     return {
         "oil_temperature": found["oil_temperature"],
         "tooth_temperature": found["tooth_temperature"],
-        "greatest_flash": flash.max(axis=1),
-        "least_film_parameter": _least(film),
+        "greatest_flash": flash,
+        "least_film_parameter": np.where(np.isfinite(film), film, np.nan),
         "scuffing_margin": margin,
         "scuffing_safety": safety,
         "backlash": 2.0 * found["least_half_backlash"],
@@ -84,12 +83,6 @@ def answer_numbers(family: GearFamily, rows: ArrayLike) -> dict[str, Floats]:
         "jam_margin": np.minimum(jam, borne) - teeth,
         "static_error": np.where(running, np.ptp(found["transmission_error"], axis=1), np.nan),
     }
-
-
-def _least(film: Floats) -> Floats:
-    """The least of each row that is known, nan where none is."""
-    known = np.where(np.isfinite(film), film, np.inf).min(axis=1)
-    return np.where(np.isfinite(known), known, np.nan)
 
 
 def _scuffing(

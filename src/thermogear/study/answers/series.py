@@ -20,11 +20,13 @@ from thermogear.results.result import Notice
 from thermogear.study.answers import steady
 from thermogear.study.answers.asked import Asked, answer, undecided
 from thermogear.study.answers.moving import (
+    BY_FAULTS,
     ERROR,
     LOADS,
     OF_SPEEDS,
     SPEEDS,
     allowed_error,
+    of_faults,
     rated_factor,
     relief,
     resonance,
@@ -250,14 +252,18 @@ def errors(asked: Asked) -> Iterator[Answer]:
             "of_turn": math.lcm(gears.pinion.teeth, gears.wheel.teeth),
         }  # fmt: skip
         followed = ", by {periods} of them," * (not parts.mesh.whole)
+        faulty = of_faults(asked, point)
+        figures |= faulty
         form, of_mesh = f"~{turn.digits}", f"~{mesh.digits}"
         sentence = (
             f"Static, loaded and hot, over the turn of {{of_turn}} mesh periods{followed} it is "
             f"{{turn_low:{form}}} to {{turn_high:{form} µm}} peak to peak in {{held:.0f %}} of "
             f"{{parts}} pairs; what repeats with the mesh is judged, {{mesh_middle:{of_mesh} µm}} "
-            f"in the median, one in ten exceeds {{mesh_bad:{of_mesh} µm}}; {words}."
+            f"in the median, one in ten exceeds {{mesh_bad:{of_mesh} µm}}"
+            f"{BY_FAULTS * len(faulty)}; {words}."
         )
-        value = 1e6 * mesh.bad.value if np.isfinite(most) else float("nan")
+        judged = max(1e6 * mesh.bad.value, *faulty.values(), 0.0)
+        value = judged if np.isfinite(most) else float("nan")
         about["units"] = {name: "µm" for name in figures if name.startswith(("turn_", "mesh_"))}
         yield answer(ERROR, "transmission_error", sentence, value, figures=figures, **about)
     yield relief(asked)

@@ -128,9 +128,8 @@ def heat(asked: Asked) -> Iterator[Answer]:
         how, figures = _how(asked, point, 1)
         flash = "the pair is jammed"
         if not asked.still(point):
-            added = float(np.fmax.reduce(asked.hot["flash_temperature"][point]))
-            figures = {**figures, "flash": added}
-            flash = "the flash adds up to {flash:.0f K}"
+            figures = {**figures, "flash": float(asked.hot["greatest_flash_temperature"][point])}
+            flash = f"the flash adds up to {{flash:.0f K}}{asked.worst_pair}"
         yield answer(
             HEAT,
             "tooth_temperature",
@@ -318,8 +317,7 @@ def film(asked: Asked) -> Iterator[Answer]:
     whose = ", assumed" * assumed
     for point in asked.points:
         at = asked.at(point)
-        film = asked.hot["film_parameter"][point]
-        least = float(np.nanmin(film)) if np.isfinite(film).any() else float("nan")
+        least = float(asked.hot["least_film_parameter"][point])
         unsettled, still = asked.unsettled(point), asked.still(point)
         if still:
             yield undecided(FILM, "film", still, at=at)
@@ -328,8 +326,10 @@ def film(asked: Asked) -> Iterator[Answer]:
         else:
             acting = "boundary" if least < 1.0 else "mixed" if least < 3.0 else "full film"
             yield answer(
-                FILM, "film", f"The least film parameter is {least:.2f} ({acting}).", least, at=at
-            )
+                FILM, "film",
+                f"The least film parameter{asked.worst_pair} is {least:.2f} ({acting}).",
+                least, at=at,
+            )  # fmt: skip
         torque, speed = (float(asked.hot[f"pinion_{n}"][point]) for n in ("torque", "speed"))
         known = not unsettled or ("oil" in case.gearbox.measured and not asked.no_bath(point))
         why = unrated(case, torque, float(oil[point])) if known else unsettled
@@ -342,7 +342,7 @@ def film(asked: Asked) -> Iterator[Answer]:
             lubricant=case.stated.lubricant, oil_temperature=float(oil[point]), load_stage=stage
         )
         for rating in RATINGS:
-            yield _rated(*rating, case.pair, torque, speed, state, whose, at)
+            yield _rated(*rating, case, torque, speed, state, whose, at)
 
 
 def unrated(case: GearCase, torque: float, oil: float) -> str:
@@ -359,12 +359,12 @@ RATINGS: tuple[tuple[str, Callable[..., FlashRating | IntegralRating], str, str,
         "scuffing_margin", flash_rating, "contact", "margin",
         "By flash temperature, with the standard's friction and bulk, the contact reaches "
         "{contact:.0f °C} of {limit:.0f °C} (stage {stage:g}{whose}): margin {margin:.0f K}, "
-        "safety {safety:.2f}.",
+        "safety {safety:.2f}{sound}.",
     ),
     (
         "scuffing_safety", integral_rating, "integral", "safety",
         "By integral temperature it is {integral:.0f °C} of {limit:.0f °C} (stage {stage:g}"
-        "{whose}): safety {safety:.2f}.",
+        "{whose}): safety {safety:.2f}{sound}.",
     ),
 )  # fmt: skip
 """Answer, what rates it, the temperature and the figure that decides, and the sentence."""
@@ -372,16 +372,17 @@ RATINGS: tuple[tuple[str, Callable[..., FlashRating | IntegralRating], str, str,
 
 def _rated(
     name: str, rate: Callable[..., FlashRating | IntegralRating], hottest: str, decides: str,
-    words: str, pair: GearPair, torque: float, speed: float, state: Scuffing, whose: str, at: str,
+    words: str, case: GearCase, torque: float, speed: float, state: Scuffing, whose: str, at: str,
 ) -> Answer:  # fmt: skip
     try:
-        found = rate(pair, torque, speed, state)._asdict()
+        found = rate(case.pair, torque, speed, state)._asdict()
     except InputError as error:
         return undecided(FILM, name, str(error), at=at)
     figures: dict[str, Any] = {
         **{one: float(found[one]) - ZERO_CELSIUS for one in (hottest, "limit")},
         "stage": state.load_stage,
         "whose": whose,
+        "sound": "; faults are left out of it" * bool(case.faults()),
         **{one: float(found[one]) for one in ("margin", "safety") if one in found},
     }
     return answer(FILM, name, words, figures[decides], at=at, figures=figures)
@@ -411,6 +412,7 @@ def root(asked: Asked) -> Iterator[Answer]:
     # of one strength, as long as the table knows one alone
     limit = names[0] if LIMITS.keys() >= set(names) else "root_unknown"
     words += "; no fatigue strength is known of a material" * (limit not in LIMITS)
+    sound = "; of sound teeth under the loads with the faults" * bool(asked.case.faults())
     for point in asked.points:
         at, load = asked.at(point), float(force[point])
         why = asked.still(point) or "there is no load" * (not load > 0.0)
@@ -447,7 +449,7 @@ def root(asked: Asked) -> Iterator[Answer]:
             "root_stress",
             "Static, the pinion's fillet carries {hot[0]:.0f MPa} hot and {undeformed[0]:.0f MPa} "
             "undeformed, the wheel's {hot[1]:.0f MPa} and {undeformed[1]:.0f MPa}, about their "
-            f"{{slope[0]:.0f}}° and {{slope[1]:.0f}}° tangents{times}; {words}.",
+            f"{{slope[0]:.0f}}° and {{slope[1]:.0f}}° tangents{times}; {words}{sound}.",
             dynamic.get("times", max(stress)),
             limit=limit,
             at=at,

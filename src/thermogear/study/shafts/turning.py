@@ -23,7 +23,7 @@ from thermogear.dynamics.geared import GearedModel
 from thermogear.dynamics.ladder import Engine
 from thermogear.dynamics.turns import CLOSE, LEAST_TURNS, LONGEST_CYCLE
 from thermogear.mesh.excite import over_turn as spread
-from thermogear.study.faults import FaultMotion, TurnMotion, sound_pair
+from thermogear.study.faults import FaultMotion, TurnMotion
 from thermogear.study.shafts.moving import LONGEST, MovingTrain, moving
 from thermogear.study.shafts.record import SAMPLES, shown
 from thermogear.study.shafts.state import (
@@ -61,7 +61,7 @@ def train_fault_motion(
     thermal = ThermalState.of(state)
     ((rest,),) = settled(case, [place], states=[thermal])
     at = thermal.operating(case, case.models[0])
-    both = [case, sound_pair(case)]
+    both = [case, case.sound()]
     teeth = (case.pair.pinion.teeth, case.pair.wheel.teeth)
     if not moves(rest.status):
         still = _still(rest, teeth, samples, STATUS[rest.status])

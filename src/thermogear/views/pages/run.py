@@ -87,7 +87,7 @@ FIGURES = (
 AT_STATE = (
     key("state"),
     key("pinion_torque_Nm", "pinion_torque"),
-    key("greatest_flash_temperature_K", "flash"),
+    key("greatest_flash_temperature_K", "greatest_flash_temperature"),
     key("greatest_friction", "friction"),
     *FIGURES,
 )
@@ -109,7 +109,6 @@ def _operating(groups: Mapping[str, Dataset]) -> Dataset:
     """The figures of the mesh with the extremes along the path and those of the motion."""
     path, motion = groups["path"], groups.get("motion")
     data = groups["mesh"].assign(
-        flash=path["flash_temperature"].max("path_position"),
         friction=path["friction_coefficient"].max("path_position"),
     )
     if motion is None or "label" not in motion:
@@ -168,8 +167,7 @@ def _sections(results: Result) -> list[Section]:
     found = answers.sections(results, pictures)
     mesh = results.group("mesh")
     if mesh is not None:
-        beside = (results.group(name) for name in ("path", "motion", "series"))
-        table = tables.key_results(mesh, *beside)
+        table = tables.key_results(mesh, results.group("motion"), results.group("series"))
         found.append(Section("results", "Key results", [table]))
     for make in ORDER:
         section = make(results, pictures)

@@ -183,9 +183,8 @@ def _column(here: Dataset, name: str) -> Column:
         return Column(words, name, percent)
     if name == "label":
         return Column(words, lambda row: _both([row["label"] or "–" for row in row["states"]]))
-    known = "flash_temperature" if name == "greatest_flash_temperature" else name
     digits = 4 if name == "natural_frequency" else 3
-    figure = Column(words, name, digits, display(known, str(here[name].attrs["units"])))
+    figure = Column(words, name, digits, display(name, str(here[name].attrs["units"])))
     if name in HOT_ALONE:
         return figure
     jams = name == "half_backlash"
