@@ -74,8 +74,9 @@ acceleration by 10 to 15 %, and what an indicator sees with it."""
 STATES = (HOT, UNDEFORMED)
 SIGNALS = ("acceleration", "mesh_force")
 QUESTIONS = ("same machine", "another machine")
-SIGHTS = (*INDICATORS, "tooth")
-"""What sees a fault: the indicators; last, whether the difference signal is loudest over the
+SIGHTS = (*INDICATORS, "any", "tooth")
+"""What sees a fault: the indicators; any of them, by which a sound part is above a limit in up to
+1 - (59/60)^15 = 22 %, each by itself in 1/60; last, whether the difference signal is loudest over the
 contact of the faulty tooth or of a neighbour: of the same machine that of the change, of another
 that of the average. A tooth too far forward hits before its time, one that yields rings after it;
 by chance 3/z."""
@@ -129,6 +130,7 @@ class DetectionPlan:
     healthy: int = HEALTHY
     noise: float = NOISE
     turns: int = TURNS
+    overrides: tuple[tuple[str, str], ...] = ()
     kind: str = "detect"
 
     @property
@@ -153,7 +155,7 @@ class DetectionPlan:
 
     def inputs(self) -> dict[str, Any]:
         return {
-            "model": self._family(HOT).inputs(),
+            "model": self._family(HOT).inputs() | {"overrides": [list(x) for x in self.overrides]},
             "faults": [fault.model_dump() for family in self.families for fault in family],
             "speeds": list(self.speeds), "torques": list(self.torques), "parts": self.parts,
             "healthy": self.healthy, "noise": self.noise, "turns": self.turns,
@@ -398,7 +400,7 @@ def detected(plan: DetectionPlan, data: Dataset) -> Arrays:
     """What is counted, over (question, state, pinion_speed, pinion_torque, variant, signal, sight).
 
     ``detected`` of ``judged`` parts, ``detected_share`` with its interval of 95 %, ``shift``: the
-    median in standard deviations of the healthy. Another machine is held against the healthy ones
+    median in standard deviations of the healthy. "any" is detected where an indicator is. Another machine is held against the healthy ones
     of all parts but itself.
     """
     values, gears = data["value"].values, [gear for _, gear in plan.variants]
@@ -413,14 +415,19 @@ def detected(plan: DetectionPlan, data: Dataset) -> Arrays:
     loud = np.moveaxis(data["loudest"].values[:, :, :, : plan.parts], -1, 0)
     sought = (loud >= 0) & (entries >= 0)[:, None]
     off = (loud - entries[:, None] + 1) % np.take(plan.teeth, gears)[:, None]
-    judged = np.append(np.isfinite(shift), sought[..., None], axis=-1).sum(axis=4)
-    hits = np.append(beyond == 1.0, (sought & (off <= 2))[..., None], axis=-1).sum(axis=4)
+    judged, hits = (
+        np.concatenate([each, each.any(axis=-1, keepdims=True), of_tooth[..., None]], axis=-1)
+        .sum(axis=4)
+        for each, of_tooth in (
+            (np.isfinite(shift), sought), (beyond == 1.0, sought & (off <= 2))
+        )
+    )  # fmt: skip
     ends = [
         proportion(int(k), of=max(int(n), 1)) for k, n in zip(hits.flat, judged.flat, strict=True)
     ]
     share, low, high = np.moveaxis(np.reshape(ends, (*hits.shape, 3)), -1, 0)
     middle = np.ma.median(np.ma.masked_invalid(shift), axis=4)  # type: ignore[no-untyped-call]
-    none = np.full((*hits.shape[:-1], 1), np.nan)
+    none = np.full((*hits.shape[:-1], 2), np.nan)
     return {
         "detected": hits, "judged": judged, "detected_share": share, "detected_low": low,
         "detected_high": high, "shift": np.append(np.ma.filled(middle, np.nan), none, axis=-1),
@@ -514,6 +521,7 @@ def detection_plan(
     plan = DetectionPlan(
         case=replace(sound, file=file), bundle=family.bundle, families=families,
         speeds=tuple(case.speeds), torques=tuple(torques), parts=parts, noise=noise, turns=turns,
+        overrides=case.overrides,
     )  # fmt: skip
     _ = plan.series  # refuses what the gears cannot have
     return plan
