@@ -208,7 +208,7 @@ def measure(
 @delivery.overrides
 @delivery.as_json
 @delivery.output(
-    "Also write comparison.nc and comparison.html; with --baseline diagnosis.nc and diagnosis.html.",
+    "Also write comparison.nc and comparison.html; with --baseline they are named diagnosis.",
     required=False,
 )
 def compare(

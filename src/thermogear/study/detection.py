@@ -75,10 +75,10 @@ STATES = (HOT, UNDEFORMED)
 SIGNALS = ("acceleration", "mesh_force")
 QUESTIONS = ("same machine", "another machine")
 SIGHTS = (*INDICATORS, "any", "tooth")
-"""What sees a fault: the indicators; any of them, by which a sound part is above a limit in up to
-1 - (59/60)^15 = 22 %, each by itself in 1/60; last, whether the difference signal is loudest over the
-contact of the faulty tooth or of a neighbour: of the same machine that of the change, of another
-that of the average. A tooth too far forward hits before its time, one that yields rings after it;
+"""What sees a fault: the indicators; any of them, which errs more often than one (1/60 of sound
+ones; 15 independent ones 22 %); last, whether the difference signal is loudest over the contact of
+the faulty tooth or of a neighbour: of the same machine that of the change, of another that of the
+average. A tooth too far forward hits before its time, one that yields rings after it;
 by chance 3/z."""
 SIZES = (0.25, 0.5, 1.0)
 """Of each fault, over what the case or :func:`usual_faults` states."""
@@ -400,8 +400,8 @@ def detected(plan: DetectionPlan, data: Dataset) -> Arrays:
     """What is counted, over (question, state, pinion_speed, pinion_torque, variant, signal, sight).
 
     ``detected`` of ``judged`` parts, ``detected_share`` with its interval of 95 %, ``shift``: the
-    median in standard deviations of the healthy. "any" is detected where an indicator is. Another machine is held against the healthy ones
-    of all parts but itself.
+    median in standard deviations of the healthy. "any" is detected where an indicator is. Another
+    machine is held against the healthy ones of all parts but itself.
     """
     values, gears = data["value"].values, [gear for _, gear in plan.variants]
     of_machine = [data[f"own_{name}"].values[:, :, :, : plan.parts] for name in ("beyond", "shift")]

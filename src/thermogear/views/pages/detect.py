@@ -181,7 +181,7 @@ def false_alarms(data: Dataset) -> str:
         .isel(variant=slice(2), sight=-2)
         .sum(["state", "pinion_speed", "pinion_torque", "variant", "signal"])
     )
-    low, high = sorted(PERCENT(sound["detected"] / sound["judged"]).values)
+    low, high = sorted(PERCENT((sound["detected"] / sound["judged"]).values))
     return (
         f"Without a fault any of the {data.sizes['sight'] - 2} indicators is above its limit in "
         f"{low:.0f} to {high:.0f} % of the averages."

@@ -199,8 +199,8 @@ def _tables(result: Result, figures: dict[str, Any], *, last: bool = False) -> d
     record = Column("record", "record")
     listed = {
         "verdict": declared(
-            "Of each record: how many indicators are beyond their limits, and above and below all of "
-            "the baseline.",
+            "Of each record: how many indicators are beyond their limits, and above and below all "
+            "of the baseline.",
             (
                 record,
                 Column("verdict", "verdict"),
@@ -264,9 +264,9 @@ def _tables(result: Result, figures: dict[str, Any], *, last: bool = False) -> d
             marked=lambda row: bool(row["indicator_beyond"]),
         ),
         "simulated": declared(
-            "The same of the computed acceleration of the teeth, with all faults of the case at once "
-            "and without, beside what was measured: compare the changes. The motion has no noise "
-            "and no way to a sensor, which make a record's changes less; no verdict is made.",
+            "The same of the computed acceleration of the teeth, with all faults of the case at "
+            "once and without, beside what was measured: compare the changes. The motion has no "
+            "noise and no way to a sensor, which make a record's changes less; no verdict is made.",
             (
                 Column("shaft", "shaft"),
                 Column("indicator", lambda row: WORDS[row["indicator"]]),
