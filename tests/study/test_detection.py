@@ -222,6 +222,7 @@ def _few(init: object) -> object:
         (["--noise", "-1"], "noise: got -1.0; allowed 0.0..100.0"),
         (["--turns", "0"], "turns: got 0; allowed 1..100000"),
         (["--set", "model.stiffness=textbook-30-degree"], "model.stiffness: got textbook"),
+        (["--set", "operating.speed=600 rpm"], "operating.speed: got 600 rpm; the natural freq"),
     ],
 )
 def test_what_cannot_be_asked_is_one_line(
