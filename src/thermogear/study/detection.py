@@ -73,8 +73,8 @@ SAMPLES = 64
 """Of a mesh period, a divisor of 192. Of its contact 96 positions are solved: 64 move the rms of an
 acceleration by 10 to 15 %, and what an indicator sees with it."""
 HIGHEST = SAMPLES / 2
-"""Natural frequency over the mesh's at most: half the samples (Nyquist). Beyond, the resonance folds
-into lower orders: of a pair of 17 and 54 teeth at 49 half the power of the wheel's average."""
+"""Natural frequency over the mesh's at most: half the samples (Nyquist). Beyond, the resonance
+folds into lower orders: of 17 and 54 teeth at 49 half the power of the wheel's average."""
 STATES = (HOT, UNDEFORMED)
 SIGNALS = ("acceleration", "mesh_force")
 QUESTIONS = ("same machine", "another machine")
@@ -256,9 +256,11 @@ class DetectionPlan:
             order = points.flat.period[0] / (2.0 * np.pi * points.mesh_periods)
             if order > HIGHEST:
                 rpm = SPEED(self.speeds[i])
-                why = f"the natural frequency is {order:.3g} times that of the mesh"
-                fix = f"take {np.ceil(rpm * order / HIGHEST):.0f} rpm or more"
-                raise InputError("operating.speed", f"{rpm:.6g} rpm", why=why, fix=fix)
+                raise InputError(
+                    "operating.speed", f"{rpm:.6g} rpm",
+                    why=f"the natural frequency is {order:.3g} times that of the mesh",
+                    fix=f"take {np.ceil(rpm * order / HIGHEST):.0f} rpm or more",
+                )  # fmt: skip
         return scenes
 
     @cached_property

@@ -49,20 +49,19 @@ def page(result: Result) -> Page:
         Shown("shares", "What sees what", shares, partial(heat_table, at), wide=True),
         Shown("sizes", "Over the size, hot and undeformed", curves, partial(over_size, at)),
     ]
-    heat = hot_or_cold(data)
     counted = replace(result, groups={"": result.data[[*COUNTED, "relative_size", "noise"]]})
     return survey(
         counted,
         f"{summary(at)} {false_alarms(data)}",
         pictures,
-        [smallest(data), heat],
+        [smallest(data)],
         numbers=lambda: {
             "parts": int(data.attrs["parts"]),
             "noise": data["noise"].to_series().to_dict(),
             "smallest": first_seen(data),
             "shares": rows_along(at[[*COUNTED]], *ALONG, "variant", "signal", "sight"),
         },
-        told=[smallest(at), heat],
+        told=[smallest(at)],
     )
 
 
@@ -124,34 +123,6 @@ def smallest(data: Dataset) -> Table:
         columns,
         rows,
         names=6,
-    )
-
-
-def hot_or_cold(data: Dataset) -> Table:
-    """What is seen in one state of heat and not in the other."""
-    shares = data["detected_share"].isel(variant=slice(2, None)).values
-    seen = np.delete(shares, -2, axis=-1) >= SEEN
-    ways = (
-        ("seen hot alone", (True, False)),
-        ("undeformed alone", (False, True)),
-        ("in both", (True, True)),
-        ("in neither", (False, False)),
-    )
-    rows = [
-        {
-            "question": name,
-            **{
-                head: int(((here[0] == hot) & (here[1] == cold)).sum())
-                for head, (hot, cold) in ways
-            },
-        }
-        for name, here in zip(names_of(data, "question"), seen, strict=True)
-    ]
-    return declared(
-        "Faults at each size, loads, signals and indicators: hot and undeformed compared, the same "
-        "parts and the same noise. One part more or less makes a case seen or not.",
-        (Column("compared with", "question"), *(Column(head, head) for head, _ in ways)),
-        rows,
     )
 
 
