@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from thermogear.analysis.order_statistics import proportion
 from thermogear.base.arrays import Dataset, Floats, Whole
 from thermogear.base.errors import InputError
 from thermogear.base.limits import zone_of
@@ -681,7 +680,6 @@ def _figures(
 ) -> dict[str, Any]:
     """Plain figures: verdicts, where, bearings, trends, severity, and how averages were made."""
     last = tested[-1]
-    pooled = sum(row.shafts[0].blocks.shape[1] for row in base)
     known = {line.bearing + line.shaft + line.part for row in base for line in row.impacts.lines
              if line.chance <= HEARD}  # fmt: skip
     family = [key for key in limits if key[2] in DECIDED]
@@ -708,8 +706,6 @@ def _figures(
         ],
         "baseline": [row.name for row in base],
         "alarm": ALARM,
-        "averages": pooled,
-        "averages_beyond": proportion(0, of=pooled).high if pooled else None,
         "places": [
             {
                 "record": each.name,

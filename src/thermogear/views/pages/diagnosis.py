@@ -157,9 +157,7 @@ def summary(figures: dict[str, Any]) -> str:
     if len(figures["baseline"]) > 1 and last["verdict"] in ("undecided", "no change", "changed"):
         spare = (
             f" In at most {PERCENT(figures['alarm']):g} % of healthy records would any of them be "
-            "beyond its limit, where logarithms scatter normally from record to record; fewer than "
-            f"{PERCENT(figures['averages_beyond']):.2g} % of healthy averages are above all "
-            f"{figures['averages']} of the baseline (95 %)."
+            "beyond its limit, where logarithms scatter normally from record to record."
         )
     heard = [
         f"T{row['words'][1:]}; the baseline has not."
