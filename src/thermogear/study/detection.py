@@ -242,7 +242,7 @@ class DetectionPlan:
     @cached_property
     def _scenes(self) -> dict[Key, tuple[HotPair, Excitations]]:
         """The sound pair at each point, and what excites its mean tooth."""
-        scenes = {
+        scenes: dict[Key, tuple[HotPair, Excitations]] = {
             (state, i, j): (
                 family.quasi_static([[speed, torque]], HEATED)["hot_pair"][0],
                 family.excitations(np.array([[speed, torque]])),
