@@ -153,6 +153,16 @@ def test_a_record_of_another_machine_is_not_judged(
     assert re.match(f"new: Undecided: [^.]*{words}", summary(found.table("figures")))
 
 
+def test_a_wheel_of_other_teeth_behind_the_same_pinion_is_no_sound_record() -> None:
+    """An average at the turn of a wheel that is not there lacks what the baseline's had."""
+    for seed in (362, 363):
+        found = judged(partial(read, seed, gears=Gears(teeth=(11, 30))))
+        row = found.table("figures")["verdicts"][-1]
+        print(row)
+        assert row["below"] >= row["beyond"]
+        assert verdict(found) == ("undecided", "")
+
+
 def test_other_teeth_without_a_tacho_are_refused_in_one_line() -> None:
     with pytest.raises(InputError, match=r"^--speed: got no mesh line of 11 teeth at it"):
         read(361, tacho=False, gears=Gears(teeth=(15, 40)))

@@ -225,7 +225,7 @@ def of_detection() -> dict[str, Picture]:
     shares = made(over, "detected_share", "detected_low", "detected_high").assign(
         relative_size=rising("variant", low=0.0, high=1.0),
         variant=["none, pinion", "none, wheel", "crack 1", "crack 2", "crack 4"],
-        question=["same machine", "another machine"], sight=["fm4", "rms", "tooth"],
+        question=["same machine", "another machine"], sight=["fm4", "any", "tooth"],
         state=["hot", "undeformed"], fault=["crack"],
     ).assign_attrs(families=[3])  # fmt: skip
     return {"detect-shares": detect.heat_table(shares), "detect-sizes": detect.over_size(shares)}

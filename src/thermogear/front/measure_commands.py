@@ -186,7 +186,10 @@ def measure(
 )
 @delivery.overrides
 @delivery.as_json
-@delivery.output("Also write comparison.nc and comparison.html.", required=False)
+@delivery.output(
+    "Also write comparison.nc and comparison.html; with --baseline they are named diagnosis.",
+    required=False,
+)
 def compare(
     case: str,
     measured: tuple[str, ...],

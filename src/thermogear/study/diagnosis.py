@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from thermogear.analysis.order_statistics import proportion
 from thermogear.base.arrays import Dataset, Floats, Whole
 from thermogear.base.errors import InputError
 from thermogear.base.limits import zone_of
@@ -398,7 +397,9 @@ OTHER_LEVEL, OTHER_SPEED, OTHER_GEARS = "another level", "another speed", "other
 @dataclass(frozen=True, kw_only=True)
 class Judged:
     """A tested record beside the limits: its ``medians`` by key, those ``beyond`` their limit and
-    those ``above`` every healthy average, the ``verdict``, where the change is (``places``);
+    those ``above`` and ``below`` every healthy average, the ``verdict``, where the change is
+    (``places``). A fault adds to an average; one that lacks what it had is of other gears as
+    likely: "changed" takes more indicators beyond their limit than below, "no change" none below;
     ``unlike``: what of it is not the baseline's, its own value and the baseline's: of its level
     rms over that of the nearest healthy record and 1, its speed [rad/s], its mesh line's order."""
 
@@ -406,6 +407,7 @@ class Judged:
     medians: dict[Key, float]
     beyond: tuple[Key, ...]
     above: tuple[Key, ...]
+    below: tuple[Key, ...]
     verdict: str
     places: tuple[Place, ...]
     unlike: tuple[float, float]
@@ -454,7 +456,7 @@ def diagnose(
     return Result.of(
         "diagnosis",
         f"{len(tested)} record{'s' * (len(tested) > 1)}"
-        + (f" against {healthy} of the same machine" if healthy else ""),
+        + (f" against a baseline of {healthy}" if healthy else ""),
         _groups(tested, judged, limits),
         dict.fromkeys(notices),
         created=now(),
@@ -497,9 +499,10 @@ def _judged(row: Reduced, limits: dict[Key, Healthy], base: Sequence[Reduced]) -
     decided = [key for key in limits if key[2] in DECIDED and key in medians]
     beyond = tuple(key for key in decided if medians[key] > limits[key].limit)
     above = tuple(key for key in decided if medians[key] > limits[key].greatest)
+    below = tuple(key for key in decided if medians[key] < limits[key].least)
     verdict, unlike = UNCHANGED if base else NO_BASELINE, (_level(row, base), 1.0)
-    if base and above:
-        verdict = CHANGED if beyond else OPEN
+    if base and (above or below):
+        verdict = CHANGED if len(beyond) > len(below) else OPEN
     if abs(np.log(unlike[0])) > np.log1p(LEVEL):
         verdict = OTHER_LEVEL
     if len(base) == 1:
@@ -523,6 +526,7 @@ def _judged(row: Reduced, limits: dict[Key, Healthy], base: Sequence[Reduced]) -
         medians=medians,
         beyond=beyond,
         above=above,
+        below=below,
         verdict=verdict,
         places=tuple(places),
         unlike=unlike,
@@ -676,7 +680,6 @@ def _figures(
 ) -> dict[str, Any]:
     """Plain figures: verdicts, where, bearings, trends, severity, and how averages were made."""
     last = tested[-1]
-    pooled = sum(row.shafts[0].blocks.shape[1] for row in base)
     known = {line.bearing + line.shaft + line.part for row in base for line in row.impacts.lines
              if line.chance <= HEARD}  # fmt: skip
     family = [key for key in limits if key[2] in DECIDED]
@@ -696,14 +699,13 @@ def _figures(
                 "unlike": list(each.unlike),
                 "beyond": len(each.beyond),
                 "above": len(each.above),
+                "below": len(each.below),
                 "indicators": len(family),
             }
             for each, row in zip(judged, tested, strict=True)
         ],
         "baseline": [row.name for row in base],
         "alarm": ALARM,
-        "averages": pooled,
-        "averages_beyond": proportion(0, of=pooled).high if pooled else None,
         "places": [
             {
                 "record": each.name,

@@ -37,8 +37,9 @@ def page(result: Result) -> Page:
         "relative acceleration of the flanks."
     )
     shares = (
-        f"{where} Share of parts beyond a limit that healthy ones keep; rows without a fault are "
-        "false alarms. Last column: the loudest tooth is the faulty one or a neighbour."
+        f"{where} Share of parts above a limit that healthy ones keep (a fall does not count); "
+        "rows without a fault are false alarms. Last columns: above any limit; the loudest tooth "
+        "is the faulty one or a neighbour."
     )
     curves = (
         f"{where} The indicator that sees most of each fault; bands hold the share of all parts "
@@ -48,20 +49,19 @@ def page(result: Result) -> Page:
         Shown("shares", "What sees what", shares, partial(heat_table, at), wide=True),
         Shown("sizes", "Over the size, hot and undeformed", curves, partial(over_size, at)),
     ]
-    heat = hot_or_cold(data)
     counted = replace(result, groups={"": result.data[[*COUNTED, "relative_size", "noise"]]})
     return survey(
         counted,
-        summary(at),
+        f"{summary(at)} {false_alarms(data)}",
         pictures,
-        [smallest(data), heat],
+        [smallest(data)],
         numbers=lambda: {
             "parts": int(data.attrs["parts"]),
             "noise": data["noise"].to_series().to_dict(),
             "smallest": first_seen(data),
             "shares": rows_along(at[[*COUNTED]], *ALONG, "variant", "signal", "sight"),
         },
-        told=[smallest(at), heat],
+        told=[smallest(at)],
     )
 
 
@@ -75,7 +75,8 @@ def first_seen(data: Dataset) -> list[dict[str, Any]]:
     """Of each fault, question, state, load and signal: the smallest size, and what sees it there.
 
     Seen are a size and all larger ones of the fault, by :data:`SEEN` of the parts or more.
-    ``tooth``: the smallest size from which on the tooth is found.
+    ``tooth``: the smallest size from which on the tooth is found. By "any" nothing counts as seen:
+    it has too many false alarms.
     """
     sights, rows, dims = names_of(data, "sight"), [], (*ALONG, "signal")
     for fault, sizes in by_fault(data):
@@ -83,7 +84,7 @@ def first_seen(data: Dataset) -> list[dict[str, Any]]:
         count = np.logical_and.accumulate(seen[::-1]).sum(axis=0)  # from the largest down
         words = [f"{fault}: not seen", *names_of(sizes, "variant")[::-1]]
         for place in np.ndindex(count.shape[:-1]):
-            *each, tooth = count[place]
+            *each, _, tooth = count[place]
             by = [sights[n] for n in np.flatnonzero(each == max(each))] if any(each) else []
             at = {dim: data[dim].values[n].item() for dim, n in zip(dims, place, strict=True)}
             rows.append(
@@ -115,54 +116,47 @@ def smallest(data: Dataset) -> Table:
     )
     least = PERCENT(0.05 ** (1.0 / parts))
     return declared(
-        f"Seen: beyond the limit in 95 % or more of {parts} parts, all of fewer than 20, at this "
-        f"size and the larger ones. All of {parts} say {least:.0f} to 100 % of all parts (95 %). "
-        "Tooth from: the loudest tooth is the faulty one or a neighbour in as many.",
+        f"Seen: above the limit of one indicator in 95 % or more of {parts} parts, all of fewer "
+        f"than 20, at this size and the larger ones. All of {parts} say {least:.0f} to 100 % of "
+        "all parts (95 %). Tooth from: the loudest tooth is the faulty one or a neighbour in as "
+        "many; that raises no alarm, a sound gear has a loudest tooth, too.",
         columns,
         rows,
         names=6,
     )
 
 
-def hot_or_cold(data: Dataset) -> Table:
-    """What is seen in one state of heat and not in the other."""
-    seen = data["detected_share"].isel(variant=slice(2, None)).values >= SEEN
-    ways = (
-        ("seen hot alone", (True, False)),
-        ("undeformed alone", (False, True)),
-        ("in both", (True, True)),
-        ("in neither", (False, False)),
-    )
-    rows = [
-        {
-            "question": name,
-            **{
-                head: int(((here[0] == hot) & (here[1] == cold)).sum())
-                for head, (hot, cold) in ways
-            },
-        }
-        for name, here in zip(names_of(data, "question"), seen, strict=True)
-    ]
-    return declared(
-        "Faults at each size, loads, signals and indicators: hot and undeformed compared, the same "
-        "parts and the same noise.",
-        (Column("compared with", "question"), *(Column(head, head) for head, _ in ways)),
-        rows,
-    )
-
-
 def summary(data: Dataset) -> str:
-    """The smallest sizes that are seen hot, in a sentence for each question."""
+    """The smallest sizes that are seen hot, in a sentence for each question, and the tooth of what
+    is not seen."""
     rows = [row for row in first_seen(data) if row["state"] == "hot"]
     sizes = {
         question: "; ".join(
-            row["seen"] + "".join(f" ({WORDS[name]})" for name in row["by"][:1])
+            row["seen"]
+            + "".join(f" ({WORDS[name]})" for name in row["by"][:1])
+            + f", its tooth found from {row['tooth'].partition(', ')[0]} on"
+            * ("not seen" in row["seen"] and "not seen" not in row["tooth"])
             for row in rows
             if row["question"] == question
         )
         for question in names_of(data, "question")
     }
     return " ".join(f"{question.capitalize()}, hot: {words}." for question, words in sizes.items())
+
+
+def false_alarms(data: Dataset) -> str:
+    """How many sound averages are above any limit, at all speeds, loads and states, of both
+    signals."""
+    sound = (
+        data[["detected", "judged"]]
+        .isel(variant=slice(2), sight=-2)
+        .sum(["state", "pinion_speed", "pinion_torque", "variant", "signal"])
+    )
+    low, high = sorted(PERCENT((sound["detected"] / sound["judged"]).values))
+    return (
+        f"Without a fault any of the {data.sizes['sight'] - 2} indicators is above its limit in "
+        f"{low:.0f} to {high:.0f} % of the averages."
+    )
 
 
 # --- pictures -----------------------------------------------------------------------------------
@@ -199,7 +193,7 @@ def over_size(data: Dataset) -> Picture:
     """Share detected over the size of each fault, hot and undeformed, with intervals."""
     panels: list[Panel] = []
     for fault, sizes in by_fault(data.isel(pinion_speed=0, pinion_torque=0, signal=0)):
-        best = int(np.argmax(sizes["detected_share"].values[0, ..., :-1].sum(axis=(0, 1))))
+        best = int(np.argmax(sizes["detected_share"].values[0, ..., :-2].sum(axis=(0, 1))))
         low, share, high = (
             PERCENT(sizes[f"detected_{name}"].values[..., best])
             for name in ("low", "share", "high")
