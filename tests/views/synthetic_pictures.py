@@ -389,8 +389,7 @@ def of_claims() -> dict[str, Picture]:
         output_words=("output", ["growth", "flash"]), input_words=("input", ["a", "b", "c"])
     )
     return {
-        "thesis-diagram": sweeps.over_each_other([diagram], ["without heat"]),
-        "overlay": sweeps.overlay_picture(diagram.expand_dims(state=2), ["undeformed", "hot"]),
+        "thesis-diagram": sweeps.over_each_other([diagram] * 2, ["without heat", "hot"]),
         "over-grid": claims.over_grid(given, "flash", "flash temperature [K]", KELVIN),
         "warming": claims.warming(multiplier),
         "experiment": claims.experiment(entry),

@@ -17,7 +17,6 @@ from thermogear.views.columns import PLAIN, Column, Row, declared, in_full, key,
 from thermogear.views.page import (
     LEAD,
     Block,
-    Code,
     Gallery,
     Page,
     Pictures,
@@ -91,7 +90,7 @@ def _summary(results: Result) -> str:
 
 
 def _opening(results: Result, sections: Sequence[Section]) -> Section:
-    """The conclusions, those that hold first, one picture, and the same for the reader's gears."""
+    """The conclusions, those that hold first, and one picture."""
     claims, verdicts = results.groups["claims"], list(results.table("counts"))
     rows = [row for row in rows_along(claims, "claim") if _section(row["number"]) == CONCLUSIONS]
     rows.sort(key=lambda row: verdicts.index(row["verdict"]))
@@ -102,10 +101,6 @@ def _opening(results: Result, sections: Sequence[Section]) -> Section:
     galleries = [b for one in sections for b in one.blocks if isinstance(b, Gallery)]
     shown = [one for gallery in galleries for one in gallery.pictures if one.name == OPENING]
     blocks += [Gallery(shown)] * bool(shown)
-    blocks += [
-        Text("Redo this for your gears: every step of the document for one pair."),
-        Code("thermogear new -o mine.toml\nthermogear thesis mine.toml -o mine"),
-    ]
     return Section(LEAD, "What holds, what does not, and why", blocks, folded=False)
 
 
