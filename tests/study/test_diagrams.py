@@ -113,4 +113,6 @@ def test_two_diagrams_side_by_side_keep_their_own_bifurcations() -> None:
         assert len(rows) == 2 * period
         if rows:
             row, scaled = rows
-            assert scaled["bifurcation_value"] == pytest.approx(s * row["bifurcation_value"], rel=1e-9)
+            assert scaled["bifurcation_value"] == pytest.approx(
+                s * row["bifurcation_value"], rel=1e-9
+            )

@@ -55,7 +55,7 @@ def page(result: Result) -> Page:
         Shown(
             "stiffness",
             "Tangent stiffness over a mesh period",
-            words.relief_stiffness(result.groups["error"]),
+            "Under the design load.",
             partial(stiffness, result.groups["error"]),
         ),
         Shown(
