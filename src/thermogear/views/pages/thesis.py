@@ -11,7 +11,7 @@ import numpy as np
 from markupsafe import Markup
 
 from thermogear.base.arrays import Dataset
-from thermogear.base.display import MICROMETRE, PERCENT, celsius
+from thermogear.base.display import MICROMETRE, celsius
 from thermogear.results.result import Result
 from thermogear.views.columns import PLAIN, Column, Row, declared, in_full, key, pairs, rows_along
 from thermogear.views.page import (
@@ -23,7 +23,6 @@ from thermogear.views.page import (
     Section,
     Table,
     Text,
-    Tile,
     without,
 )
 from thermogear.views.pages import captions, gear_sections, rig_trains, row_sections
@@ -66,7 +65,6 @@ def page(result: Result) -> Page:
         replace(result, notices=()),
         _summary(result),
         sections + background(result),
-        tiles=_tiles(result),
         numbers=lambda: _numbers(result),
         told=lambda: _told(result),
     )
@@ -132,15 +130,6 @@ def _outlook(results: Result) -> Section:
         },
     ]
     return Section("outlook", "Outlook", [declared("", OUTLOOK, rows, names=3, wordy=True)])
-
-
-def _tiles(results: Result) -> list[Tile]:
-    found = results.table("counts")
-    total = sum(found.values())
-    return [
-        Tile(name, str(count), f"{PERCENT(count / total):.0f} % of {total} claims")
-        for name, count in found.items()
-    ]
 
 
 def _thesis_sections(results: Result, pictures: Pictures) -> list[Section]:
