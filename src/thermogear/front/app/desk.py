@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from thermogear.case.case import GearCase
 
 
-LONG = ("series", "run-up", "answers", "shafts")
+LONG = ("series", "run-up", "answers")
 MOST_LIVE = 60
 """Mesh periods of a turn that are shown while a dial moves; of more the mean tooth is."""
 CALM = 0.08
@@ -153,7 +153,6 @@ def hello(given: Given) -> dict[str, object]:
         "name": given.name,
         "form": [one.row for one in form(case.data)],
         "speeds": speeds(case),
-        "shafts": case.train is not None,
         "series": drawing(case) is not None,
     }
 

@@ -43,7 +43,6 @@ class Part:
     gears: Any = None
     lines: list[str] = field(default_factory=list)
     rows: list[list[str]] = field(default_factory=list)
-    pictures: list[tuple[str, Picture]] = field(default_factory=list)
     pairs: list[tuple[str, int]] = field(default_factory=list)
     done: int = 1
     total: int = 1
@@ -56,7 +55,6 @@ class Part:
             "name": self.name,
             "picture": "" if self.picture is None else moving(self.picture),
             "pairs": self.pairs,
-            "pictures": [[words, moving(one)] for words, one in self.pictures],
             "gears": "" if self.gears is None else json.dumps(self.gears),
             "lines": self.lines,
             "rows": self.rows,
@@ -278,28 +276,6 @@ def answers(look: Look) -> Iterator[Part]:
     look.kept.keys["answers"] = key
 
 
-def shafts(look: Look) -> Iterator[Part]:
-    """Loads, lift-off and critical speeds of a case with shafts."""
-    if look.case.train is None:
-        return
-    key = look.key
-    if not look.kept.fresh("shafts", key):
-        return
-    from thermogear.study.shafts.campbell import campbell
-    from thermogear.study.shafts.statics import statics
-    from thermogear.views.write import page_of
-
-    look.kept.forget("shafts")
-    pictures: list[tuple[str, Picture]] = []
-    rows: list[list[str]] = []
-    for place, study in enumerate((statics, campbell)):
-        page = page_of(study(look.case, progress=look.told))
-        rows += [[line] for line in page.lines()]
-        pictures += [(one.heading, one.picture) for one in page.pictures if moving(one.picture)]
-        yield Part(name="shafts", rows=rows, pictures=pictures, done=place + 1, total=2)
-    look.kept.keys["shafts"] = key
-
-
 MAKERS: dict[str, Callable[[Look], Iterator[Part]]] = {
     "mesh": mesh,
     "orbit": orbit,
@@ -308,7 +284,6 @@ MAKERS: dict[str, Callable[[Look], Iterator[Part]]] = {
     "series": series,
     "run-up": run_up,
     "answers": answers,
-    "shafts": shafts,
 }
 
 

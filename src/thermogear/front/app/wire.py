@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError,
 from thermogear.base.errors import InputError, short
 from thermogear.front.lines import one_line
 
-PARTS = ("mesh", "orbit", "gap", "gears", "series", "run-up", "answers", "shafts")
+PARTS = ("mesh", "orbit", "gap", "gears", "series", "run-up", "answers")
 """The parts of the page, in the order in which they are made."""
 Post = Callable[[str, dict[str, object]], None]
 """Tells a page a message, under the name by which a newer one takes the place of one unsent."""

@@ -284,17 +284,6 @@ const part = (message) => {
     button.addEventListener("click", () => { set.dials.set("part", place); ask(); });
     return button;
   }));
-  const gallery = box.querySelector(".pictures");
-  message.pictures.forEach(([words, picture], i) => {
-    const name = `${message.name} ${i}`;
-    let figure = gallery.children[i];
-    if (!figure) {
-      figure = element("figure", gallery);
-      element("h3", figure, {text: words});
-      element("div", figure, {class: "canvas"});
-    }
-    show(figure.querySelector(".canvas"), name, picture);
-  });
   wait(message.done, message.total);
   dispatchEvent(new CustomEvent("part", {detail: message}));
 };
@@ -352,7 +341,6 @@ const heard = (message) => {
   if (kind === "hello") {
     form(message.form);
     for (const name of ["low", "high", "count"]) if (!by(name).value) by(name).value = message.speeds[name];
-    document.querySelector('[data-part="shafts"]').hidden = !message.shafts;
     document.querySelector('[data-part="series"]').hidden = !message.series;
     ready = true;
     ask();
