@@ -253,7 +253,6 @@ def of_surveys() -> dict[str, Picture]:
         "contact-path": loaded.along_path(contact, json.loads(points)),
         "double-contact": loaded.double_contact(apart, 1.0, "double_contact_length"),
         "relief-error": relief.error(pairs),
-        "relief-stiffness": relief.stiffness(pairs),
         "relief-load": relief.over_load(pairs, 1.5),
         "relief-parts": relief.each_part(
             made("relief part", "ratio").assign(relief=["none", "a", "b"])
@@ -418,8 +417,6 @@ def of_sampled_rigs() -> dict[str, Picture]:
     )
     return {
         "rig-displacements": rig_trains.displacements(data),
-        "rig-factors": rig_trains.factors(data),
-        "rig-ranks": rig_trains.ranks(data),
     }
 
 
