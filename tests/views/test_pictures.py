@@ -36,7 +36,7 @@ def test_every_picture_becomes_a_file_of_its_kind(results: Path, written: list[P
     assert len({path.name for path in written}) == len(written)
     for path in written:
         assert path.read_bytes().startswith(b"\x89PNG")
-    (one,) = [shown for name, shown in pictures(results).items() if "half" in name]
+    (one,) = [shown for name, shown in pictures(results).items() if name == "points-0"]
     assert b"<svg" in drawing.image(one.picture, "svg")
 
 
