@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from thermogear.base.arrays import Dataset
-from thermogear.base.display import PERCENT, SPEED, exactly, number, span
+from thermogear.base.display import SPEED, exactly, span
 from thermogear.base.vocabulary import is_known
 
 
@@ -54,19 +54,6 @@ def thermal_map(data: Dataset, safe: float) -> str:
     if np.isfinite(data["scuffing_margin"].values[settled]).any():
         words.append(f"At least {safe:.0f} K of scuffing margin are advised.")
     return " ".join(words)
-
-
-def one_point(data: Dataset) -> str:
-    """What a map of one point would show."""
-    here = data.isel(pinion_speed=0, pinion_torque=0)
-    if not is_known(int(here["status"])):
-        return ""
-    shares = zip(here["regime_name"].values, here["regime_share"].values, strict=True)
-    film = ", ".join(f"{name} on {PERCENT(float(part)):.0f} %" for name, part in shares if part)
-    return (
-        f" Lubrication is {film} of the path, with a mean friction coefficient of "
-        f"{number(float(here['mean_friction']), 2)}."
-    )
 
 
 # --- tip relief ---------------------------------------------------------------------------
