@@ -1,13 +1,17 @@
 """Gear words: the same lanes as the case's own motion, and words that are told apart."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from own_pair import OWN_PAIR
 from thermogear.base.errors import InputError
 from thermogear.case.allowed import gear_parameter, read_shown
 from thermogear.case.axes import parse_axis
-from thermogear.case.case import load_example
+from thermogear.case.case import gear_case, load_case, load_example
 from thermogear.case.family import GearFamily, Tabulated, family
+from thermogear.case.points import largest_fluctuation
 from thermogear.dynamics.models import from_excitation
 from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.excite import excitation
@@ -192,3 +196,34 @@ def test_a_choice_of_the_bundle_can_be_varied(rig):
     own = GearFamily(rig, ())(np.empty((1, 0)))
     # temperatures are given: friction moves neither springs nor backlash
     assert points.stiffness == pytest.approx([own.stiffness[0]] * 2, rel=1e-12)
+
+
+def test_a_factor_scales_the_fluctuation_of_the_stiffness_and_nothing_else() -> None:
+    """k = k_m (1 + s w): the mean stays, 1 changes no bit, and k reaches zero at s = -1/min w."""
+    case = gear_case(
+        load_case(
+            OWN_PAIR, ["grid.path_positions=21", "grid.mesh_positions=32", "grid.harmonics=8"]
+        )
+    )
+    plain = family(case)(np.empty((1, 0)))
+    with_factor = family(case, ["fluctuation"])
+    points = with_factor(np.array([[1.0], [0.0], [2.0]]))
+    own_series = plain.flat.stiffness[0]
+    assert np.array_equal(points.flat.stiffness[0], own_series)
+    assert not points.flat.stiffness[1, 1:].any()
+    assert np.array_equal(points.flat.stiffness[2, 1:], 2.0 * own_series[1:])
+    for name in ("period", "damping", "half_backlash", "force"):
+        values = getattr(points.flat, name)
+        assert np.array_equal(values, np.broadcast_to(getattr(plain.flat, name), values.shape))
+    (most,) = largest_fluctuation(plain)
+    turns = np.exp(2j * np.pi * np.outer(np.arange(own_series.size), np.arange(4000) / 4000))
+    waves = (own_series[1:] @ turns[1:]).real
+    assert most == pytest.approx(own_series[0].real / -waves.min(), rel=2e-2)
+    cosine = replace(plain, flat=replace(plain.flat, stiffness=np.array([[1.0, 0.4]], complex)))
+    assert largest_fluctuation(cosine) == pytest.approx([2.5], rel=1e-15)
+    with pytest.raises(InputError) as refused:
+        with_factor(np.array([[1.5 * most]]))
+    assert str(refused.value) == (
+        f"stiffness_fluctuation: got {1.5 * most:g}; allowed below {most:.4g}; the mesh stiffness "
+        "would reach zero"
+    )

@@ -49,7 +49,9 @@ def test_a_directory_against_a_case_file(
         "simulation.periods", "simulation.samples",
     ]  # fmt: skip
     assert (out / "mine" / "results.nc").is_file()
-    assert {"versus.html", "versus.nc", "versus_figures.csv"} <= {p.name for p in out.iterdir()}
+    assert {"versus.html", "versus.nc", "versus_figures_by_bundle_case_operating_state.csv"} <= {
+        p.name for p in out.iterdir()
+    }
 
 
 def test_cases_are_run_as_the_options_say(

@@ -96,22 +96,10 @@ def _here(tmp_path, monkeypatch):
         ("run rig -o file/x", "output: got file/x; file is a file; name a directory"),
         ("runup rig -o file/x", "store: got file/x; file is a file; name a directory"),
         ("thesis -o file/x", "output: got file/x; file is a file; name a directory"),
-        ("thesis -o out --values 9", "--values: got 9; no case is named"),
-        ("thesis -o out --set a=1", "--set: got ('a=1',); no case is named"),
+        ("thesis rig -o out", "Got unexpected extra argument (rig)"),
         (
-            "thesis rig -o out --record file=fast",
-            "--record: got 'file=fast'; allowed FILE=RPM, a number of rpm",
-        ),
-        ("thesis rig -o out --values 1", "1 is not in the range 2<=x<=10000"),
-        (
-            "thesis rig -o out --temperatures 100:160",
-            "--temperatures: got '100:160'; allowed FROM:TO:COUNT",
-        ),
-        ("thesis rig -o out --temperatures 100:900:3", "--temperatures: got 900 degC; allowed"),
-        ("thesis table-4.2 -o out", "got kind = 'dimensionless'; allowed kind = 'gear'"),
-        (
-            "thesis rig -o out --tempratures 1:2:3",
-            "No such option '--tempratures'. Did you mean '--temperatures'?",
+            "bifurcation rig --over zeta=.02:.1:5 -o out --branch-perod 0",
+            "No such option '--branch-perod'. Did you mean '--branch-period'?",
         ),
         ("measure record.csv -o file/x", "output: got file/x; file is a file; name a directory"),
         (

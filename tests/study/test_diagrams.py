@@ -18,8 +18,8 @@ from thermogear.base.vocabulary import ASSUMED
 from thermogear.case.case import load_case, load_example
 from thermogear.results.work import carry_out
 from thermogear.study import diagrams
-from thermogear.study.diagrams import case_map, overlaid, whole_or_spared
-from thermogear.views.pages.thesis_pair import located
+from thermogear.study.diagrams import case_map, whole_or_spared
+from thermogear.views.pages.sweeps import bifurcations
 from thermogear.views.plots.lost_contact import PARTED
 
 SCALED = ("damping_ratio", "stiffness_amplitude", "mean_force", "force_amplitude")
@@ -109,8 +109,10 @@ def test_two_diagrams_side_by_side_keep_their_own_bifurcations() -> None:
                    threads=1)
             for one in (DOUBLING, other)
         ]  # fmt: skip
-        rows = located(overlaid(("as it is", "scaled"), found), ("as it is", "scaled"))
-        assert [row["state"] for row in rows] == ["as it is", "scaled"] * period
+        rows = [row for one in found for row in bifurcations(one)[1]]
+        assert len(rows) == 2 * period
         if rows:
             row, scaled = rows
-            assert scaled["value"] == pytest.approx(s * row["value"], rel=1e-9)
+            assert scaled["bifurcation_value"] == pytest.approx(
+                s * row["bifurcation_value"], rel=1e-9
+            )

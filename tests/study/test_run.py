@@ -19,6 +19,7 @@ from thermogear.study.notices import jam_notices
 from thermogear.study.run_notices import _deviations
 from thermogear.thesis.errata import with_errata
 from thermogear.views.pages.run import page
+from thermogear.views.plots import temperature
 from thermogear.views.tables import key_results
 from thermogear.views.write import save_results
 
@@ -274,3 +275,22 @@ def test_a_run_says_which_part_of_a_series_it_is_of() -> None:
         assert (told["parts"], told["seed"], told.get("drawing")) == (64, 1, drawing)
     alone = gear_case(load_example("fzg-a", {"flanks.parts": "1"}))
     assert "one_part_run" not in coded(list(_deviations(alone)))
+
+
+def test_every_temperature_has_its_four_views(small: Result) -> None:
+    row = small.groups["temperature"]
+    history, phase, section, lines = temperature.views(row, bundle=0, operating=0).panels
+    for place, panels in enumerate(zip(history, phase, section, lines, strict=True)):
+        one = row.isel(bundle=0, operating=0, gear_temperature=place)
+        x = 1e6 * (one["displacement"].values - float(one["half_backlash"]))
+        drawn = [panel.marks[0] for panel in panels]
+        assert drawn[0].y[0] == pytest.approx(x[0], rel=1e-12)
+        assert drawn[0].x[0] == 0.0
+        assert drawn[1].x[0] == pytest.approx(x[0], rel=1e-12)
+        dots = panels[2].marks[-1]
+        first = 1e6 * float(one["section_displacement"].values[0] - one["half_backlash"])
+        assert np.any(np.isclose(dots.x, first, rtol=1e-3))
+        kept = one["order"].values > 0.0
+        greatest = 1e6 * float(one["line_amplitude"].values[kept].max())
+        stems = next(mark for mark in panels[3].marks if type(mark).__name__ == "Stems")
+        assert max(stems.y) == pytest.approx(greatest, rel=1e-12)

@@ -32,7 +32,7 @@ from thermogear.thesis import (
 from thermogear.thesis.claim import Finding, Verdict, rising, verdict_of
 from thermogear.thesis.evidence import Evidence, Size
 from thermogear.thesis.report import CLAIMS, build
-from thermogear.views.page import Code, Table
+from thermogear.views.page import Table
 from thermogear.views.pages.record_tables import comparison_table
 from thermogear.views.pages.thesis import page as page_of_claims
 from thermogear.views.write import save_results, write_report
@@ -198,8 +198,6 @@ def test_page_opens_with_the_conclusions_those_that_hold_first() -> None:
         verdicts.index(conclusions[name].verdict) for name in links
     )
     assert [str(row[2]) for row in table.rows] == [f"reason {name}" for name in links]
-    code = [block.words for block in first.blocks if isinstance(block, Code)]
-    assert code[0].split()[-4:] == ["thesis", "mine.toml", "-o", "mine"]
     assert outlook.name == "outlook"
     (left,) = [block for block in outlook.blocks if isinstance(block, Table)]
     assert len(left.rows) == 4

@@ -267,7 +267,6 @@ def of_surveys() -> dict[str, Picture]:
         "contact-path": loaded.along_path(contact, json.loads(points)),
         "double-contact": loaded.double_contact(apart, 1.0, "double_contact_length"),
         "relief-error": relief.error(pairs),
-        "relief-stiffness": relief.stiffness(pairs),
         "relief-load": relief.over_load(pairs, 1.5),
         "relief-parts": relief.each_part(
             made("relief part", "ratio").assign(relief=["none", "a", "b"])
@@ -399,8 +398,7 @@ def of_claims() -> dict[str, Picture]:
         output_words=("output", ["growth", "flash"]), input_words=("input", ["a", "b", "c"])
     )
     return {
-        "thesis-diagram": sweeps.over_each_other([diagram], ["without heat"]),
-        "overlay": sweeps.overlay_picture(diagram.expand_dims(state=2), ["undeformed", "hot"]),
+        "thesis-diagram": sweeps.over_each_other([diagram] * 2, ["without heat", "hot"]),
         "over-grid": claims.over_grid(given, "flash", "flash temperature [K]", KELVIN),
         "warming": claims.warming(multiplier),
         "experiment": claims.experiment(entry),
@@ -429,8 +427,6 @@ def of_sampled_rigs() -> dict[str, Picture]:
     )
     return {
         "rig-displacements": rig_trains.displacements(data),
-        "rig-factors": rig_trains.factors(data),
-        "rig-ranks": rig_trains.ranks(data),
     }
 
 

@@ -109,14 +109,12 @@ def test_the_sections_stand_in_the_order_of_the_physics(text: str) -> None:
 def test_key_results_say_what_heat_does(text: str) -> None:
     words = words_of(text)
     assert "125 → 90" in words
-    assert re.search(r"backlash \w+ 125 \w+ 90 µm", words)
     assert re.search(r"regimes, −3 µm", words)
     assert words.index("regimes") < words.index("quiet")
 
 
 def test_a_natural_frequency_is_said_to_be_that_of_the_undeformed_mean_stiffness(text: str) -> None:
     assert re.search(r"f<sub>n</sub> .* \[Hz\]", text)
-    assert len(re.findall(r"frequency of the undeformed", words_of(text))) >= 2
 
 
 def test_base_sets_are_said_to_be_none_of_the_rig(text: str) -> None:

@@ -90,7 +90,7 @@ GROUPS = {
     },
     "Research": {
         "sensitivity": "Rank the inputs that decide the results.",
-        "thesis": "Judge the claims of the thesis, or redo it for CASE.",
+        "thesis": "Judge the claims of the thesis.",
     },
 }
 """Commands as the help lists them: group -> name -> one sentence of at most 60 characters."""

@@ -31,7 +31,7 @@ from thermogear.results.tables import frames, points, told
 if TYPE_CHECKING:
     import pandas as pd
 
-FILES = dict.fromkeys(("gear", "dimensionless", "thesis", "thesis-pair", "sensitivity"), RESULTS)
+FILES = dict.fromkeys(("gear", "dimensionless", "thesis", "sensitivity"), RESULTS)
 """The file of a kind; of every other kind it is ``KIND.nc``."""
 OF_POINTS = ("mesh", "motion")
 """Groups of a run that say something of each operating point, as one table."""

@@ -1,4 +1,4 @@
-"""Diagrams, maps and basins of a case: its words become plans, two states one overlay."""
+"""Diagrams, maps and basins of a case: its words become plans."""
 
 from __future__ import annotations
 
@@ -12,13 +12,12 @@ import numpy as np
 
 from thermogear.analysis.basin_shares import SharePlan, share_plan
 from thermogear.analysis.basins import BASIN_RULE, BasinPlan, basin_plan
-from thermogear.analysis.branches import with_branches_of_states
 from thermogear.analysis.diagram import BRANCH_PERIOD, DIAGRAM_RULE, DiagramPlan, diagram_plan
 from thermogear.analysis.family import Family
 from thermogear.analysis.maps import MAP_RULE, MapPlan, map_plan
 from thermogear.analysis.settle import Rule
 from thermogear.analysis.stacked import StackedPlan
-from thermogear.base.arrays import Dataset, Floats
+from thermogear.base.arrays import Floats
 from thermogear.base.errors import InputError
 from thermogear.base.stores import read_manifests
 from thermogear.case.base import Case
@@ -265,27 +264,3 @@ def case_basin_shares(
     rule = rule_of(whole, BASIN_RULE) if isinstance(whole, TrainFamily) else BASIN_RULE
     width, height = ((float(axis[0]), float(axis[-1])) for axis in (x, v))
     return share_plan(whole, name, values, x=width, v=height, starts=x.size * v.size, rule=rule)
-
-
-def overlaid(words: Sequence[str], found: Sequence[Dataset]) -> Dataset:
-    """Two diagrams over the same values as one, with the axis ``state``.
-
-    ``words`` name their states, ``found`` holds the diagrams. Branches and bifurcations carry
-    ``branch_state`` and ``bifurcation_state``.
-    """
-    import xarray as xr
-
-    one, other = found
-    data = xr.concat(
-        [
-            data.drop_vars([n for n in data if str(n).startswith(("branch_", "bifurcation_"))])
-            for data in found
-        ],
-        "state",
-        combine_attrs="drop_conflicts",
-    )
-    data.attrs["state_names"] = json.dumps(words)
-    name = str(data.attrs["parameter"])
-    if "bifurcation_kind" in one and "bifurcation_kind" in other:
-        data = with_branches_of_states(data, dict(enumerate(found)), str(data[name].attrs["units"]))
-    return data

@@ -141,8 +141,8 @@ def versus(cases: Sequence[Stored]) -> Result:
     ``phase_place`` or ``line``, whose positions are the variables ``path_position``,
     ``mesh_phase`` and ``order`` of each case. Where a case lacks a point, a bundle or a figure
     the numbers are NaN and texts empty; ``present`` (case, bundle, operating) tells. The
-    attributes ``differences``, ``choices`` and ``notices`` hold JSON lists, and
-    ``series`` that of :func:`of_series`.
+    attributes ``differences`` and ``notices`` hold JSON lists, and ``series`` that of
+    :func:`of_series`.
     Raises InputError for a wrong number of cases, one without gears, and damaged results.
     """
     require_number(len(cases))
@@ -167,7 +167,6 @@ def versus(cases: Sequence[Stored]) -> Result:
         {"": data},
         _notices(cases, data, names if own else None),
         differences=differences(cases),
-        choices=choices(cases, bundles),
         series=list(of_series(cases, titles)),
         cases=[_text(case) for case in cases],
         path_points=[_path_points(case) for case in cases],
@@ -216,32 +215,6 @@ def differences(cases: Sequence[Stored]) -> list[dict[str, Any]]:
                 for each, ours in zip(fields, taken, strict=True)
             ]  # fmt: skip
             found.append({"field": name, "values": values})
-    return found
-
-
-def choices(
-    cases: Sequence[Stored], bundles: Sequence[Sequence[str]] | None = None
-) -> list[dict[str, Any]]:
-    """The choices in which bundles of the same name differ, a value for each case."""
-    made = []
-    for place, case in enumerate(cases):
-        stored = case.read("bundles", {})
-        names = case.bundles if bundles is None else bundles[place]
-        made.append(
-            {name: stored.get(own, {}) for name, own in zip(names, case.bundles, strict=True)}
-        )
-    found = []
-    for bundle in _union([list(each) for each in made]):
-        having = [each.get(bundle) for each in made]
-        for choice in _union([list(each) for each in having if each is not None]):
-            values = [None if each is None else each.get(choice) for each in having]
-            there = [v for v, each in zip(values, having, strict=True) if each is not None]
-            if any(value != there[0] for value in there[1:]):
-                found.append({
-                    "bundle": bundle, "choice": choice,
-                    "values": ["no such bundle" if each is None else v
-                               for v, each in zip(values, having, strict=True)],
-                })  # fmt: skip
     return found
 
 

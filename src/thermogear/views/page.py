@@ -169,15 +169,6 @@ class Section:
         return ", ".join(f"{n} {word}{'s' * (n > 1)}" for word, n in counts.items() if n)
 
 
-@dataclass(frozen=True)
-class Tile:
-    """One figure at the top of the page."""
-
-    title: str
-    value: str
-    beside: Cell
-
-
 @dataclass
 class Pictures:
     """Collects pictures while their data are there, each under a name of its own."""
@@ -257,7 +248,6 @@ class Page:
     result: Result
     summary: Cell
     sections: Sequence[Section]
-    tiles: Sequence[Tile] = ()
     numbers: Callable[[], Mapping[str, Any]] = dict
     told: Callable[[], Iterable[Block]] = tuple
     tables: Callable[[], Mapping[str, str]] = dict
@@ -396,7 +386,6 @@ def render(page: Page) -> str:
             script=script() if any(page.pictures) else "",
             policy=policy(),
             summary=page.summary if isinstance(page.summary, Markup) else prose(page.summary),
-            tiles=page.tiles,
             notices=told(page.result.notices),
             open=OPEN,
             sections=parts,

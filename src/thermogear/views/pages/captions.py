@@ -2,26 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermogear.base.arrays import Dataset
-from thermogear.base.display import MILLIMETRE, PERCENT, number, span
+from thermogear.base.display import span
 from thermogear.views.plots.curves import hot_state
-from thermogear.views.plots.path import BAND, own_law
-from thermogear.views.style import chosen, names_of, path_points
+from thermogear.views.style import names_of
 from thermogear.views.typesetting import operating_names
-
-NEAR = 0.02
-"""Positions closer than this part of the path are the same place."""
-PLACES = {
-    "A": "at the start of contact A",
-    "C": "at the pitch point C",
-    "E": "at the end of contact E",
-}
 
 
 def hertz(data: Dataset, bundle: int, name: str) -> str:
@@ -44,150 +34,57 @@ def where(data: Dataset, name: str) -> str:
     return "" if alike else f"At {operating_names(data)[0]}. "
 
 
-def pitch_inside(data: Dataset) -> bool:
-    """Whether the pitch point lies on the path of contact."""
-    points = path_points(data)
-    return "C" in points and points.get("A", np.inf) < points["C"] < points.get("E", -np.inf)
-
-
-def place(data: Dataset, position: float) -> str:
-    """A ``position`` [m] on the path by its letter, where one is near, else in millimetres."""
-    points = path_points(data)
-    s = data["path_position"].values
-    for name, words in PLACES.items():
-        if name in points and abs(position - points[name]) <= NEAR * np.ptp(s):
-            return words
-    return f"at {number(MILLIMETRE(position), 4)} mm"
-
-
-def top_of(data: Dataset, values: NDArray[np.float64]) -> str:
-    """Where the greatest of ``values`` along the path lies."""
-    return place(data, float(data["path_position"].values[int(np.nanargmax(values))]))
-
-
-def _sentence(parts: Mapping[str, str], start: str) -> str:
-    """name -> words as one sentence, after ``start``; names only where the words differ."""
-    if len(set(parts.values())) == 1:
-        return f"{start}: {next(iter(parts.values()))}."
-    return f"{start}: {'; '.join(f'{name} {words}' for name, words in parts.items())}."
-
-
 def regimes(here: Dataset) -> str:
-    """The lubrication regime of every drawn operating point by its film; "" if unknown.
+    """The lubrication regimes by the film along the path; "" if unknown.
 
-    ``here`` has the axes operating and path_position alone. A film is nan where the heat does not
-    settle, and infinite without load.
+    A film is nan where the heat does not settle, and infinite without load.
     """
     known = "regime" in here and "flag_meanings" in here["regime"].attrs
-    if not known or "film_parameter" not in here:
+    film = here["film_parameter"].values if known and "film_parameter" in here else np.array(np.nan)
+    there = ~np.isnan(film)
+    if not there.any():
         return ""
-    film = here["film_parameter"].values
-    drawn = [o for o in chosen(len(film)) if not np.isnan(film[o]).any()]
-    if not drawn:
-        return ""
-    names, film = operating_names(here), film[drawn]
-    if not np.isfinite(film).any():
-        return "Without load the film has no limit."
-    told = {names[o]: _regime_along(here.isel(operating=o)) for o in drawn}
-    return _sentence(told, f"Lubrication by the film parameter, Λ = {span(film, 2)}")
-
-
-def _regime_along(one: Dataset) -> str:
-    """ "boundary throughout", or from where to where each regime reaches."""
-    names = str(one["regime"].attrs["flag_meanings"]).split()
-    index, s = one["regime"].values.astype(int), MILLIMETRE(one["path_position"].values)
-    cuts = np.flatnonzero(np.diff(index)) + 1
-    if not cuts.size:
-        return f"{names[index[0]]} throughout"
-    if cuts.size > 3:
-        shares = [(name, float(np.mean(index == k))) for k, name in enumerate(names)]
-        return ", ".join(f"{name} on {PERCENT(part):.0f} %" for name, part in shares if part)
-    runs = [names[index[0]], *(names[index[c]] for c in cuts)]
-    ends = [f" up to {number(0.5 * (s[c - 1] + s[c]), 4)} mm" for c in cuts] + [" to the end"]
-    return ", ".join(run + end for run, end in zip(runs, ends, strict=True))
+    names = str(here["regime"].attrs["flag_meanings"]).split()
+    told = ", ".join(names[k] for k in np.unique(here["regime"].values[there].astype(int)))
+    return f"Lubrication by the film parameter, Λ = {span(film[there], 2)}: {told}."
 
 
 def kinematics(data: Dataset, fastest: int) -> str:
     """Of the rolling and sliding speeds."""
-    words = f"At {operating_names(data)[fastest]}. "
-    if not pitch_inside(data):
-        return words + "The pitch point lies outside the path: the flanks slide all along."
-    return words + (
-        "Both flanks roll with the same speed at the pitch point C alone; sliding changes its "
-        "sign there and is greatest at the ends of contact A and E."
+    return (
+        f"At {operating_names(data)[fastest]}. Both flanks roll with the same speed at the pitch "
+        "point C alone; where it lies outside the path they slide all along."
     )
 
 
 def load_share(data: Dataset) -> str:
     """Of the share of one tooth pair."""
-    here = hot_state(data).isel(operating=0)
-    if "line_load" in here and not np.any(here["line_load"].values > 0.0):
-        return "Without load: the shares that a light one would have."
-    words = "Where the share is 1 one pair carries everything; elsewhere several do."
-    return f"{where(data, 'load_share')}{words}"
+    return (
+        f"{where(data, 'load_share')}Where the share is 1 one pair carries everything; elsewhere "
+        "several do. Without load: the shares that a light one would have."
+    )
 
 
 def friction(data: Dataset, bundle: int, bundles: Mapping[str, Any]) -> str:
-    """Of the friction coefficient by the case's own law, lubricated and dry, and of the band."""
-    here = hot_state(data).isel(bundle=bundle)
+    """Of the friction coefficient by the case's own law, lubricated and dry."""
     name = names_of(data, "bundle")[bundle]
-    own = own_law(here, "friction_coefficient")
-    kelley = here["friction_coefficient_mixed"].values
-    known = bool(np.isfinite(kelley).any())
-    law = bundles.get(name, {}).get("friction", "another law")
-    parts = [f"Lines: {law}, by which the case computes"] if own else []
-    if known:
-        line = "dotted: " if own else "Lubricated by "
-        parts.append(f"{line}Benedict and Kelley's law")
-    else:
-        parts.append("Benedict and Kelley's law has no value for such rough flanks")
-    words = [f"Bundle {name}, hot. {'; '.join(parts)}; dry, a constant."]
-    if spread := band_words(here):
-        words.append(spread)
-    return " ".join([*words, regimes(here)]).strip()
+    law = bundles.get(name, {}).get("friction", "a law of its own")
+    return (
+        f"Bundle {name}, hot, which computes by {law}. Lubricated is Benedict and Kelley's law, "
+        f"dry a constant. {regimes(hot_state(data).isel(bundle=bundle))}"
+    ).strip()
 
 
-def band_words(here: Dataset) -> str:
-    """How far the laws within their range spread; nothing where that is not stored."""
-    if not set(here.data_vars) >= BAND:
-        return ""
-    least = here["friction_coefficient_least"].values
-    greatest = here["friction_coefficient_greatest"].values
-    known = np.isfinite(least) & np.isfinite(greatest)
-    if not known.any():
-        return ""
-    low, high = float(least[known].mean()), float(greatest[known].mean())
-    words = (
-        f"Shaded: the laws within their range, on the mean {number(low, 2)} to {number(high, 2)}"
-    )
-    if "friction_outside_range" in here and (here["friction_outside_range"].values == 1).any():
-        words += "; the case's own law is outside its range in places"
-    return f"{words}."
-
-
-def flash(data: Dataset, name: str) -> str:
-    """Of the flash temperature ``name`` over what the picture draws."""
-    here = hot_state(data)[name].transpose("bundle", "operating", ...).values
-    drawn = chosen(here.shape[1])
-    told = {}
-    for b, bundle in enumerate(names_of(data, "bundle")):
-        values = here[b, drawn]
-        if np.nanmax(values, initial=0.0) > 0.0:
-            highest = np.nanmax(values, axis=0)
-            told[bundle] = f"at most {number(float(np.nanmax(highest)))} K, {top_of(data, highest)}"
-    words = _sentence(told, "Hot") + " " if told else "Nothing flashes. "
-    zero = "Zero at the pitch point, where nothing slides. " if pitch_inside(data) else ""
-    return f"{words}{zero}A rise of the skin alone."
+FLASH = "Hot; a rise of the skin alone. It is zero at the pitch point, where nothing slides."
 
 
 def temperatures(data: Dataset, bundle: int) -> str:
     """Of body and contact temperatures."""
-    bodies = hot_state(data).isel(bundle=bundle)[["pinion_body_temperature"]]
-    words = f"Bundle {names_of(data, 'bundle')[bundle]}, hot. The body temperatures"
-    at = where(bodies, "pinion_body_temperature").removesuffix(". ")
-    words += f", drawn {at[:1].lower()}{at[1:]}," if at else ""
-    words += " follow the steady field from bore to tip; the contact is hotter by the flash alone"
-    return words + (", and as cool as the bodies at C." if pitch_inside(data) else ".")
+    return (
+        f"Bundle {names_of(data, 'bundle')[bundle]}, hot. The body temperatures, drawn at "
+        f"{operating_names(data)[0]}, follow the steady field from bore to tip; the contact is "
+        "hotter by the flash alone."
+    )
 
 
 def profile(factor: int, printed: bool, at: str) -> str:
@@ -210,20 +107,13 @@ FOLLOWS = {
 """How the housing goes along with the gears in a row of temperatures."""
 
 
-def gap_over_temperature(row: Dataset, jams: Collection[str]) -> str:
-    """Of the half backlash over the gears' temperature; ``jams`` by the ways that are drawn."""
-    how = FOLLOWS.get(str(row.attrs.get("housing", "")))
-    words = f"{where(row, 'half_backlash')}Points: both gears at that temperature"
-    words += f"; {how}." if how else "."
-    ways = {
-        "jam_temperature": "Dotted: the gears alone get hotter and the housing stays as it is "
-        "when they are hot",
-        "proportional_jam_temperature": "Dash-dotted: shafts and housing rise on in proportion",
-    }
-    told = [text for name, text in ways.items() if name in jams]
-    if told:
-        words += f" {'. '.join(told)}; a cross marks where the pair jams."
-    return words
+def gap_over_temperature(row: Dataset) -> str:
+    """Of the half backlash over the gears' temperature."""
+    return (
+        f"{where(row, 'half_backlash')}Points: both gears at that temperature. Dotted: the gears "
+        "alone get hotter and the housing stays as it is when they are hot; dash-dotted: shafts "
+        "and housing rise on in proportion; a cross marks where the pair jams."
+    )
 
 
 def row_intro(row: Dataset, temperatures: str) -> str:
@@ -233,14 +123,10 @@ def row_intro(row: Dataset, temperatures: str) -> str:
     return f"{words}; {how}." if how else f"{words}."
 
 
-def row_views(*, columns: int, most: int) -> str:
-    """Of the four views of the motion over a row of temperatures."""
-    words = "Columns: gear temperature"
-    words += f", {most} of {columns}" if columns > most else ""
-    return (
-        f"{words}. From above: time history, phase plane, Poincaré section and spectrum. A single "
-        "dot of the section is a motion of one mesh period."
-    )
+ROW_VIEWS = (
+    "Columns: gear temperature. From above: time history, phase plane, Poincaré section and "
+    "spectrum. A single dot of the section is a motion of one mesh period."
+)
 
 
 def stiffness(mesh: Dataset) -> str:
@@ -257,13 +143,7 @@ def stiffness(mesh: Dataset) -> str:
     return words.strip()
 
 
-def path_intro(data: Dataset) -> str:
-    """How the pictures along the path are to be read."""
-    points = path_points(data)
-    words = "Along the path of contact: A start, C pitch point, E end."
-    if all(n in points for n in "BD") and points["B"] < points["D"]:
-        words = "Along the path of contact: A start, B to D one pair alone, C pitch point, E end."
-    several = data.sizes["operating"] > 1, data.sizes["bundle"] > 1
-    told = ["colours are operating points"] * several[0] + ["line styles are bundles"] * several[1]
-    said = ", ".join(told)
-    return f"{words} {said[:1].upper()}{said[1:]}." if said else words
+PATH = (
+    "Along the path of contact: A start, C pitch point, E end; between B and D one pair alone. "
+    "Colours are operating points, line styles are bundles."
+)

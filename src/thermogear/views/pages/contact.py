@@ -52,7 +52,7 @@ def page(result: Result) -> Page:
         Shown(
             "path",
             "Load share and pressure of one tooth pair",
-            captions.contact_path(data),
+            captions.CONTACT_PATH,
             partial(along_path, data, points),
             wide=True,
         ),
@@ -62,12 +62,6 @@ def page(result: Result) -> Page:
             "A base-pitch difference between gears of unequal temperature leaves one pair unloaded "
             "until the teeth bend enough.",
             partial(double_contact, light, pitch, "double_contact_length"),
-        ),
-        Shown(
-            "uneven_stiffness",
-            "Mean stiffness of unequally hot gears",
-            captions.uneven_stiffness(light),
-            partial(double_contact, light, pitch, "mean_stiffness"),
         ),
         Shown(
             "uneven_error",
@@ -266,7 +260,6 @@ def double_contact(data: Dataset, base_pitch: float, name: str) -> Picture:
     """``name`` over the load (logarithmic) for gears of unequal temperature."""
     words = {
         "double_contact_length": (MILLIMETRE, "length of double contact [mm]"),
-        "mean_stiffness": (STIFFNESS, "mean tangent stiffness [10⁸ N/m]"),
         "peak_to_peak_error": (MICROMETRE, "transmission error, peak to peak [µm]"),
     }
     scale, text = words[name]

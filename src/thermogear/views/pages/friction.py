@@ -34,7 +34,7 @@ def page(result: Result) -> Page:
         Shown(
             f"laws_{place + 1}",
             f"Friction laws at {names[place]}",
-            words.laws(data, place, means),
+            words.LAWS,
             partial(laws.laws, data, place, means),
             wide=True,
         )

@@ -131,10 +131,10 @@ def friction(results: Result, pictures: Pictures) -> Section | None:
         if not kind and not path.own_law(data, name):
             continue
         pictures.add(
-            f"flash-{kind or 'own'}", f"Flash temperature, {words}", captions.flash(data, name),
+            f"flash-{kind or 'own'}", f"Flash temperature, {words}", captions.FLASH,
             data, (name,), lambda name=name: path.flash(data, name),  # type: ignore[misc]
         )  # fmt: skip
-    intro = Text(captions.path_intro(data))
+    intro = Text(captions.PATH)
     return _section("friction", "Friction and flash temperature", [intro], pictures)
 
 
@@ -193,7 +193,7 @@ def gap(results: Result, pictures: Pictures) -> Section | None:
     if row is not None and "half_backlash" in row:
         pictures.add(
             "gap-temperature", "Half backlash over the gears' temperature",
-            captions.gap_over_temperature(row, backlash.jams(row, mesh)),
+            captions.gap_over_temperature(row),
             row, ("half_backlash", "cold_half_backlash"),
             lambda: backlash.over_temperature(row, mesh),
         )  # fmt: skip
@@ -314,7 +314,7 @@ def row(results: Result, pictures: Pictures) -> Section | None:
         for o in speeds:
             pictures.add(
                 f"row-{b}-{o}", f"Motion over gear temperature, {bundle}, {names[o]}",
-                captions.row_views(columns=len(words), most=temperature.MOST_COLUMNS), data, needs,
+                captions.ROW_VIEWS, data, needs,
                 lambda b=b, o=o: temperature.views(data, bundle=b, operating=o),  # type: ignore[misc]
                 wide=True,
             )  # fmt: skip

@@ -14,7 +14,6 @@ from thermogear.base.display import (
     MICROMETRE,
     MILLIMETRE,
     PERCENT,
-    STIFFNESS,
     Display,
     exactly,
 )
@@ -51,12 +50,6 @@ def page(result: Result) -> Page:
             "Transmission error over a mesh period",
             "Under the design load.",
             partial(error, result.groups["error"]),
-        ),
-        Shown(
-            "stiffness",
-            "Tangent stiffness over a mesh period",
-            words.relief_stiffness(result.groups["error"]),
-            partial(stiffness, result.groups["error"]),
         ),
         Shown(
             "loads",
@@ -235,16 +228,6 @@ def error(data: Dataset) -> Picture:
         label = f"{name}, {float(np.ptp(values)):.2f} µm peak to peak"
         panel.curve(x, values - values.mean(), colour=COLOURS.get(name, INK), label=label)
     return Picture([[panel]], legend=1)
-
-
-def stiffness(data: Dataset) -> Picture:
-    """Tangent stiffness over a mesh period at the design load."""
-    panel = Panel(
-        Axis("mesh phase φ [–]", low=0.0, high=1.0),
-        Axis("tangent mesh stiffness [10⁸ N/m]", low=0.0),
-    )
-    _pairs(panel, data["mesh_phase"], data["tangent_stiffness"], STIFFNESS)
-    return Picture([[panel]], legend=2)
 
 
 def over_load(data: Dataset, design: float) -> Picture:

@@ -13,7 +13,7 @@ from thermogear.results.result import Result
 from thermogear.views.columns import Column, Row, by_name, declared, key, rows_along
 from thermogear.views.page import Block, Pictures, Table, Text
 from thermogear.views.picture import Axis, Panel, Picture
-from thermogear.views.style import COLD, FAINT, HOT, INK, OKABE_ITO, SINGLE, WIDE, scale
+from thermogear.views.style import COLD, FAINT, HOT, INK, WIDE
 from thermogear.views.typesetting import prose
 
 
@@ -27,18 +27,6 @@ def blocks(results: Result, pictures: Pictures) -> list[Block]:
         "Displacements at the mesh line that accelerometers show after two integrations, one thin "
         "line for each sampled drive train; right, what no accelerometer sees.",
         data, ("nearest",), lambda: displacements(data), wide=True,
-    )  # fmt: skip
-    pictures.add(
-        "rig-factors", "How near the sampled trains come",
-        "A train counts where one channel lies within the factor of all three printed values; "
-        "dashed: the factor of the answer.",
-        data, ("needed_factor",), lambda: factors(data),
-    )  # fmt: skip
-    pictures.add(
-        "rig-ranks", "What decides it",
-        "Rank correlation [%] of results and assumptions, written where it is beyond three "
-        "standard errors.",
-        data, ("rank",), lambda: ranks(data), wide=True,
     )  # fmt: skip
     decides = f"What decides it, by rank correlation: {data.attrs['deciding']}."
     nearest = float(data.attrs["open_nearest"])
@@ -133,37 +121,3 @@ def displacements(data: Dataset) -> Picture:
         panels.append(panel)
     panels[0].y.words = "displacement at the mesh line [µm]"
     return Picture([panels], size=(WIDE, 3.4), share_y="row", between=0.2, legend=4)
-
-
-def factors(data: Dataset) -> Picture:
-    """The share of trains whose nearest channel lies within a factor of the printed values."""
-    panel = Panel(
-        Axis("factor allowed at all three speeds [–]", log="full", low=1.0, high=1000.0),
-        Axis("share of the sampled trains [%]", low=0.0, high=100.0),
-    )
-    count = data.sizes["train"]
-    for place, colour in zip(data["seen"].values, (INK, *OKABE_ITO), strict=False):
-        needed = np.sort(data["needed_factor"].sel(seen=place).values)
-        share = PERCENT(np.arange(1, count + 1) / count)
-        words = str(data["seen_words"].sel(seen=place).item())
-        panel.curve(needed, share, colour=colour, label=words)
-    panel.line(x=float(data.attrs["near"]), colour=HOT, width=1.0, dash=(4, 3))
-    return Picture([[panel]], size=(SINGLE[0] + 1.6, SINGLE[1]), legend=1)
-
-
-def ranks(data: Dataset) -> Picture:
-    """Rank correlations as a map: a row for every result, a column for every assumption."""
-    outputs = [str(v) for v in data["target_words"].values]
-    inputs = [str(v) for v in data["input_words"].values]
-    columns, rows = np.arange(len(inputs) + 1) - 0.5, np.arange(len(outputs) + 1) - 0.5
-    panel = Panel(
-        Axis(ticks=columns[:-1] + 0.5, names=inputs, slant=60.0),
-        Axis(low=rows[-1], high=rows[0], ticks=rows[:-1] + 0.5, names=outputs),
-    )
-    rank, error = data["rank"].values, data["rank_error"].values
-    panel.field(columns, rows, np.abs(rank), colours=scale("Blues"), low=0.0, high=1.0)
-    for r, c in np.argwhere(np.abs(rank) > 3.0 * error).tolist():
-        colour = "#ffffff" if abs(rank[r, c]) > 0.6 else INK
-        words = f"{PERCENT(rank[r, c]):+.0f}".replace("-", "−")
-        panel.text(c, r, words, size=7.4, colour=colour)
-    return Picture([[panel]], size=(WIDE, 4.2), left=3.0, top=0.2, bottom=2.9)

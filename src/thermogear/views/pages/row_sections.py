@@ -60,11 +60,4 @@ def _rows(data: Dataset, pictures: Pictures, prefix: str) -> list[Block]:
             data, needs, lambda r=row: rows.panels(data, r), wide=True,  # type: ignore[misc]
         )  # fmt: skip
         blocks += [*pictures.take(), tables.row_table(data, row)]
-    if rows.has_temperatures(data):
-        pictures.add(
-            f"{prefix}-half", "The line at half the mesh frequency over temperature",
-            "Zero as long as the motion repeats every mesh period; past the flip it grows.",
-            data, ("half_order_amplitude",), lambda: rows.half_order(data),
-        )  # fmt: skip
-        blocks += pictures.take()
     return blocks

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import isfinite
@@ -9,7 +10,7 @@ from typing import Any
 
 from thermogear.base.arrays import DataArray, Dataset
 from thermogear.base.display import SPEED
-from thermogear.base.vocabulary import DIMENSIONLESS
+from thermogear.base.vocabulary import DIMENSIONLESS, told_labels
 from thermogear.results.result import Result
 from thermogear.results.tables import csv_tables
 from thermogear.views import tables
@@ -20,7 +21,6 @@ from thermogear.views.pages import (
     dial,
     drawn,
     gear_sections,
-    headline,
     row_sections,
     shafts,
     train_motion,
@@ -151,14 +151,26 @@ def page(result: Result) -> Page:
     whole = with_hot_temperature(result)
     return Page(
         result,
-        answers.summary(result) or headline.summary(whole),
+        answers.summary(result) or rows_summary(result),
         _sections(whole),
-        tiles=headline.tiles(whole),
         numbers=lambda: numbers(result),
         told=lambda: [*answers.told(result), *train_motion.told(result)],
         most=OPEN if result.answers else None,
         tables=lambda: csv_tables(result.groups, "csv/"),
         first=(*FIRST, *gear_sections.first(result)),
+    )
+
+
+def rows_summary(result: Result) -> str:
+    """How many points of the dimensionless equation there are, and which motions."""
+    points = result.group("points")
+    if points is None:
+        return ""
+    found = Counter(map(str, told_labels(points).flat))
+    motions = ", ".join(f"{count} × {name}" for name, count in found.most_common())
+    return (
+        f"{points.sizes['point']} points of the dimensionless equation of motion; found: "
+        f"{motions}. These numbers are not derived from any gear pair."
     )
 
 
@@ -177,13 +189,10 @@ def _sections(results: Result) -> list[Section]:
 
 
 def with_hot_temperature(results: Result) -> Result:
-    """The mesh's figures with both tips' temperatures of the same points beside them."""
+    """The mesh's figures with the temperature of the pinion's tip beside them."""
     path, mesh = results.group("path"), results.group("mesh")
     if path is None or mesh is None or "pinion_body_temperature" not in path:
         return results
     tip: DataArray = path["pinion_body_temperature"].isel(path_position=-1, drop=True)
     grown = mesh.assign(hot_temperature=tip.variable)
-    if "wheel_body_temperature" in path:
-        other = path["wheel_body_temperature"].isel(path_position=0, drop=True)
-        grown = grown.assign(hot_wheel_temperature=other.variable)
     return replace(results, groups={**results.groups, "mesh": grown})

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from thermogear.base.arrays import Dataset
-from thermogear.base.display import PERCENT, SPEED, exactly, number, span
+from thermogear.base.display import SPEED, exactly, span
 from thermogear.base.vocabulary import is_known
 
 
@@ -17,15 +17,10 @@ def several(count: int, noun: str) -> str:
 # --- friction -----------------------------------------------------------------------------
 
 
-def laws(data: Dataset, operating: int, means: frozenset[str]) -> str:
-    """Of the friction laws at one operating point."""
-    here = data.isel(operating=operating)
-    drawn = np.isfinite(here["friction_coefficient"].values).any(axis=-1)
-    outside = (here["outside_range"].values[drawn] == 1).any()
-    words = "Solid: local laws"
-    words += "; dashed: one value for the mesh" if means else ""
-    words += "; dotted: outside the law's range" if outside else ""
-    return f"{words}. The band on top is the lubrication regime by the film parameter."
+LAWS = (
+    "Solid: local laws; dashed: one value for the mesh; dotted: outside the law's range. The band "
+    "on top is the lubrication regime by the film parameter."
+)
 
 
 # --- temperature --------------------------------------------------------------------------
@@ -61,27 +56,7 @@ def thermal_map(data: Dataset, safe: float) -> str:
     return " ".join(words)
 
 
-def one_point(data: Dataset) -> str:
-    """What a map of one point would show."""
-    here = data.isel(pinion_speed=0, pinion_torque=0)
-    if not is_known(int(here["status"])):
-        return ""
-    shares = zip(here["regime_name"].values, here["regime_share"].values, strict=True)
-    film = ", ".join(f"{name} on {PERCENT(float(part)):.0f} %" for name, part in shares if part)
-    return (
-        f" Lubrication is {film} of the path, with a mean friction coefficient of "
-        f"{number(float(here['mean_friction']), 2)}."
-    )
-
-
 # --- tip relief ---------------------------------------------------------------------------
-
-
-def relief_stiffness(data: Dataset) -> str:
-    """Of the tangent stiffness under the design load."""
-    without, with_it = data["tangent_stiffness"].values.mean(axis=-1)
-    change = PERCENT(with_it / without - 1.0)
-    return f"Relief changes the mean stiffness by {change:+.1f} %.".replace("-", "−")
 
 
 def relief_loads(data: Dataset) -> str:
@@ -101,29 +76,8 @@ def relief_loads(data: Dataset) -> str:
 # --- loaded contact -----------------------------------------------------------------------
 
 
-def contact_path(data: Dataset) -> str:
-    """Of load share and pressure along the path."""
-    loads = [exactly(float(data["load"][end])) for end in (0, -1)]
-    words = (
-        f"Thin at {loads[0]} N m, broad at {loads[1]} N m"
-        if data.sizes["load"] > 1
-        else f"At {loads[0]} N m"
-    )
-    if not data["edge_contact"].values[:, [0, -1]].any():
-        return f"{words}. No corner of a tip touches."
-    return (
-        f"{words}. Where the teeth give way the corner of a tip, or the edge of an undercut, "
-        "touches: there (shaded) the Hertzian pressure is not valid and is left out."
-    )
-
-
-def uneven_stiffness(data: Dataset) -> str:
-    """Of the mean stiffness of unequally hot gears."""
-    mean, apart = data["mean_stiffness"].values, data["temperature_difference"].values
-    ratio = PERCENT(mean / mean[int(np.argmin(np.abs(apart)))] - 1.0)
-    low, high = (_percent(float(v)) for v in (ratio.min(), ratio.max()))
-    return f"Against equally hot gears the mean stiffness changes by {low} to {high} %."
-
-
-def _percent(value: float) -> str:
-    return "0" if abs(value) < 0.5 else f"{value:+.0f}".replace("-", "−")
+CONTACT_PATH = (
+    "Thin at the least load, broad at the greatest. Where the teeth give way the corner of a tip, "
+    "or the edge of an undercut, touches: there (shaded) the Hertzian pressure is not valid and is "
+    "left out."
+)

@@ -125,43 +125,31 @@ def _pictures(data: Dataset) -> Section:
     return Section(LEAD, "In pictures", pictures.take(), folded=False)
 
 
-def _map_caption(data: Dataset) -> str:
-    words = "What the motion from one start settles on."
-    beside = " Beside it whether the drive flanks part, and whether the back flanks are hit."
-    assumed = " Hatched: assumed, not computed; points computed around it are alike."
-    hatched = bool((data["status"].values == ASSUMED).any())
-    return words + beside * (not has_lost(data)) + assumed * hatched
-
-
-def _diagram_caption(data: Dataset) -> str:
-    words = (
-        "Sections at phase 0 of the settled motion, each value starting from the end of the last: "
-        "up with rising values, down with falling ones"
-    )
-    branches = "; branches from continuation" if data.sizes.get("branch") else ""
-    known = np.isfinite(data["lyapunov"].values).any()
-    return f"{words}{branches}" + (
-        "; the largest Lyapunov exponent below, full up, dashed down." if known else "."
-    )
+MAP = (
+    "What the motion from one start settles on; beside it what loses contact. Hatched: assumed, "
+    "not computed; points computed around it are alike."
+)
+DIAGRAM = (
+    "Sections at phase 0 of the settled motion, each value starting from the end of the last: up "
+    "with rising values, down with falling ones; branches from continuation, where they were "
+    "followed. The largest Lyapunov exponent below, full up, dashed down."
+)
 
 
 def _sweep_caption(data: Dataset) -> str:
-    words = "Every point from the case's own start."
-    words += OF_SERIES if "series_parts" in data else ""
     rest = [str(name) for name in data["label"].dims[2:]]
     at = [f"{page_words(n, data[n])} {number(float(shown(n, data[n][0])))}" for n in rest]
-    return f"{words} Drawn at {', '.join(at)}." if at else words
+    drawn = f" Drawn at {', '.join(at)}." * bool(at)
+    return f"Every point from the case's own start.{_of_series(data)}{drawn}"
 
 
 def _run_up_caption(data: Dataset) -> str:
-    words = (
-        "One speed, met from below and from above"
-        if data.sizes["pinion_speed"] == 1
-        else "Full lines run up, dashed ones down"
-    )
-    folds = "bifurcation_kind" in data and bool((data["bifurcation_kind"].values == 0).any())
-    words += "; thin vertical lines are located folds." if folds else "."
-    return words + (OF_SERIES if "series_parts" in data else "")
+    words = "Full lines run up, dashed ones down; thin vertical lines are located folds."
+    return words + _of_series(data)
+
+
+def _of_series(data: Dataset) -> str:
+    return OF_SERIES if "series_parts" in data else ""
 
 
 def _waterfall_caption(data: Dataset) -> str:
@@ -178,10 +166,10 @@ def _waterfall_caption(data: Dataset) -> str:
 
 
 PICTURES: tuple[tuple[str, bool, str, str, str | Words, Callable[[Dataset], Picture]], ...] = (
-    ("diagram", False, "orbits", "Orbit diagram", _diagram_caption, sweeps.orbit_diagram_picture),
+    ("diagram", False, "orbits", "Orbit diagram", DIAGRAM, sweeps.orbit_diagram_picture),
     ("diagram", True, "forces", "Forces and losses of contact", LOST_DIAGRAM, forces_picture),
     ("map", True, "contact", "What loses contact", LOST_MAP, lost_contact_picture),
-    ("map", False, "regimes", "Regimes over two parameters", _map_caption, map_picture),
+    ("map", False, "regimes", "Regimes over two parameters", MAP, map_picture),
     (
         "basins", False, "basins", "Basins",
         "Which attractor every start ends on; dots are their sections.", sweeps.basins_picture,

@@ -47,7 +47,6 @@ def page(result: Result) -> Page:
         f"in {float(result.text('seconds')):.2f} s: "
         + ", ".join(f"{n} {word.replace('_', ' ')}" for word, n in count.items() if n)
         + f". Iterations at most {int(data['iterations'].max())}."
-        + ("" if over else words.one_point(data))
     )
     return survey(
         result,

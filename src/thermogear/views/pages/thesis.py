@@ -11,20 +11,18 @@ import numpy as np
 from markupsafe import Markup
 
 from thermogear.base.arrays import Dataset
-from thermogear.base.display import MICROMETRE, PERCENT, celsius
+from thermogear.base.display import MICROMETRE, celsius
 from thermogear.results.result import Result
 from thermogear.views.columns import PLAIN, Column, Row, declared, in_full, key, pairs, rows_along
 from thermogear.views.page import (
     LEAD,
     Block,
-    Code,
     Gallery,
     Page,
     Pictures,
     Section,
     Table,
     Text,
-    Tile,
     without,
 )
 from thermogear.views.pages import captions, gear_sections, rig_trains, row_sections
@@ -67,7 +65,6 @@ def page(result: Result) -> Page:
         replace(result, notices=()),
         _summary(result),
         sections + background(result),
-        tiles=_tiles(result),
         numbers=lambda: _numbers(result),
         told=lambda: _told(result),
     )
@@ -91,7 +88,7 @@ def _summary(results: Result) -> str:
 
 
 def _opening(results: Result, sections: Sequence[Section]) -> Section:
-    """The conclusions, those that hold first, one picture, and the same for the reader's gears."""
+    """The conclusions, those that hold first, and one picture."""
     claims, verdicts = results.groups["claims"], list(results.table("counts"))
     rows = [row for row in rows_along(claims, "claim") if _section(row["number"]) == CONCLUSIONS]
     rows.sort(key=lambda row: verdicts.index(row["verdict"]))
@@ -102,10 +99,6 @@ def _opening(results: Result, sections: Sequence[Section]) -> Section:
     galleries = [b for one in sections for b in one.blocks if isinstance(b, Gallery)]
     shown = [one for gallery in galleries for one in gallery.pictures if one.name == OPENING]
     blocks += [Gallery(shown)] * bool(shown)
-    blocks += [
-        Text("Redo this for your gears: every step of the document for one pair."),
-        Code("thermogear new -o mine.toml\nthermogear thesis mine.toml -o mine"),
-    ]
     return Section(LEAD, "What holds, what does not, and why", blocks, folded=False)
 
 
@@ -137,15 +130,6 @@ def _outlook(results: Result) -> Section:
         },
     ]
     return Section("outlook", "Outlook", [declared("", OUTLOOK, rows, names=3, wordy=True)])
-
-
-def _tiles(results: Result) -> list[Tile]:
-    found = results.table("counts")
-    total = sum(found.values())
-    return [
-        Tile(name, str(count), f"{PERCENT(count / total):.0f} % of {total} claims")
-        for name, count in found.items()
-    ]
 
 
 def _thesis_sections(results: Result, pictures: Pictures) -> list[Section]:

@@ -1,9 +1,8 @@
-"""The page of case against case, and its tables as CSV, from ``versus.nc`` alone."""
+"""The page of case against case, and its figures as CSV, from ``versus.nc`` alone."""
 
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Sequence
 from functools import partial
 from typing import Any
@@ -15,7 +14,7 @@ from thermogear.base.arrays import Dataset
 from thermogear.base.display import PERCENT, display, in_words, percent
 from thermogear.base.vocabulary import UNDEFORMED, label
 from thermogear.results.result import Result
-from thermogear.results.tables import table_text
+from thermogear.results.tables import csv_tables
 from thermogear.views.columns import Column, Row, declared, in_full, key, rows_along
 from thermogear.views.page import Block, Code, Page, Pictures, Section, Table, Text
 from thermogear.views.picture import Axis, Panel, Picture
@@ -74,16 +73,12 @@ def page(result: Result) -> Page:
         numbers=lambda: {
             "cases": names_of(data, "case"),
             "differences": result.rows("differences"),
-            "choices": result.rows("choices"),
             "units": _numbers_there(data),
             "figures": _rows(data),
             "series": rows,
         },
         told=lambda: [Text(_summary(data)), *(b for one in _series(rows) for b in one.blocks)],
-        tables=lambda: {
-            f"versus_{name}.csv": table_text(head, rows)
-            for name, (head, rows) in _csv_tables(data).items()
-        },
+        tables=lambda: csv_tables({"figures": data}, "versus_"),
     )
 
 
@@ -105,19 +100,12 @@ def _value(row: Row, place: int) -> Markup:
 def _differences(data: Dataset) -> Section:
     titles = names_of(data, "case")
     by_case = [Column(title, partial(_value, place=k)) for k, title in enumerate(titles)]
-    fields, made = (json.loads(data.attrs[name]) for name in ("differences", "choices"))
+    fields = json.loads(data.attrs["differences"])
     blocks: list[Block] = [Text("The case files say the same; at most their titles differ.")]
     if fields:
         caption = "Fields of the case files that differ."
         columns = [Column("field", lambda row: field_name(row["field"])), *by_case]
         blocks = [declared(caption, columns, fields, names=len(columns), wordy=True)]
-    if made:
-        caption = "Choices in which bundles of one name differ."
-        choice = Column("choice", lambda row: row["choice"].replace("_", " "))
-        columns = [Column("bundle", "bundle"), choice, *by_case]
-        blocks.append(declared(caption, columns, made, names=len(columns), wordy=True))
-    else:
-        blocks.append(Text("Bundles of one name make the same choices in all cases."))
     return Section("differences", "What differs", blocks, folded=False)
 
 
@@ -320,30 +308,6 @@ def _numbers_there(data: Dataset) -> dict[str, str]:
     """The stored figures that are numbers, with their units."""
     names = [name for name in FIGURES if name in data and name != "label"]
     return {name: str(data[name].attrs.get("units", "1")) for name in names}
-
-
-def _csv_tables(data: Dataset) -> dict[str, tuple[list[str], list[list[Any]]]]:
-    titles = names_of(data, "case")
-    fields = [
-        [r["field"], *map(in_words, r["values"])] for r in json.loads(data.attrs["differences"])
-    ]
-    made = [
-        [r["bundle"], r["choice"], *map(in_words, r["values"])]
-        for r in json.loads(data.attrs["choices"])
-    ]
-    units = [f"{name} [{unit}]" for name, unit in _numbers_there(data).items()]
-    rows = [[*row.values()] for row in _rows(data)]
-    series = json.loads(data.attrs.get("series", "[]"))
-    names = list(dict.fromkeys(name for row in series for name in row))
-    heads = [
-        f"{name} [m]" if re.search("error_(low|mid|high|bad)", name) else name for name in names
-    ]
-    tables = {"series": (heads, [[row.get(name, "") for name in names] for row in series])}
-    return (tables if series else {}) | {
-        "differences": (["field", *titles], fields),
-        "choices": (["bundle", "choice", *titles], made),
-        "figures": (["case", "bundle", "point", "state", "label", *units], rows),
-    }
 
 
 # --- pictures -----------------------------------------------------------------------------------

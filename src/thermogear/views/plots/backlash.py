@@ -78,14 +78,6 @@ def _mark_jam(panel: Panel, jam: float, *, left: bool) -> None:
         panel.text(jam, 0.0, words, offset=(away, -5), across=across, up="top")
 
 
-def jams(row: Dataset, mesh: Dataset | None) -> list[str]:
-    """The jam temperatures whose way is drawn for any bundle."""
-    if mesh is None:
-        return []
-    bundles = names_of(row, "bundle")
-    return [jam for jam in WAYS if any(_way_to_jam(mesh, name, jam) for name in bundles)]
-
-
 def _way_to_jam(mesh: Dataset, bundle: str, jam: str) -> tuple[list[float], list[float]] | None:
     """From the hot state to the jam [degC], [um]; None where the jam is out of reach."""
     bundles = names_of(mesh, "bundle")

@@ -10,7 +10,7 @@ from thermogear.base.vocabulary import QUANTITIES
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.motion import HISTORY, label_of, periods_to_draw, thinned
 from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
-from thermogear.views.style import COLD, FAINT, HOT, INK, OKABE_ITO, QUIET
+from thermogear.views.style import COLD, FAINT, HOT, INK
 from thermogear.views.typesetting import math_symbol, plain
 
 HIGHEST_ORDER = 4.0
@@ -139,27 +139,3 @@ def _samples_per_period(one: Dataset) -> int:
         return int(one.sizes["sample"])
     step = float(one["phase"].values[1] - one["phase"].values[0])
     return max(1, round(1.0 / step)) if step > 0.0 else int(one.sizes["sample"])
-
-
-def half_order(points: Dataset) -> Picture:
-    """Amplitude of the line at half the mesh frequency along every row of temperatures."""
-    panel = Panel(Axis("gear temperature T [°C]"), Axis("half-order amplitude |X| [–]"))
-    rows = [row for row in row_names(points) if _is_temperature(of_row(points, row))]
-    for place, row in enumerate(rows):
-        data = of_row(points, row)
-        panel.curve(
-            CELSIUS(data["value"].values),
-            data["half_order_amplitude"].values,
-            marker="circle",
-            size=5,
-            colour=OKABE_ITO[place % len(OKABE_ITO)] if len(rows) > 2 else (HOT, COLD)[place],
-            dash=(5, 2) if row == "thesis" else (),
-            label=plain(row),
-        )
-    panel.line(y=0.0, colour=QUIET, width=0.8, order=0.5)
-    return Picture([[panel]], left=0.88)
-
-
-def has_temperatures(points: Dataset) -> bool:
-    """Whether any row of ``points`` runs through temperatures."""
-    return any(str(name) == "temperature" for name in points["parameter"].values)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.arrays import Dataset, Floats
 from thermogear.base.display import CELSIUS, KILONEWTON, MICROMETRE, PERCENT, Display
-from thermogear.base.vocabulary import ASSUMED, STATUS, UNDEFORMED, of_turn
+from thermogear.base.vocabulary import ASSUMED, STATUS, of_turn
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.parameters import axis_words, shown
 from thermogear.views.plots.spectrum import MESH_ORDERS, SHAFT_ORDERS, shaft_orders
@@ -134,32 +134,15 @@ def _above_exponent(top: Panel, low: Panel) -> Picture:
     )
 
 
-def overlay_picture(data: Dataset, states: Sequence[str]) -> Picture:
-    """The diagrams of all ``states`` over each other; see :func:`over_each_other`."""
-    each = [state_of(data, place) for place in range(len(states))]
-    return over_each_other(each, states)
-
-
 def over_each_other(each: Sequence[Dataset], states: Sequence[str]) -> Picture:
     """Orbit diagrams over each other, a colour for each state, up and down alike."""
     name = _parameter(each[0])
     top = Panel(Axis(), Axis("X at phase 0 [–]"))
     low = Panel(_along(each[0], name), Axis("exponent λ₁ [–]"))
-    colours = (HOT, COLD) if states[-1] == UNDEFORMED else (COLD, HOT, MIXED)
-    for here, words, colour in zip(each, states, colours, strict=False):
+    for here, words, colour in zip(each, states, (COLD, HOT, MIXED), strict=False):
         _sections(top, low, here, colour=colour, label=words, opacity=0.5)
         _branches(top, here, name, colour)
     return _above_exponent(top, low)
-
-
-def state_of(data: Dataset, place: int) -> Dataset:
-    """One diagram of an overlay: its points, branches and bifurcations."""
-    here = data.isel(state=place)
-    for thing in ("branch", "bifurcation"):
-        if f"{thing}_state" in here:
-            mine = here[f"{thing}_state"].values == place
-            here = here.isel({thing: mine}).drop_vars(f"{thing}_state")
-    return here
 
 
 def _branches(panel: Panel, data: Dataset, name: str, colour: str = "") -> None:
