@@ -1,7 +1,7 @@
 """Figures that others published or that follow in closed form, each beside what we compute.
 
-``make trial NAME=anchors`` computes them and writes trials/records/anchors.md; ``python trials/anchors.py``
-prints the table alone. Nothing here is drawn at random and nothing is fitted.
+``make trial NAME=anchors ARGS=--write`` computes them and writes trials/records/anchors.md; without
+the argument it prints the tables alone. Nothing here is drawn at random and nothing is fitted.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 ``make trial NAME=train_fresh`` draws 200 trains of a seed that no rule has seen and labels each
 from rest, in one start; as many of them as ``--ruled`` names (20) by the rule of the studies, too,
 with two starts where rounding decides. 40 labels are held against the long independent integration
-of ``train_reference.py``. Writes trials/records/train_fresh.md with the intervals of the shares. What
+of ``train_reference.py``. Writes trials/records/train_fresh.md with intervals of the shares. What
 is done is kept until the code changes, so that a stopped trial goes on. ``--seed`` draws others.
 """
 
@@ -91,7 +91,7 @@ def page(
     seconds = np.array([one["label"]["seconds"] for one in records])
     order = sorted(names, key=lambda name: (not name.startswith("period-"), len(name), name))
     lines = [
-        
+
         "# Fresh drive trains",
         "",
         f"Made by `make trial NAME=train_fresh` (seed {seed}, fixed before the first run): "
