@@ -15,4 +15,4 @@ def test_intervals_of_shares_hold_other_starts(at_length: AtLength, compared: Co
     assert len(rows) == 10
     assert all(row.inside for row in rows)
     compared("share of the starts", "other starts", [row.share - row.other for row in rows], 0.1)
-    assert len(TRIAL.page(rows)) == 9 + len(rows)  # heading, sentence and head of the table
+    assert len(TRIAL.page(rows)) == 6 + len(rows)  # heading, sentence and head of the table
