@@ -64,7 +64,6 @@ SPEED = Display("rpm", per=RPM)
 GRAVITY = Display("g", per=STANDARD_GRAVITY)
 LINE_LOAD = Display("N/mm", 1e-3)
 MILLIMETRE_PER_SECOND = Display("mm/s", 1e3)
-MICROMETRE_PER_SECOND = Display("µm/s", 1e6)
 NANOMETRE = Display("nm", 1e9)
 MILLISECOND = Display("ms", 1e3)
 MEGAPASCAL = Display("MPa", 1e-6)
@@ -93,7 +92,7 @@ _BY_NAME = {
     "line_load": LINE_LOAD,
     "velocity": MILLIMETRE_PER_SECOND,
     "section_velocity": MILLIMETRE_PER_SECOND,
-    "least_velocity": MICROMETRE_PER_SECOND,
+    "least_velocity": MILLIMETRE_PER_SECOND,
 }
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from thermogear.base.arrays import Dataset
 from thermogear.base.display import (
     MICROMETRE,
-    MICROMETRE_PER_SECOND,
+    MILLIMETRE_PER_SECOND,
     PERCENT,
     Display,
     exactly,
@@ -79,7 +79,7 @@ def _kind(row: Row) -> str:
 def pushes(data: Dataset) -> list[tuple[str, Display]]:
     """Names and units of the least disturbances, in SI where the plane is one of lengths."""
     if np.isfinite(data["plane_scale"]).any():
-        return [("least_displacement", MICROMETRE), ("least_velocity", MICROMETRE_PER_SECOND)]
+        return [("least_displacement", MICROMETRE), ("least_velocity", MILLIMETRE_PER_SECOND)]
     return [("least_x", Display("as --x")), ("least_v", Display("as --v"))]
 
 
