@@ -35,6 +35,8 @@ WITHOUT = {
     "case.rexs.container.read_rexs": "reads a file; docs/howto/rexs.md shows one",
     "measured.readers.read_record": "reads a file; docs/tutorials/own_record.md shows one",
     "measured.reduction.measure": "needs a record; docs/tutorials/own_record.md shows one",
+    "dynamics.geared.GearedModel": "takes the matrices of a train; a case makes it",
+    "dynamics.return_map.ReturnMap": "a protocol; docs/howto/own_model.md makes two",
     "base.plan.slices": "needs a plan of minutes; docs/howto/many_samples.md shows one",
     "base.errors.ConvergenceError": "no round input makes an iteration fail",
     "base.excitation.Excitation": "made by excitation(), which has an example",

@@ -78,7 +78,9 @@ def test_a_run_of_a_part_is_inside_the_band_where_the_series_has_it(case: GearCa
     assert [low, median, bad, high] == [
         each.value for each in (spread.low, spread.middle, spread.bad, spread.high)
     ]
-    drawn = case_of("flanks.parts=1", "flanks.teeth=drawn", "flanks.drawing=5", "gears.period=turn")
+    # a series has 96 positions of a mesh period, a case of its own those of its grid
+    one_part = ("flanks.parts=1", "flanks.teeth=drawn", "flanks.drawing=5", "gears.period=turn")
+    drawn = case_of(*one_part, "grid.mesh_positions=96")
     own = run_up(drawn, speeds, temperatures=[None], branch_period=0).data
     assert own["dynamic_factor"].values[0, 0, 0] == pytest.approx(factor[5], rel=0.01)
     row = numbers(result)["series"][0]

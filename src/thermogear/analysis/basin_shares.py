@@ -351,7 +351,7 @@ def basin_shares(
     ... )
     >>> found = basin_shares(model, "frequency", [0.7], x=(-2, 2), v=(-2, 2), starts=100)
     >>> found.motion_share.values.round(2).tolist()
-    [[0.81, 0.19]]
+    [[0.75, 0.25]]
     """
     plan = share_plan(model, parameter, values, x=x, v=v, starts=starts, seed=seed, rule=rule)
     return gather(plan, threads=threads, progress=progress)
