@@ -10,6 +10,7 @@ is done is kept until the code changes, so that a stopped trial goes on. ``--see
 from __future__ import annotations
 
 import argparse
+import signal
 import sys
 import time
 from collections import Counter
@@ -47,6 +48,8 @@ from thermogear.study.shafts.motion import search_of
 
 SEED = 66_2026
 COUNT, RULED = 200, 20
+LIMIT = 120
+"""Processor time of a label [s], chosen: a train that takes longer counts as undecided."""
 PAGE = ROOT / "trials" / "records" / "train_fresh.md"
 
 
@@ -59,8 +62,19 @@ def labelled(number: int, seed: int = SEED, starts: int = 1) -> Record:
     def label(section: GearedMap) -> Motion:
         return settle(section, train.start, search)
 
+    def stop(*_: object) -> None:
+        raise TimeoutError
+
     began = time.process_time()
-    first = label(GearedMap(model=train.model))
+    signal.signal(signal.SIGVTALRM, stop)
+    signal.setitimer(signal.ITIMER_VIRTUAL, LIMIT)
+    try:
+        first = label(GearedMap(model=train.model))
+    except TimeoutError:
+        words = f"no label within {LIMIT} s of processor time"
+        first = Motion("undecided", 0, words, 0, state=np.asarray(train.start))
+    finally:
+        signal.setitimer(signal.ITIMER_VIRTUAL, 0)
     seconds = time.process_time() - began
     found: Record = {
         "number": number, "kind": one.kind, "cycle": train.model.cycle,
