@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 
 from conftest import Compared
+from thermogear import IteratedMap, label
 from thermogear.analysis.bifurcations import FLIP, FOLD
+from thermogear.base.errors import InputError
 from thermogear.dynamics.return_map import return_map
 
 PAGE = Path(__file__).parents[2] / "docs" / "howto" / "own_model.md"
@@ -90,3 +92,24 @@ def test_duffings_equation(names: dict[str, Any], compared: Compared) -> None:
     compared("small motion of Duffing's equation", "linear response", away, 1e-3)
     assert names["calm"].name == "period-1"
     assert return_map(names["Duffing"]()).determinant(1) == pytest.approx(area, rel=1e-12)
+
+
+class Logistic(IteratedMap):
+    """x' = r x (1 - x); ``row`` gives its Jacobian another shape."""
+
+    unit = np.ones(1)
+
+    def __init__(self, r: float, row: bool = False) -> None:
+        self.r, self.row = r, row
+
+    def iterate(self, state: Any) -> tuple[Any, Any]:
+        slope = self.r * (1.0 - 2.0 * state)
+        return self.r * state * (1.0 - state), slope if self.row else slope[None]
+
+
+def test_what_leaves_every_bound_has_diverged_and_a_wrong_shape_is_told() -> None:
+    """Beyond r = 4 almost every start of the logistic map leaves [0, 1] and runs to -infinity."""
+    assert label(Logistic(3.2), initial_state=(0.3,)).name == "period-2"
+    assert label(Logistic(4.5), initial_state=(0.3,)).name == "diverged"
+    with pytest.raises(InputError, match=r"iterate.*\(1,\) and \(1,\).*\(1, 1\)"):
+        label(Logistic(3.2, row=True), initial_state=(0.3,))

@@ -160,6 +160,6 @@ def test_what_a_reader_sees_of_turning_cages() -> None:
 def test_cages_that_turn_are_refused_where_a_motion_must_come_again() -> None:
     with pytest.raises(InputError, match=r"train.cages.*turning.*standing"):
         TrainFamily(case(BALLS, TURNING), ("pinion_speed",))
-    for words in ('cages = "rolling"', "cage_slip = 0.6"):
+    for words in ('cages = "rolling"', "cage_slip = 0.6", "cage_slip = 0.02"):
         with pytest.raises(InputError, match="cage"):
             case(BALLS, words)

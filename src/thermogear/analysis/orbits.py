@@ -320,6 +320,6 @@ def periodic_orbit(
     if orbit is None:
         raise ConvergenceError(
             f"no orbit of period {period} reached from {start.tolist()}: Newton did not settle "
-            "within 30 iterations to a residual of 1e-9 half backlashes; try another guess"
+            "within 30 iterations to a residual of 1e-9 of its unit (the half backlash of gears); try another guess"
         )
     return orbit

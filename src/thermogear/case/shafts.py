@@ -59,6 +59,13 @@ def train_plan(
     shafts = _shafts(file, pair, known)
     force = max(file.operating.torque) / pair.pinion.base_radius
     table = file.train or TrainTable()
+    if table.cage_slip and table.cages == "standing":
+        raise InputError(
+            "train.cage_slip",
+            f"{table.cage_slip:g} of cages that stand",
+            allowed="0",
+            fix='write cages = "turning", or leave the slip out',
+        )
     bearings = _bearings(file, shafts, known, pair)
     given = inertias if file.inertia.model == "given" else (None, None)
     gears = (pair.pinion, pair.wheel)

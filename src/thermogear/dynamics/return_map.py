@@ -15,7 +15,7 @@ from typing import Any, Protocol, TypeGuard, runtime_checkable
 import numpy as np
 
 from thermogear.base.arrays import Floats
-from thermogear.base.errors import InputError
+from thermogear.base.errors import ConvergenceError, InputError
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -203,17 +203,31 @@ class IteratedMap(StateMap):
     def carry(self, start: Floats, periods: int) -> Floats:
         """The states (periods, d) after 1, 2, ... periods from ``start``."""
         states = np.empty((periods, self.dimension))
-        with np.errstate(over="ignore", invalid="ignore"):  # it may leave every bound
-            for number in range(periods):
-                start = states[number] = self.iterate(start)[0]
+        for number in range(periods):
+            start = states[number] = self._step(start)[0]
         return states
 
     def visit(self, start: Floats, periods: int = 1, *, sampled: bool = False) -> Visit:
         """Run ``periods`` periods from ``start`` with the variational equations."""
         points, jacobian = [np.asarray(start, dtype=float)], np.eye(self.dimension)
-        with np.errstate(over="ignore", invalid="ignore"):  # long chaos has no bound
-            for _ in range(periods):
-                state, step = self.iterate(points[-1])
-                points.append(state)
+        for _ in range(periods):
+            state, step = self._step(points[-1])
+            points.append(state)
+            with np.errstate(over="ignore", invalid="ignore"):  # long chaos has no bound
                 jacobian = step @ jacobian
         return Visit(points=np.array(points), jacobian=jacobian)
+
+    def _step(self, state: Floats) -> tuple[Floats, Floats]:
+        """What ``iterate`` gives, its shapes held; ConvergenceError where there is no image."""
+        with np.errstate(over="ignore", invalid="ignore"):
+            image, jacobian = (np.asarray(part, dtype=float) for part in self.iterate(state))
+        if image.shape != (self.dimension,) or jacobian.shape != (self.dimension, self.dimension):
+            raise InputError(
+                "iterate",
+                f"shapes {image.shape} and {jacobian.shape}",
+                allowed=f"({self.dimension},) and ({self.dimension}, {self.dimension})",
+                why="the next state and its Jacobian, by the length of unit",
+            )
+        if not np.all(np.isfinite(image)):
+            raise ConvergenceError(f"the state {state.tolist()} has no finite image")
+        return image, jacobian
