@@ -320,6 +320,7 @@ def periodic_orbit(
     if orbit is None:
         raise ConvergenceError(
             f"no orbit of period {period} reached from {start.tolist()}: Newton did not settle "
-            "within 30 iterations to a residual of 1e-9 of its unit (the half backlash of gears); try another guess"
+            "within 30 iterations to a residual of 1e-9 of its unit (of gears the half backlash); "
+            "try another guess"
         )
     return orbit
