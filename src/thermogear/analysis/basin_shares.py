@@ -136,34 +136,34 @@ class SharePlan:
         return 1.0 / len(self.values)
 
     def compute(self, key: Key, before: Arrays | None, alive: Alive) -> Arrays:
-        found = empty_arrays(self, key)
+        arrays = empty_arrays(self, key)
         made = self.family(np.array([[self.values[key[0]]]]))
-        one, status = unpacked(made, 1)
-        found["status"][:] = status
+        lane, status = unpacked(made, 1)
+        arrays["status"][:] = status
         if not moves(status).all():
-            return found
-        plane = plane_of(one if isinstance(one, Lanes) else one[0])
+            return arrays
+        plane = plane_of(lane if isinstance(lane, Lanes) else lane[0])
         low, high = np.transpose(self.box)
         drawn = np.random.default_rng(self.seed).uniform(low, high, (self.starts, 2))
-        known, where = ends_of(one, plane.starts(drawn), self.rule, alive=alive)
+        known, where = ends_of(lane, plane.starts(drawn), self.rule, alive=alive)
         counts = np.bincount(where[where >= 0], minlength=len(known))
         order = np.argsort(-counts, kind="stable")[:MOST_ATTRACTORS]
-        found["diverged"][:] = np.count_nonzero(where == -2)
-        found["undecided"][:] = self.starts - found["diverged"] - counts[order].sum()
-        found["plane_unit"][:] = plane.unit
-        found["plane_scale"][:] = getattr(made, "plane_scale", plane.scale)
+        arrays["diverged"][:] = np.count_nonzero(where == -2)
+        arrays["undecided"][:] = self.starts - arrays["diverged"] - counts[order].sum()
+        arrays["plane_unit"][:] = plane.unit
+        arrays["plane_scale"][:] = getattr(made, "plane_scale", plane.scale)
         widths = np.ptp(self.box, axis=1)
-        least = least_disturbances(one, known, self.rule, widths=widths, alive=alive)
+        least = least_disturbances(lane, known, self.rule, widths=widths, alive=alive)
         for place, number in enumerate(order):
             attractor = known[number]
             points = plane.of(attractor.points[:SECTION_POINTS])
-            found["attractor_section"][0, place, : len(points)] = points
-            found["attractor_count"][0, place] = counts[number]
-            found["attractor_period"][0, place] = attractor.period
-            found["attractor_multiplier"][0, place] = abs(attractor.multiplier)
-            found["attractor_lyapunov"][0, place] = attractor.lyapunov
-            found["attractor_least"][0, place] = least[number]
-        return found
+            arrays["attractor_section"][0, place, : len(points)] = points
+            arrays["attractor_count"][0, place] = counts[number]
+            arrays["attractor_period"][0, place] = attractor.period
+            arrays["attractor_multiplier"][0, place] = abs(attractor.multiplier)
+            arrays["attractor_lyapunov"][0, place] = attractor.lyapunov
+            arrays["attractor_least"][0, place] = least[number]
+        return arrays
 
     def finish(self, data: Dataset) -> Dataset:
         """Name motions along the parameter; shares with their intervals, the least disturbance."""
@@ -174,7 +174,7 @@ class SharePlan:
         motion = np.full(present.shape, -1)
         last: list[Floats] = []
         for value, here in enumerate(present):
-            each = [one[np.isfinite(one[:, 0])] for one in sections[value, here]]
+            each = [points[np.isfinite(points[:, 0])] for points in sections[value, here]]
             motion[value, here] = matched(each, last=last)
             for number, section in zip(motion[value, here], each, strict=True):
                 last[number : number + 1] = [section]
@@ -269,7 +269,7 @@ def least_disturbances(
     before. In units of the plane; nan where no ray leaves, and of chaos.
     """
     single_model = lanes if isinstance(lanes, Lanes) else lanes[0]
-    orbits = [n for n, one in enumerate(known) if not one.chaotic]
+    orbits = [n for n, attractor in enumerate(known) if not attractor.chaotic]
     owner = np.repeat(orbits, [4 * len(known[n].points) for n in orbits]).astype(int)
     least = np.full((len(known), 2), np.inf)
     if not owner.size:
@@ -304,7 +304,7 @@ def matched(here: Sequence[Floats], *, last: Sequence[Floats]) -> Whole:
     Pairs have the least sum of mean distances (Kuhn, Naval Research Logistics 2 (1955) 83), each
     below :data:`SAME_MOTION`; sections are in units of the plane.
     """
-    gap = np.array([_apart(one, other) for one in last for other in here])
+    gap = np.array([_section_distance(before, now) for before in last for now in here])
     gap = np.minimum(gap, SAME_MOTION).reshape(len(last), len(here))
     rows, columns = linear_sum_assignment(gap)
     near = gap[rows, columns] < SAME_MOTION
@@ -314,9 +314,9 @@ def matched(here: Sequence[Floats], *, last: Sequence[Floats]) -> Whole:
     return numbers
 
 
-def _apart(one: Floats, other: Floats) -> float:
+def _section_distance(first: Floats, second: Floats) -> float:
     """The larger of the mean distances of the points of each section from the other."""
-    gaps = cdist(one, other, "chebyshev")
+    gaps = cdist(first, second, "chebyshev")
     return float(max(gaps.min(axis=0).mean(), gaps.min(axis=1).mean()))
 
 
@@ -349,8 +349,8 @@ def basin_shares(
     ...     damping_ratio=0.05, frequency=0.7, stiffness_amplitude=0.1,
     ...     mean_force=0.1, force_amplitude=0.05,
     ... )
-    >>> found = basin_shares(model, "frequency", [0.7], x=(-2, 2), v=(-2, 2), starts=100)
-    >>> found.motion_share.values.round(2).tolist()
+    >>> shares = basin_shares(model, "frequency", [0.7], x=(-2, 2), v=(-2, 2), starts=100)
+    >>> shares.motion_share.values.round(2).tolist()
     [[0.75, 0.25]]
     """
     plan = share_plan(model, parameter, values, x=x, v=v, starts=starts, seed=seed, rule=rule)

@@ -67,24 +67,26 @@ def settle_forced(
     periods up to the state. A settled motion need not be the only one: other starts may settle on
     another. ``alive`` raises to end the work.
     """
-    one, two = np.asarray(starts, dtype=float)
+    first, second = np.asarray(starts, dtype=float)
     turn, away = 0, np.inf
     try:
         while turn < cap and away > TOGETHER:
             alive()
-            one, two = (section.carry(each, ROUND, turn=turn)[-1] for each in (one, two))
+            first, second = (section.carry(each, ROUND, turn=turn)[-1] for each in (first, second))
             turn += ROUND
-            away = float(np.max(np.abs(one - two) / section.unit))
+            away = float(np.max(np.abs(first - second) / section.unit))
         # what is left of their distance decays most slowly
-        apart = two - one if away > 0.0 else section.unit
+        separation = second - first if away > 0.0 else section.unit
         for length in LENGTHS:
             alive()
             growth = np.zeros(BATCHES * length)
             for place in range(growth.size):
-                two = one + apart * (BESIDE / _size(apart / section.unit))
-                one, two = (section.carry(each, RENEWED, turn=turn)[-1] for each in (one, two))
-                apart, turn = two - one, turn + RENEWED
-                growth[place] = np.log(max(_size(apart / section.unit), 1e-300) / BESIDE)
+                second = first + separation * (BESIDE / _size(separation / section.unit))
+                first, second = (
+                    section.carry(each, RENEWED, turn=turn)[-1] for each in (first, second)
+                )
+                separation, turn = second - first, turn + RENEWED
+                growth[place] = np.log(max(_size(separation / section.unit), 1e-300) / BESIDE)
             # a slow pair turns in its plane: under a smooth window that falls out of the mean
             batches = growth.reshape(BATCHES, length) @ smooth_window(length) / RENEWED
             means = batches / section.period
@@ -96,19 +98,19 @@ def settle_forced(
             if sure and value < 0.0:
                 break
     except ConvergenceError as why:
-        return Motion(name="diverged", period=0, reason=str(why), state=one, discarded=turn)
+        return Motion(name="diverged", period=0, reason=str(why), state=first, discarded=turn)
     name = "undecided"
     if sure and value > 0.0:
         name = "chaotic"
     elif sure and away <= TOGETHER:
         name = "settled"
-    told = f"largest conditional exponent {value * section.period:.3g} +- "
-    told += f"{error * section.period:.1g} per mesh period, two starts {away:.1g} apart"
+    reason = f"largest conditional exponent {value * section.period:.3g} +- "
+    reason += f"{error * section.period:.1g} per mesh period, two starts {away:.1g} apart"
     return Motion(
         name=name,
         period=0,
-        reason=f"{told} after {turn} mesh periods driven alike",
-        state=one,
+        reason=f"{reason} after {turn} mesh periods driven alike",
+        state=first,
         discarded=turn,
         lyapunov=value,
         lyapunov_error=error,

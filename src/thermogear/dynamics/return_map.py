@@ -8,6 +8,7 @@ shortly as an :class:`IteratedMap`.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol, TypeGuard, runtime_checkable
@@ -173,7 +174,7 @@ class StateMap:
         return stretched(self, start, direction=direction, periods=periods)
 
 
-class IteratedMap(StateMap):
+class IteratedMap(StateMap, ABC):
     """A return map that is known by one step: what a model of one's own has to say.
 
     A subclass has ``unit`` (d,), the scales of a state, and ``iterate``; ``period`` [model's unit
@@ -192,9 +193,9 @@ class IteratedMap(StateMap):
 
     period: float = 1.0
 
+    @abstractmethod
     def iterate(self, state: Floats) -> tuple[Floats, Floats]:
         """P(state) (d,) and its Jacobian (d, d)."""
-        raise NotImplementedError
 
     def determinant(self, periods: int) -> float:
         """det D P^n: not known to be the same everywhere."""
